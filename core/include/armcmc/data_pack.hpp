@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/status.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+/// Plant family of a pack: decides what its columns mean. Values equal data_pack_t.PLANT_*.
+enum class PlantKind : std::int32_t { kHuntCrossley = 1, kSoftActuator = 2 };
+
+/// D^t: the measurements of one algorithm step. Rows past num_samples are not read.
+struct DataPack {
+  std::int64_t seq = 0;     ///< Pack number, >= 1. Also selects the random stream of the step.
+  std::int64_t run_id = 0;  ///< Run of the plant.
+  Nanos t_last_ns = 0;      ///< Sender's CLOCK_MONOTONIC at the last sample.
+  double t_last_s = 0.0;    ///< Plant time of the last sample, s.
+  double dt = 0.0;          ///< Sample interval T, s, > 0.
+  PlantKind plant = PlantKind::kHuntCrossley;
+  int num_samples = 0;  ///< [1, kMaxPackSamples].
+  int num_inputs = 0;   ///< [1, kMaxPackInputs].
+  std::array<double, kMaxPackSamples> y{};  ///< Output: force N (Hunt-Crossley), angle rad (actuator).
+  std::array<std::array<double, kMaxPackInputs>, kMaxPackSamples> u{};  ///< x m, v m/s; or u_c, u_d, p Pa, pdot Pa/s.
+
+  /// kOk, or kBadPack when a count is out of range, dt is not positive, or a used value is not finite.
+  /// @rt No heap, no lock, no throw. O(n).
+  [[nodiscard]] Status Validate() const noexcept ARMCMC_NONBLOCKING;
+};
+
+}  // namespace armcmc

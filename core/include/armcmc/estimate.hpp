@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+/// What a pack did to the posterior (algorithm step 2).
+enum class Decision : std::uint8_t { kHold = 0, kReinforcement = 1, kModification = 2 };
+
+/// One marginal of the posterior, in the unit of the quantity.
+struct MarginalSummary {
+  double ar_map = 0.0;  ///< Mode of the draws after a modification, mean after a reinforcement.
+  double ar_ap = 0.0;   ///< Mean of the draws.
+  double sd = 0.0;
+  double q025 = 0.0, q25 = 0.0, q50 = 0.0, q75 = 0.0, q975 = 0.0;
+  double is_mean = 0.0;  ///< Importance-sampling mean and sd from the same weights.
+  double is_sd = 0.0;
+  double histogram_lo = 0.0, histogram_hi = 0.0;
+  std::array<double, kHistogramBins> density{};  ///< Integrates to 1 over [lo, hi].
+};
+
+/// The estimate of one mode.
+struct ModeEstimate {
+  bool known = false;    ///< A posterior exists.
+  bool updated = false;  ///< By this pack.
+  Decision decision = Decision::kHold;
+  int num_samples = 0;   ///< Samples of the pack that belong to this mode.
+  double zeta = 0.0, zeta_threshold = 0.0, lambda = 0.0;
+  int k_min = 0, draws = 0;
+  bool truncated = false;
+  double ess = 0.0;       ///< Effective sample size of the chain (autocorrelation).
+  double kish_ess = 0.0;  ///< Of the importance weights.
+  double acceptance = 0.0, log_evidence = 0.0, p_changed = 0.0, noise_std = 0.0;
+  std::array<MarginalSummary, kMaxReported> marginal{};  ///< Order of PlantModel::reported().
+};
+
+/// Everything that the execute stage reports about one pack. Plain data of fixed size.
+struct Estimate {
+  std::int64_t seq = 0, run_id = 0;
+  Nanos t_last_ns = 0;
+  double t_last_s = 0.0;
+  int num_reported = 0, num_modes = 0;
+  int mode = 0;          ///< Mode at the last sample, or num_modes when no identified mode acts (free motion).
+  int report_mode = 0;   ///< Mode whose parameters are reported: `mode`, else the last one known.
+  bool active = false;   ///< `mode` is an identified mode.
+  std::array<ModeEstimate, kMaxModes> modes{};
+  double y_pred = 0.0, y_lo = 0.0, y_hi = 0.0;  ///< Output predicted for the last sample and its 95 % band.
+  double y_rmse = 0.0;   ///< Of the prediction over the pack, from the posterior after the pack.
+  double y_free_run = 0.0;  ///< Output at the last sample predicted from the inputs alone since the start (actuator).
+};
+
+}  // namespace armcmc

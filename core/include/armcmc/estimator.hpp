@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/estimate.hpp"
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/settings.hpp"
+#include "armcmc/status.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+class AdjustResult;  // draws, weights and meta data of one adjusted pack; see adjust_result.hpp
+
+/// Upper bounds on the draws of each mode, to repeat a run that a deadline had cut.
+using DrawLimits = std::array<int, kMaxModes>;
+inline constexpr DrawLimits kNoDrawLimits = {kMaxDraws, kMaxDraws, kMaxDraws, kMaxDraws};
+
+/// Name and unit of a reported quantity.
+struct ReportedQuantity {
+  std::string_view name;
+  std::string_view unit;
+};
+
+/// Adaptive recursive MCMC: the adjust and execute computations of the three-stage loop.
+///
+/// Adjust() and Execute() may run at the same time on two threads as long as they work on different
+/// AdjustResults: Adjust() alone changes the posterior memory, Execute() alone the predictor state.
+/// No clock, thread or I/O inside; memory is fixed after construction.
+class Estimator {
+ public:
+  /// @throws std::invalid_argument from settings.Validate(). Allocates all memory that it will ever use.
+  explicit Estimator(const EstimatorSettings& settings);
+  ~Estimator();
+  Estimator(const Estimator&) = delete;
+  Estimator& operator=(const Estimator&) = delete;
+
+  /// A result slot of the right size for this estimator. Allocates.
+  [[nodiscard]] std::unique_ptr<AdjustResult> MakeResult() const;
+
+  /// Stage B of the paper's timeline: mismatch, lambda, k_min, draws, posterior.
+  ///
+  /// Draws stop when the predicted end of the next chunk would pass deadline_ns. For equal settings, equal
+  /// packs and equal draw counts the result is equal to the bit.
+  /// @param deadline_ns  Absolute, on the clock passed in; a default clock never reaches it.
+  /// @return kOk, kTruncated, kHeld, kBadPack (nothing changed) or kNonFinite (posterior kept).
+  /// @rt No heap, no lock, no throw. Bounded by max_draws x num_samples.
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+                const DrawLimits& limits = kNoDrawLimits) noexcept;
+
+  /// Stage C: summary of the posterior, predicted output with band.
+  /// @rt No heap, no lock, no throw. O(draws).
+  void Execute(const AdjustResult& result, Estimate* estimate) noexcept;
+
+  /// Forgets everything learnt: the next pack meets the initial prior. (A restarted plant is no reason to
+  /// call it: the mismatch test decides whether the old posterior still holds.)
+  void Reset() noexcept;
+
+  [[nodiscard]] const EstimatorSettings& settings() const noexcept;
+  [[nodiscard]] PlantKind plant() const noexcept;
+  [[nodiscard]] int num_modes() const noexcept;
+  [[nodiscard]] std::string_view mode_name(int mode) const noexcept;  ///< mode == num_modes(): the passive one.
+  [[nodiscard]] int num_reported() const noexcept;
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept;
+  [[nodiscard]] int num_inputs() const noexcept;  ///< Columns of u that a pack must have.
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Number of draws by the Chernoff bound, ceil(log(2 / (1 - delta)) / (2 epsilon^2)): 14 979 for 0.01, 0.9.
+[[nodiscard]] int ChernoffDraws(double epsilon, double delta) noexcept;
+
+/// Instruction set that the scoring kernels run on: "avx512", "avx2" or "sse2".
+[[nodiscard]] std::string_view InstructionSet() noexcept;
+
+}  // namespace armcmc

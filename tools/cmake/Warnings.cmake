@@ -1,0 +1,7 @@
+# Warnings are errors: a warning nobody has to read is a warning nobody reads.
+option(ARMCMC_WERROR "Treat warnings as errors" ${PROJECT_IS_TOP_LEVEL})
+add_library(armcmc_warnings INTERFACE)
+target_compile_options(armcmc_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
+  -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2 -Wundef
+  $<$<BOOL:${ARMCMC_WERROR}>:-Werror>)
