@@ -20,12 +20,12 @@ struct DataPack {
   double t_last_s = 0.0;    ///< Plant time of the last sample, s.
   double dt = 0.0;          ///< Sample interval T, s, > 0.
   PlantKind plant = PlantKind::kHuntCrossley;
-  int num_samples = 0;  ///< [1, kMaxPackSamples].
-  int num_inputs = 0;   ///< [1, kMaxPackInputs].
+  int num_samples = 0;                      ///< [1, kMaxPackSamples].
+  int num_inputs = 0;                       ///< [1, kMaxPackInputs].
   std::array<double, kMaxPackSamples> y{};  ///< Output: force N (Hunt-Crossley), angle rad (actuator).
   std::array<std::array<double, kMaxPackInputs>, kMaxPackSamples> u{};  ///< x m, v m/s; or u_c, u_d, p Pa, pdot Pa/s.
 
-  /// kOk, or kBadPack when a count is out of range, dt is not positive, or a used value is not finite.
+  /// kOk, or kBadPack when seq or a count is out of range, dt is not positive, or a used value is not finite.
   /// @rt No heap, no lock, no throw. O(n).
   [[nodiscard]] Status Validate() const noexcept ARMCMC_NONBLOCKING;
 };

@@ -24,10 +24,10 @@ struct MarginalSummary {
 
 /// The estimate of one mode.
 struct ModeEstimate {
-  bool known = false;    ///< A posterior exists.
+  bool known = false;    ///< The data have said something: the posterior has become narrower than the prior.
   bool updated = false;  ///< By this pack.
   Decision decision = Decision::kHold;
-  int num_samples = 0;   ///< Samples of the pack that belong to this mode.
+  int num_samples = 0;  ///< Samples of the pack that belong to this mode.
   double zeta = 0.0, zeta_threshold = 0.0, lambda = 0.0;
   int k_min = 0, draws = 0;
   bool truncated = false;
@@ -43,13 +43,18 @@ struct Estimate {
   Nanos t_last_ns = 0;
   double t_last_s = 0.0;
   int num_reported = 0, num_modes = 0;
-  int mode = 0;          ///< Mode at the last sample, or num_modes when no identified mode acts (free motion).
-  int report_mode = 0;   ///< Mode whose parameters are reported: `mode`, else the last one known.
-  bool active = false;   ///< `mode` is an identified mode.
+  int mode = 0;         ///< Mode at the last sample, or num_modes when no identified mode acts (free motion).
+  int report_mode = 0;  ///< Mode whose parameters are reported: `mode`, else the last one known.
+  bool active = false;  ///< `mode` is an identified mode.
   std::array<ModeEstimate, kMaxModes> modes{};
   double y_pred = 0.0, y_lo = 0.0, y_hi = 0.0;  ///< Output predicted for the last sample and its 95 % band.
-  double y_rmse = 0.0;   ///< Of the prediction over the pack, from the posterior after the pack.
+  double y_rmse = 0.0;                          ///< Of the prediction over the pack, from the posterior after the pack.
   double y_free_run = 0.0;  ///< Output at the last sample predicted from the inputs alone since the start (actuator).
+  int num_samples = 0;
+  /// Output at every sample of the pack as a user would have seen it predicted: with the point estimates that were on
+  /// display then, those of the pack before the previous one (the paper's timeline). NaN while nothing was known.
+  std::array<double, kMaxPackSamples> y_shown{};
+  std::array<double, kMaxPackSamples> y_shown_free_run{};  ///< The same from the inputs alone since the start.
 };
 
 }  // namespace armcmc

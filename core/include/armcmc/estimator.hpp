@@ -72,9 +72,6 @@ class Estimator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Number of draws by the Chernoff bound, ceil(log(2 / (1 - delta)) / (2 epsilon^2)): 14 979 for 0.01, 0.9.
-[[nodiscard]] int ChernoffDraws(double epsilon, double delta) noexcept;
-
 /// Instruction set that the scoring kernels run on: "avx512", "avx2" or "sse2".
 [[nodiscard]] std::string_view InstructionSet() noexcept;
 

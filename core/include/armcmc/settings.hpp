@@ -13,11 +13,11 @@ enum class PriorKind : std::uint8_t { kNormal, kUniform };
 
 /// Prior and bounds of one parameter, in the parameter's unit.
 struct ParameterSettings {
-  std::string name;                     ///< Must match a parameter of the model.
+  std::string name;  ///< Must match a parameter of the model.
   PriorKind prior = PriorKind::kNormal;
-  double mean = 0.0;                    ///< Of the untruncated normal. Unused by kUniform.
-  double sd = 1.0;                      ///< > 0. Unused by kUniform.
-  double lower = -1.0;                  ///< Hard bounds, lower < upper. The prior is zero outside.
+  double mean = 0.0;    ///< Of the untruncated normal. Unused by kUniform.
+  double sd = 1.0;      ///< > 0. Unused by kUniform.
+  double lower = -1.0;  ///< Hard bounds, lower < upper. The prior is zero outside.
   double upper = 1.0;
 };
 
@@ -28,13 +28,13 @@ enum class NoiseKind : std::uint8_t { kGaussian, kStudentT, kLaplace, kMixture }
 /// t law, the mean absolute deviation b (Laplace), the standard deviation of the inlier part (mixture).
 struct NoiseSettings {
   NoiseKind kind = NoiseKind::kGaussian;
-  double std = 1.0;               ///< > 0, unit of the regression target.
-  double mean = 0.0;              ///< mu_nu, same unit.
-  bool estimate_std = false;      ///< Sample the scale with theta, log-normal prior around `std`.
-  double std_log_sd = 1.0;        ///< Prior standard deviation of log(scale) when it is estimated, > 0.
-  double dof = 4.0;               ///< Student-t degrees of freedom, > 0.
-  double outlier_weight = 0.05;   ///< Mixture: probability of the wide part, in (0, 0.5].
-  double outlier_scale = 10.0;    ///< Mixture: its standard deviation over `std`, > 1.
+  double std = 1.0;              ///< > 0, unit of the regression target.
+  double mean = 0.0;             ///< mu_nu, same unit.
+  bool estimate_std = false;     ///< Sample the scale with theta, log-normal prior around `std`.
+  double std_log_sd = 1.0;       ///< Prior standard deviation of log(scale) when it is estimated, > 0.
+  double dof = 4.0;              ///< Student-t degrees of freedom, [1, 1000].
+  double outlier_weight = 0.05;  ///< Mixture: probability of the wide part, [1e-6, 0.5].
+  double outlier_scale = 10.0;   ///< Mixture: its standard deviation over `std`, > 1.
 };
 
 /// How the mismatch between the previous posterior and a new pack is measured (algorithm step 1).
@@ -46,36 +46,37 @@ enum class MismatchIndex : std::uint8_t {
 
 struct ForgettingSettings {
   MismatchIndex index = MismatchIndex::kRms;
-  double threshold = 1.0;      ///< zeta_th > 0, in units of the noise scale (nats for kLogPredictive).
-  double mu = 0.0;             ///< mu_nu of lambda = exp(-|mu_nu - zeta|), same unit as zeta.
-  double lambda_max = 0.999;   ///< In (0, 1): a change is never held to be impossible.
-  double rho = 0.0;            ///< In [0, 1]: weight exp(-rho (N_s - n)) of the error of sample n.
-  int min_samples = 3;         ///< Packs with fewer informative samples of a mode hold its posterior, >= 1.
+  double threshold = 1.0;       ///< zeta_th > 0, in units of the noise scale (nats for kLogPredictive).
+  double mu = 0.0;              ///< mu_nu of lambda = exp(-|mu_nu - zeta|), same unit as zeta.
+  double lambda_max = 0.99999;  ///< In (0, 1): a change is never held to be impossible.
+  double rho = 0.0;             ///< In [0, 1]: weight exp(-rho (N_s - n)) of the error of sample n.
+  int min_samples = 3;          ///< Packs with fewer informative samples of a mode hold its posterior, >= 1.
 };
 
 /// Which number of draws a pack gets.
 enum class DrawRule : std::uint8_t { kChernoff, kKMin, kFixed };
 
 struct SamplerSettings {
-  double epsilon = 0.01;          ///< Precision in (0, 1).
-  double delta = 0.9;             ///< Reliability in (0, 1).
+  double epsilon = 0.01;  ///< Precision in (0, 1).
+  double delta = 0.9;     ///< Reliability in (0, 1).
   DrawRule rule = DrawRule::kChernoff;
-  int fixed_draws = 5000;         ///< For kFixed, [kMinDraws, max_draws].
-  int max_draws = 16'384;         ///< Size of the workspace and upper bound of any rule, [kMinDraws, kMaxDraws].
-  double lambda_q_min = 0.05;     ///< Share of candidates from the previous posterior is lambda clamped to
-  double lambda_q_max = 0.5;      ///< [lambda_q_min, lambda_q_max], both in (0, 1): q must dominate the tails.
-  std::uint64_t seed = 0x5eed;    ///< Fixed by default; never taken from the machine.
-  bool use_proposal_ratio = true; ///< false drops q from the acceptance ratio: wrong on purpose, for calibration tests.
+  int fixed_draws = 5000;       ///< For kFixed, [kMinDraws, max_draws].
+  int max_draws = 16'384;       ///< Size of the workspace and upper bound of any rule, [kMinDraws, kMaxDraws].
+  double lambda_q_min = 0.05;   ///< Share of candidates from the previous posterior is lambda clamped to
+  double lambda_q_max = 0.5;    ///< [lambda_q_min, lambda_q_max], both in (0, 1): q must dominate the tails.
+  std::uint64_t seed = 0x5eed;  ///< Fixed by default; never taken from the machine.
+  bool use_proposal_ratio =
+      true;  ///< false drops q from the acceptance ratio: wrong on purpose, for calibration tests.
   static constexpr int kMinDraws = 200;
 };
 
 /// Constants of the plant that are known, not estimated.
 struct PlantConstants {
-  double p_atm = 101'325.0;   ///< Pa
-  double p_supply = 800e3;    ///< Pa
-  double q1 = 1408.5;         ///< rad/s^2 per unit of p - p_atm
-  double q2 = 132.28;         ///< 1/s
-  double q3 = 3319.4;         ///< 1/s^2
+  double p_atm = 101'325.0;  ///< Pa
+  double p_supply = 800e3;   ///< Pa
+  double q1 = 1408.5;        ///< rad/s^2 per unit of p - p_atm
+  double q2 = 132.28;        ///< 1/s
+  double q3 = 3319.4;        ///< 1/s^2
 };
 
 /// Everything that decides what the estimator computes. Build it by hand, from a built-in model
@@ -84,7 +85,7 @@ struct EstimatorSettings {
   std::string model;  ///< "hunt_crossley", "soft_actuator" or "soft_actuator_excited".
   std::array<ParameterSettings, kMaxParams> parameters;  ///< Shared by all modes; the first num_parameters count.
   int num_parameters = 0;
-  std::array<NoiseSettings, kMaxModes> noise;            ///< Per mode.
+  std::array<NoiseSettings, kMaxModes> noise;  ///< Per mode.
   ForgettingSettings forgetting;
   SamplerSettings sampler;
   PlantConstants constants;

@@ -1,21 +1,16 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 
 namespace armcmc {
 
-inline constexpr int kMaxParams = 8;          ///< Sampled parameters of one mode, noise scale included.
-inline constexpr int kMaxReported = 8;        ///< Reported quantities of one mode: parameters and derived ones.
-inline constexpr int kMaxModes = 4;           ///< Modes of a hybrid plant.
-inline constexpr int kMaxPackSamples = 256;   ///< Samples in one pack.
-inline constexpr int kMaxPackInputs = 4;      ///< Measured inputs in one pack.
-inline constexpr int kMaxDraws = 150'000;     ///< Upper end of the configurable number of draws.
-inline constexpr int kHistogramBins = 64;     ///< Bins of a published marginal.
-
-using ParamVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParams, 1>;
-using ParamMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParams, kMaxParams>;
+inline constexpr int kMaxParams = 8;         ///< Sampled parameters of one mode, noise scale included.
+inline constexpr int kMaxReported = 8;       ///< Reported quantities of one mode: parameters and derived ones.
+inline constexpr int kMaxModes = 4;          ///< Modes of a hybrid plant.
+inline constexpr int kMaxPackSamples = 256;  ///< Samples in one pack.
+inline constexpr int kMaxPackInputs = 4;     ///< Measured inputs in one pack.
+inline constexpr int kMaxDraws = 150'000;    ///< Upper end of the configurable number of draws.
+inline constexpr int kHistogramBins = 64;    ///< Bins of a published marginal.
 
 using Nanos = std::int64_t;  ///< Time in nanoseconds; the clock is whatever the caller passes in.
 

@@ -29,6 +29,10 @@ class StrictTable {
   static StrictTable FromText(std::string_view text, std::string_view name);
 
   [[nodiscard]] bool Has(std::string_view key) const;
+  /// True when the key holds a text: for keys that take either a word or a number.
+  [[nodiscard]] bool IsText(std::string_view key) const;
+  /// Leaves a key, with everything below it, to another program that reads the same file.
+  void LeaveToOthers(std::string_view key);
 
   // Optional keys: the fallback is used when the key is absent.
   double Number(std::string_view key, double fallback, double lo, double hi);
@@ -52,6 +56,9 @@ class StrictTable {
   std::vector<StrictTable> Tables(std::string_view key);
   /// Names of the keys of this table, in file order.
   [[nodiscard]] std::vector<std::string> Keys() const;
+
+  /// Name of the file in messages.
+  [[nodiscard]] std::string Name() const;
 
   /// Rejects unknown keys of this table and of every sub-table that was handed out. Call once, at the end, on the root.
   void Finish() const;

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/estimate.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+/// The draws of one mode after one pack: what the adjust stage hands to the execute stage.
+struct ModeDraws {
+  bool known = false;    ///< The data have said something: the posterior is narrower than the prior.
+  bool updated = false;  ///< By this pack: the draws below belong to it.
+  Decision decision = Decision::kHold;
+  int num_samples = 0;
+  double zeta = 0.0, zeta_threshold = 0.0, lambda = 0.0;
+  int k_min = 0;
+  int draws = 0;    ///< Candidates scored, which is the length of the chain.
+  int burn_in = 0;  ///< Iterations thrown away: half, or the pilot where that is longer.
+  bool truncated = false;
+  double acceptance = 0.0, kish_ess = 0.0, log_evidence = 0.0, p_changed = 0.0;
+  int mode_index = 0;                       ///< Candidate with the highest posterior density.
+  std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
+  int dim = 0;
+  // Structure of arrays, `draws` entries each.
+  std::array<double*, kMaxParams> u{};  ///< Standardised coordinates.
+  double* weight = nullptr;             ///< Importance weights, sum 1.
+  std::int32_t* visits = nullptr;       ///< Iterations after burn_in that the chain spent at a candidate.
+  std::int32_t* chain = nullptr;        ///< Candidate at each iteration of the chain.
+};
+
+/// One result slot. Filled by Estimator::Adjust, read by Estimator::Execute; memory is fixed at construction.
+class AdjustResult {
+ public:
+  /// Room for `capacity` draws of `dim` coordinates in each mode.
+  AdjustResult(int num_modes, int dim, int capacity);
+
+  DataPack pack;
+  Status status = Status::kOk;
+  int num_modes = 0;
+  std::array<ModeDraws, kMaxModes> modes;
+
+ private:
+  std::vector<double> doubles_;
+  std::vector<std::int32_t> integers_;
+};
+
+}  // namespace armcmc

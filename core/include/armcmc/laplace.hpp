@@ -1,0 +1,42 @@
+#pragma once
+
+#include "armcmc/linear_algebra.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/noise_model.hpp"
+#include "armcmc/parameter_space.hpp"
+
+namespace armcmc {
+
+namespace simd {
+struct Kernels;
+}
+
+/// A Gaussian in u: the prior that a Laplace fit combines with the likelihood, or its result.
+struct Gaussian {
+  ParamVector mean;
+  ParamMatrix precision;
+};
+
+/// Scratch of LaplaceFit.
+struct LaplaceScratch {
+  ThetaTile theta;
+  PredictionTile prediction;
+};
+
+/// Mode and curvature of likelihood x Gaussian prior by a bounded number of Gauss-Newton steps:
+///
+///   H = J' W J + P,   step = (H + mu diag H)^-1 [J' W e + P (m - u)]
+///
+/// W are the reweighted-least-squares weights of the noise law. J comes from central differences evaluated as lanes of
+/// one batch, so a model needs no derivatives; 4 dampings x 8 step lengths are tried as lanes of a second batch.
+/// Steps are clamped to the bounds of `space`.
+/// @param start      Where to begin, [dim].
+/// @param[out] fit   Mean = mode found, precision = H there. Positive definite because P is.
+/// @return Log of likelihood x prior at the mode (without the prior's constant).
+/// @rt No heap, no lock, no throw. At most kLaplaceIterations x 2 batches.
+double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
+                  const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,
+                  Gaussian* fit) noexcept;
+inline constexpr int kLaplaceIterations = 10;
+
+}  // namespace armcmc

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+inline constexpr int kMaxFeatures = 6;  ///< Precomputed inputs a model may keep for each sample.
+inline constexpr int kTileLanes = 32;   ///< Candidates scored side by side.
+
+/// The samples of one pack that belong to one mode, in time order, as the scoring kernels read them.
+struct alignas(64) ModeData {
+  int num_samples = 0;
+  std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
+  std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
+  std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
+};
+
+/// Predictions of kTileLanes candidates: value[n][lane].
+struct alignas(64) PredictionTile {
+  std::array<std::array<double, kTileLanes>, kMaxPackSamples> value;
+};
+
+/// Physical parameters of kTileLanes candidates: value[parameter][lane].
+struct alignas(64) ThetaTile {
+  std::array<std::array<double, kTileLanes>, kMaxParams> value;
+};
+
+}  // namespace armcmc

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "armcmc/adjust_result.hpp"
+#include "armcmc/forgetting.hpp"
+#include "armcmc/laplace.hpp"
+#include "armcmc/marginal_table.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/noise_model.hpp"
+#include "armcmc/parameter_space.hpp"
+#include "armcmc/posterior_memory.hpp"
+#include "armcmc/proposal.hpp"
+#include "armcmc/ridge.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc {
+
+namespace simd {
+struct Kernels;
+}
+
+/// Scratch of one adjust step, sized once and shared by the modes, which are adjusted one after the other.
+class SamplerWorkspace {
+ public:
+  SamplerWorkspace(int dim, int capacity);
+
+  std::vector<double> log_likelihood, proposal, initial_prior, likelihood;
+  std::array<std::vector<double>, PosteriorMemory::kMaxBlocks> memory;  ///< Density of each block of the memory.
+  std::vector<double> weight, group_weight;
+  std::vector<double> first_share;     ///< Posterior share of the memory's first block at a candidate.
+  std::vector<std::int8_t> component;  ///< Component that a candidate was drawn from.
+  std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
+  [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept;
+  LaplaceScratch laplace;
+  ThetaTile theta;
+  PredictionTile prediction;
+  std::array<std::vector<double>, kMaxParams> mismatch_u;
+  PredictiveMoments predictive;
+  std::array<std::array<MarginalTable, kMaxParams>, PosteriorMemory::kMaxBlocks> pilot_tables;
+};
+
+/// One ARMCMC step of one mode (algorithm steps 1 to 7).
+///
+///   target    exp(log_likelihood(u)) prior_t(u),   prior_t = lambda P(u | D^{t-1}) + (1 - lambda) P_0(u)
+///   proposal  q = lambda_q P(u | D^{t-1}) + (1 - lambda_q) g(u)
+///   weight    w = likelihood prior_t / q,   alpha = min(1, w(u*) / w(u))
+///
+/// g is data driven: first Laplace fits of this pack (against the previous posterior and against P_0) with heavy tails,
+/// for a pilot run of kPilotDraws candidates; then mostly a straightened, whitened histogram of the pilot's weighted
+/// draws. The pilot is part of the half of the chain that is thrown away, so adapting q once leaves the chain exact. A
+/// share of P_0 keeps q above the target's tails everywhere.
+class ModeSampler {
+ public:
+  static constexpr int kPilotDraws = 1024;  ///< In one round.
+  static constexpr int kMaxPilotRounds = 3;
+  static constexpr int kChunkDraws = 512;  ///< Between two looks at the clock.
+  static constexpr int kMismatchDraws = 256;
+
+  ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
+              const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise);
+
+  /// @param previous   Posterior before this pack; !valid before the first.
+  /// @param data       At least forgetting.min_samples samples.
+  /// @param limit      Upper bound on the draws, to repeat a truncated run.
+  /// @param[out] next  Posterior after this pack; untouched unless kOk or kTruncated is returned.
+  /// @return kOk, kTruncated or kNonFinite.
+  /// @rt No heap, no lock, no throw. O(max_draws samples).
+  Status Run(const ModeData& data, const PosteriorMemory& previous, std::uint64_t pack, std::uint64_t mode,
+             Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* workspace, PosteriorMemory* next,
+             ModeDraws* out) noexcept;
+
+  [[nodiscard]] const ParameterSpace& space() const noexcept { return space_; }
+  [[nodiscard]] const NoiseModel& noise() const noexcept { return noise_; }
+
+ private:
+  Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
+                   SamplerWorkspace* ws) const noexcept;
+  void FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous,
+                  SamplerWorkspace* ws) noexcept;
+  void BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous, int num_pilot_blocks,
+                     Proposal* proposal) const noexcept;
+  void DrawAndScore(const Proposal& proposal, const PosteriorMemory& previous, const ModeData& data, int first,
+                    int count, const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
+  /// Weights of [first, last) from the scored quantities. @return log of the factor taken out, or NaN if none is
+  /// finite.
+  double Weigh(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
+               const ModeDraws& draws) const noexcept;
+  /// Fits the pilot's weighted draws [first, last). @return number of blocks; *ess their effective number.
+  int FitPilot(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
+               const ModeDraws& draws, double* ess) noexcept;
+  /// Proposal along the ridge of this pack, for a second pilot. @return false when there is none.
+  bool BuildRidgeProposal(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda_q,
+                          SamplerWorkspace* ws, Proposal* proposal) noexcept;
+  /// Mode of the target: the best draw, climbed to the top after a modification (when AR-MAP reports it).
+  void FindMode(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
+  void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
+  void Compress(const PosteriorMemory& previous, double lambda, int first, SamplerWorkspace* ws, PosteriorMemory* next,
+                ModeDraws* out) noexcept;
+  [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept;
+
+  const simd::Kernels& kernels_;
+  int model_;
+  SamplerSettings sampler_;
+  ForgettingSettings forgetting_;
+  ParameterSpace space_;
+  NoiseModel noise_;
+  MarginalTable normal_table_, student_table_;
+  std::array<MarginalTable, kMaxParams> uniform_tables_;
+  DensityBlock initial_block_;  ///< P_0 as a proposal component.
+  DensityBlock laplace_fresh_, laplace_persisted_;
+  std::array<DensityBlock, PosteriorMemory::kMaxBlocks> pilot_blocks_;
+  Gaussian fit_fresh_, fit_persisted_;
+  std::array<RidgeAnchor, kRidgeAnchors> anchors_;
+  std::array<DensityBlock, kRidgeAnchors> ridge_blocks_;
+  double memory_inside_ = 1.0;       ///< Share of the memory's mass inside the bounds.
+  double finish_ns_per_draw_ = 0.0;  ///< Measured time of everything after the last draw; steers the deadline only.
+};
+
+}  // namespace armcmc

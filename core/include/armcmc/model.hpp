@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc {
+
+/// One parameter of a model with its built-in prior.
+struct ParameterInfo {
+  std::string_view name;
+  std::string_view unit;
+  double mean, sd;      ///< Normal prior before truncation.
+  double lower, upper;  ///< Bounds.
+};
+
+/// A quantity that is published: a parameter, or a linear function of the parameters.
+struct ReportedInfo {
+  std::string_view name;
+  std::string_view unit;
+};
+
+/// What the estimator has to know of a forward model F_j(X, theta_j), shared by all its modes.
+///
+/// A model is one header in models/ with a struct that has
+///   static constexpr ModelInfo kInfo;
+///   static void Prepare(const DataPack&, const PlantConstants&, int mode, ModeData*) noexcept;
+///   template <class S> static typename S::V Predict(const typename S::V* theta, const ModeData&, int n) noexcept;
+/// and one entry in models/registry.hpp. Nothing else changes.
+struct ModelInfo {
+  std::string_view name;
+  PlantKind plant;
+  std::string_view target_unit;  ///< Unit of what is regressed.
+  int num_parameters;
+  std::array<ParameterInfo, kMaxParams> parameters;
+  int num_modes;
+  std::array<std::string_view, kMaxModes + 1> modes;  ///< The entry after the last is the passive mode.
+  int num_inputs;                                     ///< Columns of u.
+  double default_noise_std;                           ///< Unit of the target.
+  int num_reported;
+  std::array<ReportedInfo, kMaxReported> reported;
+  int (*mode_of)(const DataPack& pack, int n) noexcept;  ///< Mode that acts at sample n; num_modes if none does.
+  void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept;
+};
+
+}  // namespace armcmc

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+
+#include "armcmc/model.hpp"
+
+namespace armcmc {
+
+/// Hunt-Crossley contact force (equation `huntt`):
+///
+///   f = x^p (K + B v)  for x >= 0,  0 otherwise,      theta = (K, B, p)
+///
+/// x penetration m, v its rate m/s, f N; K N/m^p, B N s/m^(p+1), p dimensionless.
+/// Mode 0 is contact; free motion carries no information on theta and is the passive mode.
+struct HuntCrossley {
+  static int ModeOf(const DataPack& pack, int n) noexcept {
+    return pack.u[static_cast<std::size_t>(n)][0] >= 0.0 ? 0 : 1;
+  }
+
+  static void Report(const double* theta, const PlantConstants&, double* reported) noexcept {
+    for (int i = 0; i < 3; ++i) reported[i] = theta[i];
+  }
+
+  static constexpr ModelInfo kInfo{
+      .name = "hunt_crossley",
+      .plant = PlantKind::kHuntCrossley,
+      .target_unit = "N",
+      .num_parameters = 3,
+      .parameters = {{{"K", "N/m^p", 2.5, 2.0, 0.0, 8.0},
+                      {"B", "N s/m^(p+1)", 2.5, 2.0, 0.0, 8.0},
+                      {"p", "-", 1.5, 0.35, 1.0, 2.5}}},
+      .num_modes = 1,
+      .modes = {"contact", "free"},
+      .num_inputs = 2,
+      .default_noise_std = 0.1,
+      .num_reported = 3,
+      .reported = {{{"K", "N/m^p"}, {"B", "N s/m^(p+1)"}, {"p", "-"}}},
+      .mode_of = &ModeOf,
+      .report = &Report,
+  };
+
+  /// Features: 0 log2 x (x^p = 2^(p log2 x), so that one exp2 is all a candidate costs), 1 v.
+  static void Prepare(const DataPack& pack, const PlantConstants&, int mode, ModeData* data) noexcept {
+    constexpr double kLog2OfZero = -1000.0;  // x = 0: x^p underflows to 0 for every p >= 1
+    int m = 0;
+    for (int n = 0; n < pack.num_samples; ++n) {
+      if (ModeOf(pack, n) != mode) continue;
+      const auto in = static_cast<std::size_t>(n);
+      const auto im = static_cast<std::size_t>(m++);
+      const double x = pack.u[in][0];
+      data->feature[0][im] = x > 0.0 ? std::fmax(std::log2(x), kLog2OfZero) : kLog2OfZero;
+      data->feature[1][im] = pack.u[in][1];
+      data->target[im] = pack.y[in];
+    }
+    data->num_samples = m;
+  }
+
+  template <class S>
+  static typename S::V Predict(const typename S::V* theta, const ModeData& data, int n) noexcept {
+    const auto in = static_cast<std::size_t>(n);
+    const auto power = S::Exp2(theta[2] * S::Set(data.feature[0][in]));
+    return power * S::Fma(theta[1], S::Set(data.feature[1][in]), theta[0]);
+  }
+};
+
+}  // namespace armcmc

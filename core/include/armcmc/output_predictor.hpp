@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/model.hpp"
+#include "armcmc/settings.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+/// Point estimates of all modes that were on display while a pack was measured.
+struct ShownEstimates {
+  std::array<bool, kMaxModes> known{};
+  std::array<std::array<double, kMaxParams>, kMaxModes> theta{};
+};
+
+/// The value of interest from point estimates: contact force, or the bending angle of the actuator.
+///
+/// The angle follows  alpha'' = q1 (p - p_atm) - q2 alpha' - q3 alpha  with p from the valve law; it is integrated with
+/// the exact transition of the linear part for p linear between samples. Two runs are kept: one restarted from the
+/// measured pressure at each pack, one that sees only the valve inputs since the first pack. Inputs that arrive before
+/// their mode has an estimate are kept (up to kBacklogPacks packs) and integrated once it has one.
+class OutputPredictor {
+ public:
+  static constexpr int kBacklogPacks = 8;
+
+  OutputPredictor(const ModelInfo& info, const PlantConstants& constants);
+
+  /// Forgets the state: the next pack starts both runs from its measurements.
+  void Reset() noexcept { last_seq_ = -1; }
+
+  /// Predicts every sample of the pack and advances the state. A gap in the pack numbers restarts both runs from the
+  /// measurements. @rt No heap, no lock, no throw. O(kBacklogPacks samples).
+  void Predict(const DataPack& pack, const ShownEstimates& shown, std::array<double, kMaxPackSamples>* output,
+               std::array<double, kMaxPackSamples>* free_run) noexcept;
+
+  /// Angle at the last sample of the pack for other parameters of `mode`, from the state before the pack; for bands.
+  [[nodiscard]] double LastAngle(const DataPack& pack, const ShownEstimates& shown, int mode,
+                                 const double* theta) const noexcept;
+
+ private:
+  struct State {
+    double p = 0.0, alpha = 0.0, rate = 0.0;
+  };
+  struct Input {
+    double u_c = 0.0, u_d = 0.0;
+  };
+  void Discretise(double dt) noexcept;
+  [[nodiscard]] bool Advance(const Input& input, const ShownEstimates& shown, State* state) const noexcept;
+
+  const ModelInfo& info_;
+  PlantConstants constants_;
+  double dt_ = 0.0;
+  std::array<double, 4> transition_{};  ///< exp(A dt), row major.
+  std::array<double, 4> gain_{};        ///< Effect of p - p_atm at the start and the end of a step.
+  std::int64_t last_seq_ = -1, last_run_ = 0;
+  State restarted_, free_run_, before_pack_;
+  std::array<Input, kBacklogPacks * kMaxPackSamples> backlog_{};
+  int backlog_size_ = 0;
+};
+
+}  // namespace armcmc

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "armcmc/adjust_result.hpp"
+#include "armcmc/estimate.hpp"
+#include "armcmc/model.hpp"
+#include "armcmc/parameter_space.hpp"
+
+namespace armcmc {
+
+/// Scratch of Summarise, sized once.
+struct SummaryWorkspace {
+  explicit SummaryWorkspace(int capacity);
+  std::vector<double> value;
+};
+
+/// Mean, sd, quantiles, histogram of every reported quantity, point estimates and chain diagnostics.
+///
+/// AR-AP is the mean over the chain after burn-in (its second half), AR-MAP the mode after a modification and the mean
+/// after a reinforcement. Quantiles come from a histogram of kQuantileBins bins over the range of the draws, linear
+/// within a bin.
+/// @pre draws.updated.
+/// @rt No heap, no lock, no throw. O(draws).
+void Summarise(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+               const ModeDraws& draws, SummaryWorkspace* workspace, ModeEstimate* estimate) noexcept;
+inline constexpr int kQuantileBins = 4096;
+
+/// Effective sample size of the chain after burn-in by non-overlapping batch means, the smallest over the coordinates.
+[[nodiscard]] double ChainEss(const ModeDraws& draws) noexcept;
+
+}  // namespace armcmc

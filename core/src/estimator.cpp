@@ -1,0 +1,290 @@
+#include "armcmc/estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "armcmc/adjust_result.hpp"
+#include "armcmc/mode_sampler.hpp"
+#include "armcmc/models/registry.hpp"
+#include "armcmc/output_predictor.hpp"
+#include "armcmc/summary.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kBandDraws = kTileLanes;  // draws behind the predicted output and its band, one tile
+
+/// Two memories of a mode: one read while the other is written, so that a failed step leaves the posterior untouched.
+struct ModeMemory {
+  PosteriorMemory slot[2];
+  int current = 0;
+};
+
+int ModelIndex(const EstimatorSettings& settings) {
+  settings.Validate();
+  return FindModel(settings.model);
+}
+
+}  // namespace
+
+struct Estimator::Impl {
+  explicit Impl(const EstimatorSettings& s)
+      : settings(s),
+        model(ModelIndex(s)),
+        info(*AllModels::kInfos[static_cast<std::size_t>(model)]),
+        kernels(simd::Best()),
+        predictor(info, s.constants),
+        summary(s.sampler.max_draws) {
+    dim = settings.num_parameters;
+    samplers.reserve(static_cast<std::size_t>(info.num_modes));
+    for (int m = 0; m < info.num_modes; ++m) {
+      const NoiseSettings& noise = settings.noise[static_cast<std::size_t>(m)];
+      const ParameterSpace space(settings, noise);
+      dim = std::max(dim, space.dim);
+      samplers.emplace_back(std::make_unique<ModeSampler>(kernels, model, settings.sampler, settings.forgetting, space,
+                                                          NoiseModel(noise)));
+      memories.emplace_back(std::make_unique<ModeMemory>());
+    }
+    workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws);
+  }
+
+  void PrepareMode(const DataPack& pack, int mode, ModeData* data) const noexcept {
+    AllModels::kPrepare[static_cast<std::size_t>(model)](pack, settings.constants, mode, data);
+    const double rho = settings.forgetting.rho;
+    // Weights by the distance from the end of the pack, within the samples of the mode.
+    for (int n = 0; n < data->num_samples; ++n)
+      data->weight[static_cast<std::size_t>(n)] = rho > 0.0 ? std::exp(-rho * (data->num_samples - 1 - n)) : 1.0;
+  }
+
+  EstimatorSettings settings;
+  int model;
+  const ModelInfo& info;
+  const simd::Kernels& kernels;
+  int dim = 0;
+
+  // Adjust stage.
+  std::vector<std::unique_ptr<ModeSampler>> samplers;
+  std::vector<std::unique_ptr<ModeMemory>> memories;
+  std::unique_ptr<SamplerWorkspace> workspace;
+  std::array<ModeData, kMaxModes> adjust_data;
+
+  // Execute stage.
+  OutputPredictor predictor;
+  SummaryWorkspace summary;
+  ModeData execute_data;
+  std::array<ThetaTile, kMaxModes> band_theta;  ///< Thinned chain of the last update of each mode.
+  PredictionTile band_prediction;
+  std::array<ModeEstimate, kMaxModes> last_estimates;
+  std::array<ShownEstimates, 2> shown;  ///< After the previous pack, and after the one before it.
+  int report_mode = 0;
+
+  void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
+  void StoreBandDraws(int mode, const ModeDraws& draws) noexcept;
+  /// Output at the last sample and its band; `band_prediction` holds the predictions of `mode`.
+  void PredictLastSample(const DataPack& pack, int mode, Estimate* e) noexcept;
+  [[nodiscard]] int BandDraw(const ModeDraws& draws, int lane) const noexcept {
+    const int first = draws.burn_in;
+    return draws.chain[first + static_cast<int>((static_cast<std::int64_t>(draws.draws - first) * lane) / kBandDraws)];
+  }
+};
+
+Estimator::Estimator(const EstimatorSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Estimator::~Estimator() = default;
+
+std::unique_ptr<AdjustResult> Estimator::MakeResult() const {
+  return std::make_unique<AdjustResult>(impl_->info.num_modes, impl_->dim, impl_->settings.sampler.max_draws);
+}
+
+Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+                         const DrawLimits& limits) noexcept {
+  Impl& s = *impl_;
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    ModeDraws& draws = result->modes[static_cast<std::size_t>(m)];
+    draws.updated = false;
+    const ModeMemory& memory = *s.memories[static_cast<std::size_t>(m)];
+    draws.known = memory.slot[memory.current].valid && memory.slot[memory.current].informed;
+    draws.num_samples = 0;
+  }
+  if (pack.Validate() != Status::kOk || pack.plant != s.info.plant || pack.num_inputs < s.info.num_inputs) {
+    result->status = Status::kBadPack;
+    result->pack = DataPack{};
+    result->pack.seq = pack.seq;
+    result->pack.run_id = pack.run_id;
+    return Status::kBadPack;
+  }
+  result->pack = pack;
+
+  int pending = 0;
+  std::array<bool, kMaxModes> active{};
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    s.PrepareMode(pack, m, &s.adjust_data[i]);
+    result->modes[i].num_samples = s.adjust_data[i].num_samples;
+    active[i] = s.adjust_data[i].num_samples >= s.settings.forgetting.min_samples;
+    pending += active[i] ? 1 : 0;
+  }
+  Status status = Status::kHeld;
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    if (!active[i]) continue;
+    // Modes that share a pack share the time that is left.
+    const Nanos now = clock.Now();
+    const Nanos mode_deadline =
+        clock.read != nullptr ? now + (deadline_ns - now) / pending : std::numeric_limits<Nanos>::max() / 2;
+    --pending;
+    ModeMemory& memory = *s.memories[i];
+    const Status mode_status =
+        s.samplers[i]->Run(s.adjust_data[i], memory.slot[memory.current], static_cast<std::uint64_t>(pack.seq),
+                           static_cast<std::uint64_t>(m), mode_deadline, clock, limits[i], s.workspace.get(),
+                           &memory.slot[1 - memory.current], &result->modes[i]);
+    if (mode_status == Status::kNonFinite) {
+      status = Status::kNonFinite;
+      continue;
+    }
+    memory.current = 1 - memory.current;
+    if (status == Status::kHeld || status == Status::kOk) status = mode_status;
+  }
+  result->status = status;
+  return status;
+}
+
+void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
+  const DataPack& pack = result.pack;
+  predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
+  const auto last = static_cast<std::size_t>(pack.num_samples - 1);
+  e->y_free_run = e->y_shown_free_run[last];
+  e->y_pred = e->y_lo = e->y_hi = 0.0;
+  e->y_rmse = 0.0;
+
+  // Fit of the posterior after the pack to the pack itself, over the modes that it knows; unit of the target.
+  double square = 0.0;
+  int count = 0;
+  for (int m = 0; m < info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const ModeDraws& draws = result.modes[i];
+    if (draws.updated) StoreBandDraws(m, draws);
+    if (!last_estimates[i].known) continue;
+    PrepareMode(pack, m, &execute_data);
+    if (execute_data.num_samples == 0) continue;
+    kernels.predict(model, execute_data, band_theta[i], &band_prediction);
+    for (int n = 0; n < execute_data.num_samples; ++n) {
+      double mean = 0.0;
+      for (const double v : band_prediction.value[static_cast<std::size_t>(n)]) mean += v;
+      const double error = execute_data.target[static_cast<std::size_t>(n)] - mean / kBandDraws;
+      square += error * error;
+      ++count;
+    }
+    if (m == e->mode) PredictLastSample(pack, m, e);
+  }
+  e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
+  if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
+}
+
+void Estimator::Impl::StoreBandDraws(int mode, const ModeDraws& draws) noexcept {
+  const auto i = static_cast<std::size_t>(mode);
+  for (int lane = 0; lane < kBandDraws; ++lane) {
+    const int k = BandDraw(draws, lane);
+    for (int d = 0; d < settings.num_parameters; ++d)
+      band_theta[i].value[static_cast<std::size_t>(d)][static_cast<std::size_t>(lane)] =
+          samplers[i]->space().Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
+  }
+}
+
+void Estimator::Impl::PredictLastSample(const DataPack& pack, int mode, Estimate* e) noexcept {
+  const auto i = static_cast<std::size_t>(mode);
+  std::array<double, kBandDraws> outputs{};
+  for (std::size_t lane = 0; lane < kBandDraws; ++lane) {
+    if (info.plant == PlantKind::kSoftActuator) {
+      std::array<double, kMaxParams> theta{};
+      for (std::size_t d = 0; d < static_cast<std::size_t>(settings.num_parameters); ++d)
+        theta[d] = band_theta[i].value[d][lane];
+      outputs[lane] = predictor.LastAngle(pack, shown[0], mode, theta.data());
+    } else {
+      outputs[lane] = band_prediction.value[static_cast<std::size_t>(execute_data.num_samples - 1)][lane];
+    }
+  }
+  double mean = 0.0;
+  double spread = 0.0;
+  for (const double v : outputs) mean += v / kBandDraws;
+  for (const double v : outputs) spread += (v - mean) * (v - mean) / (kBandDraws - 1);
+  e->y_pred = mean;
+  e->y_lo = mean - 1.96 * std::sqrt(spread);
+  e->y_hi = mean + 1.96 * std::sqrt(spread);
+}
+
+void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
+  Impl& s = *impl_;
+  const DataPack& pack = result.pack;
+  e->seq = pack.seq;
+  e->run_id = pack.run_id;
+  e->t_last_ns = pack.t_last_ns;
+  e->t_last_s = pack.t_last_s;
+  e->num_reported = s.info.num_reported;
+  e->num_modes = s.info.num_modes;
+  e->num_samples = pack.num_samples;
+  e->mode = pack.num_samples > 0 ? s.info.mode_of(pack, pack.num_samples - 1) : s.info.num_modes;
+  e->active = e->mode < s.info.num_modes;
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const ModeDraws& draws = result.modes[i];
+    ModeEstimate& last = s.last_estimates[i];
+    last.updated = false;
+    last.num_samples = draws.num_samples;
+    if (draws.updated) {
+      Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, &s.summary, &last);
+    } else {
+      // Held: the parameters stay, the numbers that describe one step do not.
+      last.decision = Decision::kHold;
+      last.zeta = 0.0;
+      last.lambda = 1.0;
+      last.draws = 0;
+      last.k_min = 0;
+      last.truncated = false;
+      last.ess = last.kish_ess = last.acceptance = last.log_evidence = last.p_changed = 0.0;
+    }
+    e->modes[i] = last;
+  }
+  if (e->active && e->modes[static_cast<std::size_t>(e->mode)].known) s.report_mode = e->mode;
+  e->report_mode = s.report_mode;
+  if (result.status == Status::kBadPack) {
+    e->y_pred = e->y_lo = e->y_hi = e->y_free_run = kUnknown;
+    e->y_rmse = 0.0;
+    return;
+  }
+  s.PredictOutput(result, e);
+  s.shown[1] = s.shown[0];
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    s.shown[0].known[i] = e->modes[i].known;
+    for (int d = 0; d < s.settings.num_parameters; ++d)
+      s.shown[0].theta[i][static_cast<std::size_t>(d)] = e->modes[i].marginal[static_cast<std::size_t>(d)].ar_map;
+  }
+}
+
+void Estimator::Reset() noexcept {
+  Impl& s = *impl_;
+  for (auto& memory : s.memories) memory->slot[0].valid = memory->slot[1].valid = false;
+  for (auto& estimate : s.last_estimates) estimate = ModeEstimate{};
+  for (auto& shown : s.shown) shown = ShownEstimates{};
+  s.predictor.Reset();
+  s.report_mode = 0;
+}
+
+const EstimatorSettings& Estimator::settings() const noexcept { return impl_->settings; }
+PlantKind Estimator::plant() const noexcept { return impl_->info.plant; }
+int Estimator::num_modes() const noexcept { return impl_->info.num_modes; }
+std::string_view Estimator::mode_name(int mode) const noexcept {
+  return impl_->info.modes[static_cast<std::size_t>(std::clamp(mode, 0, impl_->info.num_modes))];
+}
+int Estimator::num_reported() const noexcept { return impl_->info.num_reported; }
+ReportedQuantity Estimator::reported(int index) const noexcept {
+  const ReportedInfo& r = impl_->info.reported[static_cast<std::size_t>(index)];
+  return {r.name, r.unit};
+}
+int Estimator::num_inputs() const noexcept { return impl_->info.num_inputs; }
+
+}  // namespace armcmc

@@ -1,0 +1,136 @@
+#include "armcmc/laplace.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kDifference = 1e-4;  // in prior standard deviations; error of central differences about 1e-8
+
+/// Writes one candidate into a lane of the batch.
+void SetLane(const ParameterSpace& space, const ParamVector& u, int lane, ThetaTile* theta,
+             double* log_scale) noexcept {
+  const auto l = static_cast<std::size_t>(lane);
+  for (int d = 0; d < space.num_parameters; ++d) theta->value[static_cast<std::size_t>(d)][l] = space.Theta(d, u[d]);
+  log_scale[l] = space.LogNoiseScale(u.data());
+}
+
+void Clamp(const ParameterSpace& space, ParamVector* u) noexcept {
+  for (int d = 0; d < space.dim; ++d)
+    (*u)[d] = std::clamp((*u)[d], space.lower[static_cast<std::size_t>(d)], space.upper[static_cast<std::size_t>(d)]);
+}
+
+double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
+  const ParamVector d = u - prior.mean;
+  return -0.5 * d.dot(prior.precision * d);
+}
+
+/// Gradient and Gauss-Newton Hessian of minus the log posterior at u.
+void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
+               const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
+               ParamVector* gradient, ParamMatrix* hessian) noexcept {
+  const int dim = space.dim;
+  const int np = space.num_parameters;
+  alignas(64) double log_scale[kTileLanes];
+  SetLane(space, u, 0, &scratch->theta, log_scale);
+  for (int d = 0; d < np; ++d) {
+    ParamVector shifted = u;
+    shifted[d] = u[d] + kDifference;
+    SetLane(space, shifted, 1 + 2 * d, &scratch->theta, log_scale);
+    shifted[d] = u[d] - kDifference;
+    SetLane(space, shifted, 2 + 2 * d, &scratch->theta, log_scale);
+  }
+  for (int lane = 1 + 2 * np; lane < kTileLanes; ++lane) SetLane(space, u, lane, &scratch->theta, log_scale);
+  kernels.predict(model, data, scratch->theta, &scratch->prediction);
+
+  *gradient = prior.precision * (u - prior.mean);
+  *hessian = prior.precision;
+  const double scale = std::exp(space.LogNoiseScale(u.data()));
+  double scale_gradient = 0.0;
+  std::array<double, kMaxParams> jacobian{};
+  for (int n = 0; n < data.num_samples; ++n) {
+    const auto in = static_cast<std::size_t>(n);
+    const auto& row = scratch->prediction.value[in];
+    const double w = data.weight[in];
+    const double e = (data.target[in] - row[0] - noise.settings().mean) * w;
+    const double square_weight = noise.SquareWeight(e, scale);
+    for (int d = 0; d < np; ++d)
+      jacobian[static_cast<std::size_t>(d)] =
+          w * (row[static_cast<std::size_t>(1 + 2 * d)] - row[static_cast<std::size_t>(2 + 2 * d)]) /
+          (2.0 * kDifference);
+    for (int i = 0; i < np; ++i) {
+      const double ji = square_weight * jacobian[static_cast<std::size_t>(i)];
+      (*gradient)[i] -= ji * e;
+      for (int j = 0; j <= i; ++j) (*hessian)(i, j) += ji * jacobian[static_cast<std::size_t>(j)];
+    }
+    scale_gradient += 1.0 - square_weight * e * e;
+  }
+  if (space.samples_noise_scale()) {
+    const double s = space.scale[static_cast<std::size_t>(dim - 1)];
+    (*gradient)[dim - 1] += s * scale_gradient;
+    (*hessian)(dim - 1, dim - 1) += s * s * data.num_samples * noise.scale_information();
+  }
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < i; ++j) (*hessian)(j, i) = (*hessian)(i, j);
+}
+
+}  // namespace
+
+double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
+                  const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,
+                  Gaussian* fit) noexcept {
+  static constexpr std::array<double, 4> kDampings{0.0, 1e-2, 1.0, 100.0};
+  static constexpr std::array<double, 8> kLengths{1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 1.5, 0.0};
+  const int dim = space.dim;
+  alignas(64) double log_scale[kTileLanes];
+  alignas(64) double log_likelihood[kTileLanes];
+  std::array<ParamVector, kTileLanes> trial;
+  ParamVector u = start;
+  Clamp(space, &u);
+  ParamVector gradient(dim);
+  ParamMatrix hessian(dim, dim);
+  double best = -HUGE_VAL;
+  for (int iteration = 0; iteration < kLaplaceIterations; ++iteration) {
+    Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+    int lane = 0;
+    for (const double damping : kDampings) {
+      ParamMatrix damped = hessian;
+      damped.diagonal() *= 1.0 + damping;
+      ParamVector step = -damped.ldlt().solve(gradient);
+      if (!step.allFinite()) step.setZero();
+      for (const double length : kLengths) {
+        ParamVector& candidate = trial[static_cast<std::size_t>(lane)];
+        candidate = u + length * step;
+        Clamp(space, &candidate);
+        SetLane(space, candidate, lane, &scratch->theta, log_scale);
+        ++lane;
+      }
+    }
+    kernels.predict(model, data, scratch->theta, &scratch->prediction);
+    kernels.log_likelihood(noise, data, scratch->prediction, log_scale, log_likelihood);
+    int chosen = -1;
+    double chosen_value = best;
+    for (int l = 0; l < kTileLanes; ++l) {
+      const double value = log_likelihood[l] + LogPrior(prior, trial[static_cast<std::size_t>(l)]);
+      if (value > chosen_value) {
+        chosen_value = value;
+        chosen = l;
+      }
+    }
+    if (chosen < 0) break;
+    const bool converged = chosen_value - best < 1e-6 * (1.0 + std::fabs(chosen_value));
+    best = chosen_value;
+    u = trial[static_cast<std::size_t>(chosen)];
+    if (converged) break;
+  }
+  Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+  fit->mean = u;
+  fit->precision = hessian;
+  return best;
+}
+
+}  // namespace armcmc

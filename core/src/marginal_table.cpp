@@ -1,0 +1,93 @@
+#include "armcmc/marginal_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace armcmc {
+namespace {
+
+constexpr double kStep = 1.0 / MarginalTable::kNodesPerUnit;
+
+template <class F>
+MarginalTable Tabulate(double half_width, F density) {
+  std::array<double, MarginalTable::kMaxNodes> values{};
+  const int half = std::min(static_cast<int>(std::ceil(half_width * MarginalTable::kNodesPerUnit - 1e-9)),
+                            (MarginalTable::kMaxNodes - 1) / 2);
+  for (int i = 0; i <= 2 * half; ++i) values[static_cast<std::size_t>(i)] = density((i - half) * kStep);
+  MarginalTable table;
+  table.Build(values.data(), 2 * half + 1, -half * kStep);
+  return table;
+}
+
+}  // namespace
+
+MarginalTable MarginalTable::Normal() {
+  return Tabulate(6.0, [](double x) { return std::exp(-0.5 * x * x); });
+}
+
+MarginalTable MarginalTable::StudentT(double dof) {
+  return Tabulate(16.0, [dof](double x) { return std::pow(1.0 + x * x / dof, -0.5 * (dof + 1.0)); });
+}
+
+MarginalTable MarginalTable::Uniform(double half_width) {
+  return Tabulate(half_width, [](double) { return 1.0; });
+}
+
+void MarginalTable::Build(const double* values, int num_nodes, double lower) noexcept ARMCMC_NONBLOCKING {
+  num_nodes_ = std::clamp(num_nodes, 2, kMaxNodes);
+  lower_ = lower;
+  double mass = 0.0;
+  cdf_[0] = 0.0;
+  for (int i = 1; i < num_nodes_; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    mass += 0.5 * kStep * (values[i - 1] + values[i]);
+    cdf_[k] = mass;
+  }
+  const double scale = 1.0 / mass;
+  for (int i = 0; i < num_nodes_; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    pdf_[k] = values[i] * scale;
+    cdf_[k] *= scale;
+  }
+  int node = 0;
+  for (int g = 0; g < kGuideSize; ++g) {
+    const double u = static_cast<double>(g) / kGuideSize;
+    while (node < num_nodes_ - 2 && cdf_[static_cast<std::size_t>(node) + 1] <= u) ++node;
+    guide_[static_cast<std::size_t>(g)] = node;
+  }
+}
+
+double MarginalTable::Density(double x) const noexcept ARMCMC_NONBLOCKING {
+  const double position = (x - lower_) * kNodesPerUnit;
+  if (!(position >= 0.0) || position >= num_nodes_ - 1) return 0.0;
+  const auto node = static_cast<std::size_t>(position);
+  const double part = position - static_cast<double>(node);
+  return pdf_[node] + part * (pdf_[node + 1] - pdf_[node]);
+}
+
+double MarginalTable::Mean() const noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < num_nodes_; ++i) {
+    const double x = lower_ + i * kStep;
+    const double ends = (i == 0 || i == num_nodes_ - 1) ? 0.5 : 1.0;
+    // Exact for interior nodes: the mean of a hat function is its node; at the ends the half hat leans inward.
+    const double lean = i == 0 ? kStep / 3.0 : (i == num_nodes_ - 1 ? -kStep / 3.0 : 0.0);
+    sum += ends * pdf_[static_cast<std::size_t>(i)] * kStep * (x + lean);
+  }
+  return sum;
+}
+
+double MarginalTable::Variance() const noexcept {
+  const double mean = Mean();
+  double sum = 0.0;
+  for (int i = 0; i < num_nodes_; ++i) {
+    const double ends = (i == 0 || i == num_nodes_ - 1) ? 0.5 : 1.0;
+    const double lean = i == 0 ? kStep / 3.0 : (i == num_nodes_ - 1 ? -kStep / 3.0 : 0.0);
+    const double x = lower_ + i * kStep - mean;
+    // Second moment of a hat about its node: h^2 / 6; of a half hat about its edge: also h^2 / 6.
+    sum += ends * pdf_[static_cast<std::size_t>(i)] * kStep * (x * x + 2.0 * x * lean + kStep * kStep / 6.0);
+  }
+  return sum;
+}
+
+}  // namespace armcmc

@@ -1,0 +1,143 @@
+#include "armcmc/output_predictor.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "armcmc/models/soft_actuator.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+OutputPredictor::OutputPredictor(const ModelInfo& info, const PlantConstants& constants)
+    : info_(info), constants_(constants) {}
+
+void OutputPredictor::Discretise(double dt) noexcept {
+  if (dt == dt_) return;
+  dt_ = dt;
+  // Taylor series of exp(M) for the augmented system (alpha, rate, p, slope of p): 30 terms of a matrix with norm
+  // q3 dt + q2 dt of order one, scaled by 2^-6 and squared back, leave rounding error only.
+  constexpr int kN = 4;
+  constexpr int kSquarings = 6;
+  using Matrix = std::array<double, kN * kN>;
+  const auto multiply = [](const Matrix& a, const Matrix& b) noexcept {
+    Matrix c{};
+    for (std::size_t i = 0; i < kN; ++i)
+      for (std::size_t k = 0; k < kN; ++k)
+        for (std::size_t j = 0; j < kN; ++j) c[i * kN + j] += a[i * kN + k] * b[k * kN + j];
+    return c;
+  };
+  const double h = dt / (1 << kSquarings);
+  const Matrix m{
+      0.0, h,   0.0, 0.0, -constants_.q3 * h, -constants_.q2 * h, constants_.q1 * h, 0.0, 0.0, 0.0, 0.0, h / dt,
+      0.0, 0.0, 0.0, 0.0};
+  Matrix term{};
+  Matrix sum{};
+  for (std::size_t i = 0; i < kN; ++i) term[i * kN + i] = sum[i * kN + i] = 1.0;
+  for (int k = 1; k <= 30; ++k) {
+    term = multiply(term, m);
+    for (auto& t : term) t /= k;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += term[i];
+  }
+  for (int k = 0; k < kSquarings; ++k) sum = multiply(sum, sum);
+  transition_ = {sum[0], sum[1], sum[4], sum[5]};
+  // p(t) = p_0 + (p_1 - p_0) t / dt: column 2 acts on p_0, column 3 on p_1 - p_0.
+  gain_ = {sum[2] - sum[3], sum[3], sum[6] - sum[7], sum[7]};
+}
+
+bool OutputPredictor::Advance(const Input& input, const ShownEstimates& shown, State* state) const noexcept {
+  const int mode = input.u_c != 0.0 ? 0 : (input.u_d != 0.0 ? 1 : 2);
+  double next_p = state->p;
+  if (mode < 2) {
+    const auto m = static_cast<std::size_t>(mode);
+    if (!shown.known[m]) return false;
+    const double u = mode == 0 ? input.u_c : input.u_d;
+    const auto rate = [&](double p) noexcept {
+      const double gain = shown.theta[m][0] + shown.theta[m][1] * (p - constants_.p_atm);
+      return gain != 0.0 ? u * SoftActuator::Head(p, mode, constants_) / gain : 0.0;
+    };
+    const double first = rate(state->p);
+    next_p = state->p + 0.5 * dt_ * (first + rate(state->p + dt_ * first));  // Heun
+    if (!std::isfinite(next_p)) next_p = state->p;
+  }
+  const double p0 = state->p - constants_.p_atm;
+  const double p1 = next_p - constants_.p_atm;
+  const State old = *state;
+  state->alpha = transition_[0] * old.alpha + transition_[1] * old.rate + gain_[0] * p0 + gain_[1] * p1;
+  state->rate = transition_[2] * old.alpha + transition_[3] * old.rate + gain_[2] * p0 + gain_[3] * p1;
+  state->p = next_p;
+  return true;
+}
+
+void OutputPredictor::Predict(const DataPack& pack, const ShownEstimates& shown,
+                              std::array<double, kMaxPackSamples>* output,
+                              std::array<double, kMaxPackSamples>* free_run) noexcept {
+  if (info_.plant == PlantKind::kHuntCrossley) {
+    for (int n = 0; n < pack.num_samples; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      const double x = pack.u[i][0];
+      const auto& theta = shown.theta[0];
+      (*output)[i] = x < 0.0          ? 0.0
+                     : shown.known[0] ? std::pow(x, theta[2]) * (theta[0] + theta[1] * pack.u[i][1])
+                                      : kUnknown;
+      (*free_run)[i] = (*output)[i];
+    }
+    return;
+  }
+  Discretise(pack.dt);
+  const bool continues = pack.seq == last_seq_ + 1 && pack.run_id == last_run_;
+  last_seq_ = pack.seq;
+  last_run_ = pack.run_id;
+  if (!continues) {
+    restarted_ = {pack.u[0][2], pack.y[0], 0.0};
+    free_run_ = restarted_;
+    backlog_size_ = 0;
+  }
+  restarted_.p = pack.u[0][2];
+  before_pack_ = restarted_;
+  for (int n = 0; n < pack.num_samples; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    // The state is the prediction for this sample; the input of this sample carries it to the next one.
+    (*output)[i] = restarted_.alpha;
+    (*free_run)[i] = free_run_.alpha;
+    const Input input{pack.u[i][0], pack.u[i][1]};
+    if (!Advance(input, shown, &restarted_)) {
+      Input shut{};
+      (void)Advance(shut, shown, &restarted_);  // pressure held until its mode is known
+    }
+    if (backlog_size_ < static_cast<int>(backlog_.size())) backlog_[static_cast<std::size_t>(backlog_size_++)] = input;
+    int used = 0;
+    while (used < backlog_size_ && Advance(backlog_[static_cast<std::size_t>(used)], shown, &free_run_)) ++used;
+    if (used > 0) {
+      for (int k = used; k < backlog_size_; ++k)
+        backlog_[static_cast<std::size_t>(k - used)] = backlog_[static_cast<std::size_t>(k)];
+      backlog_size_ -= used;
+    } else if (backlog_size_ == static_cast<int>(backlog_.size())) {
+      backlog_size_ = 0;  // older than the promise of kBacklogPacks: go on from the measured pressure
+      free_run_.p = pack.u[i][2];
+    }
+  }
+}
+
+double OutputPredictor::LastAngle(const DataPack& pack, const ShownEstimates& shown, int mode,
+                                  const double* theta) const noexcept {
+  ShownEstimates changed = shown;
+  const auto m = static_cast<std::size_t>(mode);
+  changed.known[m] = true;
+  for (int d = 0; d < info_.num_parameters; ++d) changed.theta[m][static_cast<std::size_t>(d)] = theta[d];
+  State state = before_pack_;
+  for (int n = 0; n + 1 < pack.num_samples; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const Input input{pack.u[i][0], pack.u[i][1]};
+    if (!Advance(input, changed, &state)) {
+      Input shut{};
+      (void)Advance(shut, changed, &state);
+    }
+  }
+  return state.alpha;
+}
+
+}  // namespace armcmc

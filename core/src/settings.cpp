@@ -1,0 +1,124 @@
+#include "armcmc/settings.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "armcmc/models/registry.hpp"
+#include "armcmc/sample_size.hpp"
+
+namespace armcmc {
+namespace {
+
+[[noreturn]] void Fail(const std::string& key, double value, const std::string& range) {
+  std::ostringstream text;
+  text << key << " = " << value << " is outside " << range;
+  throw std::invalid_argument(text.str());
+}
+
+void Open(const std::string& key, double value, double lo, double hi) {
+  if (!(value > lo && value < hi)) {
+    std::ostringstream range;
+    range << "(" << lo << ", " << hi << ")";
+    Fail(key, value, range.str());
+  }
+}
+
+void Closed(const std::string& key, double value, double lo, double hi) {
+  if (!(value >= lo && value <= hi)) {
+    std::ostringstream range;
+    range << "[" << lo << ", " << hi << "]";
+    Fail(key, value, range.str());
+  }
+}
+
+void ValidateNoise(const std::string& key, const NoiseSettings& noise) {
+  Open(key + ".std", noise.std, 0.0, HUGE_VAL);
+  Open(key + ".mean", noise.mean, -HUGE_VAL, HUGE_VAL);
+  Open(key + ".std_log_sd", noise.std_log_sd, 0.0, 10.0);
+  Closed(key + ".dof", noise.dof, 1.0, 1000.0);
+  Closed(key + ".outlier_weight", noise.outlier_weight, 1e-6, 0.5);
+  Closed(key + ".outlier_scale", noise.outlier_scale, 1.0 + 1e-6, 1e4);
+}
+
+void ValidateParameter(const ParameterSettings& p) {
+  const std::string key = "parameters." + p.name;
+  if (!(std::isfinite(p.lower) && std::isfinite(p.upper) && p.lower < p.upper))
+    throw std::invalid_argument(key + ": lower must be below upper, both finite");
+  if (p.prior == PriorKind::kUniform) return;
+  Open(key + ".sd", p.sd, 0.0, HUGE_VAL);
+  Open(key + ".mean", p.mean, -HUGE_VAL, HUGE_VAL);
+  constexpr double kReach = 5.0;
+  if (p.lower > p.mean + kReach * p.sd || p.upper < p.mean - kReach * p.sd)
+    throw std::invalid_argument(key + ": the bounds hold none of the prior's mass (mean more than 5 sd outside)");
+}
+
+}  // namespace
+
+void EstimatorSettings::Validate() const {
+  const int index = FindModel(model);
+  if (index < 0) throw std::invalid_argument("model.name = '" + model + "' is not a built-in model");
+  const ModelInfo& info = *AllModels::kInfos[static_cast<std::size_t>(index)];
+  if (num_parameters != info.num_parameters)
+    throw std::invalid_argument("model '" + model + "' has " + std::to_string(info.num_parameters) +
+                                " parameters, settings have " + std::to_string(num_parameters));
+  for (int d = 0; d < num_parameters; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    if (parameters[i].name != info.parameters[i].name)
+      throw std::invalid_argument("parameter " + std::to_string(d) + " is called '" + parameters[i].name +
+                                  "', expected '" + std::string(info.parameters[i].name) + "'");
+    ValidateParameter(parameters[i]);
+  }
+  for (int m = 0; m < info.num_modes; ++m)
+    ValidateNoise("noise." + std::string(info.modes[static_cast<std::size_t>(m)]), noise[static_cast<std::size_t>(m)]);
+  Open("forgetting.threshold", forgetting.threshold, 0.0, HUGE_VAL);
+  Open("forgetting.mu", forgetting.mu, -HUGE_VAL, HUGE_VAL);
+  Open("forgetting.lambda_max", forgetting.lambda_max, 0.0, 1.0);
+  Closed("forgetting.rho", forgetting.rho, 0.0, 1.0);
+  Closed("forgetting.min_samples", forgetting.min_samples, 1, kMaxPackSamples);
+  Open("sampler.epsilon", sampler.epsilon, 0.0, 1.0);
+  Open("sampler.delta", sampler.delta, 0.0, 1.0);
+  Closed("sampler.max_draws", sampler.max_draws, SamplerSettings::kMinDraws, kMaxDraws);
+  if (sampler.rule == DrawRule::kFixed)
+    Closed("sampler.draws", sampler.fixed_draws, SamplerSettings::kMinDraws, sampler.max_draws);
+  Open("sampler.lambda_q_min", sampler.lambda_q_min, 0.0, 1.0);
+  Open("sampler.lambda_q_max", sampler.lambda_q_max, 0.0, 1.0);
+  if (sampler.lambda_q_min > sampler.lambda_q_max)
+    throw std::invalid_argument("sampler.lambda_q_min is above sampler.lambda_q_max");
+  Open("constants.p_atm", constants.p_atm, 0.0, HUGE_VAL);
+  Open("constants.p_supply", constants.p_supply, constants.p_atm, HUGE_VAL);
+  Open("constants.q1", constants.q1, -HUGE_VAL, HUGE_VAL);
+  Open("constants.q2", constants.q2, -HUGE_VAL, HUGE_VAL);
+  Open("constants.q3", constants.q3, -HUGE_VAL, HUGE_VAL);
+}
+
+EstimatorSettings BuiltinSettings(const std::string& model) {
+  EstimatorSettings s;
+  const bool excited = model == "soft_actuator_excited";
+  const int index = FindModel(excited ? "soft_actuator" : model);
+  if (index < 0) {
+    std::string known;
+    for (const ModelInfo* info : AllModels::kInfos) known += std::string(info->name) + ", ";
+    throw std::invalid_argument("unknown model '" + model + "'; built-in models are " + known +
+                                "soft_actuator_excited");
+  }
+  const ModelInfo& info = *AllModels::kInfos[static_cast<std::size_t>(index)];
+  s.model = info.name;
+  s.num_parameters = info.num_parameters;
+  for (int d = 0; d < info.num_parameters; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const ParameterInfo& p = info.parameters[i];
+    s.parameters[i] = {std::string(p.name), PriorKind::kNormal, p.mean, p.sd, p.lower, p.upper};
+  }
+  for (auto& noise : s.noise) noise.std = info.default_noise_std;
+  if (excited) {
+    s.constants.q1 = 0.0704;  // rad/s^2 per Pa, so that tens of kPa bend it by a radian
+    for (auto& noise : s.noise) {
+      noise.std = 0.25;  // sqrt(Pa): sensor noise of 500 Pa/s on pdot times a gain of 5e-4
+      noise.estimate_std = true;
+    }
+  }
+  return s;
+}
+
+}  // namespace armcmc

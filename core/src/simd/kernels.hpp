@@ -1,0 +1,75 @@
+#pragma once
+
+#include <string_view>
+
+#include "armcmc/density_block.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/noise_model.hpp"
+#include "armcmc/parameter_space.hpp"
+
+namespace armcmc::simd {
+
+inline constexpr int kMaxMomentRows = 10;
+
+/// The hot loops, once per instruction set. All work on kTileLanes candidates side by side, one candidate a lane:
+/// sums run in data order whatever the lane count, so AVX2 and AVX-512 give the same bits.
+struct Kernels {
+  std::string_view name;
+
+  /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes AllModels.
+  void (*predict)(int model, const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept;
+
+  /// out[lane] = sum_n log p((target_n - tile[n][lane] - noise mean) weight_n), in nats, at scale exp(log_scale[lane]).
+  void (*log_likelihood)(const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,
+                         const double* log_scale, double* out) noexcept;
+
+  /// out[lane] += factor * p(u[., first + lane]).
+  void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,
+                      double* out) noexcept;
+
+  /// out[lane] = P_0(u[., first + lane]): 0 outside the bounds.
+  void (*initial_prior)(const ParameterSpace& space, const double* const* u, int first, double* out) noexcept;
+
+  /// theta[.][lane] and log_scale[lane] of the candidates u[., first + lane].
+  void (*to_physical)(const ParameterSpace& space, const double* const* u, int first, ThetaTile* theta,
+                      double* log_scale) noexcept;
+
+  /// out[k] = number first + k * stride of the stream that starts at `origin`, uniform on (0, 1). count a multiple
+  /// of 8.
+  void (*uniforms)(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count, double* out) noexcept;
+
+  /// Maps count draws of dim uniforms to draws of the block, in place: x[d][k]. count a multiple of 8.
+  void (*draw_block)(const DensityBlock& block, int count, double* const* x) noexcept;
+
+  /// sums[0] = sum w, sums[1] = sum w^2, sums[2 + d] = sum w u_d over [0, count); u[d] and w padded to a multiple of 8
+  /// with w = 0.
+  void (*first_moments)(int dim, const double* const* u, const double* w, int count, double* sums) noexcept;
+
+  /// sums = lower triangle, row by row, of sum w (u - mean)(u - mean)' over `dim` <= kMaxMomentRows rows. Padding as
+  /// above.
+  void (*second_moments)(int dim, const double* const* u, const double* w, const double* mean, int count,
+                         double* sums) noexcept;
+
+  /// e[i][k] = straightened coordinate i of u[., k] for k in [0, count), before `center` and `scale`.
+  void (*straighten)(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept;
+
+  /// With c = z_0 clamped: sums[q] = sum w c^q for q in [0, 2 kDegree], then for each i in [1, dim) kDegree + 1 sums
+  /// w c^q z_i.
+  void (*bend_moments)(int dim, const double* const* z, const double* w, int count, double* sums) noexcept;
+
+  /// out[k] = exp(log_likelihood[k] - reference), k in [0, count), count a multiple of the lanes of any set (8).
+  void (*relative_likelihood)(const double* log_likelihood, double reference, int count, double* out) noexcept;
+};
+
+/// The best set that this CPU runs, chosen once.
+[[nodiscard]] const Kernels& Best() noexcept;
+
+extern const Kernels kSse2Kernels;
+#if defined(ARMCMC_HAVE_AVX2)
+extern const Kernels kAvx2Kernels;
+#endif
+#if defined(ARMCMC_HAVE_AVX512)
+extern const Kernels kAvx512Kernels;
+#endif
+
+}  // namespace armcmc::simd

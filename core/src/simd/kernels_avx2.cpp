@@ -1,0 +1,23 @@
+#include "armcmc/models/registry.hpp"
+#include "armcmc/rng.hpp"
+#include "simd/kernels.hpp"
+
+#define ARMCMC_SIMD_NAMESPACE avx2
+#define ARMCMC_SIMD_LANES 4
+#include "simd/kernels.inl"
+
+namespace armcmc::simd {
+const Kernels kAvx2Kernels = {"avx2",
+                              &avx2::Predict,
+                              &avx2::LogLikelihood,
+                              &avx2::AddDensity,
+                              &avx2::InitialPrior,
+                              &avx2::ToPhysical,
+                              &avx2::Uniforms,
+                              &avx2::DrawBlock,
+                              &avx2::FirstMoments,
+                              &avx2::SecondMoments,
+                              &avx2::Straighten,
+                              &avx2::BendMoments,
+                              &avx2::RelativeLikelihood};
+}  // namespace armcmc::simd

@@ -1,0 +1,23 @@
+#include "armcmc/models/registry.hpp"
+#include "armcmc/rng.hpp"
+#include "simd/kernels.hpp"
+
+#define ARMCMC_SIMD_NAMESPACE avx512
+#define ARMCMC_SIMD_LANES 8
+#include "simd/kernels.inl"
+
+namespace armcmc::simd {
+const Kernels kAvx512Kernels = {"avx512",
+                                &avx512::Predict,
+                                &avx512::LogLikelihood,
+                                &avx512::AddDensity,
+                                &avx512::InitialPrior,
+                                &avx512::ToPhysical,
+                                &avx512::Uniforms,
+                                &avx512::DrawBlock,
+                                &avx512::FirstMoments,
+                                &avx512::SecondMoments,
+                                &avx512::Straighten,
+                                &avx512::BendMoments,
+                                &avx512::RelativeLikelihood};
+}  // namespace armcmc::simd

@@ -1,0 +1,23 @@
+#include "armcmc/models/registry.hpp"
+#include "armcmc/rng.hpp"
+#include "simd/kernels.hpp"
+
+#define ARMCMC_SIMD_NAMESPACE sse2
+#define ARMCMC_SIMD_LANES 2
+#include "simd/kernels.inl"
+
+namespace armcmc::simd {
+const Kernels kSse2Kernels = {"sse2",
+                              &sse2::Predict,
+                              &sse2::LogLikelihood,
+                              &sse2::AddDensity,
+                              &sse2::InitialPrior,
+                              &sse2::ToPhysical,
+                              &sse2::Uniforms,
+                              &sse2::DrawBlock,
+                              &sse2::FirstMoments,
+                              &sse2::SecondMoments,
+                              &sse2::Straighten,
+                              &sse2::BendMoments,
+                              &sse2::RelativeLikelihood};
+}  // namespace armcmc::simd

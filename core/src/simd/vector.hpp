@@ -1,0 +1,141 @@
+// No include guard on purpose: compiled once per instruction set, with ARMCMC_SIMD_NAMESPACE and
+// ARMCMC_SIMD_LANES set by the including file. Only this file knows the instruction set.
+
+#include <cstdint>
+#include <cstring>
+
+#if defined(__FMA__)
+#include <immintrin.h>
+#endif
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+
+/// Vector arithmetic in the compiler's own vector type: operators + - * / come with it.
+struct Simd {
+  static constexpr int kLanes = ARMCMC_SIMD_LANES;
+  typedef double V __attribute__((vector_size(8 * ARMCMC_SIMD_LANES)));
+  typedef std::int64_t I __attribute__((vector_size(8 * ARMCMC_SIMD_LANES)));
+
+  static V Set(double a) noexcept { return V{} + a; }
+  static V Load(const double* p) noexcept {
+    V v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+  }
+  static void Store(double* p, V v) noexcept { std::memcpy(p, &v, sizeof v); }
+
+  /// True when any lane of a comparison is set.
+  static bool Any(I mask) noexcept {
+#if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
+    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask)) != 0;
+#elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
+    return _mm256_movemask_pd(FromBits(mask)) != 0;
+#else
+    std::int64_t all = 0;
+    for (int i = 0; i < kLanes; ++i) all |= mask[i];
+    return all != 0;
+#endif
+  }
+
+  static V Sqrt(V a) noexcept {
+#if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
+    return _mm512_maskz_sqrt_pd(0xff, a);
+#elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
+    return _mm256_sqrt_pd(a);
+#else
+    for (int i = 0; i < kLanes; ++i) a[i] = __builtin_sqrt(a[i]);
+    return a;
+#endif
+  }
+
+  /// table[index[lane]].
+  static V Gather(const double* table, I index) noexcept {
+#if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
+    return _mm512_i64gather_pd(reinterpret_cast<__m512i>(index), table, 8);
+#elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
+    return _mm256_i64gather_pd(table, reinterpret_cast<__m256i>(index), 8);
+#else
+    V v{};
+    for (int i = 0; i < kLanes; ++i) v[i] = table[index[i]];
+    return v;
+#endif
+  }
+
+  /// a b + c, in one rounding where the instruction set has it.
+  static V Fma(V a, V b, V c) noexcept {
+#if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
+    return _mm512_fmadd_pd(a, b, c);
+#elif defined(__FMA__) && ARMCMC_SIMD_LANES == 4
+    return _mm256_fmadd_pd(a, b, c);
+#else
+    return a * b + c;
+#endif
+  }
+
+  static I Bits(V a) noexcept { return reinterpret_cast<I>(a); }
+  static V FromBits(I a) noexcept { return reinterpret_cast<V>(a); }
+  static V Select(I mask, V yes, V no) noexcept { return FromBits((mask & Bits(yes)) | (~mask & Bits(no))); }
+  // maskz with a full mask: the plain intrinsics read an uninitialised register in g++ 12's header, which warns.
+#if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
+  static V Max(V a, V b) noexcept { return _mm512_maskz_max_pd(0xff, a, b); }
+  static V Min(V a, V b) noexcept { return _mm512_maskz_min_pd(0xff, a, b); }
+#elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
+  static V Max(V a, V b) noexcept { return _mm256_max_pd(a, b); }
+  static V Min(V a, V b) noexcept { return _mm256_min_pd(a, b); }
+#else
+  static V Max(V a, V b) noexcept { return Select(a > b, a, b); }
+  static V Min(V a, V b) noexcept { return Select(a < b, a, b); }
+#endif
+  static V Abs(V a) noexcept { return FromBits(Bits(a) & (I{} + 0x7fffffffffffffffLL)); }
+
+  /// 2^x, relative error below 1 ulp for |x| <= 1000; clamped beyond. Round to nearest by the magic-number
+  /// addition, polynomial of degree 11 through the Chebyshev nodes of [-1/2, 1/2] (error 3e-18), exponent added as an
+  /// integer.
+  static V Exp2(V x) noexcept {
+    x = Min(Max(x, Set(-1000.0)), Set(1000.0));
+    const V magic = Set(6755399441055744.0);  // 1.5 * 2^52
+    const V shifted = x + magic;
+    const V f = x - (shifted - magic);
+    V p = Set(4.45581790833606449e-10);
+    p = Fma(p, f, Set(7.07419429728852106e-09));
+    p = Fma(p, f, Set(1.01780570877339407e-07));
+    p = Fma(p, f, Set(1.32154325359123753e-06));
+    p = Fma(p, f, Set(1.52527338415567733e-05));
+    p = Fma(p, f, Set(1.54035304637243530e-04));
+    p = Fma(p, f, Set(1.33335581464064708e-03));
+    p = Fma(p, f, Set(9.61812910758725638e-03));
+    p = Fma(p, f, Set(5.55041086648216248e-02));
+    p = Fma(p, f, Set(2.40226506959101582e-01));
+    p = Fma(p, f, Set(6.93147180559945286e-01));
+    p = Fma(p, f, Set(1.00000000000000000e+00));
+    return FromBits(Bits(p) + (Bits(shifted) << 52));
+  }
+
+  /// log2 x for normal positive x; absolute error below 1e-15 (1 + |log2 x|). atanh series of the mantissa in
+  /// [sqrt(1/2), sqrt(2)).
+  static V Log2(V x) noexcept {
+    const I offset = I{} + 0x3fe6a09e667f3bcdLL;  // bits of sqrt(1/2)
+    const I shifted = Bits(x) - offset;
+    const I exponent = shifted >> 52;
+    const V m = FromBits(Bits(x) - (exponent << 52));
+    // Small integer to double without a conversion instruction: through the magic-number bits.
+    const V magic = Set(6755399441055744.0);
+    const V e = FromBits(exponent + Bits(magic)) - magic;
+    const V s = (m - Set(1.0)) / (m + Set(1.0));
+    const V z = s * s;
+    V p = Set(1.0 / 21.0);
+    p = Fma(p, z, Set(1.0 / 19.0));
+    p = Fma(p, z, Set(1.0 / 17.0));
+    p = Fma(p, z, Set(1.0 / 15.0));
+    p = Fma(p, z, Set(1.0 / 13.0));
+    p = Fma(p, z, Set(1.0 / 11.0));
+    p = Fma(p, z, Set(1.0 / 9.0));
+    p = Fma(p, z, Set(1.0 / 7.0));
+    p = Fma(p, z, Set(1.0 / 5.0));
+    p = Fma(p, z, Set(1.0 / 3.0));
+    p = Fma(p, z, Set(1.0));
+    return Fma(s * p, Set(2.8853900817779268147), e);  // 2 / ln 2
+  }
+};
+
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE

@@ -1,0 +1,156 @@
+#include "armcmc/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace armcmc {
+namespace {
+
+/// Physical parameters of candidate k.
+std::array<double, kMaxParams> ThetaOf(const ParameterSpace& space, const ModeDraws& draws, int k) noexcept {
+  std::array<double, kMaxParams> theta{};
+  for (int d = 0; d < space.num_parameters; ++d)
+    theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
+  return theta;
+}
+
+/// Quantiles and published histogram of visited values.
+void Distribution(const ModeDraws& draws, const std::vector<double>& value, double total, MarginalSummary* m) noexcept {
+  double lo = HUGE_VAL;
+  double hi = -HUGE_VAL;
+  for (int k = 0; k < draws.draws; ++k) {
+    if (draws.visits[k] == 0) continue;
+    lo = std::fmin(lo, value[static_cast<std::size_t>(k)]);
+    hi = std::fmax(hi, value[static_cast<std::size_t>(k)]);
+  }
+  std::array<double, kQuantileBins> fine{};
+  const double width = (hi - lo) / kQuantileBins;
+  const double per_unit = width > 0.0 ? 1.0 / width : 0.0;
+  const double reach = 5.0 * m->sd;
+  m->histogram_lo = std::fmax(lo, m->ar_ap - reach);
+  m->histogram_hi = std::fmin(hi, m->ar_ap + reach);
+  const double coarse_width = (m->histogram_hi - m->histogram_lo) / kHistogramBins;
+  m->density.fill(0.0);
+  double inside = 0.0;
+  for (int k = 0; k < draws.draws; ++k) {
+    if (draws.visits[k] == 0) continue;
+    const double v = value[static_cast<std::size_t>(k)];
+    const double w = draws.visits[k];
+    fine[static_cast<std::size_t>(std::min((v - lo) * per_unit, kQuantileBins - 1.0))] += w;
+    if (coarse_width > 0.0 && v >= m->histogram_lo && v <= m->histogram_hi) {
+      m->density[static_cast<std::size_t>(std::min((v - m->histogram_lo) / coarse_width, kHistogramBins - 1.0))] += w;
+      inside += w;
+    }
+  }
+  if (inside > 0.0)
+    for (double& d : m->density) d /= inside * coarse_width;
+  const std::array<double, 5> levels{0.025, 0.25, 0.5, 0.75, 0.975};
+  const std::array<double*, 5> outputs{&m->q025, &m->q25, &m->q50, &m->q75, &m->q975};
+  std::size_t bin = 0;
+  double below = 0.0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const double wanted = levels[i] * total;
+    while (bin < kQuantileBins - 1 && below + fine[bin] < wanted) below += fine[bin++];
+    const double part = fine[bin] > 0.0 ? std::clamp((wanted - below) / fine[bin], 0.0, 1.0) : 0.5;
+    *outputs[i] = lo + (static_cast<double>(bin) + part) * width;
+  }
+}
+
+}  // namespace
+
+SummaryWorkspace::SummaryWorkspace(int capacity) : value(static_cast<std::size_t>(capacity)) {}
+
+double ChainEss(const ModeDraws& draws) noexcept {
+  const int first = draws.burn_in;
+  const int n = draws.draws - first;
+  const int batches = 64;
+  const int size = n / batches;
+  if (size < 2) return 1.0;
+  double smallest = n;
+  for (int d = 0; d < draws.dim; ++d) {
+    const double* u = draws.u[static_cast<std::size_t>(d)];
+    double mean = 0.0;
+    for (int i = first; i < first + size * batches; ++i) mean += u[draws.chain[i]];
+    mean /= size * batches;
+    double variance = 0.0;
+    double between = 0.0;
+    for (int b = 0; b < batches; ++b) {
+      double batch = 0.0;
+      for (int i = first + b * size; i < first + (b + 1) * size; ++i) {
+        const double c = u[draws.chain[i]] - mean;
+        variance += c * c;
+        batch += c;
+      }
+      batch /= size;
+      between += batch * batch;
+    }
+    variance /= size * batches;
+    between /= batches - 1;
+    if (between > 0.0) smallest = std::fmin(smallest, size * batches * variance / (size * between));
+  }
+  return std::fmax(smallest, 1.0);
+}
+
+void Summarise(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+               const ModeDraws& draws, SummaryWorkspace* workspace, ModeEstimate* estimate) noexcept {
+  estimate->known = draws.known;
+  estimate->updated = true;
+  estimate->decision = draws.decision;
+  estimate->num_samples = draws.num_samples;
+  estimate->zeta = draws.zeta;
+  estimate->zeta_threshold = draws.zeta_threshold;
+  estimate->lambda = draws.lambda;
+  estimate->k_min = draws.k_min;
+  estimate->draws = draws.draws;
+  estimate->truncated = draws.truncated;
+  estimate->kish_ess = draws.kish_ess;
+  estimate->acceptance = draws.acceptance;
+  estimate->log_evidence = draws.log_evidence;
+  estimate->p_changed = draws.p_changed;
+  estimate->ess = ChainEss(draws);
+
+  const double total = draws.draws - draws.burn_in;
+  std::array<double, kMaxParams> mode_theta{};
+  for (int d = 0; d < space.num_parameters; ++d)
+    mode_theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.mode_u[static_cast<std::size_t>(d)]);
+  std::array<double, kMaxReported> mode{};
+  info.report(mode_theta.data(), constants, mode.data());
+  for (int r = 0; r < info.num_reported; ++r) {
+    MarginalSummary& m = estimate->marginal[static_cast<std::size_t>(r)];
+    std::vector<double>& value = workspace->value;
+    double sum = 0.0;
+    double is_sum = 0.0;
+    for (int k = 0; k < draws.draws; ++k) {
+      std::array<double, kMaxReported> reported{};
+      info.report(ThetaOf(space, draws, k).data(), constants, reported.data());
+      const double v = reported[static_cast<std::size_t>(r)];
+      value[static_cast<std::size_t>(k)] = v;
+      sum += draws.visits[k] * v;
+      is_sum += draws.weight[k] * v;
+    }
+    m.ar_ap = sum / total;
+    m.is_mean = is_sum;
+    double square = 0.0;
+    double is_square = 0.0;
+    for (int k = 0; k < draws.draws; ++k) {
+      const double v = value[static_cast<std::size_t>(k)];
+      square += draws.visits[k] * (v - m.ar_ap) * (v - m.ar_ap);
+      is_square += draws.weight[k] * (v - m.is_mean) * (v - m.is_mean);
+    }
+    m.sd = std::sqrt(square / total);
+    m.is_sd = std::sqrt(is_square);
+    m.ar_map = draws.decision == Decision::kModification ? mode[static_cast<std::size_t>(r)] : m.ar_ap;
+    Distribution(draws, value, total, &m);
+  }
+  estimate->noise_std = std::exp(space.log_noise_scale);
+  if (space.samples_noise_scale()) {
+    double mean = 0.0;
+    for (int k = 0; k < draws.draws; ++k)
+      if (draws.visits[k] != 0)
+        mean +=
+            draws.visits[k] * std::exp(space.Theta(space.dim - 1, draws.u[static_cast<std::size_t>(space.dim - 1)][k]));
+    estimate->noise_std = mean / total;
+  }
+}
+
+}  // namespace armcmc

@@ -1,0 +1,139 @@
+#include "scenario_file.hpp"
+
+#include <algorithm>
+#include <armcmc/support/strict_toml.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "armcmc/data_pack_t.hpp"
+
+namespace armcmc::plant_sim {
+namespace {
+
+using support::ConfigError;
+using support::StrictTable;
+
+constexpr int kMaxSamples = data_pack_t::MAX_SAMPLES;
+constexpr double kMaxDuration = 1e6;  // s, eleven days
+
+std::vector<std::string> FamilyNames() {
+  std::vector<std::string> names;
+  for (const PlantFamily* family : PlantRegistry()) names.push_back(family->name);
+  return names;
+}
+
+int ReadPackSamples(StrictTable* root, double interval) {
+  const double period = root->Number("pack_period_s", 0.1, 1e-3, 10.0);
+  const double samples = period / interval;
+  const double whole = std::round(samples);
+  if (whole < 1.0 || whole > kMaxSamples || std::abs(samples - whole) > 1e-6)
+    throw root->Error("pack_period_s", "must hold a whole number of sample intervals, 1 to " +
+                                           std::to_string(kMaxSamples) + "; it holds " + std::to_string(samples));
+  return static_cast<int>(whole);
+}
+
+int ParameterIndex(const PlantFamily& family, const std::string& name) {
+  const auto it = std::find_if(family.parameters.begin(), family.parameters.end(),
+                               [&name](const ParameterSpec& spec) { return spec.name == name; });
+  return static_cast<int>(it - family.parameters.begin());
+}
+
+Schedule ReadSchedule(StrictTable* root, const PlantFamily& family) {
+  StrictTable table = root->Table("parameters");
+  std::vector<double> initial;
+  std::vector<std::string> names;
+  for (const ParameterSpec& spec : family.parameters) {
+    initial.push_back(table.RequiredNumber(spec.name, spec.lo, spec.hi));
+    names.push_back(spec.name);
+  }
+  std::vector<Change> changes;
+  for (StrictTable& entry : root->Tables("change")) {
+    Change change;
+    change.parameter = ParameterIndex(family, entry.RequiredChoice("parameter", names));
+    const ParameterSpec& spec = family.parameters[static_cast<std::size_t>(change.parameter)];
+    change.from_s = entry.RequiredNumber("from_s", 0.0, kMaxDuration);
+    change.to_s = entry.Number("to_s", change.from_s, change.from_s, kMaxDuration);
+    change.to_value = entry.RequiredNumber("to_value", spec.lo, spec.hi);
+    changes.push_back(change);
+  }
+  try {
+    return {std::move(initial), std::move(changes)};
+  } catch (const std::invalid_argument& error) {
+    throw root->Error("change", error.what());
+  }
+}
+
+Options ReadOptions(StrictTable* root, const PlantFamily& family) {
+  Options options(family.options);
+  for (const OptionSpec& spec : family.options) {
+    StrictTable table = root->Table(spec.table);
+    switch (spec.kind) {
+      case OptionSpec::Kind::kNumber:
+        options.Set(spec.key, table.Number(spec.key, spec.number, spec.lo, spec.hi));
+        break;
+      case OptionSpec::Kind::kList:
+        options.Set(spec.key, table.Numbers(spec.key, spec.list, 0, kMaxOptionList, spec.lo, spec.hi));
+        break;
+      case OptionSpec::Kind::kChoice:
+        options.Set(spec.key, table.Choice(spec.key, spec.choices.front(), spec.choices));
+        break;
+    }
+  }
+  return options;
+}
+
+NoiseLaw ReadNoise(StrictTable table) {
+  NoiseLaw law;
+  const std::string kind = table.RequiredChoice("kind", {"gaussian", "student_t", "laplace", "mixture"});
+  law.std = table.RequiredNumber("std", 0.0, 1e9);
+  if (kind == "gaussian") law.kind = NoiseKind::kGaussian;
+  if (kind == "laplace") law.kind = NoiseKind::kLaplace;
+  if (kind == "student_t") {
+    law.kind = NoiseKind::kStudentT;
+    law.dof = table.Number("dof", law.dof, 0.5, 1e6);
+  }
+  if (kind == "mixture") {
+    law.kind = NoiseKind::kMixture;
+    law.outlier_weight = table.Number("outlier_weight", law.outlier_weight, 1e-6, 0.5);
+    law.outlier_scale = table.Number("outlier_scale", law.outlier_scale, 1.0, 1e6);
+  }
+  return law;
+}
+
+std::vector<NoiseLaw> ReadSensors(StrictTable* root, const PlantFamily& family) {
+  StrictTable table = root->Table("noise");
+  std::vector<NoiseLaw> laws;
+  const auto read = [&](const std::string& channel) {
+    laws.push_back(table.Has(channel) ? ReadNoise(table.Table(channel)) : NoiseLaw{});
+  };
+  for (const ChannelSpec& channel : family.inputs) read(channel.name);
+  read(family.output.name);
+  return laws;
+}
+
+}  // namespace
+
+Scenario LoadScenario(const std::filesystem::path& path) {
+  StrictTable root = StrictTable::FromFile(path);
+  static_cast<void>(root.RequiredInteger("schema", 1, 1));
+  Scenario scenario;
+  scenario.name = path.stem().string();
+  scenario.family = FindPlantFamily(root.RequiredChoice("plant", FamilyNames()));
+  scenario.duration_s = root.Number("duration_s", scenario.duration_s, 1e-3, kMaxDuration);
+  scenario.sample_interval_s = root.Number("sample_interval_s", scenario.sample_interval_s, 1e-5, 1.0);
+  scenario.pack_samples = ReadPackSamples(&root, scenario.sample_interval_s);
+  scenario.schedule = ReadSchedule(&root, *scenario.family);
+  scenario.options = ReadOptions(&root, *scenario.family);
+  scenario.noise = ReadSensors(&root, *scenario.family);
+  root.Finish();
+  try {
+    static_cast<void>(scenario.family->make(scenario.schedule, scenario.options, scenario.sample_interval_s));
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError(path.string() + ": " + error.what());
+  }
+  return scenario;
+}
+
+}  // namespace armcmc::plant_sim

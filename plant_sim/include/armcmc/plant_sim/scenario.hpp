@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "armcmc/plant_sim/noise.hpp"
+#include "armcmc/plant_sim/options.hpp"
+#include "armcmc/plant_sim/plant.hpp"
+#include "armcmc/plant_sim/schedule.hpp"
+
+namespace armcmc::plant_sim {
+
+/// One experiment: a plant, its motion, what its parameters do, its sensors and the sampling.
+struct Scenario {
+  std::string name;
+  const PlantFamily* family = nullptr;
+  double duration_s = 20.0;
+  double sample_interval_s = 1e-3;  ///< T.
+  int pack_samples = 100;           ///< N_s = T_s / T, in [1, 256].
+  Schedule schedule{{}, {}};
+  Options options{{}};
+  std::vector<NoiseLaw> noise;  ///< One per input channel, then one of the output.
+
+  /// T_s in seconds.
+  [[nodiscard]] double pack_period_s() const noexcept { return sample_interval_s * pack_samples; }
+  /// Whole packs in the duration.
+  [[nodiscard]] long long num_packs() const noexcept {
+    return static_cast<long long>(duration_s / pack_period_s() + 1e-9);
+  }
+};
+
+}  // namespace armcmc::plant_sim

@@ -1,0 +1,28 @@
+#include "armcmc/plant_sim/noise.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace armcmc::plant_sim {
+
+double Draw(const NoiseLaw& law, Rng* rng) noexcept {
+  switch (law.kind) {
+    case NoiseKind::kNone: return 0.0;
+    case NoiseKind::kGaussian: return law.std * rng->Normal();
+    case NoiseKind::kStudentT: {
+      const double radius = std::sqrt(law.dof * (std::pow(rng->Uniform(), -2.0 / law.dof) - 1.0));
+      return law.std * radius * std::cos(2.0 * std::numbers::pi * rng->Uniform());
+    }
+    case NoiseKind::kLaplace: {
+      const double u = rng->Uniform() - 0.5;
+      return -law.std * std::copysign(std::log1p(-2.0 * std::abs(u)), u);
+    }
+    case NoiseKind::kMixture: {
+      const bool outlier = rng->Uniform() < law.outlier_weight;
+      return law.std * (outlier ? law.outlier_scale : 1.0) * rng->Normal();
+    }
+  }
+  return 0.0;
+}
+
+}  // namespace armcmc::plant_sim

@@ -1,0 +1,21 @@
+#include "armcmc/plant_sim/simulation.hpp"
+
+#include <cmath>
+
+namespace armcmc::plant_sim {
+
+Simulation::Simulation(const Scenario& scenario, std::uint64_t seed)
+    : plant_(scenario.family->make(scenario.schedule, scenario.options, scenario.sample_interval_s)),
+      sensors_(scenario.noise, seed),
+      num_inputs_(scenario.family->num_inputs()) {}
+
+bool Simulation::Next() noexcept {
+  plant_->Advance(&truth_);
+  sensors_.Measure(truth_, &measured_);
+  ++index_;
+  bool finite = std::isfinite(measured_.output);
+  for (int i = 0; i < num_inputs_; ++i) finite = finite && std::isfinite(measured_.inputs[static_cast<std::size_t>(i)]);
+  return finite;
+}
+
+}  // namespace armcmc::plant_sim

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <ostream>
+#include <string>
+
+#include "armcmc/rt/event_log.hpp"
+
+namespace armcmc::app {
+
+/// One line for people.
+[[nodiscard]] std::string EventText(const rt::Event& event);
+
+/// Prints events with the time since the start. At most kMaxPerSecond lines of a kind a second; what is held
+/// back is counted and said, so that a storm of bad packs does not bury the rest.
+class EventPrinter {
+ public:
+  static constexpr int kMaxPerSecond = 5;
+
+  EventPrinter(std::ostream& out, Nanos start_ns, bool verbose) : out_(out), start_ns_(start_ns), verbose_(verbose) {}
+
+  void Print(const rt::Event& event);
+  /// Says how many lines were held back since the last call. Call it about once a second and at the end.
+  void PrintHeldBack(Nanos now_ns);
+
+ private:
+  void Line(Nanos t_ns, const std::string& text);
+
+  std::ostream& out_;
+  Nanos start_ns_;
+  bool verbose_;
+  std::array<int, rt::kNumEventKinds> printed_{}, held_back_{};
+};
+
+}  // namespace armcmc::app

@@ -1,0 +1,171 @@
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "armcmc/estimator.hpp"
+#include "armcmc/rt/allocation_counter.hpp"
+#include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/pipeline.hpp"
+#include "armcmc/rt/process_setup.hpp"
+#include "armcmc/rt/step_engine.hpp"
+#include "armcmc/support/estimator_config.hpp"
+#include "armcmc/support/program.hpp"
+#include "armcmc/support/shared_files.hpp"
+#include "armcmc/support/strict_toml.hpp"
+#include "event_printer.hpp"
+#include "report.hpp"
+#include "rt_config.hpp"
+#include "summary.hpp"
+
+namespace armcmc::app {
+namespace {
+
+constexpr char kName[] = "armcmc-estimator";
+constexpr char kDescription[] =
+    "Estimates the parameters of a plant in real time. Listens to packs of measurements on LCM, updates the posterior "
+    "of\n"
+    "the parameters within a deadline, and publishes the estimate, its marginals and the state of health.";
+constexpr char kFooter[] =
+    "Channels: listens to PLANT_PACK; publishes EST_ESTIMATE, EST_POSTERIOR, EST_STATUS (all behind the prefix).\n"
+    "Ctrl-C stops within one step, prints the summary and writes the report.\n\n"
+    "Example: two terminals on one computer\n"
+    "  armcmc-estimator --model hunt_crossley --report estimator.json\n"
+    "  armcmc-plant --scenario hunt_crossley_paper --duration 20\n";
+
+struct Options {
+  std::string config;
+  std::string model;
+  std::string lcm_url;
+  std::string prefix;
+  std::string report;
+  std::int64_t steps = 0;
+  bool verbose = false;
+};
+
+struct Configuration {
+  EstimatorSettings estimator;
+  rt::RtSettings rt;
+};
+
+Configuration Load(const Options& options) {
+  // Without --config the model has a file of its own; with both, --model replaces the model of the file.
+  const std::string file = !options.config.empty()  ? options.config
+                           : !options.model.empty() ? options.model
+                                                    : "hunt_crossley";
+  if (!options.model.empty()) (void)BuiltinSettings(options.model);  // a wrong name is the model's fault, not a file's
+  auto root = support::StrictTable::FromFile(support::FindSharedFile("config", file));
+  Configuration configuration;
+  configuration.estimator = support::ReadEstimatorSettings(root, options.config.empty() ? "" : options.model);
+  configuration.rt = ReadRtSettings(root);
+  root.Finish();
+  if (!options.lcm_url.empty()) configuration.rt.lcm_url = options.lcm_url;
+  if (!options.prefix.empty()) configuration.rt.prefix = options.prefix;
+  configuration.rt.Validate();
+  return configuration;
+}
+
+void WarnWhenDegraded(const rt::Pipeline& pipeline) {
+  const auto names = rt::DegradedNames(pipeline.degraded_flags());
+  if (names.empty()) return;
+  std::cerr << kName << ": real-time behaviour is degraded (";
+  for (std::size_t i = 0; i < names.size(); ++i) std::cerr << (i == 0 ? "" : ", ") << names[i];
+  std::cerr << "); every status message says so.\n";
+  if (names.size() > 1 || names.front() != "shared_cpu") std::cerr << rt::PrivilegeRemedy() << '\n';
+}
+
+/// Prints events until the pipeline stops by itself or a signal of the set asks it to.
+void Attend(rt::Pipeline* pipeline, const sigset_t& signals, EventPrinter* printer) {
+  constexpr timespec kPoll{0, 50'000'000};
+  Nanos next_second = rt::MonotonicNow() + rt::kNanosPerSecond;
+  bool running = true;
+  while (running) {
+    if (sigtimedwait(&signals, nullptr, &kPoll) > 0) pipeline->RequestStop();
+    running = !pipeline->stopping();
+    if (!running) pipeline->Join();
+    rt::Event event;
+    while (pipeline->TakeEvent(&event)) printer->Print(event);
+    if (const Nanos now = rt::MonotonicNow(); now >= next_second || !running) {
+      printer->PrintHeldBack(now);
+      next_second = now + rt::kNanosPerSecond;
+    }
+  }
+}
+
+/// A report that cannot be written is found out before the run, not after it.
+void CheckReportPath(const std::string& path) {
+  if (path.empty()) return;
+  const auto folder = std::filesystem::absolute(path).parent_path();
+  if (!std::filesystem::is_directory(folder) || std::filesystem::is_directory(path)) {
+    throw support::InputError("--report " + path + ": expected a file in a folder that exists");
+  }
+}
+
+int Run(const Options& options) {
+  const Configuration configuration = Load(options);
+  CheckReportPath(options.report);
+
+  // Blocked before the first thread starts: all inherit it, and sigtimedwait() below is the only one to hear them.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  rt::EstimatorEngine engine(configuration.estimator);
+  rt::PipelineOptions pipeline_options;
+  pipeline_options.max_steps = options.steps;
+  if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
+  rt::Pipeline pipeline(configuration.rt, &engine, pipeline_options);
+  const Nanos start_ns = rt::MonotonicNow();
+  try {
+    pipeline.Start();
+  } catch (const rt::PrivilegeError& error) {
+    std::cerr << kName << ": " << error.what() << '\n';  // several lines: the remedy
+    return support::kExitFailure;
+  }
+  WarnWhenDegraded(pipeline);
+  if (options.verbose) {
+    std::cerr << kName << ": " << configuration.estimator.model << " on " << configuration.rt.lcm_url
+              << ", scoring with " << InstructionSet() << '\n';
+  }
+  EventPrinter printer(std::cerr, start_ns, options.verbose);
+  Attend(&pipeline, signals, &printer);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second Ctrl-C may end a program whose disk hangs
+
+  std::cout << SummaryText(pipeline, engine.estimator());
+  if (!options.report.empty()) {
+    rt::WriteReport(pipeline, options.report);
+    std::cout << "\nreport: " << options.report << '\n';
+  }
+  return support::kExitOk;
+}
+
+}  // namespace
+}  // namespace armcmc::app
+
+int main(int argc, char** argv) {
+  using namespace armcmc;
+  app::Options options;
+  CLI::App cli{app::kDescription};
+  cli.footer(app::kFooter);
+  cli.add_option("--config", options.config,
+                 "Configuration: a file, or the name of one that came with the product. Default: that of the model")
+      ->type_name("FILE");
+  cli.add_option("--model", options.model, "Model: hunt_crossley, soft_actuator or soft_actuator_excited")
+      ->type_name("NAME");
+  cli.add_option("--lcm-url", options.lcm_url,
+                 "LCM bus, for example udpm://239.255.76.67:7667?ttl=0. Default: the configuration's")
+      ->type_name("URL");
+  cli.add_option("--prefix", options.prefix, "Put before every channel name. Default: the configuration's")
+      ->type_name("P");
+  cli.add_option("--steps", options.steps, "Stop after N steps. Default: run until stopped")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62));
+  cli.add_option("--report", options.report, "Write a JSON report of the run")->type_name("FILE");
+  cli.add_flag("--verbose", options.verbose, "Also print lost and dropped packs");
+  return support::RunProgram(cli, app::kName, argc, argv, [&options] { return app::Run(options); });
+}

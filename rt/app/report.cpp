@@ -1,0 +1,174 @@
+#include "report.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "armcmc/rt/clock.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double Ms(double ns) { return ns / static_cast<double>(kNanosPerMilli); }
+
+Json LatencyMs(const LogHistogram& h) {
+  return {{"p50", Ms(h.Quantile(0.5))},
+          {"p99", Ms(h.Quantile(0.99))},
+          {"p999", Ms(h.Quantile(0.999))},
+          {"max", Ms(h.max())},
+          {"count", h.count()}};
+}
+
+Json Misses(const Pipeline& p) {
+  const DeadlineMonitor& m = p.monitor();
+  return {{"own", m.misses(MissCause::kOwn)},
+          {"machine", m.misses(MissCause::kMachine)},
+          {"late_data", m.misses(MissCause::kLateData)}};
+}
+
+Json StageTimes(const DeadlineMonitor& m) {
+  return {{"collect", LatencyMs(m.stage_times(Stage::kCollect))},
+          {"adjust", LatencyMs(m.stage_times(Stage::kAdjust))},
+          {"execute", LatencyMs(m.stage_times(Stage::kExecute))},
+          {"end_to_end", LatencyMs(m.end_to_end())}};
+}
+
+Json Allocations(const Pipeline& p) {
+  const auto of = [&p](Stage stage) {
+    return p.heap_calls_counted() ? Json(p.counters().heap_calls[IndexOf(stage)].Get()) : Json(nullptr);
+  };
+  return {{"collect", of(Stage::kCollect)}, {"adjust", of(Stage::kAdjust)}, {"execute", of(Stage::kExecute)}};
+}
+
+Json Packs(const Counters& c) {
+  Json causes = Json::object();
+  for (std::size_t i = 1; i < kNumRejectCauses; ++i) {
+    const auto n = c.collect.rejected[i].Get();
+    if (n > 0) causes[std::string(ToString(static_cast<RejectCause>(i)))] = n;
+  }
+  return {{"received", c.collect.received.Get()},
+          {"lost", c.collect.lost.Get()},
+          {"rejected", c.Rejected()},
+          {"duplicate", c.collect.duplicate.Get()},
+          {"reordered", c.collect.reordered.Get()},
+          {"dropped", c.Dropped()},
+          {"rejected_by_cause", causes}};
+}
+
+Json Witnesses(const Pipeline& p) {
+  LogHistogram all;
+  for (const auto& witness : p.witnesses()) all.Merge(witness->delays());
+  Json json = LatencyMs(all);
+  json["period"] = Ms(static_cast<double>(Witness::kPeriodNs));
+  return json;
+}
+
+Json RtState(const Pipeline& p) {
+  bool all_fifo = true;
+  Json priorities = Json::object(), cpus = Json::object(), witness_cpus = Json::array();
+  for (const ThreadPlacement& placement : p.placements()) {
+    all_fifo = all_fifo && placement.fifo;
+    priorities[placement.name] = placement.priority;
+    const Json cpu = placement.cpu >= 0 ? Json(placement.cpu) : Json(nullptr);
+    if (placement.name == "witness") {
+      witness_cpus.push_back(cpu);
+    } else {
+      cpus[placement.name] = cpu;
+    }
+  }
+  cpus["witness"] = witness_cpus;
+  return {{"mode", p.settings().mode == RtMode::kEnforce ? "enforce" : "best_effort"},
+          {"policy", all_fifo ? "SCHED_FIFO" : "SCHED_OTHER"},
+          {"priorities", priorities},
+          {"cpus", cpus},
+          {"mlockall", p.memory_locked()},
+          {"degraded", DegradedNames(p.degraded_flags())}};
+}
+
+Json Finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json Parameters(const Pipeline& p) {
+  Json modes = Json::array();
+  const Estimate& e = p.last_estimate();
+  for (int m = 0; m < p.engine().num_modes(); ++m) {
+    const ModeEstimate& mode = e.modes[static_cast<std::size_t>(m)];
+    Json parameters = Json::object();
+    for (int i = 0; mode.known && i < p.engine().num_reported(); ++i) {
+      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(i)];
+      parameters[std::string(p.engine().reported(i).name)] = {{"ar_map", Finite(marginal.ar_map)},
+                                                              {"ar_ap", Finite(marginal.ar_ap)},
+                                                              {"sd", Finite(marginal.sd)},
+                                                              {"unit", p.engine().reported(i).unit}};
+    }
+    modes.push_back({{"mode", m}, {"known", mode.known}, {"parameters", parameters}});
+  }
+  return modes;
+}
+
+}  // namespace
+
+std::string ReportJson(const Pipeline& p) {
+  const RtSettings& s = p.settings();
+  const Counters& c = p.counters();
+  const DeadlineMonitor& m = p.monitor();
+  const LogHistogram& draws = p.execute().draws();
+  const LogHistogram& ess = p.execute().ess();
+  const Json report = {
+      {"schema", 1},
+      {"steps", c.execute.steps.Get()},
+      {"period_ms", Ms(static_cast<double>(s.period_ns))},
+      {"deadline_ms", Ms(static_cast<double>(s.deadline_ns))},
+      {"adjust_budget_ms", Ms(static_cast<double>(s.adjust_budget_ns))},
+      {"misses", Misses(p)},
+      {"stage_ms", StageTimes(m)},
+      {"stage_overruns",
+       {{"collect", m.stage_overruns(Stage::kCollect)},
+        {"adjust", m.stage_overruns(Stage::kAdjust)},
+        {"execute", m.stage_overruns(Stage::kExecute)}}},
+      {"allocations", Allocations(p)},
+      {"packs", Packs(c)},
+      {"plant", {{"silent_periods", c.collect.silent_periods.Get()}, {"restarts", c.collect.restarts.Get()}}},
+      {"bus",
+       {{"url", s.lcm_url},
+        {"prefix", s.prefix},
+        {"messages", c.publish.messages.Get()},
+        {"publish_errors", c.publish.errors.Get() + c.execute.unpublished.Get()},
+        {"foreign", c.collect.foreign.Get()},
+        {"fragments", c.collect.fragments.Get()},
+        {"malformed", c.collect.malformed.Get()}}},
+      {"witness_ms", Witnesses(p)},
+      {"rt", RtState(p)},
+      {"draws",
+       {{"median", draws.Quantile(0.5)},
+        {"min", draws.min()},
+        {"max", draws.max()},
+        {"truncated_steps", c.adjust.truncated.Get()}}},
+      {"ess", {{"median", ess.Quantile(0.5)}, {"min", ess.min()}}},
+      {"numeric_troubles", c.adjust.numeric.Get()},
+      {"parameters", Parameters(p)}};
+  return report.dump(2) + "\n";
+}
+
+void WriteReport(const Pipeline& pipeline, const std::string& path) {
+  const std::string text = ReportJson(pipeline);
+  const std::string temporary = path + ".tmp";
+  {
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    out << text;
+    out.flush();
+    if (!out) {
+      std::remove(temporary.c_str());
+      throw std::runtime_error("cannot write the report " + path);
+    }
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw std::runtime_error("cannot write the report " + path);
+  }
+}
+
+}  // namespace armcmc::rt

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "armcmc/rt/settings.hpp"
+#include "armcmc/support/strict_toml.hpp"
+
+namespace armcmc::app {
+
+/// Reads [timing], [rt] and [lcm] of an estimator configuration. Absent keys keep the defaults of RtSettings;
+/// absent deadline_ms is the period, absent adjust_budget_ms four fifths of the smaller of period and deadline.
+/// @throws support::ConfigError naming file, line, key and range.
+[[nodiscard]] rt::RtSettings ReadRtSettings(support::StrictTable& root);
+
+}  // namespace armcmc::app

@@ -1,0 +1,80 @@
+#include "summary.hpp"
+
+#include <sstream>
+
+#include "armcmc/rt/clock.hpp"
+#include "armcmc/support/text_table.hpp"
+
+namespace armcmc::app {
+namespace {
+
+using support::Significant;
+using support::TextTable;
+
+std::string Ms(double ns) { return Significant(ns / static_cast<double>(rt::kNanosPerMilli), 4); }
+
+void AddTimes(const char* name, const rt::LogHistogram& h, TextTable* table) {
+  table->AddRow({name, Ms(h.Quantile(0.5)), Ms(h.Quantile(0.99)), Ms(h.Quantile(0.999)), Ms(h.max())});
+}
+
+std::string StageTimes(const rt::Pipeline& pipeline) {
+  TextTable table({"time, ms", "p50", "p99", "p99.9", "max"});
+  const rt::DeadlineMonitor& monitor = pipeline.monitor();
+  if (monitor.end_to_end().count() == 0) return {};
+  AddTimes("collect", monitor.stage_times(rt::Stage::kCollect), &table);
+  AddTimes("adjust", monitor.stage_times(rt::Stage::kAdjust), &table);
+  AddTimes("execute", monitor.stage_times(rt::Stage::kExecute), &table);
+  AddTimes("release to estimate", monitor.end_to_end(), &table);
+  rt::LogHistogram witness;
+  for (const auto& w : pipeline.witnesses()) witness.Merge(w->delays());
+  AddTimes("the machine's wake-ups", witness, &table);
+  return table.ToString();
+}
+
+std::string Parameters(const rt::Pipeline& pipeline, const Estimator& estimator) {
+  TextTable table({"parameter", "estimate", "sd", "unit"});
+  bool any = false;
+  for (int m = 0; m < estimator.num_modes(); ++m) {
+    const ModeEstimate& mode = pipeline.last_estimate().modes[static_cast<std::size_t>(m)];
+    if (!mode.known) continue;
+    for (int i = 0; i < estimator.num_reported(); ++i) {
+      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(i)];
+      const ReportedQuantity quantity = estimator.reported(i);
+      std::string name(quantity.name);
+      if (estimator.num_modes() > 1) name += " (" + std::string(estimator.mode_name(m)) + ")";
+      table.AddRow({name, Significant(marginal.ar_map, 5), Significant(marginal.sd, 3), std::string(quantity.unit)});
+      any = true;
+    }
+  }
+  return any ? table.ToString() : "no parameter was learnt: no pack with information came\n";
+}
+
+}  // namespace
+
+std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator) {
+  const rt::Counters& c = pipeline.counters();
+  const rt::DeadlineMonitor& m = pipeline.monitor();
+  std::ostringstream out;
+  const auto missed = [&m](rt::MissCause cause) { return m.misses(cause); };
+  out << "steps " << c.execute.steps.Get() << ", deadline " << Ms(static_cast<double>(pipeline.settings().deadline_ns))
+      << " ms, missed: own " << missed(rt::MissCause::kOwn) << ", machine " << missed(rt::MissCause::kMachine)
+      << ", late data " << missed(rt::MissCause::kLateData) << '\n';
+  out << "packs " << c.collect.received.Get() << ", lost " << c.collect.lost.Get() << ", rejected " << c.Rejected()
+      << ", duplicate " << c.collect.duplicate.Get() << ", reordered " << c.collect.reordered.Get() << ", dropped "
+      << c.Dropped() << '\n';
+  const rt::LogHistogram& draws = pipeline.execute().draws();
+  if (draws.count() > 0) {
+    out << "draws a posterior: median " << draws.Quantile(0.5) << ", least " << draws.min() << "; effective: median "
+        << pipeline.execute().ess().Quantile(0.5) << '\n';
+  }
+  const auto degraded = rt::DegradedNames(pipeline.degraded_flags());
+  if (!degraded.empty()) {
+    out << "degraded:";
+    for (const std::string& name : degraded) out << ' ' << name;
+    out << '\n';
+  }
+  out << '\n' << StageTimes(pipeline) << (c.execute.steps.Get() > 0 ? "\n" : "") << Parameters(pipeline, estimator);
+  return out.str();
+}
+
+}  // namespace armcmc::app

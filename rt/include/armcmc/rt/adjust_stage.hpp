@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/deadline_monitor.hpp"
+#include "armcmc/rt/event_log.hpp"
+#include "armcmc/rt/hand_over.hpp"
+#include "armcmc/rt/settings.hpp"
+#include "armcmc/rt/step_engine.hpp"
+
+namespace armcmc::rt {
+
+/// Shortest of the last durations of a stage: what it takes when nothing disturbs it.
+class RecentMinimum {
+ public:
+  void Add(Nanos duration_ns) noexcept ARMCMC_NONBLOCKING { recent_ns_[next_++ % kWindow] = duration_ns; }
+  [[nodiscard]] Nanos Get() const noexcept ARMCMC_NONBLOCKING {
+    const std::size_t n = std::min(next_, kWindow);
+    return n == 0 ? 0 : *std::min_element(recent_ns_.begin(), recent_ns_.begin() + static_cast<std::ptrdiff_t>(n));
+  }
+
+ private:
+  static constexpr std::size_t kWindow = 8;
+  std::array<Nanos, kWindow> recent_ns_{};
+  std::size_t next_ = 0;
+};
+
+/// Absolute time before which adjust has to stop.
+///
+/// The budget counts from the start of adjust and leaves the execute reserve before the deadline. A pack for which
+/// not even that is left has missed its deadline already; it gets the whole budget, since what it teaches is
+/// needed for the next one.
+[[nodiscard]] constexpr Nanos AdjustDeadline(Nanos start_ns, Nanos deadline_ns, Nanos budget_ns,
+                                             Nanos reserve_ns) noexcept {
+  const Nanos latest = deadline_ns - reserve_ns;
+  return start_ns >= latest ? start_ns + budget_ns : std::min(start_ns + budget_ns, latest);
+}
+
+/// Second stage: the draws. Writes straight into the result slot that it hands over.
+class AdjustStage {
+ public:
+  AdjustStage(const RtSettings& settings, StepEngine* engine, PackRing* ring, ResultHandOver* results,
+              DeadlineMonitor* monitor, Counters* counters, EventLog* events) noexcept;
+
+  /// Takes the next pack worth computing from the ring and adjusts to it.
+  ///
+  /// Packs are taken in order while their deadline can be kept. One that cannot keep it is dropped when a newer
+  /// one waits; the newest is always computed. A result that execute has not taken is not overtaken before its
+  /// deadline.
+  /// @return true when a result was handed over; false when the ring is empty or execute has to come first.
+  /// @rt No heap, no lock, no throw, no system call. Bounded by the adjust budget plus the ring's capacity.
+  [[nodiscard]] bool Step() noexcept;
+
+ private:
+  void DropUnkeepable() noexcept;
+  void CountDropped(const StepInfo& info, Stage waiting_for, Nanos now_ns, Nanos lacked_ns) noexcept;
+  void NoteStatus(const StepInfo& info) noexcept;
+
+  Nanos budget_ns_, reserve_ns_;
+  StepEngine* engine_;
+  PackRing* ring_;
+  ResultHandOver* results_;
+  DeadlineMonitor* monitor_;
+  Counters* counters_;
+  EventLog* events_;
+  RecentMinimum typical_;
+  Nanos handed_over_deadline_ns_ = 0;  // of the newest result
+};
+
+}  // namespace armcmc::rt

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <time.h>
+
+#include <cerrno>
+#include <cstdint>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc::rt {
+
+inline constexpr Nanos kNanosPerSecond = 1'000'000'000;
+inline constexpr Nanos kNanosPerMilli = 1'000'000;
+inline constexpr Nanos kNanosPerMicro = 1'000;
+
+#if defined(__clang__) && __clang_major__ >= 20
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wfunction-effects"  // clock_gettime is served by the vDSO: no system call
+#endif
+
+/// CLOCK_MONOTONIC, ns. The only clock that deadlines, releases and latencies are measured on.
+/// @rt No system call (vDSO).
+[[nodiscard]] inline Nanos MonotonicNow() noexcept ARMCMC_NONBLOCKING {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<Nanos>(t.tv_sec) * kNanosPerSecond + static_cast<Nanos>(t.tv_nsec);
+}
+
+/// CLOCK_REALTIME, ns. Used for log alignment and to age kernel receive stamps, never for a deadline.
+[[nodiscard]] inline Nanos RealtimeNow() noexcept ARMCMC_NONBLOCKING {
+  timespec t{};
+  clock_gettime(CLOCK_REALTIME, &t);
+  return static_cast<Nanos>(t.tv_sec) * kNanosPerSecond + static_cast<Nanos>(t.tv_nsec);
+}
+
+#if defined(__clang__) && __clang_major__ >= 20
+#pragma clang diagnostic pop
+#endif
+
+/// CLOCK_REALTIME in microseconds: the `utime` of LCM messages.
+[[nodiscard]] inline std::int64_t RealtimeMicros() noexcept ARMCMC_NONBLOCKING {
+  return RealtimeNow() / kNanosPerMicro;
+}
+
+/// The monotonic clock in the form that core takes.
+[[nodiscard]] inline ClockRef MonotonicClock() noexcept {
+  return {[](const void*) noexcept -> Nanos { return MonotonicNow(); }, nullptr};
+}
+
+[[nodiscard]] constexpr timespec ToTimespec(Nanos t_ns) noexcept {
+  return {static_cast<time_t>(t_ns / kNanosPerSecond), static_cast<long>(t_ns % kNanosPerSecond)};
+}
+
+/// Sleeps until an absolute time of CLOCK_MONOTONIC. Blocks.
+///
+/// Not std::this_thread::sleep_until: libstdc++ 12 makes a relative sleep of it, so that a preemption between
+/// the clock read and the call is added to the wake-up.
+inline void SleepUntil(Nanos t_ns) noexcept {
+  const timespec t = ToTimespec(t_ns);
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace armcmc::rt

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+
+#include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/event_log.hpp"
+#include "armcmc/rt/hand_over.hpp"
+#include "armcmc/rt/lcm_receiver.hpp"
+#include "armcmc/rt/pack_codec.hpp"
+#include "armcmc/rt/release_grid.hpp"
+#include "armcmc/rt/sequence_tracker.hpp"
+#include "armcmc/rt/settings.hpp"
+
+namespace armcmc::rt {
+
+/// First stage: checks a pack, watches its number and its time, and copies it into the ring.
+class CollectStage {
+ public:
+  CollectStage(const RtSettings& settings, PlantKind plant, int num_inputs, PackRing* ring, Counters* counters,
+               EventLog* events) noexcept;
+
+  /// @return true when a pack was handed on. @rt No heap, no lock, no throw, no system call. O(pack).
+  [[nodiscard]] bool Step(const Datagram& datagram) noexcept;
+
+  /// Begins to wait for the plant. Call once, right before the loop.
+  void Begin(Nanos now_ns) noexcept;
+  /// When Tick() is to be called unless a pack comes before.
+  [[nodiscard]] Nanos next_tick_ns() const noexcept { return next_tick_ns_; }
+  /// A period passed without a pack. @rt O(1).
+  void Tick(Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
+
+ private:
+  void PublishSequenceCounts() noexcept;
+  void Reject(RejectCause cause, Nanos now_ns) noexcept;
+  void NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept;
+
+  Nanos period_ns_, deadline_ns_;
+  PackCodec codec_;
+  SequenceTracker tracker_;
+  ReleaseGrid grid_;
+  PackRing* ring_;
+  Counters* counters_;
+  EventLog* events_;
+  Nanos next_tick_ns_ = 0;
+  Nanos heard_ns_ = 0;              // newest usable pack, or Begin()
+  std::int64_t skipped_steps_ = 0;  // grid points of packs that came and were rejected since the last usable one
+  std::int64_t silent_in_a_row_ = 0;
+  bool traffic_ = false;  // something came on the channel since the last tick
+  bool silence_reported_ = false;
+};
+
+}  // namespace armcmc::rt

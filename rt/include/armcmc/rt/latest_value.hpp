@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/rt/spsc_ring.hpp"
+
+namespace armcmc::rt {
+
+/// Triple buffer of slot numbers: hands the newest complete value from one thread to another.
+///
+/// The values themselves live wherever the caller keeps kSlots of them. The writer fills write_slot() and calls
+/// Publish(); the reader calls Acquire() and then owns read_slot(). No value is copied, nobody waits,
+/// and the two never work on the same slot.
+class LatestValue {
+ public:
+  static constexpr int kSlots = 3;
+
+  /// Slot that the writer owns.
+  [[nodiscard]] int write_slot() const noexcept { return write_slot_; }
+
+  /// Hands write_slot() to the reader and takes another one.
+  /// @return true when the value handed over before had not been read: it is lost, and it is what the new
+  ///         write_slot() still holds.
+  /// @rt Wait-free.
+  [[nodiscard]] bool Publish() noexcept ARMCMC_NONBLOCKING {
+    const std::uint8_t mine = static_cast<std::uint8_t>(write_slot_ | kFresh);
+    const std::uint8_t before = shared_.exchange(mine, std::memory_order_acq_rel);
+    write_slot_ = before & kSlotMask;
+    return (before & kFresh) != 0;
+  }
+
+  /// true while the value handed over last has not been taken. For the writer. @rt Wait-free.
+  [[nodiscard]] bool unread() const noexcept ARMCMC_NONBLOCKING {
+    return (shared_.load(std::memory_order_relaxed) & kFresh) != 0;
+  }
+
+  /// Takes the newest value. @return false when nothing was published since the last call. @rt Wait-free.
+  [[nodiscard]] bool Acquire() noexcept ARMCMC_NONBLOCKING {
+    if ((shared_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
+    const std::uint8_t mine = static_cast<std::uint8_t>(read_slot_);
+    read_slot_ = shared_.exchange(mine, std::memory_order_acq_rel) & kSlotMask;
+    return true;
+  }
+
+  /// Slot that the reader owns.
+  [[nodiscard]] int read_slot() const noexcept { return read_slot_; }
+
+ private:
+  static constexpr std::uint8_t kFresh = 0x80;
+  static constexpr std::uint8_t kSlotMask = 0x03;
+
+  alignas(kCacheLine) std::atomic<std::uint8_t> shared_{1};
+  alignas(kCacheLine) int write_slot_ = 0;  // of the writer
+  alignas(kCacheLine) int read_slot_ = 2;   // of the reader
+};
+
+}  // namespace armcmc::rt

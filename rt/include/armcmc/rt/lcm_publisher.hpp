@@ -1,0 +1,46 @@
+#pragma once
+
+#include <lcm/lcm.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "armcmc/estimate_t.hpp"
+#include "armcmc/estimator_status_t.hpp"
+#include "armcmc/posterior_t.hpp"
+#include "armcmc/rt/lcm_url.hpp"
+
+namespace armcmc::rt {
+
+/// Publishes the estimator's messages through liblcm, encoded into a buffer of its own: no heap after the first
+/// call. Blocking system calls: for the publisher thread, never for a stage. One thread uses it.
+class LcmPublisher {
+ public:
+  /// @throws std::runtime_error with the remedy when the machine has no multicast route.
+  LcmPublisher(const LcmUrl& url, const std::string& prefix);
+
+  // Each returns false when the message could not be encoded or sent.
+  [[nodiscard]] bool Publish(const estimate_t& message) noexcept { return Send(estimate_channel_, message); }
+  [[nodiscard]] bool Publish(const posterior_t& message) noexcept { return Send(posterior_channel_, message); }
+  [[nodiscard]] bool Publish(const estimator_status_t& message) noexcept { return Send(status_channel_, message); }
+
+ private:
+  struct Destroy {
+    void operator()(lcm_t* lcm) const noexcept { lcm_destroy(lcm); }
+  };
+
+  template <typename Message>
+  [[nodiscard]] bool Send(const std::string& channel, const Message& message) noexcept {
+    const int size = message.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));
+    if (size < 0) return false;
+    return lcm_publish(lcm_.get(), channel.c_str(), buffer_.data(), static_cast<unsigned>(size)) == 0;
+  }
+
+  std::unique_ptr<lcm_t, Destroy> lcm_;
+  std::string estimate_channel_, posterior_channel_, status_channel_;
+  std::array<std::uint8_t, 16'384> buffer_{};
+};
+
+}  // namespace armcmc::rt

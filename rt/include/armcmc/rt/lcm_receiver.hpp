@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "armcmc/rt/lcm_url.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc::rt {
+
+/// Largest LCM message that travels in one datagram: channel, NUL and payload together.
+inline constexpr std::size_t kMaxShortMessage = 65'499;
+
+/// One message of the subscribed channel. Valid until the next call of the receiver.
+struct Datagram {
+  std::span<const std::uint8_t> payload;  ///< Starts with the 8-byte fingerprint.
+  Nanos arrival_ns = 0;                   ///< CLOCK_MONOTONIC when the kernel received it.
+};
+
+/// The channel, compared byte by byte against an LCM datagram.
+enum class DatagramKind : std::uint8_t { kOurs, kForeign, kFragment, kMalformed };
+
+/// Splits a datagram of LCM's wire format: be32 "LC02", be32 message number, channel, NUL, payload.
+/// @param[out] payload  Set for kOurs only.
+/// @rt O(length of channel).
+[[nodiscard]] DatagramKind ParseDatagram(std::span<const std::uint8_t> bytes, const std::string& channel,
+                                         std::span<const std::uint8_t>* payload) noexcept;
+
+/// Receives one LCM channel on a UDP multicast socket of its own.
+///
+/// liblcm's receiver brings a thread that allocates, takes locks without priority inheritance and drops the newest
+/// message when it is full. This one reads the same datagrams: no thread, no lock, no heap after
+/// construction. It binds the group address, so that other groups on the same port are not heard, and joins on
+/// the interface of the multicast route, as liblcm does. Messages in several fragments are counted and skipped.
+/// One thread uses it; Wake() may come from any other, also from a signal handler.
+class LcmReceiver {
+ public:
+  struct Counts {
+    std::int64_t foreign = 0;    ///< Datagrams of other channels.
+    std::int64_t fragments = 0;  ///< Fragments of messages above kMaxShortMessage.
+    std::int64_t malformed = 0;  ///< Not LCM.
+  };
+
+  /// @throws std::runtime_error saying what to do when the machine has no multicast route.
+  LcmReceiver(const LcmUrl& url, std::string channel);
+  ~LcmReceiver();
+  LcmReceiver(const LcmReceiver&) = delete;
+  LcmReceiver& operator=(const LcmReceiver&) = delete;
+
+  /// Blocks until a datagram is there, until the time, or until Wake(). @return true when there may be a datagram.
+  [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept;
+
+  /// Reads one datagram without waiting; skips at most kMaxSkipped others first.
+  /// @return true when *datagram holds a message of the channel.
+  [[nodiscard]] bool TryReceive(Datagram* datagram) noexcept;
+
+  /// Throws away what the kernel holds; at most as many datagrams as its buffer can hold.
+  void Drain() noexcept;
+
+  /// Ends the present wait, or the next one.
+  void Wake() noexcept;
+
+  [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
+  /// Kernel receive buffer as read back, bytes (the kernel doubles what it grants).
+  [[nodiscard]] int recv_buf_size() const noexcept { return recv_buf_size_; }
+
+ private:
+  static constexpr int kMaxSkipped = 64;
+
+  void Close() noexcept;
+  [[nodiscard]] bool ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept;
+
+  std::string channel_;
+  int socket_ = -1;
+  int wake_ = -1;
+  int recv_buf_size_ = 0;
+  Counts counts_;
+  alignas(8) std::array<std::uint8_t, 65'536> buffer_{};
+};
+
+}  // namespace armcmc::rt

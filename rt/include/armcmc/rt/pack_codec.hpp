@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/data_pack_t.hpp"
+#include "armcmc/nonblocking.hpp"
+
+namespace armcmc::rt {
+
+/// Why a message on the pack channel is not a usable pack.
+enum class RejectCause : std::uint8_t {
+  kNone = 0,
+  kFingerprint,     ///< Another type, or another version of ours.
+  kLength,          ///< Truncated, or with trailing bytes.
+  kPlantKind,       ///< Pack of another plant family.
+  kSampleCount,     ///< n_samples outside [1, kMaxPackSamples].
+  kInputCount,      ///< n_inputs is not that of the model.
+  kSampleInterval,  ///< dt outside (0, kMaxSampleInterval] or not finite.
+  kNotFinite,       ///< NaN or infinity in a value that is used.
+  kOutOfRange,      ///< A value beyond kMaxMagnitude, a pack number outside [1, 2^62], a negative plant time.
+};
+inline constexpr std::size_t kNumRejectCauses = 9;
+
+/// The three groups in which estimator_status_t counts them.
+enum class RejectGroup : std::uint8_t { kSize = 0, kType = 1, kValue = 2 };
+
+[[nodiscard]] std::string_view ToString(RejectCause cause) noexcept;
+[[nodiscard]] RejectGroup GroupOf(RejectCause cause) noexcept;
+
+/// Decodes and checks packs from the bus.
+class PackCodec {
+ public:
+  static constexpr double kMaxSampleInterval = 10.0;  ///< s
+  static constexpr double kMaxMagnitude = 1e9;        ///< Above any force, angle, position or pressure of a plant.
+
+  /// @param plant, num_inputs  What the model expects.
+  PackCodec(PlantKind plant, int num_inputs) noexcept;
+
+  /// Decodes and checks one message; the pack stays inside until the next call.
+  /// @param payload  Starts with the 8-byte fingerprint.
+  /// @return kNone when CopyTo() may be used.
+  /// @rt No heap, no lock, no throw. O(n_samples x n_inputs) after a decode of fixed size.
+  [[nodiscard]] RejectCause Decode(std::span<const std::uint8_t> payload) noexcept;
+
+  /// true when the last message was a pack of ours, whatever was wrong with its values: its number may be looked at.
+  [[nodiscard]] bool decoded() const noexcept { return decoded_; }
+  [[nodiscard]] std::int64_t seq() const noexcept { return message_.seq; }
+  [[nodiscard]] std::int64_t run_id() const noexcept { return message_.run_id; }
+  /// Copies the used rows and columns. @pre the last Decode() returned kNone.
+  void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
+
+ private:
+  [[nodiscard]] RejectCause Check() const noexcept ARMCMC_NONBLOCKING;
+
+  data_pack_t message_{};
+  PlantKind plant_;
+  int num_inputs_;
+  std::int64_t fingerprint_;
+  std::size_t encoded_size_;
+  bool decoded_ = false;
+};
+
+}  // namespace armcmc::rt

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "armcmc/rt/settings.hpp"
+
+namespace armcmc::rt {
+
+/// A privilege that RtMode::kEnforce needs is missing. The text says how to grant it.
+class PrivilegeError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What to do on this machine to be granted FIFO priorities and locked memory.
+[[nodiscard]] std::string PrivilegeRemedy();
+
+/// Keeps the heap from returning memory, from mapping new arenas, and (lock_memory) all pages in memory.
+/// Call it when everything is built and before the threads start.
+/// @return true when the memory is locked.
+/// @throws PrivilegeError in RtMode::kEnforce when the memory cannot be locked.
+bool SetUpProcessMemory(const RtSettings& settings);
+
+/// Touches every page that is left of the stack of the calling thread (not for the main thread, whose stack grows).
+void PrefaultStack() noexcept;
+
+/// CPUs that this process may run on, ascending.
+[[nodiscard]] std::vector<int> AvailableCpus();
+
+}  // namespace armcmc::rt

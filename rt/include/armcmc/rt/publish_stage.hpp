@@ -1,0 +1,64 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/deadline_monitor.hpp"
+#include "armcmc/rt/event_log.hpp"
+#include "armcmc/rt/hand_over.hpp"
+#include "armcmc/rt/lcm_publisher.hpp"
+#include "armcmc/rt/settings.hpp"
+#include "armcmc/rt/step_engine.hpp"
+#include "armcmc/rt/witness.hpp"
+
+namespace armcmc::rt {
+
+/// Turns outputs into messages and sends them. Runs on the thread with the lowest priority, since sending blocks.
+class PublishStage {
+ public:
+  PublishStage(const RtSettings& settings, const StepEngine* engine, OutputRing* outputs, LcmPublisher* publisher,
+               const DeadlineMonitor* monitor, Counters* counters, EventLog* events) noexcept
+      : settings_(settings),
+        engine_(engine),
+        outputs_(outputs),
+        publisher_(publisher),
+        monitor_(monitor),
+        counters_(counters),
+        events_(events) {}
+
+  /// Set before the thread starts.
+  void SetWitnesses(std::vector<Witness*> witnesses) { witnesses_ = std::move(witnesses); }
+  /// Any time.
+  void SetDegraded(std::int32_t flags) noexcept { degraded_flags_.store(flags, std::memory_order_relaxed); }
+
+  /// Sends the messages of all finished steps. @return their number, at most kOutputRingCapacity.
+  int PublishSteps() noexcept;
+  /// Sends a status without a step: nothing came, or nothing was finished.
+  void PublishIdleStatus() noexcept;
+
+  /// The newest estimate that was published. @pre the thread has ended.
+  [[nodiscard]] const Estimate& last_estimate() const noexcept { return last_; }
+
+ private:
+  void PublishStatus(const StepOutput* output) noexcept;
+  void Note(bool sent) noexcept;
+
+  const RtSettings& settings_;
+  const StepEngine* engine_;
+  OutputRing* outputs_;
+  LcmPublisher* publisher_;
+  const DeadlineMonitor* monitor_;
+  Counters* counters_;
+  EventLog* events_;
+  std::vector<Witness*> witnesses_;
+  std::atomic<std::int32_t> degraded_flags_{0};
+  estimate_t estimate_{};
+  posterior_t posterior_{};
+  estimator_status_t status_{};
+  Estimate last_;
+};
+
+}  // namespace armcmc::rt

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <pthread.h>
+
+#include <cstddef>
+#include <string>
+
+#include "armcmc/rt/settings.hpp"
+#include "armcmc/rt/waiter.hpp"
+
+namespace armcmc::rt {
+
+/// What a thread is to run as.
+struct ThreadRequest {
+  const char* name = "";  ///< At most 15 characters; shown by ps and top.
+  int priority = 0;       ///< SCHED_FIFO.
+  int cpu = -1;           ///< Pinned there; -1 leaves the affinity alone.
+  std::size_t stack_bytes = 2U << 20U;
+};
+
+/// What it runs as, read back from the kernel inside the thread.
+struct ThreadPlacement {
+  std::string name;
+  bool fifo = false;    ///< SCHED_FIFO at the requested priority.
+  bool pinned = false;  ///< On exactly the requested CPU.
+  int priority = 0;     ///< 0 under SCHED_OTHER.
+  int cpu = -1;         ///< -1 when not pinned to one CPU.
+};
+
+/// A pinned SCHED_FIFO thread with a small, prefaulted stack.
+class RtThread {
+ public:
+  using Entry = void (*)(void* context) noexcept;
+
+  RtThread() = default;
+  ~RtThread() { Join(); }
+  RtThread(const RtThread&) = delete;
+  RtThread& operator=(const RtThread&) = delete;
+
+  /// Creates the thread and waits until it has touched its stack and read its policy and affinity back.
+  /// Signals are those of the caller. Without the privileges: throws in kEnforce, else runs without them.
+  /// @throws PrivilegeError (kEnforce), std::runtime_error when no thread can be made at all.
+  const ThreadPlacement& Start(const ThreadRequest& request, RtMode mode, Entry entry, void* context);
+  void Join() noexcept;
+  [[nodiscard]] const ThreadPlacement& placement() const noexcept { return placement_; }
+
+ private:
+  static void* Main(void* self);
+  [[nodiscard]] int Create(bool fifo, bool pin) noexcept;
+  void ReadBack();
+
+  ThreadRequest request_;
+  ThreadPlacement placement_;
+  Entry entry_ = nullptr;
+  void* context_ = nullptr;
+  Waiter ready_;          // thread -> Start(): placement_ is known
+  Waiter go_;             // Start() -> thread
+  bool refused_ = false;  // written before go_
+  pthread_t thread_{};
+  bool running_ = false;
+};
+
+}  // namespace armcmc::rt

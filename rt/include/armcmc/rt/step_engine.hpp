@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/estimate.hpp"
+#include "armcmc/estimator.hpp"
+#include "armcmc/rt/latest_value.hpp"
+#include "armcmc/status.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc::rt {
+
+/// The computation that the pipeline drives: adjust and execute on results that it keeps in LatestValue::kSlots slots.
+///
+/// The pipeline knows results by their slot number only, so that draws are never copied. Adjust() and Execute() run at
+/// the same time on two threads, on different slots.
+class StepEngine {
+ public:
+  virtual ~StepEngine() = default;
+
+  [[nodiscard]] virtual PlantKind plant() const noexcept = 0;
+  [[nodiscard]] virtual int num_inputs() const noexcept = 0;
+  [[nodiscard]] virtual int num_modes() const noexcept = 0;
+  [[nodiscard]] virtual int num_reported() const noexcept = 0;
+  [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept = 0;
+
+  /// Computes the posterior after `pack` into a slot; stops before deadline_ns. @rt No heap, no lock, no throw.
+  virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept = 0;
+  /// Summarises a slot. @rt No heap, no lock, no throw.
+  virtual void Execute(int slot, Estimate* estimate) noexcept = 0;
+  /// Forgets everything.
+  virtual void Reset() noexcept = 0;
+};
+
+/// The estimator of core as a StepEngine.
+class EstimatorEngine final : public StepEngine {
+ public:
+  /// @throws std::invalid_argument from the settings. Allocates all memory.
+  explicit EstimatorEngine(const EstimatorSettings& settings);
+  ~EstimatorEngine() override;
+
+  [[nodiscard]] PlantKind plant() const noexcept override;
+  [[nodiscard]] int num_inputs() const noexcept override;
+  [[nodiscard]] int num_modes() const noexcept override;
+  [[nodiscard]] int num_reported() const noexcept override;
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept override;
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept override;
+  void Execute(int slot, Estimate* estimate) noexcept override;
+  void Reset() noexcept override;
+
+  [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
+
+ private:
+  Estimator estimator_;
+  std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
+};
+
+}  // namespace armcmc::rt

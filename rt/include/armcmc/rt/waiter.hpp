@@ -1,0 +1,35 @@
+#pragma once
+
+#include <semaphore.h>
+
+#include <atomic>
+
+#include "armcmc/types.hpp"
+
+namespace armcmc::rt {
+
+/// Wakes one thread from another; the wait is bounded by an absolute time of CLOCK_MONOTONIC.
+///
+/// A POSIX semaphore: Post() takes no lock, may be called from a signal handler, and enters the
+/// kernel only when somebody waits. Threads call it in their loop, never inside a stage function.
+class Waiter {
+ public:
+  Waiter();
+  ~Waiter();
+  Waiter(const Waiter&) = delete;
+  Waiter& operator=(const Waiter&) = delete;
+
+  /// Wakes the waiting thread, or lets its next wait return at once.
+  void Post() noexcept;
+
+  /// Blocks until a Post() or until the time is reached. @return true for a Post().
+  [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept;
+
+ private:
+  sem_t semaphore_;
+  // Orders what the poster wrote before what the waiter reads. So does the semaphore, but ThreadSanitizer does not
+  // know sem_clockwait().
+  std::atomic<unsigned> posts_{0};
+};
+
+}  // namespace armcmc::rt

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/rt/log_histogram.hpp"
+#include "armcmc/rt/rt_thread.hpp"
+#include "armcmc/rt/spsc_ring.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc::rt {
+
+/// The newest wake-ups of a periodic timer thread: when each was due and when it came.
+/// One writer; any number of readers at any time.
+class WakeUpRing {
+ public:
+  static constexpr std::size_t kSize = 4096;  ///< Four seconds at 1 ms.
+
+  /// @param next_due_ns  When the wake-up after this one is due. @rt Wait-free.
+  void Record(Nanos due_ns, Nanos woke_ns, Nanos next_due_ns) noexcept ARMCMC_NONBLOCKING;
+
+  /// Longest single stall inside [begin, end]: the part of [due, woke] of one wake-up that lies in the window.
+  ///
+  /// A wake-up that is overdue at `now` counts as a stall that lasts until now. Stalls are not added up: a
+  /// hundred ordinary wake-up latencies are no stall of the machine.
+  /// @rt Wait-free, O(wake-ups since begin), at most kSize / 2, which is two seconds.
+  [[nodiscard]] Nanos LongestStall(Nanos begin_ns, Nanos end_ns, Nanos now_ns) const noexcept ARMCMC_NONBLOCKING;
+
+ private:
+  struct Entry {
+    std::atomic<Nanos> due_ns{0};
+    std::atomic<Nanos> woke_ns{0};
+  };
+  std::array<Entry, kSize> entries_{};
+  alignas(kCacheLine) std::atomic<std::uint64_t> head_{0};  // wake-ups recorded
+  std::atomic<Nanos> next_due_ns_{0};                       // 0: not started
+};
+
+/// A timer thread above every stage on one CPU. It does nothing but notice when it is woken late: then it was
+/// the machine that stood still (hypervisor, firmware, kernel), since no thread of ours can delay it.
+class Witness {
+ public:
+  static constexpr Nanos kPeriodNs = 1'000'000;
+
+  explicit Witness(int cpu) noexcept : cpu_(cpu) {}
+  ~Witness() { Stop(); }
+
+  /// @throws PrivilegeError in kEnforce.
+  void Start(int priority, RtMode mode);
+  void Stop() noexcept;
+
+  [[nodiscard]] int cpu() const noexcept { return cpu_; }
+  /// Without its priority or its CPU a late wake-up proves nothing.
+  [[nodiscard]] bool trustworthy() const noexcept { return thread_.placement().fifo && thread_.placement().pinned; }
+  [[nodiscard]] const WakeUpRing& wake_ups() const noexcept { return wake_ups_; }
+  [[nodiscard]] const ThreadPlacement& placement() const noexcept { return thread_.placement(); }
+  /// Worst delay since the last call, ns.
+  [[nodiscard]] Nanos TakeWorst() noexcept { return worst_ns_.exchange(0, std::memory_order_relaxed); }
+  /// Every delay. @pre stopped.
+  [[nodiscard]] const LogHistogram& delays() const noexcept { return delays_; }
+
+ private:
+  void Run() noexcept;
+
+  int cpu_;
+  WakeUpRing wake_ups_;
+  LogHistogram delays_;
+  std::atomic<Nanos> worst_ns_{0};
+  std::atomic<bool> stop_{false};
+  RtThread thread_;
+};
+
+}  // namespace armcmc::rt

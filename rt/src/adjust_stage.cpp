@@ -1,0 +1,79 @@
+#include "armcmc/rt/adjust_stage.hpp"
+
+#include "armcmc/estimator_status_t.hpp"
+#include "armcmc/rt/clock.hpp"
+
+namespace armcmc::rt {
+
+AdjustStage::AdjustStage(const RtSettings& settings, StepEngine* engine, PackRing* ring, ResultHandOver* results,
+                         DeadlineMonitor* monitor, Counters* counters, EventLog* events) noexcept
+    : budget_ns_(settings.adjust_budget_ns),
+      reserve_ns_(settings.ExecuteReserveNs()),
+      engine_(engine),
+      ring_(ring),
+      results_(results),
+      monitor_(monitor),
+      counters_(counters),
+      events_(events) {}
+
+void AdjustStage::CountDropped(const StepInfo& info, Stage waiting_for, Nanos now_ns, Nanos lacked_ns) noexcept {
+  const MissCause cause = monitor_->RecordDropped(info.times, waiting_for, now_ns, lacked_ns);
+  counters_->adjust.dropped.Add();
+  counters_->faults.Raise(estimator_status_t::FAULT_BACKLOG);
+  events_->Add({now_ns, EventKind::kPackDropped, static_cast<std::uint8_t>(cause), info.seq, lacked_ns});
+}
+
+void AdjustStage::DropUnkeepable() noexcept {
+  for (std::size_t i = 1; i < PackRing::capacity() && ring_->size() > 1; ++i) {
+    const PackSlot* slot = ring_->Front();
+    const Nanos now_ns = MonotonicNow();
+    const Nanos lacked_ns = now_ns + typical_.Get() - slot->times.deadline_ns;
+    if (lacked_ns <= 0) return;
+    CountDropped({slot->pack.seq, slot->pack.run_id, Status::kOk, slot->times}, Stage::kAdjust, now_ns, lacked_ns);
+    ring_->Pop();
+  }
+}
+
+void AdjustStage::NoteStatus(const StepInfo& info) noexcept {
+  if (info.status == Status::kTruncated) {
+    counters_->adjust.truncated.Add();
+    counters_->faults.Raise(estimator_status_t::FAULT_TRUNCATED);
+  } else if (info.status == Status::kNonFinite || info.status == Status::kBadPack ||
+             info.status == Status::kSingularCovariance) {
+    counters_->adjust.numeric.Add();
+    counters_->faults.Raise(estimator_status_t::FAULT_NUMERIC);
+    events_->Add({info.times.end_ns[IndexOf(Stage::kAdjust)], EventKind::kNumericTrouble,
+                  static_cast<std::uint8_t>(info.status), info.seq, 0});
+  }
+}
+
+bool AdjustStage::Step() noexcept {
+  DropUnkeepable();
+  PackSlot* slot = ring_->Front();
+  if (slot == nullptr) return false;
+  const Nanos start_ns = MonotonicNow();
+  if (results_->latest.unread() && start_ns < handed_over_deadline_ns_) return false;
+  const int result = results_->latest.write_slot();
+  StepInfo& info = results_->info[static_cast<std::size_t>(result)];
+  info.seq = slot->pack.seq;
+  info.run_id = slot->pack.run_id;
+  info.times = slot->times;
+  info.times.start_ns[IndexOf(Stage::kAdjust)] = start_ns;
+  info.status = engine_->Adjust(slot->pack, AdjustDeadline(start_ns, info.times.deadline_ns, budget_ns_, reserve_ns_),
+                                MonotonicClock(), result);
+  const Nanos end_ns = MonotonicNow();
+  info.times.end_ns[IndexOf(Stage::kAdjust)] = end_ns;
+  ring_->Pop();
+  typical_.Add(end_ns - start_ns);
+  NoteStatus(info);
+  handed_over_deadline_ns_ = info.times.deadline_ns;
+  if (results_->latest.Publish()) {
+    // Execute did not come to the result before: it is lost, and its note is in the slot that is ours again.
+    const StepInfo& lost = results_->info[static_cast<std::size_t>(results_->latest.write_slot())];
+    const Nanos waited_ns = end_ns - lost.times.end_ns[IndexOf(Stage::kAdjust)];
+    CountDropped(lost, Stage::kExecute, end_ns, std::max(waited_ns, end_ns - lost.times.deadline_ns));
+  }
+  return true;
+}
+
+}  // namespace armcmc::rt

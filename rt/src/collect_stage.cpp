@@ -1,0 +1,134 @@
+#include "armcmc/rt/collect_stage.hpp"
+
+#include <algorithm>
+
+#include "armcmc/estimator_status_t.hpp"
+#include "armcmc/rt/clock.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+/// Shortest silence that is worth a line of text; the status flags shorter ones too.
+constexpr Nanos kShortestReportedSilence = 20 * kNanosPerMilli;
+
+/// A pack may come this late before its period counts as silent: three quarters of the period, so that a plant that
+/// stops is flagged within two periods of its last pack.
+constexpr Nanos SilenceMargin(Nanos period_ns) noexcept { return 3 * period_ns / 4; }
+
+}  // namespace
+
+CollectStage::CollectStage(const RtSettings& settings, PlantKind plant, int num_inputs, PackRing* ring,
+                           Counters* counters, EventLog* events) noexcept
+    : period_ns_(settings.period_ns),
+      deadline_ns_(settings.deadline_ns),
+      codec_(plant, num_inputs),
+      grid_(settings.period_ns),
+      ring_(ring),
+      counters_(counters),
+      events_(events) {}
+
+void CollectStage::Begin(Nanos now_ns) noexcept {
+  heard_ns_ = now_ns;
+  next_tick_ns_ = now_ns + period_ns_;
+}
+
+void CollectStage::PublishSequenceCounts() noexcept {
+  auto& count = counters_->collect;
+  count.lost.Set(tracker_.counts().lost);
+  count.duplicate.Set(tracker_.counts().duplicate);
+  count.reordered.Set(tracker_.counts().reordered);
+  count.restarts.Set(tracker_.counts().restarts);
+}
+
+void CollectStage::Reject(RejectCause cause, Nanos now_ns) noexcept {
+  counters_->collect.rejected[static_cast<std::size_t>(cause)].Add();
+  counters_->faults.Raise(estimator_status_t::FAULT_BAD_DATA);
+  events_->Add({now_ns, EventKind::kPackRejected, 0, static_cast<std::int64_t>(cause), 0});
+  if (codec_.decoded()) {
+    skipped_steps_ += tracker_.OnUnusable(codec_.seq(), codec_.run_id());
+    PublishSequenceCounts();
+  }
+}
+
+void CollectStage::NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept {
+  if (silence_reported_ && grid_.locked()) {
+    events_->Add({now_ns, EventKind::kPlantBack, 0, seq, silent_in_a_row_});
+  }
+  silence_reported_ = false;
+  silent_in_a_row_ = 0;
+  counters_->collect.silent.store(false, std::memory_order_relaxed);
+}
+
+bool CollectStage::Step(const Datagram& datagram) noexcept {
+  const Nanos start_ns = MonotonicNow();
+  traffic_ = true;
+  const RejectCause cause = codec_.Decode(datagram.payload);
+  if (cause != RejectCause::kNone) {
+    Reject(cause, start_ns);
+    return false;
+  }
+  auto& count = counters_->collect;
+  const std::int64_t lost_before = tracker_.counts().lost;
+  const SequenceTracker::Result sequence = tracker_.OnPack(codec_.seq(), codec_.run_id());
+  PublishSequenceCounts();
+  if (!IsUsable(sequence.verdict)) return false;
+  if (tracker_.counts().lost > lost_before) {
+    events_->Add({start_ns, EventKind::kPacksLost, 0, tracker_.counts().lost - lost_before, codec_.seq()});
+  }
+
+  NoteSilenceOver(codec_.seq(), start_ns);
+  ReleaseGrid::Point point;
+  if (sequence.verdict == SequenceVerdict::kNext) {
+    point = grid_.OnPack(sequence.steps + skipped_steps_, datagram.arrival_ns);
+  } else {
+    if (sequence.verdict == SequenceVerdict::kRestart) {
+      counters_->faults.Raise(estimator_status_t::FAULT_PLANT_RESTARTED);
+      events_->Add({start_ns, EventKind::kPlantRestarted, 0, codec_.seq(), codec_.run_id()});
+    } else {
+      events_->Add({start_ns, EventKind::kPlantFirstSeen, 0, codec_.seq(), 0});
+    }
+    point = grid_.Lock(datagram.arrival_ns);
+  }
+  skipped_steps_ = 0;
+  heard_ns_ = datagram.arrival_ns;
+  traffic_ = false;  // the next tick is counted from this pack on
+  next_tick_ns_ = std::max(grid_.next_due_ns(), datagram.arrival_ns) + SilenceMargin(period_ns_);
+  count.received.Add();
+
+  PackSlot* slot = ring_->Claim();
+  if (slot == nullptr) {
+    count.ring_full.Add();
+    counters_->faults.Raise(estimator_status_t::FAULT_BACKLOG);
+    return false;
+  }
+  codec_.CopyTo(&slot->pack);
+  slot->times = {};
+  slot->times.release_ns = point.release_ns;
+  slot->times.lateness_ns = point.lateness_ns;
+  slot->times.arrival_ns = datagram.arrival_ns;
+  slot->times.deadline_ns = point.release_ns + deadline_ns_;
+  slot->times.start_ns[IndexOf(Stage::kCollect)] = start_ns;
+  slot->times.end_ns[IndexOf(Stage::kCollect)] = MonotonicNow();
+  ring_->Commit();
+  return true;
+}
+
+void CollectStage::Tick(Nanos now_ns) noexcept ARMCMC_NONBLOCKING {
+  next_tick_ns_ = std::max(next_tick_ns_ + period_ns_, now_ns + period_ns_ / 2);
+  if (traffic_) {
+    traffic_ = false;  // bad or repeated packs: their faults are flagged, the plant is not silent
+    return;
+  }
+  if (grid_.locked()) {
+    counters_->collect.silent_periods.Add();
+    ++silent_in_a_row_;
+  }
+  counters_->collect.silent.store(true, std::memory_order_relaxed);
+  if (!silence_reported_ && now_ns - heard_ns_ >= kShortestReportedSilence) {
+    silence_reported_ = true;
+    events_->Add(
+        {now_ns, grid_.locked() ? EventKind::kPlantSilent : EventKind::kWaitingForPlant, 0, tracker_.newest(), 0});
+  }
+}
+
+}  // namespace armcmc::rt

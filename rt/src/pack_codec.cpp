@@ -1,0 +1,106 @@
+#include "armcmc/rt/pack_codec.hpp"
+
+#include <cmath>
+#include <type_traits>
+
+#include "armcmc/types.hpp"
+
+namespace armcmc::rt {
+
+static_assert(std::extent_v<decltype(data_pack_t::y)> == kMaxPackSamples);
+static_assert(std::extent_v<decltype(data_pack_t::u)> == kMaxPackSamples);
+static_assert(std::extent_v<decltype(data_pack_t::u), 1> == kMaxPackInputs);
+static_assert(data_pack_t::MAX_SAMPLES == kMaxPackSamples && data_pack_t::MAX_INPUTS == kMaxPackInputs);
+static_assert(data_pack_t::PLANT_HUNT_CROSSLEY == static_cast<std::int32_t>(PlantKind::kHuntCrossley));
+static_assert(data_pack_t::PLANT_SOFT_ACTUATOR == static_cast<std::int32_t>(PlantKind::kSoftActuator));
+
+namespace {
+
+std::int64_t ReadFingerprint(std::span<const std::uint8_t> payload) noexcept {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8; ++i) value = (value << 8U) | payload[i];
+  return static_cast<std::int64_t>(value);
+}
+
+}  // namespace
+
+std::string_view ToString(RejectCause cause) noexcept {
+  switch (cause) {
+    case RejectCause::kNone: return "none";
+    case RejectCause::kFingerprint: return "fingerprint of another message type";
+    case RejectCause::kLength: return "wrong message length";
+    case RejectCause::kPlantKind: return "pack of another plant";
+    case RejectCause::kSampleCount: return "n_samples out of range";
+    case RejectCause::kInputCount: return "n_inputs is not that of the model";
+    case RejectCause::kSampleInterval: return "dt out of range";
+    case RejectCause::kNotFinite: return "NaN or infinite value";
+    case RejectCause::kOutOfRange: return "value out of range";
+  }
+  return "unknown";
+}
+
+RejectGroup GroupOf(RejectCause cause) noexcept {
+  switch (cause) {
+    case RejectCause::kFingerprint:
+    case RejectCause::kPlantKind: return RejectGroup::kType;
+    case RejectCause::kNotFinite:
+    case RejectCause::kOutOfRange: return RejectGroup::kValue;
+    default: return RejectGroup::kSize;
+  }
+}
+
+PackCodec::PackCodec(PlantKind plant, int num_inputs) noexcept
+    : plant_(plant),
+      num_inputs_(num_inputs),
+      fingerprint_(data_pack_t::getHash()),  // here, since its first call takes a lock
+      encoded_size_(static_cast<std::size_t>(message_.getEncodedSize())) {}
+
+RejectCause PackCodec::Decode(std::span<const std::uint8_t> payload) noexcept {
+  decoded_ = false;
+  if (payload.size() < 8) return RejectCause::kLength;
+  if (ReadFingerprint(payload) != fingerprint_) return RejectCause::kFingerprint;
+  if (payload.size() != encoded_size_) return RejectCause::kLength;
+  if (message_.decode(payload.data(), 0, static_cast<int>(payload.size())) < 0) return RejectCause::kLength;
+  decoded_ = true;
+  return Check();
+}
+
+RejectCause PackCodec::Check() const noexcept ARMCMC_NONBLOCKING {
+  const data_pack_t& m = message_;
+  if (m.plant_kind != static_cast<std::int32_t>(plant_)) return RejectCause::kPlantKind;
+  if (m.n_samples < 1 || m.n_samples > kMaxPackSamples) return RejectCause::kSampleCount;
+  if (m.n_inputs != num_inputs_) return RejectCause::kInputCount;
+  if (!(m.dt > 0.0 && m.dt <= kMaxSampleInterval)) return RejectCause::kSampleInterval;
+  if (!std::isfinite(m.t_last_s)) return RejectCause::kNotFinite;
+  if (m.seq < 1 || m.seq > (std::int64_t{1} << 62) || m.t_last_s < 0.0) return RejectCause::kOutOfRange;
+
+  bool finite = true, in_range = true;
+  const auto look = [&](double value) {
+    finite = finite && std::isfinite(value);
+    in_range = in_range && std::fabs(value) <= kMaxMagnitude;
+  };
+  for (int n = 0; n < m.n_samples; ++n) {
+    look(m.y[n]);
+    for (int i = 0; i < num_inputs_; ++i) look(m.u[n][i]);
+  }
+  if (!finite) return RejectCause::kNotFinite;
+  return in_range ? RejectCause::kNone : RejectCause::kOutOfRange;
+}
+
+void PackCodec::CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING {
+  const data_pack_t& m = message_;
+  pack->seq = m.seq;
+  pack->run_id = m.run_id;
+  pack->t_last_ns = m.t_last_ns;
+  pack->t_last_s = m.t_last_s;
+  pack->dt = m.dt;
+  pack->plant = plant_;
+  pack->num_samples = m.n_samples;
+  pack->num_inputs = m.n_inputs;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(m.n_samples); ++n) {
+    pack->y[n] = m.y[n];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(m.n_inputs); ++i) pack->u[n][i] = m.u[n][i];
+  }
+}
+
+}  // namespace armcmc::rt

@@ -1,0 +1,54 @@
+#include "armcmc/rt/publish_stage.hpp"
+
+#include <algorithm>
+
+#include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/messages.hpp"
+
+namespace armcmc::rt {
+
+void PublishStage::Note(bool sent) noexcept {
+  if (sent) {
+    counters_->publish.messages.Add();
+    return;
+  }
+  counters_->publish.errors.Add();
+  counters_->faults.Raise(estimator_status_t::FAULT_PUBLISH);
+  events_->Add({MonotonicNow(), EventKind::kPublishFailed, 0, counters_->publish.errors.Get(), 0});
+}
+
+int PublishStage::PublishSteps() noexcept {
+  int published = 0;
+  for (; published < static_cast<int>(kOutputRingCapacity); ++published) {
+    const StepOutput* output = outputs_->Front();
+    if (output == nullptr) break;
+    const std::int64_t utime = RealtimeMicros();
+    FillEstimate(*output, *engine_, utime, &estimate_);
+    Note(publisher_->Publish(estimate_));
+    FillPosterior(*output, *engine_, utime, &posterior_);
+    Note(publisher_->Publish(posterior_));
+    PublishStatus(output);
+    last_ = output->estimate;
+    outputs_->Pop();
+  }
+  return published;
+}
+
+void PublishStage::PublishIdleStatus() noexcept { PublishStatus(nullptr); }
+
+void PublishStage::PublishStatus(const StepOutput* output) noexcept {
+  StatusContext context;
+  context.utime = RealtimeMicros();
+  context.now_ns = MonotonicNow();
+  context.output = output;
+  for (Witness* witness : witnesses_) context.witness_max_ns = std::max(context.witness_max_ns, witness->TakeWorst());
+  context.fault_flags = counters_->faults.Take();
+  if (counters_->collect.silent.load(std::memory_order_relaxed)) {
+    context.fault_flags |= estimator_status_t::FAULT_PLANT_SILENT;
+  }
+  context.degraded_flags = degraded_flags_.load(std::memory_order_relaxed);
+  FillStatus(context, settings_, *counters_, *monitor_, &status_);
+  Note(publisher_->Publish(status_));
+}
+
+}  // namespace armcmc::rt

@@ -1,0 +1,31 @@
+#include "armcmc/rt/waiter.hpp"
+
+#include <cerrno>
+#include <system_error>
+
+#include "armcmc/rt/clock.hpp"
+
+namespace armcmc::rt {
+
+Waiter::Waiter() {
+  if (sem_init(&semaphore_, 0, 0) != 0) throw std::system_error(errno, std::generic_category(), "sem_init");
+}
+
+Waiter::~Waiter() { sem_destroy(&semaphore_); }
+
+void Waiter::Post() noexcept {
+  posts_.fetch_add(1, std::memory_order_release);
+  // The only possible error is an overflow of the count, and then the waiter is awake anyway.
+  (void)sem_post(&semaphore_);
+}
+
+bool Waiter::WaitUntil(Nanos t_ns) noexcept {
+  const timespec t = ToTimespec(t_ns);
+  while (sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &t) != 0) {
+    if (errno != EINTR) return false;
+  }
+  (void)posts_.load(std::memory_order_acquire);
+  return true;
+}
+
+}  // namespace armcmc::rt

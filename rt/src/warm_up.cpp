@@ -1,0 +1,74 @@
+#include "armcmc/rt/warm_up.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "armcmc/estimate.hpp"
+#include "armcmc/rt/latest_value.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+constexpr int kPacks = 4;
+constexpr int kSamples = 100;
+constexpr double kDt = 1e-3;
+
+void FillHuntCrossley(double t, std::size_t n, DataPack* pack) noexcept {
+  // Contact throughout: x in [0.7, 1.3] m. K = 4 N/m^p, B = 2.3 N s/m^(p+1), p = 1.7.
+  const double x = 1.0 + 0.3 * std::sin(5.0 * t);
+  const double v = 1.5 * std::cos(5.0 * t);
+  pack->u[n][0] = x;
+  pack->u[n][1] = v;
+  pack->y[n] = std::pow(x, 1.7) * (4.0 + 2.3 * v);
+}
+
+void FillSoftActuator(double t, std::size_t n, DataPack* pack) noexcept {
+  // Inflow through a constant gain g: u_c sqrt(p_s - p) = g pdot.
+  constexpr double kSupply = 800e3, kAtmosphere = 101'325.0, kGain = 4e-4;
+  const double p = kAtmosphere + 1.0 + std::sin(5.0 * t);
+  const double pdot = 5.0 * std::cos(5.0 * t);
+  pack->u[n][0] = pdot > 0.0 ? kGain * pdot / std::sqrt(kSupply - p) : 0.0;
+  pack->u[n][1] = pdot > 0.0 ? 0.0 : -kGain * pdot / std::sqrt(p - kAtmosphere);
+  pack->u[n][2] = p;
+  pack->u[n][3] = pdot;
+  pack->y[n] = 0.42 * (p - kAtmosphere);
+}
+
+}  // namespace
+
+DataPack SyntheticPack(PlantKind plant, int num_inputs, int index) noexcept {
+  DataPack pack;
+  pack.seq = index + 1;
+  pack.run_id = 1;
+  pack.dt = kDt;
+  pack.plant = plant;
+  pack.num_samples = kSamples;
+  pack.num_inputs = num_inputs;
+  for (int n = 0; n < kSamples; ++n) {
+    const double t = kDt * (index * kSamples + n);
+    if (plant == PlantKind::kHuntCrossley) {
+      FillHuntCrossley(t, static_cast<std::size_t>(n), &pack);
+    } else {
+      FillSoftActuator(t, static_cast<std::size_t>(n), &pack);
+    }
+    pack.t_last_s = t;
+  }
+  return pack;
+}
+
+void WarmUp(StepEngine* engine) noexcept {
+  // Static: a megabyte stack need not hold them, and their pages are the process's own.
+  static Estimate estimate;
+  static DataPack pack;
+  for (int i = 0; i < kPacks; ++i) {
+    pack = SyntheticPack(engine->plant(), engine->num_inputs(), i);
+    for (int slot = 0; slot < LatestValue::kSlots; ++slot) {
+      // No clock: the draws run to their full number, so that every page of the slot is touched.
+      (void)engine->Adjust(pack, 0, ClockRef{}, slot);
+      engine->Execute(slot, &estimate);
+    }
+  }
+  engine->Reset();
+}
+
+}  // namespace armcmc::rt

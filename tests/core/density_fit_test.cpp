@@ -1,0 +1,322 @@
+#include "armcmc/density_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "armcmc/rng.hpp"
+#include "kernel_sets.hpp"
+
+namespace armcmc {
+namespace {
+
+/// Draws with weights, padded as the fit wants them, and the storage of a fit to them.
+class Sample {
+ public:
+  Sample(int dim, int size, const std::function<void(std::mt19937_64&, double*)>& draw, unsigned seed = 1) {
+    std::mt19937_64 generator(seed);
+    const auto padded = static_cast<std::size_t>((size + kTileLanes - 1) / kTileLanes * kTileLanes);
+    weight.assign(padded, 0.0);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) row[d].assign(padded, 0.0);
+    for (std::size_t r = 0; r < kRows; ++r) {
+      room[r].resize(padded);
+      scratch[r] = room[r].data();
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(size); ++k) {
+      double u[kMaxParams];
+      draw(generator, u);
+      for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) row[d][k] = u[d];
+      weight[k] = 1.0;
+    }
+    draws.dim = dim;
+    draws.size = size;
+  }
+
+  double Fit(const FitOptions& options = {}) {
+    for (std::size_t d = 0; d < static_cast<std::size_t>(draws.dim); ++d) draws.u[d] = row[d].data();
+    draws.weight = weight.data();
+    return FitBlock(simd::Best(), draws, options, scratch, tables, &block);
+  }
+
+  [[nodiscard]] double Mean(std::size_t d) const {
+    double sum = 0.0, total = 0.0;
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+      sum += weight[k] * row[d][k];
+      total += weight[k];
+    }
+    return sum / total;
+  }
+  [[nodiscard]] double Covariance(std::size_t i, std::size_t j) const {
+    const double a = Mean(i), b = Mean(j);
+    double sum = 0.0, total = 0.0;
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+      sum += weight[k] * (row[i][k] - a) * (row[j][k] - b);
+      total += weight[k];
+    }
+    return sum / total;
+  }
+
+  static constexpr std::size_t kRows = kMaxParams + 2;  // as the fit asks for
+  WeightedDraws draws;
+  std::vector<double> row[kMaxParams], weight, room[kRows];
+  double* scratch[kRows] = {};
+  MarginalTable tables[kMaxParams];
+  DensityBlock block;
+};
+
+std::normal_distribution<double> normal;
+
+void Correlated(std::mt19937_64& g, double* u) {
+  const double a = normal(g), b = normal(g), c = normal(g);
+  u[0] = 100.0 + 2.0 * a;
+  u[1] = -3.0 + 0.5 * a + 0.01 * b;
+  u[2] = 1e-6 * (c + 0.3 * b);
+}
+
+void Banana(std::mt19937_64& g, double* u) {
+  const double a = normal(g);
+  u[0] = a;
+  u[1] = 0.8 * (a * a - 1.0) + 0.2 * normal(g);
+}
+
+TEST(FitBlock, MeanAndCovarianceEqualThoseOfTheDraws) {
+  Sample s(3, 5001, Correlated);
+  std::mt19937_64 generator(8);
+  for (std::size_t k = 0; k < 5001; ++k) s.weight[k] = std::exp(0.5 * normal(generator));
+  EXPECT_GT(s.Fit(), 1000.0);
+  const ParamVector mean = MeanOf(s.block);
+  const ParamMatrix covariance = CovarianceOf(s.block);
+  for (int i = 0; i < 3; ++i) {
+    const auto ii = static_cast<std::size_t>(i);
+    const double sd_i = std::sqrt(s.Covariance(ii, ii));
+    EXPECT_NEAR(mean[i], s.Mean(ii), 1e-9 * sd_i) << i;
+    for (int j = 0; j < 3; ++j) {
+      const auto jj = static_cast<std::size_t>(j);
+      EXPECT_NEAR(covariance(i, j), s.Covariance(ii, jj), 1e-9 * sd_i * std::sqrt(s.Covariance(jj, jj))) << i << j;
+    }
+  }
+}
+
+TEST(FitBlock, LawItselfHasTheMeanAndVarianceOfTheDraws) {
+  // One coordinate: nothing bends, so that the moments of the tabulated marginal are those of the block.
+  Sample s(1, 3000, [](std::mt19937_64& g, double* u) { u[0] = 7.0 + std::exp(0.5 * normal(g)); });
+  s.Fit();
+  const double spread = s.block.unwhiten[0][0];
+  const double mean = s.block.mean[0] + spread * (s.block.center[0] + s.block.scale[0] * s.tables[0].Mean());
+  const double variance = std::pow(spread * s.block.scale[0], 2) * s.tables[0].Variance();
+  EXPECT_NEAR(mean, s.Mean(0), 1e-9 * std::sqrt(s.Covariance(0, 0)));
+  EXPECT_NEAR(variance / s.Covariance(0, 0), 1.0, 1e-9);
+}
+
+TEST(FitBlock, ReturnsTheKishSizeOfTheWeights) {
+  Sample s(2, 400, Banana);
+  EXPECT_NEAR(s.Fit(), 400.0, 1e-9);
+  for (std::size_t k = 0; k < 400; ++k) s.weight[k] = k < 100 ? 3.0 : 0.0;
+  EXPECT_NEAR(s.Fit(), 100.0, 1e-9);
+}
+
+TEST(FitBlock, WritesNothingForDegenerateWeights) {
+  Sample s(2, 400, Banana);
+  s.block.dim = 77;
+  s.block.norm = -1.0;
+  std::fill(s.weight.begin(), s.weight.end(), 0.0);
+  EXPECT_LT(s.Fit(), kMinimumEss);
+  s.weight[5] = 1.0;
+  EXPECT_LT(s.Fit(), kMinimumEss);
+  for (std::size_t k = 0; k < 400; ++k) s.weight[k] = k < 20 ? 1.0 : 1e-12;
+  EXPECT_LT(s.Fit(), kMinimumEss);
+  EXPECT_EQ(s.block.dim, 77);
+  EXPECT_EQ(s.block.norm, -1.0);
+  EXPECT_EQ(s.tables[0].num_nodes(), 0);
+}
+
+TEST(FitBlock, CoordinateWithoutSpreadStaysFinite) {
+  Sample s(2, 500, [](std::mt19937_64& g, double* u) {
+    u[0] = normal(g);
+    u[1] = 4.0;
+  });
+  s.Fit();
+  const double uniforms[] = {0.3, 0.6};
+  double u[2];
+  s.block.Draw(uniforms, u);
+  EXPECT_TRUE(std::isfinite(u[0]));
+  EXPECT_NEAR(u[1], 4.0, 1e-3);
+  EXPECT_TRUE(std::isfinite(s.block.norm));
+}
+
+/// Mean log density of fresh draws of a law in two coordinates.
+struct Scores {
+  double fitted = 0.0, gaussian = 0.0, truth = 0.0;
+};
+
+Scores HeldOutScores(const std::function<void(std::mt19937_64&, double*)>& draw,
+                     const std::function<double(const double*)>& log_density) {
+  Sample s(2, 4000, draw);
+  s.Fit();
+  ParamVector mean(2);
+  mean << s.Mean(0), s.Mean(1);
+  ParamMatrix covariance(2, 2);
+  covariance << s.Covariance(0, 0), s.Covariance(0, 1), s.Covariance(1, 0), s.Covariance(1, 1);
+  const MarginalTable table = MarginalTable::Normal();
+  DensityBlock gaussian;
+  SetElliptic(mean, covariance, 1.0, &table, &gaussian);
+  std::mt19937_64 generator(99);
+  Scores scores;
+  constexpr int kFresh = 4000;
+  for (int k = 0; k < kFresh; ++k) {
+    double u[2];
+    draw(generator, u);
+    scores.fitted += std::log(s.block.Density(u) + 1e-12) / kFresh;
+    scores.gaussian += std::log(gaussian.Density(u) + 1e-12) / kFresh;
+    scores.truth += log_density(u) / kFresh;
+  }
+  return scores;
+}
+
+TEST(FitBlock, BananaScoresBetterThanAGaussian) {
+  const Scores scores = HeldOutScores(Banana, [](const double* u) {
+    const double z = (u[1] - 0.8 * (u[0] * u[0] - 1.0)) / 0.2;
+    return -0.5 * (u[0] * u[0] + z * z) - std::log(2.0 * M_PI * 0.2);
+  });
+  EXPECT_GT(scores.fitted, scores.gaussian + 0.5);
+}
+
+TEST(FitBlock, BentRidgeScoresNearlyAsItsOwnLaw) {
+  // Long, thin and curved, as K and p are under poor excitation.
+  const auto ridge = [](std::mt19937_64& g, double* u) {
+    u[0] = normal(g);
+    u[1] = -u[0] + 0.1 * (u[0] * u[0] - 1.0) + 0.03 * normal(g);
+  };
+  const Scores scores = HeldOutScores(ridge, [](const double* u) {
+    const double z = (u[1] + u[0] - 0.1 * (u[0] * u[0] - 1.0)) / 0.03;
+    return -0.5 * (u[0] * u[0] + z * z) - std::log(2.0 * M_PI * 0.03);
+  });
+  EXPECT_GT(scores.fitted, scores.gaussian + 0.8);
+  EXPECT_GT(scores.fitted, scores.truth - 0.2);
+}
+
+TEST(FitBlock, FittedDensityIsThatOfItsDraws) {
+  // E_q[p / q] = 1 with p the fitted block and q a wide block of another shape, and the other way round.
+  Sample s(3, 4000, [](std::mt19937_64& g, double* u) {
+    Banana(g, u);
+    u[2] = 0.5 * u[0] + 0.4 * u[0] * u[1] + 0.7 * normal(g);
+  });
+  s.Fit();
+  ParamMatrix covariance(3, 3);
+  ParamVector mean(3);
+  for (int i = 0; i < 3; ++i) {
+    mean[i] = s.Mean(static_cast<std::size_t>(i));
+    for (int j = 0; j < 3; ++j)
+      covariance(i, j) = s.Covariance(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+  }
+  const MarginalTable student = MarginalTable::StudentT(4.0);
+  DensityBlock wide;
+  SetElliptic(mean, covariance, 1.5, &student, &wide);
+  DensityBlock narrow;
+  SetElliptic(mean, covariance, 0.3, &student, &narrow);
+  const auto identity = [](const DensityBlock& from, const DensityBlock& of) {
+    RandomStream stream(21, 0, 0);
+    constexpr int kCount = 200'000;
+    double sum = 0.0, square = 0.0;
+    for (int k = 0; k < kCount; ++k) {
+      double uniforms[3], u[3];
+      for (double& x : uniforms) x = stream.Uniform();
+      from.Draw(uniforms, u);
+      const double w = of.Density(u) / from.Density(u);
+      sum += w;
+      square += w * w;
+    }
+    EXPECT_LT(std::sqrt(square) / kCount, 0.03) << "the identity must have teeth";
+    EXPECT_NEAR(sum / kCount, 1.0, 4.0 * std::sqrt(square) / kCount);
+  };
+  identity(wide, s.block);
+  identity(s.block, narrow);
+}
+
+TEST(FitBlock, DoesNotDependOnTheScaleOfACoordinate) {
+  const auto draw = [](std::mt19937_64& g, double* u) {
+    Banana(g, u);
+    u[1] += 0.6 * u[0];
+  };
+  Sample plain(2, 2000, draw), scaled(2, 2000, draw);
+  for (double& v : scaled.row[0]) v *= 1e-6;
+  for (double& v : scaled.row[1]) v = 1e4 * v + 3e4;
+  plain.Fit();
+  scaled.Fit();
+  for (std::size_t k = 0; k < 200; ++k) {
+    const double u[] = {plain.row[0][k], plain.row[1][k]}, v[] = {scaled.row[0][k], scaled.row[1][k]};
+    const double p = plain.block.Density(u);
+    EXPECT_NEAR(scaled.block.Density(v) * 1e-2, p, 1e-6 * p);
+  }
+}
+
+TEST(FitBlock, InflationWidensEveryCoordinate) {
+  Sample s(1, 4000, [](std::mt19937_64& g, double* u) { u[0] = normal(g); });
+  s.Fit();
+  const double scale = s.block.scale[0];
+  s.Fit({.inflation = 1.5});
+  EXPECT_NEAR(s.block.scale[0] / scale, 1.5, 1e-9);
+}
+
+TEST(FitBlock, RepeatedCompressionNeitherWidensNorShifts) {
+  constexpr int kSize = 4096;
+  Sample s(3, kSize, Correlated);
+  s.Fit();
+  double mean[3], sd[3];
+  for (std::size_t d = 0; d < 3; ++d) {
+    mean[d] = s.Mean(d);
+    sd[d] = std::sqrt(s.Covariance(d, d));
+  }
+  // Each round draws a Latin hypercube from the block and compresses it again. Stratified draws have next to no
+  // Monte-Carlo error of their own, so that what adds up over 200 rounds is the bias of a compression.
+  std::mt19937_64 generator(17);
+  std::vector<int> order(kSize);
+  for (int k = 0; k < kSize; ++k) order[static_cast<std::size_t>(k)] = k;
+  std::vector<double> strata[3];
+  for (int round = 0; round < 200; ++round) {
+    for (auto& stratum : strata) {
+      std::shuffle(order.begin(), order.end(), generator);
+      stratum.clear();
+      for (const int k : order)
+        stratum.push_back((k + std::uniform_real_distribution<double>(0.001, 0.999)(generator)) / kSize);
+    }
+    const DensityBlock block = s.block;
+    MarginalTable tables[3] = {s.tables[0], s.tables[1], s.tables[2]};
+    DensityBlock source = block;
+    for (std::size_t d = 0; d < 3; ++d) source.marginal[d] = &tables[d];
+    for (std::size_t k = 0; k < kSize; ++k) {
+      const double uniforms[] = {strata[0][k], strata[1][k], strata[2][k]};
+      double u[3];
+      source.Draw(uniforms, u);
+      for (std::size_t d = 0; d < 3; ++d) s.row[d][k] = u[d];
+    }
+    s.Fit();
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    EXPECT_NEAR(s.Mean(d), mean[d], 0.05 * sd[d]) << d;
+    EXPECT_NEAR(std::sqrt(s.Covariance(d, d)) / sd[d], 1.0, 0.1) << d;
+  }
+}
+
+TEST(SetElliptic, IsTheGaussianItIsAskedFor) {
+  const MarginalTable table = MarginalTable::Normal();
+  ParamVector mean(2);
+  mean << 1.0, -2.0;
+  ParamMatrix covariance(2, 2);
+  covariance << 2.0, 0.9, 0.9, 0.7;
+  DensityBlock block;
+  SetElliptic(mean, covariance, 1.0, &table, &block);
+  const double u[] = {1.4, -1.5};
+  const double det = 2.0 * 0.7 - 0.81, a = 0.4, b = 0.5;
+  const double square = (0.7 * a * a - 1.8 * a * b + 2.0 * b * b) / det;
+  const double expected = std::exp(-0.5 * square) / (2.0 * M_PI * std::sqrt(det));
+  EXPECT_NEAR(block.Density(u) / expected, 1.0, 0.01) << "tabulated at 8 nodes a standard deviation";
+  EXPECT_LT((CovarianceOf(block) - covariance).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace armcmc

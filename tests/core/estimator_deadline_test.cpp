@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "estimator_rig.hpp"
+
+namespace armcmc {
+namespace {
+
+using test::Contact;
+using test::Rig;
+
+/// A clock that moves on by a fixed time whenever it is read.
+struct SteppingClock {
+  explicit SteppingClock(Nanos step) : step_ns(step) {}
+  mutable Nanos now_ns = 1'000'000'000;
+  Nanos step_ns;
+  [[nodiscard]] ClockRef Ref() const noexcept {
+    return {[](const void* context) noexcept {
+              const auto* clock = static_cast<const SteppingClock*>(context);
+              return clock->now_ns += clock->step_ns;
+            },
+            this};
+  }
+};
+
+/// Every pack with another budget, so that the number of draws runs from the least to the full.
+Nanos BudgetOf(std::int64_t seq) { return (seq * 7) % 64 * 1'000; }
+
+void ExpectRepeatable(const EstimatorSettings& settings, const std::vector<DataPack>& packs) {
+  Rig live(settings), replay(settings);
+  const SteppingClock clock(1'000);
+  int truncated = 0;
+  for (const DataPack& pack : packs) {
+    live.Step(pack, clock.now_ns + BudgetOf(pack.seq), clock.Ref());
+    DrawLimits limits = kNoDrawLimits;
+    for (std::size_t m = 0; m < kMaxModes; ++m) {
+      const ModeEstimate& mode = live.estimate().modes[m];
+      if (!mode.updated) continue;
+      limits[m] = mode.draws;
+      truncated += mode.truncated ? 1 : 0;
+    }
+    replay.Step(pack, 0, {}, limits);
+    SCOPED_TRACE("pack " + std::to_string(pack.seq) + ", draws " + std::to_string(limits[0]));
+    test::ExpectSameBits(live.estimate(), replay.estimate());
+    if (::testing::Test::HasFailure()) return;  // what follows would repeat it
+  }
+  EXPECT_GT(truncated, static_cast<int>(packs.size()) / 4) << "the budgets must cut";
+}
+
+TEST(Deadline, DrawLimitsRepeatATruncatedRunToTheBit) {
+  std::vector<DataPack> packs;
+  for (std::int64_t seq = 1; seq <= 40; ++seq) packs.push_back(Contact{}.Pack(seq));
+  ExpectRepeatable(BuiltinSettings("hunt_crossley"), packs);
+}
+
+TEST(Deadline, DrawLimitsRepeatATruncatedRunOfTwoModesToTheBit) {
+  std::vector<DataPack> packs;
+  for (std::int64_t seq = 1; seq <= 20; ++seq) packs.push_back(test::Actuator{}.Pack(seq, 60));
+  ExpectRepeatable(test::ActuatorSettings(), packs);
+}
+
+TEST(Deadline, BudgetOfACertainLengthCutsTheDrawsAndSaysSo) {
+  Rig rig;
+  const SteppingClock clock(1'000);
+  const Estimate& e = rig.Step(Contact{}.Pack(10), clock.now_ns + 20'000, clock.Ref());
+  EXPECT_EQ(rig.status, Status::kTruncated);
+  EXPECT_TRUE(e.modes[0].truncated);
+  EXPECT_LT(e.modes[0].draws, 14979);
+  EXPECT_GE(e.modes[0].draws, SamplerSettings::kMinDraws);
+  EXPECT_EQ(e.modes[0].k_min, 14979) << "what the formula asks for, not what was made";
+  test::ExpectUsable(e.modes[0], rig.estimator.settings());
+}
+
+TEST(Deadline, MoreTimeNeverMeansFewerDraws) {
+  int before = 0;
+  for (Nanos budget = 0; budget <= 70'000; budget += 2'000) {
+    Rig rig;
+    const SteppingClock clock(1'000);
+    const int draws = rig.Step(Contact{}.Pack(10), clock.now_ns + budget, clock.Ref()).modes[0].draws;
+    EXPECT_GE(draws, before) << budget;
+    before = draws;
+  }
+  EXPECT_EQ(before, 14979);
+}
+
+TEST(Deadline, InThePastStillGivesAValidTruncatedEstimate) {
+  Rig rig;
+  const SteppingClock clock(1'000);
+  const Contact contact;
+  for (std::int64_t seq = 10; seq <= 30; ++seq) {
+    const Estimate& e = rig.Step(contact.Pack(seq), clock.now_ns - 1'000'000'000, clock.Ref());
+    ASSERT_EQ(rig.status, Status::kTruncated) << ToString(rig.status);
+    EXPECT_TRUE(e.modes[0].updated);
+    EXPECT_TRUE(e.modes[0].truncated);
+    EXPECT_LT(e.modes[0].draws, 5000);
+    test::ExpectUsable(e.modes[0], rig.estimator.settings());
+  }
+  const double truth[] = {contact.k, contact.b, contact.p};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const MarginalSummary& m = rig.estimate().modes[0].marginal[d];
+    EXPECT_NEAR(m.ar_ap, truth[d], 5.0 * m.sd) << d;
+  }
+}
+
+TEST(Deadline, ModesThatShareAPackShareTheTime) {
+  Rig rig(test::ActuatorSettings());
+  const SteppingClock clock(1'000);
+  const Estimate& e = rig.Step(test::Actuator{}.Pack(1, 50), clock.now_ns + 40'000, clock.Ref());
+  EXPECT_EQ(rig.status, Status::kTruncated);
+  EXPECT_GT(e.modes[0].draws, 1000);
+  EXPECT_GT(e.modes[1].draws, e.modes[0].draws / 3) << "the first mode must not eat what the second needs";
+}
+
+TEST(Deadline, DrawLimitsBelowTheLeastAreRaisedToIt) {
+  Rig rig;
+  DrawLimits limits{};
+  const Estimate& e = rig.Step(Contact{}.Pack(10), 0, {}, limits);
+  EXPECT_GE(e.modes[0].draws, SamplerSettings::kMinDraws);
+  test::ExpectUsable(e.modes[0], rig.estimator.settings());
+}
+
+}  // namespace
+}  // namespace armcmc

@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "armcmc/parameter_space.hpp"
+#include "estimator_rig.hpp"
+
+namespace armcmc {
+namespace {
+
+using test::Contact;
+using test::Rig;
+
+EstimatorSettings Settings(NoiseKind kind, bool estimate_std) {
+  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  settings.noise[0].kind = kind;
+  settings.noise[0].estimate_std = estimate_std;
+  return settings;
+}
+
+TEST(EstimatedNoise, IntervalsCoverTheTrueScale) {
+  const EstimatorSettings settings = Settings(NoiseKind::kGaussian, true);
+  const ParameterSpace space(settings, settings.noise[0]);
+  constexpr double kTruth = 0.2;  // the prior is centred on 0.1
+  constexpr int kPacks = 60;
+  int covered = 0;
+  double sum = 0.0;
+  for (int trial = 0; trial < kPacks; ++trial) {
+    Rig rig(settings);
+    const Contact contact{.noise_std = kTruth, .seed = static_cast<std::uint64_t>(100 + trial)};
+    sum += rig.Step(contact.Pack(15)).modes[0].noise_std;
+    const ModeDraws& draws = rig.result->modes[0];
+    double below = 0.0;
+    for (int k = 0; k < draws.draws; ++k)
+      if (std::exp(space.Theta(space.dim - 1, draws.u[3][k])) < kTruth) below += draws.weight[k];
+    covered += below > 0.05 && below < 0.95 ? 1 : 0;
+  }
+  // 90 % intervals: 54 of 60 expected, standard deviation 2.3.
+  EXPECT_GE(covered, 54 - 8);
+  EXPECT_LT(covered, 60);
+  // One pack of 100 samples has a standard error of 1/sqrt(200) of the scale.
+  EXPECT_NEAR(sum / kPacks, kTruth, kTruth * 4.0 / std::sqrt(200.0 * kPacks) + 0.004);
+}
+
+TEST(EstimatedNoise, NarrowsOverThePacks) {
+  Rig rig(Settings(NoiseKind::kGaussian, true));
+  const Contact contact{.noise_std = 0.25};
+  for (std::int64_t seq = 5; seq <= 35; ++seq) rig.Step(contact.Pack(seq));
+  EXPECT_NEAR(rig.estimate().modes[0].noise_std, 0.25, 4.0 * 0.25 / std::sqrt(2.0 * 3100));
+}
+
+TEST(FixedNoise, IsReportedAsConfigured) {
+  Rig rig;
+  EXPECT_NEAR(rig.Step(Contact{}.Pack(10)).modes[0].noise_std, 0.1, 1e-15);
+}
+
+TEST(HeavyTails, OutliersDoNotMoveTheEstimate) {
+  for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kMixture}) {
+    EstimatorSettings settings = Settings(kind, false);
+    settings.noise[0].std = 0.1;
+    Rig rig(settings);
+    std::mt19937_64 generator(8);
+    const Contact contact;
+    for (std::int64_t seq = 1; seq <= 40; ++seq) {
+      DataPack pack = contact.Pack(seq);
+      for (std::size_t n = 0; n < 100; ++n)
+        if (generator() % 20 == 0) pack.y[n] += 3.0;  // always upward: least squares would be biased
+      rig.Step(pack);
+    }
+    const double truth[] = {contact.k, contact.b, contact.p};
+    for (std::size_t d = 0; d < 3; ++d) {
+      const MarginalSummary& m = rig.estimate().modes[0].marginal[d];
+      EXPECT_NEAR(m.ar_ap, truth[d], 5.0 * m.sd + 0.03) << static_cast<int>(kind) << " parameter " << d;
+    }
+  }
+}
+
+TEST(NoiseMean, IsTakenOffTheForce) {
+  EstimatorSettings settings = Settings(NoiseKind::kGaussian, false);
+  settings.noise[0].mean = 0.5;
+  Rig biased(settings), plain;
+  for (std::int64_t seq = 10; seq <= 20; ++seq) {
+    DataPack pack = Contact{}.Pack(seq);
+    plain.Step(pack);
+    for (double& y : pack.y) y += 0.5;
+    biased.Step(pack);
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    const MarginalSummary &a = biased.estimate().modes[0].marginal[d], &b = plain.estimate().modes[0].marginal[d];
+    EXPECT_NEAR(a.ar_ap, b.ar_ap, 1e-3 * b.sd);  // the same up to rounding, that may tip a draw
+  }
+}
+
+TEST(Rho, OldSamplesOfAPackCountLess) {
+  const DataPack good = Contact{}.Pack(20);
+  DataPack spoilt = good;
+  // Nonsense in the first ten samples; exp(-0.05 * 90) leaves a hundredth of it.
+  for (std::size_t n = 0; n < 10; ++n) spoilt.y[n] += 5.0;
+  double harm[2];
+  for (const std::size_t forgets : {0u, 1u}) {
+    EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+    settings.forgetting.rho = forgets ? 0.05 : 0.0;
+    Rig with(settings), without(settings);
+    harm[forgets] = std::fabs(with.Step(spoilt).modes[0].log_evidence - without.Step(good).modes[0].log_evidence);
+  }
+  EXPECT_GT(harm[0], 100.0 * harm[1]);
+}
+
+}  // namespace
+}  // namespace armcmc

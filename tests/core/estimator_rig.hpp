@@ -1,0 +1,171 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <random>
+
+#include "armcmc/adjust_result.hpp"
+#include "armcmc/estimator.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc::test {
+
+inline constexpr int kPackSamples = 100;
+inline constexpr double kSampleInterval = 1e-3;
+
+/// A sliding contact: x = 0.6 + 1.14 sin(t - 0.6), pack k holds samples 100k-99 .. 100k. In contact from 0.05 s to 4.30
+/// s and from 6.33 s to 10.58 s.
+struct Contact {
+  double k = 4.0, b = 2.3, p = 1.7;
+  double noise_std = 0.1;
+  std::uint64_t seed = 1;
+
+  [[nodiscard]] DataPack Pack(std::int64_t seq) const {
+    DataPack pack;
+    pack.seq = seq;
+    pack.run_id = 1;
+    pack.dt = kSampleInterval;
+    pack.num_samples = kPackSamples;
+    pack.num_inputs = 2;
+    pack.plant = PlantKind::kHuntCrossley;
+    std::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(seq));
+    std::normal_distribution<double> noise(0.0, noise_std);
+    for (std::size_t n = 0; n < kPackSamples; ++n) {
+      const double t = kSampleInterval * (static_cast<double>((seq - 1) * kPackSamples) + static_cast<double>(n));
+      const double x = 0.6 + 1.14 * std::sin(t - 0.6);
+      const double v = 1.14 * std::cos(t - 0.6);
+      pack.u[n] = {x, v};
+      pack.y[n] = (x >= 0.0 ? std::pow(x, p) * (k + b * v) : 0.0) + noise(generator);
+      pack.t_last_s = t;
+    }
+    pack.t_last_ns = static_cast<Nanos>(pack.t_last_s * 1e9);
+    return pack;
+  }
+};
+inline constexpr std::int64_t kFreePack = 55;       ///< Of Contact: no sample in contact.
+inline constexpr std::int64_t kSecondContact = 64;  ///< The pack in which contact returns.
+
+/// The excited actuator: pressure swings over tens of kPa; mode 0 (u_c) in the first `filling` samples, then mode 1.
+struct Actuator {
+  double p_atm = PlantConstants{}.p_atm;
+  std::array<double, 2> gain{-2.14e-4 + 6.12e-9 * p_atm, -9.76e-5 - 1.9e-9 * p_atm};
+  std::array<double, 2> slope{6.12e-9, -1.9e-9};
+  double noise_std = 0.1;  ///< Of the valve flow, sqrt(Pa).
+  std::uint64_t seed = 1;
+
+  [[nodiscard]] DataPack Pack(std::int64_t seq, int filling) const {
+    DataPack pack;
+    pack.seq = seq;
+    pack.run_id = 1;
+    pack.dt = kSampleInterval;
+    pack.num_samples = kPackSamples;
+    pack.num_inputs = 4;
+    pack.plant = PlantKind::kSoftActuator;
+    std::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(seq));
+    std::normal_distribution<double> noise(0.0, noise_std);
+    const PlantConstants constants;
+    for (std::size_t n = 0; n < kPackSamples; ++n) {
+      const double t = kSampleInterval * (static_cast<double>(seq * kPackSamples) + static_cast<double>(n));
+      const double p = p_atm + 40e3 + 30e3 * std::sin(40.0 * t);
+      const double p_rate = 1.2e6 * std::cos(40.0 * t);
+      const std::size_t m = static_cast<int>(n) < filling ? 0 : 1;
+      const double head = std::sqrt(m == 0 ? constants.p_supply - p : p - p_atm);
+      const double u = (p_rate * (gain[m] + slope[m] * (p - p_atm)) + noise(generator)) / head;
+      pack.u[n] = {m == 0 ? u : 0.0, m == 1 ? u : 0.0, p, p_rate};
+      pack.y[n] = 0.02;
+      pack.t_last_s = t;
+    }
+    return pack;
+  }
+};
+
+inline EstimatorSettings ActuatorSettings() {
+  EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
+  for (NoiseSettings& noise : settings.noise) noise.std = 0.1;
+  return settings;
+}
+
+/// An estimator with one slot, run stage after stage.
+class Rig {
+ public:
+  explicit Rig(const EstimatorSettings& settings = BuiltinSettings("hunt_crossley"))
+      : estimator(settings), result(estimator.MakeResult()), estimate_(std::make_unique<Estimate>()) {}
+
+  const Estimate& Step(const DataPack& pack, Nanos deadline_ns = 0, ClockRef clock = {},
+                       const DrawLimits& limits = kNoDrawLimits) {
+    status = estimator.Adjust(pack, deadline_ns, clock, result.get(), limits);
+    estimator.Execute(*result, estimate_.get());
+    return *estimate_;
+  }
+  [[nodiscard]] const Estimate& estimate() const { return *estimate_; }
+
+  Estimator estimator;
+  std::unique_ptr<AdjustResult> result;
+  Status status = Status::kOk;
+
+ private:
+  std::unique_ptr<Estimate> estimate_;
+};
+
+inline bool SameBits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+/// Everything that is computed, to the bit.
+inline void ExpectSameBits(const Estimate& a, const Estimate& b) {
+  EXPECT_EQ(a.seq, b.seq);
+  EXPECT_EQ(a.mode, b.mode);
+  EXPECT_EQ(a.report_mode, b.report_mode);
+  EXPECT_TRUE(SameBits(a.y_pred, b.y_pred) && SameBits(a.y_lo, b.y_lo) && SameBits(a.y_hi, b.y_hi));
+  EXPECT_TRUE(SameBits(a.y_rmse, b.y_rmse) && SameBits(a.y_free_run, b.y_free_run));
+  ASSERT_EQ(a.num_samples, b.num_samples);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(a.num_samples); ++n) {
+    EXPECT_TRUE(SameBits(a.y_shown[n], b.y_shown[n])) << n;
+    EXPECT_TRUE(SameBits(a.y_shown_free_run[n], b.y_shown_free_run[n])) << n;
+  }
+  for (std::size_t m = 0; m < kMaxModes; ++m) {
+    const ModeEstimate &p = a.modes[m], &q = b.modes[m];
+    EXPECT_EQ(p.known, q.known);
+    EXPECT_EQ(p.updated, q.updated);
+    EXPECT_EQ(p.decision, q.decision);
+    EXPECT_EQ(p.draws, q.draws);
+    EXPECT_EQ(p.k_min, q.k_min);
+    EXPECT_TRUE(SameBits(p.zeta, q.zeta) && SameBits(p.lambda, q.lambda) && SameBits(p.ess, q.ess));
+    EXPECT_TRUE(SameBits(p.log_evidence, q.log_evidence) && SameBits(p.acceptance, q.acceptance));
+    EXPECT_TRUE(SameBits(p.p_changed, q.p_changed) && SameBits(p.noise_std, q.noise_std));
+    static_assert(sizeof(MarginalSummary) == (12 + kHistogramBins) * sizeof(double), "no padding to compare");
+    EXPECT_EQ(std::memcmp(&p.marginal, &q.marginal, sizeof p.marginal), 0) << "mode " << m;
+  }
+}
+
+/// An estimate that a user can act on: finite, ordered, inside the bounds.
+inline void ExpectUsable(const ModeEstimate& mode, const EstimatorSettings& settings) {
+  EXPECT_TRUE(mode.known);
+  EXPECT_GT(mode.draws, 0);
+  EXPECT_GE(mode.lambda, 0.0);
+  EXPECT_LT(mode.lambda, 1.0);
+  EXPECT_TRUE(std::isfinite(mode.log_evidence));
+  EXPECT_GE(mode.ess, 1.0);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(settings.num_parameters); ++d) {
+    const MarginalSummary& m = mode.marginal[d];
+    EXPECT_GE(m.q025, settings.parameters[d].lower);
+    EXPECT_LE(m.q025, m.q25);
+    EXPECT_LE(m.q25, m.q50);
+    EXPECT_LE(m.q50, m.q75);
+    EXPECT_LE(m.q75, m.q975);
+    EXPECT_LE(m.q975, settings.parameters[d].upper);
+    for (const double v : {m.ar_map, m.ar_ap, m.is_mean}) {
+      EXPECT_GE(v, settings.parameters[d].lower);
+      EXPECT_LE(v, settings.parameters[d].upper);
+    }
+    EXPECT_GT(m.sd, 0.0);
+    EXPECT_TRUE(std::isfinite(m.is_sd));
+    double mass = 0.0;
+    for (const double v : m.density) mass += v * (m.histogram_hi - m.histogram_lo) / kHistogramBins;
+    EXPECT_NEAR(mass, 1.0, 1e-9);
+  }
+}
+
+}  // namespace armcmc::test

@@ -1,0 +1,199 @@
+#include "armcmc/forgetting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+namespace armcmc {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kScale = 0.1;
+constexpr MismatchIndex kIndices[] = {MismatchIndex::kSignedMean, MismatchIndex::kRms, MismatchIndex::kLogPredictive};
+
+/// Each law is integrated once: construction takes milliseconds.
+const NoiseModel& Law(NoiseKind kind) {
+  static const std::array<NoiseModel, 4> laws = [] {
+    std::array<NoiseModel, 4> all;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      NoiseSettings s;
+      s.kind = static_cast<NoiseKind>(i);
+      all[i] = NoiseModel(s);
+    }
+    return all;
+  }();
+  return laws[static_cast<std::size_t>(kind)];
+}
+
+struct Case {
+  ForgettingSettings settings;
+  NoiseModel noise = Law(NoiseKind::kGaussian);
+  ModeData data;
+  PredictiveMoments predictive;
+
+  /// Errors in noise scales, against a posterior that is sure of its predictions.
+  Case(int samples, const std::function<double(int)>& error) {
+    data.num_samples = predictive.num_samples = samples;
+    data.weight.fill(1.0);
+    for (int i = 0; i < samples; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      predictive.mean[k] = std::sin(i);
+      data.target[k] = predictive.mean[k] + kScale * error(i);
+    }
+  }
+  [[nodiscard]] Mismatch Evaluate(MismatchIndex index) const {
+    ForgettingSettings s = settings;
+    s.index = index;
+    return EvaluateMismatch(s, noise, kScale, data, predictive);
+  }
+};
+
+TEST(Mismatch, ConstantErrorHasItsClosedForm) {
+  for (const double a : {0.0, 0.4, -0.7, 1.3}) {
+    const Case c(100, [a](int) { return a; });
+    EXPECT_NEAR(c.Evaluate(MismatchIndex::kSignedMean).zeta, a, 1e-9);
+    EXPECT_NEAR(c.Evaluate(MismatchIndex::kRms).zeta, std::fabs(a) - 1.0, 1e-5);
+    EXPECT_NEAR(c.Evaluate(MismatchIndex::kLogPredictive).zeta, 0.5 * (a * a - 1.0), 1e-5);
+  }
+}
+
+TEST(Mismatch, LambdaAndDecisionFollowTheirFormulas) {
+  for (const MismatchIndex index : kIndices)
+    for (double a = 0.0; a < 4.0; a += 0.05) {
+      Case c(50, [a](int) { return a; });
+      c.settings.threshold = 0.8;
+      c.settings.mu = 0.1;
+      c.settings.lambda_max = 0.9;
+      const Mismatch m = c.Evaluate(index);
+      EXPECT_NEAR(m.threshold, 0.8 + m.allowance, 1e-12);
+      // Only the paper's index counts both sides; a fit better than expected is no reason to forget.
+      const double excess = index == MismatchIndex::kSignedMean ? std::fabs(0.1 - m.zeta) : m.zeta - 0.1;
+      if (excess >= m.threshold) {
+        EXPECT_EQ(m.decision, Decision::kModification);
+        EXPECT_EQ(m.lambda, 0.0);
+      } else {
+        EXPECT_EQ(m.decision, Decision::kReinforcement);
+        EXPECT_NEAR(m.lambda, std::fmin(0.9, std::exp(-std::fmax(0.0, excess - m.allowance))), 1e-12);
+      }
+    }
+}
+
+TEST(Mismatch, SignedMeanLetsOppositeErrorsCancelAsThePaperDoes) {
+  const Case c(100, [](int i) { return i % 2 == 0 ? 5.0 : -5.0; });
+  const Mismatch paper = c.Evaluate(MismatchIndex::kSignedMean);
+  EXPECT_NEAR(paper.zeta, 0.0, 1e-9);
+  EXPECT_EQ(paper.decision, Decision::kReinforcement);
+  EXPECT_EQ(c.Evaluate(MismatchIndex::kRms).decision, Decision::kModification);
+  EXPECT_EQ(c.Evaluate(MismatchIndex::kLogPredictive).decision, Decision::kModification);
+}
+
+TEST(Mismatch, SignedMeanKeepsTheSign) {
+  EXPECT_LT(Case(100, [](int) { return -0.5; }).Evaluate(MismatchIndex::kSignedMean).zeta, -0.4);
+  const Case c(100, [](int) { return -3.0; });
+  EXPECT_EQ(c.Evaluate(MismatchIndex::kSignedMean).decision, Decision::kModification);
+}
+
+TEST(Mismatch, DoubledErrorIsAModificationForAThresholdOfAThirdOfTheNoiseScale) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 20; ++trial) {
+    Case doubled(100, [&](int) { return 2.0 * normal(generator); });
+    doubled.settings.threshold = 0.3;
+    EXPECT_EQ(doubled.Evaluate(MismatchIndex::kRms).decision, Decision::kModification);
+    EXPECT_EQ(doubled.Evaluate(MismatchIndex::kLogPredictive).decision, Decision::kModification);
+    Case plain(100, [&](int) { return normal(generator); });
+    plain.settings.threshold = 0.3;
+    EXPECT_EQ(plain.Evaluate(MismatchIndex::kRms).decision, Decision::kReinforcement);
+    EXPECT_EQ(plain.Evaluate(MismatchIndex::kLogPredictive).decision, Decision::kReinforcement);
+  }
+}
+
+TEST(Mismatch, TrebledErrorIsAModificationByDefault) {
+  std::mt19937_64 generator(4);
+  std::normal_distribution<double> normal;
+  const Case c(100, [&](int) { return 3.0 * normal(generator); });
+  EXPECT_EQ(c.Evaluate(MismatchIndex::kRms).decision, Decision::kModification);
+  EXPECT_EQ(c.Evaluate(MismatchIndex::kLogPredictive).decision, Decision::kModification);
+}
+
+TEST(Mismatch, ABetterFitThanExpectedIsNoReasonToForget) {
+  const Case c(200, [](int) { return 0.0; });
+  for (const MismatchIndex index : {MismatchIndex::kRms, MismatchIndex::kLogPredictive}) {
+    EXPECT_LT(c.Evaluate(index).zeta, -0.3);
+    EXPECT_EQ(c.Evaluate(index).lambda, c.settings.lambda_max);
+  }
+}
+
+TEST(Mismatch, FewSamplesOfPureNoiseAreNotPunished) {
+  std::mt19937_64 generator(5);
+  for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kLaplace, NoiseKind::kStudentT})
+    for (const MismatchIndex index : kIndices)
+      for (const int samples : {3, 10, 100}) {
+        int kept = 0;
+        constexpr int kTrials = 300;
+        for (int trial = 0; trial < kTrials; ++trial) {
+          std::normal_distribution<double> normal;
+          std::exponential_distribution<double> exponential;
+          std::student_t_distribution<double> student(4.0);
+          Case c(samples, [&](int) {
+            if (kind == NoiseKind::kLaplace) return (generator() & 1 ? 1.0 : -1.0) * exponential(generator);
+            return kind == NoiseKind::kStudentT ? student(generator) : normal(generator);
+          });
+          c.noise = Law(kind);
+          const Mismatch m = c.Evaluate(index);
+          kept += m.decision == Decision::kReinforcement && m.lambda > 0.9 ? 1 : 0;
+        }
+        EXPECT_GE(kept, kTrials * 90 / 100)
+            << "noise " << static_cast<int>(kind) << " index " << static_cast<int>(index) << " samples " << samples;
+      }
+}
+
+TEST(Mismatch, UncertainPredictionsExcuseAnError) {
+  Case c(100, [](int) { return 2.5; });
+  for (const MismatchIndex index : kIndices) {
+    c.predictive.variance.fill(0.0);
+    c.predictive.variance_of_mean = 0.0;
+    EXPECT_EQ(c.Evaluate(index).decision, Decision::kModification);
+    const double sd = 2.5 * kScale;
+    c.predictive.variance.fill(sd * sd);
+    c.predictive.variance_of_mean = sd * sd;
+    EXPECT_EQ(c.Evaluate(index).decision, Decision::kReinforcement) << static_cast<int>(index);
+  }
+}
+
+TEST(Mismatch, NoiseMeanIsNotAnError) {
+  Case c(100, [](int) { return 4.0; });
+  NoiseSettings biased;
+  biased.mean = 4.0 * kScale;
+  c.noise = NoiseModel(biased);
+  EXPECT_NEAR(c.Evaluate(MismatchIndex::kSignedMean).zeta, 0.0, 1e-9);
+  EXPECT_EQ(c.Evaluate(MismatchIndex::kRms).decision, Decision::kReinforcement);
+}
+
+TEST(Mismatch, WhatIsNotFiniteIsAModificationAndLambdaStaysInRange) {
+  for (const MismatchIndex index : kIndices)
+    for (const double bad : {kNan, kInfinity, -kInfinity, 1e300}) {
+      for (int where = 0; where < 4; ++where) {
+        Case c(20, [](int) { return 0.1; });
+        if (where == 0) c.data.target[7] = bad;
+        if (where == 1) c.predictive.mean[7] = bad;
+        if (where == 2) c.predictive.variance[7] = std::fabs(bad);
+        if (where == 3) c.predictive.variance_of_mean = std::fabs(bad);
+        const Mismatch m = c.Evaluate(index);
+        EXPECT_GE(m.lambda, 0.0);
+        EXPECT_LT(m.lambda, 1.0);
+        if (where < 2) {
+          EXPECT_EQ(m.decision, Decision::kModification) << static_cast<int>(index) << " " << bad;
+          EXPECT_EQ(m.lambda, 0.0);
+        }
+      }
+    }
+}
+
+}  // namespace
+}  // namespace armcmc

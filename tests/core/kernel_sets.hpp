@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "simd/kernels.hpp"
+
+namespace armcmc::test {
+
+/// Extended precision for references.
+constexpr long double Wide(double x) { return static_cast<long double>(x); }
+
+/// Kernels of every instruction set that was built and that this CPU runs.
+inline std::vector<const simd::Kernels*> RunnableKernels() {
+  std::vector<const simd::Kernels*> sets{&simd::kSse2Kernels};
+#if defined(ARMCMC_HAVE_AVX2)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) sets.push_back(&simd::kAvx2Kernels);
+#endif
+#if defined(ARMCMC_HAVE_AVX512)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) sets.push_back(&simd::kAvx512Kernels);
+#endif
+  return sets;
+}
+
+/// Those among them that fuse multiply and add, and so give the same bits.
+inline std::vector<const simd::Kernels*> FusedKernels() {
+  std::vector<const simd::Kernels*> sets = RunnableKernels();
+  sets.erase(sets.begin());
+  return sets;
+}
+
+}  // namespace armcmc::test

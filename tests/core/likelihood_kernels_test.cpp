@@ -1,0 +1,242 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "armcmc/models/registry.hpp"
+#include "kernel_sets.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr int kHuntCrossley = FindModel("hunt_crossley");
+constexpr int kSoftActuator = FindModel("soft_actuator");
+
+/// Samples, candidates and their predictions; large, so kept on the heap.
+struct Batch {
+  ModeData data;
+  DataPack pack;
+  ThetaTile theta;
+  PredictionTile tile;
+};
+
+using test::Wide;
+
+double Uniform(std::mt19937_64& g, double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(g); }
+
+std::unique_ptr<Batch> ContactBatch(unsigned seed) {
+  std::mt19937_64 g(seed);
+  auto b = std::make_unique<Batch>();
+  b->pack.num_samples = 237;
+  for (std::size_t n = 0; n < 237; ++n) {
+    b->pack.u[n] = {n % 7 == 3 ? -0.1 : std::exp(Uniform(g, -9.0, 0.7)), Uniform(g, -1.2, 1.2)};
+    b->pack.y[n] = Uniform(g, -1.0, 12.0);
+  }
+  b->pack.u[11][0] = 0.0;
+  HuntCrossley::Prepare(b->pack, {}, 0, &b->data);
+  for (std::size_t l = 0; l < kTileLanes; ++l) {
+    b->theta.value[0][l] = Uniform(g, 0.0, 8.0);
+    b->theta.value[1][l] = Uniform(g, 0.0, 8.0);
+    b->theta.value[2][l] = Uniform(g, 1.0, 2.5);
+  }
+  return b;
+}
+
+std::unique_ptr<Batch> ActuatorBatch(unsigned seed) {
+  std::mt19937_64 g(seed);
+  auto b = std::make_unique<Batch>();
+  b->pack.num_samples = 100;
+  for (std::size_t n = 0; n < 100; ++n) {
+    const bool filling = n < 60;
+    b->pack.u[n] = {filling ? 0.05 : 0.0, filling ? 0.0 : 0.05, Uniform(g, 102e3, 200e3), Uniform(g, -1e6, 1e6)};
+  }
+  SoftActuator::Prepare(b->pack, {}, 0, &b->data);
+  for (std::size_t l = 0; l < kTileLanes; ++l) {
+    b->theta.value[0][l] = Uniform(g, -5e-3, 5e-3);
+    b->theta.value[1][l] = Uniform(g, -5e-8, 5e-8);
+  }
+  return b;
+}
+
+TEST(PredictKernel, ContactForceEqualsTheFormula) {
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const auto b = ContactBatch(1);
+    kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+    std::size_t m = 0;
+    for (std::size_t n = 0; n < 237; ++n) {
+      const long double x = Wide(b->pack.u[n][0]), v = Wide(b->pack.u[n][1]);
+      if (x < 0.0L) continue;
+      for (std::size_t l = 0; l < kTileLanes; ++l) {
+        const long double power = std::pow(x, Wide(b->theta.value[2][l]));
+        const long double stiff = Wide(b->theta.value[0][l]), damped = Wide(b->theta.value[1][l]) * v;
+        // The two terms may cancel: the error is relative to the larger one.
+        const long double size = power * (std::fabs(stiff) + std::fabs(damped));
+        ASSERT_NEAR(b->tile.value[m][l], static_cast<double>(power * (stiff + damped)),
+                    static_cast<double>(1e-13L * size + 1e-300L))
+            << kernels->name << " x " << static_cast<double>(x);
+      }
+      ++m;
+    }
+    EXPECT_EQ(static_cast<int>(m), b->data.num_samples);
+  }
+}
+
+TEST(PredictKernel, ValveFlowEqualsTheFormula) {
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const auto b = ActuatorBatch(2);
+    ASSERT_EQ(b->data.num_samples, 60);
+    kernels->predict(kSoftActuator, b->data, b->theta, &b->tile);
+    for (std::size_t n = 0; n < 60; ++n)
+      for (std::size_t l = 0; l < kTileLanes; ++l) {
+        const long double pdot = Wide(b->pack.u[n][3]), over = Wide(b->pack.u[n][2]) - Wide(PlantConstants{}.p_atm);
+        const long double a = pdot * Wide(b->theta.value[0][l]), c = pdot * over * Wide(b->theta.value[1][l]);
+        ASSERT_NEAR(b->tile.value[n][l], static_cast<double>(a + c),
+                    static_cast<double>(1e-13L * (std::fabs(a) + std::fabs(c))))
+            << kernels->name;
+      }
+  }
+}
+
+TEST(PredictKernel, ForceIsZeroAtTouchWhateverTheExponent) {
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const auto b = ContactBatch(3);
+    b->pack.num_samples = 2;
+    b->pack.u[0] = {0.0, 1.0};
+    b->pack.u[1] = {1e-310, 1.0};  // subnormal
+    HuntCrossley::Prepare(b->pack, {}, 0, &b->data);
+    kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+    for (std::size_t l = 0; l < kTileLanes; ++l) {
+      EXPECT_NEAR(b->tile.value[0][l], 0.0, 1e-250);
+      EXPECT_NEAR(b->tile.value[1][l], 0.0, 1e-250);
+    }
+  }
+}
+
+NoiseSettings Noise(NoiseKind kind) {
+  NoiseSettings s;
+  s.kind = kind;
+  s.mean = 0.03;
+  s.dof = 3.5;
+  s.outlier_weight = 0.08;
+  s.outlier_scale = 12.0;
+  return s;
+}
+
+TEST(LogLikelihoodKernel, EqualsTheSummedLogDensity) {
+  for (const simd::Kernels* kernels : test::RunnableKernels())
+    for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture})
+      for (const int samples : {1, 7, 8, 9, 203}) {
+        const auto b = ContactBatch(4);
+        b->data.num_samples = samples;
+        kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+        alignas(64) double log_scale[kTileLanes];
+        alignas(64) double out[kTileLanes];
+        for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -4.0 + 0.25 * l;  // scales from 0.02 to 40
+        for (std::size_t n = 0; n < kMaxPackSamples; ++n) b->data.weight[n] = std::exp(-0.01 * static_cast<double>(n));
+        const NoiseModel noise(Noise(kind));
+        kernels->log_likelihood(noise, b->data, b->tile, log_scale, out);
+        for (std::size_t l = 0; l < kTileLanes; ++l) {
+          long double sum = 0.0L, size = 0.0L;
+          for (std::size_t n = 0; n < static_cast<std::size_t>(samples); ++n) {
+            const double e = (b->data.target[n] - b->tile.value[n][l] - noise.settings().mean) * b->data.weight[n];
+            const double term = noise.LogDensity(e, std::exp(log_scale[l]));
+            sum += Wide(term);
+            size += Wide(std::fabs(term)) + 1.0L;
+          }
+          ASSERT_NEAR(out[l], static_cast<double>(sum), static_cast<double>(1e-13L * size))
+              << kernels->name << " law " << static_cast<int>(kind) << " samples " << samples << " lane " << l;
+        }
+      }
+}
+
+TEST(LogLikelihoodKernel, FarOutliersStayFiniteUnderHeavyTails) {
+  for (const simd::Kernels* kernels : test::RunnableKernels())
+    for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kMixture}) {
+      const auto b = ContactBatch(5);
+      for (std::size_t n = 0; n < 16; ++n) b->data.target[n] = 1e9;
+      kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+      b->data.weight.fill(1.0);
+      alignas(64) double log_scale[kTileLanes] = {};
+      alignas(64) double out[kTileLanes];
+      kernels->log_likelihood(NoiseModel(Noise(kind)), b->data, b->tile, log_scale, out);
+      for (const double v : out) EXPECT_TRUE(std::isfinite(v)) << kernels->name;
+    }
+}
+
+TEST(RelativeLikelihoodKernel, IsTheExponentialOfTheDifference) {
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    alignas(64) double value[64], out[64];
+    for (int k = 0; k < 64; ++k) value[k] = 1234.5 - 11.0 * k;
+    kernels->relative_likelihood(value, 1234.5, 64, out);
+    for (int k = 0; k < 64; ++k) {
+      const double expected = std::exp(-11.0 * k);
+      EXPECT_NEAR(out[k], expected, 1e-12 * expected + 1e-300) << kernels->name << " " << k;
+    }
+    value[0] = -HUGE_VAL;
+    value[1] = std::nan("");
+    kernels->relative_likelihood(value, 0.0, 8, out);
+    EXPECT_LT(out[0], 1e-300);
+    EXPECT_LT(out[1], 1e-300);
+  }
+}
+
+TEST(RelativeLikelihoodKernel, ExponentialIsAccurateToTwoUnits) {
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    alignas(64) double value[1024], out[1024];
+    for (int k = 0; k < 1024; ++k) value[k] = -k / 1024.0;
+    kernels->relative_likelihood(value, 0.0, 1024, out);
+    for (int k = 0; k < 1024; ++k) {
+      const double expected = static_cast<double>(std::exp(Wide(value[k])));
+      EXPECT_NEAR(out[k], expected, 4.5e-16 * expected) << kernels->name << " " << value[k];
+    }
+  }
+}
+
+TEST(LogLikelihoodKernel, LogarithmIsAccurateToAFewUnits) {
+  // One sample under the Cauchy law: log p = -log(1 + e^2) - log pi.
+  NoiseSettings settings;
+  settings.kind = NoiseKind::kStudentT;
+  settings.dof = 1.0;
+  const NoiseModel noise(settings);
+  const auto b = ContactBatch(7);
+  b->data.num_samples = 1;
+  b->data.target[0] = 0.0;
+  b->data.weight[0] = 1.0;
+  for (const simd::Kernels* kernels : test::RunnableKernels())
+    for (int block = 0; block < 32; ++block) {
+      alignas(64) double log_scale[kTileLanes] = {}, out[kTileLanes];
+      for (std::size_t l = 0; l < kTileLanes; ++l) b->tile.value[0][l] = (block + static_cast<double>(l) / 32.0) / 16.0;
+      kernels->log_likelihood(noise, b->data, b->tile, log_scale, out);
+      for (std::size_t l = 0; l < kTileLanes; ++l) {
+        const long double e = Wide(b->tile.value[0][l]);
+        const double expected = static_cast<double>(Wide(noise.log_constant()) - std::log1p(e * e));
+        EXPECT_NEAR(out[l], expected, 2e-15) << kernels->name << " " << static_cast<double>(e);
+      }
+    }
+}
+
+TEST(LikelihoodKernels, FusedInstructionSetsGiveTheSameBits) {
+  const auto sets = test::FusedKernels();
+  if (sets.size() < 2) GTEST_SKIP() << "this CPU runs one fused instruction set only";
+  for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture}) {
+    const NoiseModel noise(Noise(kind));
+    const auto a = ContactBatch(6), b = ContactBatch(6);
+    alignas(64) double log_scale[kTileLanes], out_a[kTileLanes], out_b[kTileLanes];
+    for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -3.0 + 0.1 * l;
+    a->data.weight.fill(1.0);
+    b->data.weight.fill(1.0);
+    sets[0]->predict(kHuntCrossley, a->data, a->theta, &a->tile);
+    sets[1]->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+    const auto rows = static_cast<std::size_t>(a->data.num_samples);
+    EXPECT_EQ(std::memcmp(a->tile.value.data(), b->tile.value.data(), rows * sizeof(a->tile.value[0])), 0);
+    sets[0]->log_likelihood(noise, a->data, a->tile, log_scale, out_a);
+    sets[1]->log_likelihood(noise, b->data, b->tile, log_scale, out_b);
+    EXPECT_EQ(std::memcmp(out_a, out_b, sizeof out_a), 0) << static_cast<int>(kind);
+  }
+}
+
+}  // namespace
+}  // namespace armcmc

@@ -1,0 +1,129 @@
+#include "armcmc/settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace armcmc {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string ErrorOf(const EstimatorSettings& settings) {
+  try {
+    settings.Validate();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BuiltinSettings, AreValid) {
+  for (const char* name : {"hunt_crossley", "soft_actuator", "soft_actuator_excited"})
+    EXPECT_EQ(ErrorOf(BuiltinSettings(name)), "") << name;
+}
+
+TEST(BuiltinSettings, ExcitedActuatorHasItsOwnGain) {
+  EXPECT_EQ(BuiltinSettings("soft_actuator").constants.q1, 1408.5);
+  EXPECT_EQ(BuiltinSettings("soft_actuator_excited").constants.q1, 0.0704);
+}
+
+TEST(BuiltinSettings, UnknownNameListsTheKnownOnes) {
+  try {
+    (void)BuiltinSettings("hunt_crossly");
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("hunt_crossly"), HasSubstr("hunt_crossley"), HasSubstr("soft_actuator"),
+                                    HasSubstr("soft_actuator_excited")));
+  }
+}
+
+struct Wrong {
+  std::string key;    // must be named
+  std::string value;  // must be shown, when the message is about one number
+  std::function<void(EstimatorSettings&)> spoil;
+};
+
+const std::vector<Wrong> kWrong{
+    {"'nope'", "", [](EstimatorSettings& s) { s.model = std::string("nope"); }},
+    {"3 parameters", "2", [](EstimatorSettings& s) { s.num_parameters = 2; }},
+    {"'Q'", "'B'", [](EstimatorSettings& s) { s.parameters[1].name = std::string(1, 'Q'); }},
+    {"parameters.K.sd", "= 0", [](EstimatorSettings& s) { s.parameters[0].sd = 0.0; }},
+    {"parameters.K.sd", "= -1", [](EstimatorSettings& s) { s.parameters[0].sd = -1.0; }},
+    {"parameters.K.mean", "nan", [](EstimatorSettings& s) { s.parameters[0].mean = kNan; }},
+    {"parameters.p", "lower", [](EstimatorSettings& s) { s.parameters[2].lower = s.parameters[2].upper; }},
+    {"parameters.p", "lower", [](EstimatorSettings& s) { s.parameters[2].upper = kInfinity; }},
+    {"parameters.p", "mass", [](EstimatorSettings& s) { s.parameters[2].mean = 100.0; }},
+    {"noise.contact.std", "= 0", [](EstimatorSettings& s) { s.noise[0].std = 0.0; }},
+    {"noise.contact.std", "inf", [](EstimatorSettings& s) { s.noise[0].std = kInfinity; }},
+    {"noise.contact.mean", "nan", [](EstimatorSettings& s) { s.noise[0].mean = kNan; }},
+    {"noise.contact.std_log_sd", "= 0", [](EstimatorSettings& s) { s.noise[0].std_log_sd = 0.0; }},
+    {"noise.contact.dof", "= 0", [](EstimatorSettings& s) { s.noise[0].dof = 0.0; }},
+    {"noise.contact.outlier_weight", "= 0.6", [](EstimatorSettings& s) { s.noise[0].outlier_weight = 0.6; }},
+    {"noise.contact.outlier_scale", "= 1", [](EstimatorSettings& s) { s.noise[0].outlier_scale = 1.0; }},
+    {"forgetting.threshold", "= 0", [](EstimatorSettings& s) { s.forgetting.threshold = 0.0; }},
+    {"forgetting.threshold", "nan", [](EstimatorSettings& s) { s.forgetting.threshold = kNan; }},
+    {"forgetting.mu", "inf", [](EstimatorSettings& s) { s.forgetting.mu = kInfinity; }},
+    {"forgetting.lambda_max", "= 1", [](EstimatorSettings& s) { s.forgetting.lambda_max = 1.0; }},
+    {"forgetting.rho", "= 1.5", [](EstimatorSettings& s) { s.forgetting.rho = 1.5; }},
+    {"forgetting.min_samples", "= 0", [](EstimatorSettings& s) { s.forgetting.min_samples = 0; }},
+    {"sampler.epsilon", "= 0", [](EstimatorSettings& s) { s.sampler.epsilon = 0.0; }},
+    {"sampler.delta", "= 1", [](EstimatorSettings& s) { s.sampler.delta = 1.0; }},
+    {"sampler.max_draws", "= 10", [](EstimatorSettings& s) { s.sampler.max_draws = 10; }},
+    {"sampler.max_draws", "= 150001", [](EstimatorSettings& s) { s.sampler.max_draws = kMaxDraws + 1; }},
+    {"sampler.draws", "= 50",
+     [](EstimatorSettings& s) {
+       s.sampler.rule = DrawRule::kFixed;
+       s.sampler.fixed_draws = 50;
+     }},
+    {"sampler.lambda_q_min", "= 0", [](EstimatorSettings& s) { s.sampler.lambda_q_min = 0.0; }},
+    {"sampler.lambda_q_max", "= 1", [](EstimatorSettings& s) { s.sampler.lambda_q_max = 1.0; }},
+    {"sampler.lambda_q_min", "lambda_q_max", [](EstimatorSettings& s) { s.sampler.lambda_q_min = 0.9; }},
+    {"constants.p_atm", "= -1", [](EstimatorSettings& s) { s.constants.p_atm = -1.0; }},
+    {"constants.p_supply", "= 1000", [](EstimatorSettings& s) { s.constants.p_supply = 1000.0; }},
+    {"constants.q1", "nan", [](EstimatorSettings& s) { s.constants.q1 = kNan; }},
+    {"constants.q2", "nan", [](EstimatorSettings& s) { s.constants.q2 = kNan; }},
+    {"constants.q3", "inf", [](EstimatorSettings& s) { s.constants.q3 = kInfinity; }},
+};
+
+TEST(EstimatorSettings, ValidateNamesKeyAndValueOfWhatIsWrong) {
+  for (const Wrong& wrong : kWrong) {
+    EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+    wrong.spoil(settings);
+    EXPECT_THAT(ErrorOf(settings), AllOf(HasSubstr(wrong.key), HasSubstr(wrong.value)));
+  }
+}
+
+TEST(EstimatorSettings, ValidateShowsTheRange) {
+  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  settings.forgetting.rho = -0.5;
+  EXPECT_THAT(ErrorOf(settings), HasSubstr("[0, 1]"));
+  settings = BuiltinSettings("hunt_crossley");
+  settings.sampler.epsilon = 1.0;
+  EXPECT_THAT(ErrorOf(settings), HasSubstr("(0, 1)"));
+}
+
+TEST(EstimatorSettings, ValidateLooksAtTheNoiseOfEveryMode) {
+  EstimatorSettings settings = BuiltinSettings("soft_actuator");
+  settings.noise[1].std = -1.0;
+  EXPECT_THAT(ErrorOf(settings), HasSubstr("noise.u_d.std"));
+}
+
+TEST(EstimatorSettings, WhatALawDoesNotUseMayStayAtItsDefault) {
+  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  settings.parameters[0].prior = PriorKind::kUniform;
+  settings.parameters[0].sd = 0.0;
+  EXPECT_EQ(ErrorOf(settings), "");
+}
+
+}  // namespace
+}  // namespace armcmc

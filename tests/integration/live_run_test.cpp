@@ -1,0 +1,121 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "armcmc/estimate_t.hpp"
+#include "integration/live_pair.hpp"
+
+namespace armcmc::test {
+namespace {
+
+using Table = std::map<std::string, std::vector<std::string>>;
+
+Table ReadTable(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<std::string> names;
+  Table table;
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string> fields;
+    std::istringstream cells(line + ",");
+    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
+    if (names.empty()) {
+      names = fields;
+    } else {
+      for (std::size_t i = 0; i < names.size(); ++i) table[names[i]].push_back(fields.at(i));
+    }
+  }
+  return table;
+}
+
+double Value(const std::string& text) { return text.empty() ? 0.0 : std::strtod(text.c_str(), nullptr); }
+
+/// Every number that the live run published, against the one that the replay computed: equal, not near.
+void ExpectEqualToTheBit(const std::vector<estimate_t>& live, Table& replay) {
+  ASSERT_EQ(replay["pack"].size(), live.size());
+  int differences = 0;
+  for (std::size_t row = 0; row < live.size(); ++row) {
+    const estimate_t& e = live[row];
+    ASSERT_EQ(std::to_string(e.seq), replay["pack"][row]);
+    const auto check = [&](const std::string& column, double value) {
+      if (Value(replay[column][row]) == value) return;
+      if (++differences <= 10)
+        ADD_FAILURE() << "pack " << e.seq << ", " << column << ": live " << value << ", replay " << replay[column][row];
+    };
+    for (int i = 0; i < e.n_params; ++i) {
+      const std::string name(reinterpret_cast<const char*>(e.param_name[i]));  // zero padded characters
+      check(name, e.ar_map[i]);
+      check(name + "_ap", e.ar_ap[i]);
+      check(name + "_sd", e.sd[i]);
+      check(name + "_q025", e.q025[i]);
+      check(name + "_q50", e.q50[i]);
+      check(name + "_q975", e.q975[i]);
+    }
+    check("draws", e.draws);
+    if (e.decision == estimate_t::DECISION_HOLD) continue;
+    check("lambda", e.lambda);
+    check("zeta", e.zeta);
+    check("ess", e.ess);
+    check("kish_ess", e.kish_ess);
+    check("acceptance", e.acceptance);
+    check("log_evidence", e.log_evidence);
+    check("p_changed", e.p_changed);
+  }
+  EXPECT_EQ(differences, 0);
+}
+
+class LiveRun : public LivePair {
+ protected:
+  Table Replay(const std::vector<std::string>& data_arguments) {
+    std::vector<std::string> arguments = {"--config", (SourceDir() / "rt/config/hunt_crossley.toml").string(), "--out",
+                                          dir_ / "replay.csv"};
+    arguments.insert(arguments.end(), data_arguments.begin(), data_arguments.end());
+    const Outcome o = RunProgram(Program("armcmc-replay"), arguments);
+    EXPECT_EQ(o.code, 0) << o.err;
+    return ReadTable(dir_ / "replay.csv");
+  }
+};
+
+TEST_F(LiveRun, TwentySecondsMeetEveryDeadlineAndReplayToTheBit) {
+  auto estimator = StartEstimator();
+  auto plant = StartPlant("20");
+  ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
+  ASSERT_TRUE(recorder_->WaitForEstimates(200)) << estimator->err();
+  const nlohmann::json report = Finish(estimator.get());
+
+  EXPECT_EQ(report["packs"]["received"], 200);
+  EXPECT_EQ(report["packs"]["lost"], 0);
+  EXPECT_EQ(report["packs"]["rejected"], 0);
+  EXPECT_EQ(report["steps"], 200);
+  for (const char* stage : {"collect", "adjust", "execute"}) {
+    EXPECT_EQ(report["allocations"][stage], 0) << stage;
+  }
+  // Without real-time scheduling other programs of the machine may take the processor, which nobody witnesses.
+  if (report["rt"]["policy"] == "SCHED_FIFO") {
+    EXPECT_EQ(report["misses"]["own"], 0);
+  }
+  const std::vector<estimate_t> live = recorder_->estimates();
+  ASSERT_EQ(live.size(), 200u);
+  EXPECT_NEAR(live.back().ar_map[0], 4.0, 0.2);
+  EXPECT_NEAR(live.back().ar_map[1], 2.3, 0.2);
+  EXPECT_NEAR(live.back().ar_map[2], 1.7, 0.03);
+
+  Table from_log = Replay({"--data", Log()});
+  ExpectEqualToTheBit(live, from_log);
+
+  // The same plant without a bus, as fast as possible: the same samples, so the same estimates.
+  const Outcome offline = RunProgram(
+      Program("armcmc-plant"), {"--scenario", (SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml").string(),
+                                "--seed", "7", "--duration", "20", "--csv", dir_ / "offline.csv"});
+  ASSERT_EQ(offline.code, 0) << offline.err;
+  Table from_csv = Replay({"--data", dir_ / "offline.csv", "--draws-from", Log()});
+  ExpectEqualToTheBit(live, from_csv);
+}
+
+}  // namespace
+}  // namespace armcmc::test

@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/paths.hpp"
+
+namespace armcmc::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::set<std::string> kTopLevel = {"CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "core",
+                                         "lcm_types",      "plant_sim",         "rt",      "tests",     "tools"};
+
+bool IsBuildTree(const std::string& name) {
+  return name == "build" || name.starts_with("build-") || name == "compile_commands.json" ||
+         name == "CMakeUserPresets.json";
+}
+
+TEST(Layout, TheTopLevelIsFixed) {
+  std::set<std::string> there;
+  for (const fs::directory_entry& entry : fs::directory_iterator(SourceDir())) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with('.') && !IsBuildTree(name)) there.insert(name);
+  }
+  EXPECT_EQ(there, kTopLevel);
+}
+
+TEST(Layout, NothingIsLeftToDo) {
+  // In two pieces, so that this file does not find itself.
+  const std::set<std::string> marks = {std::string("TO") + "DO", std::string("FIX") + "ME",
+                                       std::string("XX") + "X:", std::string("HA") + "CK"};
+  const std::set<std::string> text_files = {".hpp", ".cpp", ".txt",  ".cmake", ".toml",
+                                            ".lcm", ".md",  ".json", ".java",  ""};
+  int files = 0;
+  for (const std::string& top : kTopLevel) {
+    const fs::path root = SourceDir() / top;
+    std::vector<fs::path> paths;
+    if (fs::is_directory(root)) {
+      for (const auto& entry : fs::recursive_directory_iterator(root))
+        if (entry.is_regular_file() && text_files.contains(entry.path().extension())) paths.push_back(entry.path());
+    } else {
+      paths.push_back(root);
+    }
+    for (const fs::path& path : paths) {
+      std::ifstream file(path, std::ios::binary);
+      const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+      for (const std::string& mark : marks) EXPECT_EQ(text.find(mark), std::string::npos) << path << " holds " << mark;
+      ++files;
+    }
+  }
+  EXPECT_GT(files, 20);
+}
+
+}  // namespace
+}  // namespace armcmc::test

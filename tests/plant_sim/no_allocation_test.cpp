@@ -1,0 +1,44 @@
+#include <gtest/gtest.h>
+
+#include "armcmc/plant_sim/latency_histogram.hpp"
+#include "armcmc/plant_sim/log_ring.hpp"
+#include "armcmc/plant_sim/pack_builder.hpp"
+#include "armcmc/plant_sim/pack_sender.hpp"
+#include "builtin_scenario.hpp"
+#include "support/alloc_counter.hpp"
+
+namespace armcmc::plant_sim {
+namespace {
+
+class PublishingPath : public testing::TestWithParam<const char*> {};
+
+TEST_P(PublishingPath, DoesNotAllocate) {
+  if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  LogRing ring(512);
+  PackSender sender("", FaultPlan::Parse("nan@3,size@4,duplicate@5,reorder@6,drop@8,foreign@9,garbage@10"), &ring);
+  PackBuilder builder(BuiltinScenario(GetParam()), 1, 1);
+  LatencyHistogram histogram;
+  bool finite = true;
+  long allocations = 0;
+  {
+    test::AllocCounter guard;
+    for (int k = 1; k <= 100; ++k) {
+      finite = builder.Next() && finite;
+      builder.Stamp(k, k);
+      sender.Send(builder.pack(), builder.truth());
+      histogram.Add(k);
+    }
+    sender.Flush();
+    allocations = guard.count();
+  }
+  EXPECT_TRUE(finite);
+  EXPECT_EQ(ring.lost(), 0);
+  EXPECT_EQ(allocations, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, PublishingPath,
+                         testing::Values("hunt_crossley_paper", "hunt_crossley_drift", "soft_actuator_paper",
+                                         "soft_actuator_excited"));
+
+}  // namespace
+}  // namespace armcmc::plant_sim

@@ -1,0 +1,123 @@
+#include "armcmc/plant_sim/pack_builder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "armcmc/plant_sim/csv_writer.hpp"
+#include "builtin_scenario.hpp"
+#include "support/paths.hpp"
+
+namespace armcmc::plant_sim {
+namespace {
+
+TEST(PackBuilder, PackKHoldsSamplesAfterTheLastPackAndSampleZeroIsInNone) {
+  const Scenario scenario = BuiltinScenario("hunt_crossley_paper");
+  PackBuilder builder(scenario, 7, 42);
+  Simulation simulation(scenario, 7);
+  ASSERT_TRUE(simulation.Next());
+  for (int k = 1; k <= 3; ++k) {
+    ASSERT_TRUE(builder.Next());
+    const data_pack_t& pack = builder.pack();
+    EXPECT_EQ(pack.seq, k);
+    EXPECT_EQ(pack.run_id, 42);
+    EXPECT_EQ(pack.n_samples, 100);
+    EXPECT_EQ(pack.n_inputs, 2);
+    EXPECT_EQ(pack.dt, 1e-3);
+    EXPECT_EQ(pack.plant_kind, data_pack_t::PLANT_HUNT_CROSSLEY);
+    for (int i = 0; i < 100; ++i) {
+      ASSERT_TRUE(simulation.Next());
+      EXPECT_EQ(pack.y[i], simulation.measured().output);
+      EXPECT_EQ(pack.u[i][0], simulation.measured().inputs[0]);
+      EXPECT_EQ(pack.u[i][1], simulation.measured().inputs[1]);
+      EXPECT_EQ(builder.truth().y_true[i], simulation.truth().output);
+    }
+    EXPECT_EQ(simulation.index(), 100 * k);
+    EXPECT_EQ(pack.t_last_s, simulation.truth().t_s);
+    for (int i = 100; i < data_pack_t::MAX_SAMPLES; ++i) EXPECT_EQ(pack.y[i], 0.0);
+  }
+}
+
+TEST(PackBuilder, TruthFollowsAStepOfTheParameters) {
+  PackBuilder builder(BuiltinScenario("hunt_crossley_step"), 1, 1);
+  for (int k = 1; k <= 80; ++k) ASSERT_TRUE(builder.Next());
+  EXPECT_EQ(builder.truth().theta_true[0], 2.0);  // pack 80 ends at 8.0 s, where K has just halved
+  EXPECT_EQ(builder.truth().n_params, 3);
+  EXPECT_EQ(builder.truth().seq, 80);
+}
+
+TEST(PackBuilder, ActuatorPackHasItsFourInputsAndTheParametersOfItsValve) {
+  PackBuilder builder(BuiltinScenario("soft_actuator_paper"), 1, 1);
+  for (int k = 1; k <= 60; ++k) ASSERT_TRUE(builder.Next());
+  EXPECT_EQ(builder.pack().n_inputs, 4);
+  EXPECT_EQ(builder.truth().true_mode, 1);
+  EXPECT_NEAR(builder.truth().theta_true[0], -2.901175e-4, 1e-12);
+  EXPECT_EQ(builder.truth().theta_true[1], -1.9e-9);
+}
+
+TEST(PackBuilder, DifferentSeedsChangeOnlyTheNoise) {
+  const Scenario scenario = BuiltinScenario("hunt_crossley_paper");
+  PackBuilder a(scenario, 1, 1), b(scenario, 2, 1);
+  ASSERT_TRUE(a.Next() && b.Next());
+  EXPECT_NE(a.pack().y[50], b.pack().y[50]);
+  EXPECT_EQ(a.pack().u[50][0], b.pack().u[50][0]);
+  EXPECT_EQ(a.truth().y_true[50], b.truth().y_true[50]);
+}
+
+TEST(PackBuilder, ReportsAPlantThatLeavesTheFiniteRange) {
+  Scenario scenario = BuiltinScenario("soft_actuator_excited");
+  scenario.options.Set("q3", -1e6);  // a stiffness that pushes away: exp(1000 t)
+  PackBuilder builder(scenario, 1, 1);
+  bool finite = true;
+  for (int k = 0; k < 200 && finite; ++k) finite = builder.Next();
+  EXPECT_FALSE(finite);
+}
+
+/// Reads every cell of a CSV file as double.
+std::vector<std::vector<double>> ReadRows(const std::string& path) {
+  std::ifstream file(path);
+  std::string line, cell;
+  std::getline(file, line);
+  std::vector<std::vector<double>> rows;
+  while (std::getline(file, line)) {
+    std::vector<double>& row = rows.emplace_back();
+    for (std::istringstream cells(line); std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+  }
+  return rows;
+}
+
+class CsvAgainstPacks : public testing::TestWithParam<const char*> {};
+
+TEST_P(CsvAgainstPacks, AreIdenticalToTheBit) {
+  const Scenario scenario = BuiltinScenario(GetParam());
+  const test::ScratchDir folder;
+  const std::string path = (folder / "data.csv").string();
+  CsvWriter csv(scenario, 5, path);
+  csv.WriteThrough(500);
+  csv.Close();
+  const std::vector<std::vector<double>> rows = ReadRows(path);
+  ASSERT_EQ(rows.size(), 501u);
+  PackBuilder builder(scenario, 5, 1);
+  for (std::size_t k = 0; k < 5; ++k) {
+    ASSERT_TRUE(builder.Next());
+    const data_pack_t& pack = builder.pack();
+    for (std::size_t i = 0; i < 100; ++i) {
+      const std::vector<double>& row = rows[100 * k + i + 1];
+      const auto inputs = static_cast<std::size_t>(pack.n_inputs);
+      for (std::size_t j = 0; j < inputs; ++j) EXPECT_EQ(std::memcmp(&row[1 + j], &pack.u[i][j], sizeof(double)), 0);
+      EXPECT_EQ(std::memcmp(&row[1 + inputs], &pack.y[i], sizeof(double)), 0);
+    }
+    EXPECT_EQ(rows[100 * (k + 1)][0], pack.t_last_s);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, CsvAgainstPacks,
+                         testing::Values("hunt_crossley_impulsive", "soft_actuator_excited",
+                                         "hunt_crossley_heavy_tailed"));
+
+}  // namespace
+}  // namespace armcmc::plant_sim

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+
+#include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/step_engine.hpp"
+
+namespace armcmc::rt::test {
+
+/// An engine whose result is the pack number, and whose time is set by the test.
+class FakeEngine final : public StepEngine {
+ public:
+  [[nodiscard]] PlantKind plant() const noexcept override { return PlantKind::kHuntCrossley; }
+  [[nodiscard]] int num_inputs() const noexcept override { return 2; }
+  [[nodiscard]] int num_modes() const noexcept override { return 1; }
+  [[nodiscard]] int num_reported() const noexcept override { return 2; }
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept override {
+    return index == 0 ? ReportedQuantity{"K", "N/m^p"} : ReportedQuantity{"a_name_of_more_than_15_characters", "-"};
+  }
+
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept override {
+    auto& result = results_[static_cast<std::size_t>(slot)];
+    result.seq = pack.seq;
+    result.run_id = pack.run_id;
+    result.last_y = pack.y[static_cast<std::size_t>(pack.num_samples - 1)];
+    adjusted.fetch_add(1);
+    last_budget_ns.store(deadline_ns - clock.Now());
+    if (clock.read != nullptr) SleepUntil(clock.Now() + adjust_sleep_ns.load());
+    if (allocate_in_adjust.load()) {
+      auto* leak = new int(1);
+      asm volatile("" : : "g"(leak) : "memory");
+      delete leak;
+    }
+    return status.load();
+  }
+
+  void Execute(int slot, Estimate* estimate) noexcept override {
+    const auto& result = results_[static_cast<std::size_t>(slot)];
+    *estimate = Estimate{};
+    estimate->seq = result.seq;
+    estimate->run_id = result.run_id;
+    estimate->num_modes = 1;
+    estimate->num_reported = 2;
+    estimate->active = true;
+    estimate->y_pred = result.last_y;
+    ModeEstimate& mode = estimate->modes[0];
+    mode.known = mode.updated = true;
+    mode.decision = Decision::kReinforcement;
+    mode.draws = 1000;
+    mode.ess = 500.0;
+    mode.marginal[0].ar_map = static_cast<double>(result.seq);
+    mode.marginal[0].sd = 0.5;
+    mode.marginal[0].histogram_hi = 1.0;
+    mode.marginal[0].density.fill(1.0);
+  }
+
+  void Reset() noexcept override { adjusted.store(0); }
+
+  std::atomic<Nanos> adjust_sleep_ns{0};
+  std::atomic<Nanos> last_budget_ns{0};
+  std::atomic<int> adjusted{0};
+  std::atomic<bool> allocate_in_adjust{false};
+  std::atomic<Status> status{Status::kOk};
+
+ private:
+  struct Result {
+    std::int64_t seq = 0, run_id = 0;
+    double last_y = 0.0;
+  };
+  std::array<Result, LatestValue::kSlots> results_{};
+};
+
+}  // namespace armcmc::rt::test

@@ -1,0 +1,153 @@
+#include "armcmc/rt/messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "armcmc/rt/lcm_receiver.hpp"
+#include "fake_engine.hpp"
+#include "test_packs.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+std::unique_ptr<StepOutput> Output(test::FakeEngine* engine) {
+  auto output = std::make_unique<StepOutput>();
+  DataPack pack;
+  pack.seq = 7;
+  pack.run_id = 3;
+  pack.num_samples = 1;
+  pack.y[0] = 2.5;
+  (void)engine->Adjust(pack, 0, ClockRef{}, 0);
+  engine->Execute(0, &output->estimate);
+  output->info.seq = 7;
+  output->info.run_id = 3;
+  output->info.status = Status::kTruncated;
+  output->info.times.release_ns = 1000;
+  output->info.times.deadline_ns = 2000;
+  output->info.times.start_ns = {1100, 1200, 1300};
+  output->info.times.end_ns = {1110, 1220, 1330};
+  return output;
+}
+
+template <std::size_t kSize>
+std::string Text(const std::uint8_t (&field)[kSize]) {
+  return {field, std::find(field, field + kSize, std::uint8_t{0})};
+}
+
+TEST(FillEstimate, ReportsTheActingModeWithNamesAndTimes) {
+  test::FakeEngine engine;
+  estimate_t message;
+  std::memset(static_cast<void*>(&message), 0xff, sizeof message);  // every field must be written
+  FillEstimate(*Output(&engine), engine, 99, &message);
+  EXPECT_EQ(message.utime, 99);
+  EXPECT_EQ(message.seq, 7);
+  EXPECT_EQ(message.run_id, 3);
+  EXPECT_EQ(message.t_release_ns, 1000);
+  EXPECT_EQ(message.t_done_ns, 1330);
+  EXPECT_EQ(message.plant_kind, data_pack_t::PLANT_HUNT_CROSSLEY);
+  EXPECT_EQ(message.known, 1);
+  EXPECT_EQ(message.in_contact, 1);
+  EXPECT_EQ(message.truncated, 1);
+  EXPECT_EQ(message.decision, estimate_t::DECISION_REINFORCEMENT);
+  EXPECT_EQ(message.n_params, 2);
+  EXPECT_EQ(message.n_modes, 1);
+  EXPECT_EQ(Text(message.param_name[0]), "K");
+  EXPECT_EQ(Text(message.param_unit[0]), "N/m^p");
+  EXPECT_EQ(Text(message.param_name[1]), "a_name_of_more_") << "cut, and still zero terminated";
+  EXPECT_EQ(message.ar_map[0], 7.0);
+  EXPECT_EQ(message.ar_map_by_mode[0][0], 7.0);
+  EXPECT_EQ(message.known_by_mode[0], 1);
+  EXPECT_EQ(message.known_by_mode[1], 0);
+  EXPECT_EQ(message.ar_map[2], 0.0);
+  EXPECT_EQ(message.draws, 1000);
+  EXPECT_EQ(message.y_pred, 2.5);
+}
+
+TEST(FillEstimate, SaysNothingOfParametersBeforeAnythingIsKnown) {
+  test::FakeEngine engine;
+  auto output = Output(&engine);
+  output->estimate.modes[0].known = output->estimate.modes[0].updated = false;
+  estimate_t message;
+  FillEstimate(*output, engine, 0, &message);
+  EXPECT_EQ(message.known, 0);
+  EXPECT_EQ(message.ar_map[0], 0.0);
+  EXPECT_EQ(message.decision, estimate_t::DECISION_HOLD);
+}
+
+TEST(FillPosterior, CopiesTheMarginalsOfTheReportedMode) {
+  test::FakeEngine engine;
+  posterior_t message;
+  std::memset(static_cast<void*>(&message), 0xff, sizeof message);
+  FillPosterior(*Output(&engine), engine, 5, &message);
+  EXPECT_EQ(message.seq, 7);
+  EXPECT_EQ(message.known, 1);
+  EXPECT_EQ(message.n_params, 2);
+  EXPECT_EQ(message.n_bins, posterior_t::MAX_BINS);
+  EXPECT_EQ(message.hi[0], 1.0);
+  EXPECT_EQ(message.density[0][63], 1.0);
+  EXPECT_EQ(message.density[2][0], 0.0);
+}
+
+TEST(FillStatus, CarriesTimesCountersAndFlags) {
+  test::FakeEngine engine;
+  const auto output = Output(&engine);
+  const auto counters = std::make_unique<Counters>();
+  counters->collect.received.Set(11);
+  counters->collect.rejected[static_cast<std::size_t>(RejectCause::kNotFinite)].Set(2);
+  counters->collect.rejected[static_cast<std::size_t>(RejectCause::kLength)].Set(3);
+  counters->collect.rejected[static_cast<std::size_t>(RejectCause::kFingerprint)].Set(4);
+  counters->adjust.dropped.Set(5);
+  counters->collect.ring_full.Set(1);
+  const RtSettings settings;
+  const auto monitor = std::make_unique<DeadlineMonitor>(settings);
+  StatusContext context;
+  context.output = output.get();
+  context.fault_flags = estimator_status_t::FAULT_BAD_DATA;
+  context.degraded_flags = estimator_status_t::DEGRADED_NO_FIFO;
+  estimator_status_t message;
+  std::memset(static_cast<void*>(&message), 0xff, sizeof message);
+  FillStatus(context, settings, *counters, *monitor, &message);
+  EXPECT_EQ(message.collect_ns, 10);
+  EXPECT_EQ(message.adjust_ns, 20);
+  EXPECT_EQ(message.execute_ns, 30);
+  EXPECT_EQ(message.end_to_end_ns, 330);
+  EXPECT_EQ(message.slack_ns, 670);
+  EXPECT_EQ(message.packs_received, 11);
+  EXPECT_EQ(message.packs_rejected, 9);
+  EXPECT_EQ(message.rejected_value, 2);
+  EXPECT_EQ(message.rejected_size, 3);
+  EXPECT_EQ(message.rejected_type, 4);
+  EXPECT_EQ(message.packs_dropped, 6);
+  EXPECT_EQ(message.fault_flags, estimator_status_t::FAULT_BAD_DATA);
+  EXPECT_EQ(message.degraded_flags, estimator_status_t::DEGRADED_NO_FIFO);
+  EXPECT_EQ(message.missed_own, 0);
+}
+
+template <typename Message>
+void ExpectRoundTrip(const Message& message) {
+  const auto bytes = test::Encode(message);
+  EXPECT_LT(bytes.size() + kMaxChannelLength + 1, kMaxShortMessage);
+  EXPECT_LE(bytes.size(), 16'384U) << "the publisher's buffer";
+  Message decoded{};
+  ASSERT_EQ(decoded.decode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
+  EXPECT_EQ(test::Encode(decoded), bytes);
+}
+
+TEST(Messages, SurviveARoundTripInOneDatagram) {
+  test::FakeEngine engine;
+  const auto output = Output(&engine);
+  estimate_t estimate;
+  posterior_t posterior;
+  FillEstimate(*output, engine, 1, &estimate);
+  FillPosterior(*output, engine, 1, &posterior);
+  ExpectRoundTrip(estimate);
+  ExpectRoundTrip(posterior);
+  ExpectRoundTrip(estimator_status_t{});
+  ExpectRoundTrip(test::ValidPack(1));
+}
+
+}  // namespace
+}  // namespace armcmc::rt

@@ -1,0 +1,121 @@
+#include "armcmc/rt/pack_codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "armcmc/plant_truth_t.hpp"
+#include "armcmc/rt/lcm_receiver.hpp"
+#include "test_packs.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+using test::Encode;
+using test::ValidPack;
+
+RejectCause DecodeWith(const std::function<void(data_pack_t*)>& change) {
+  data_pack_t pack = ValidPack(7);
+  change(&pack);
+  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  return codec.Decode(Encode(pack));
+}
+
+TEST(PackCodec, CopiesEveryFieldOfAValidPack) {
+  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  ASSERT_EQ(codec.Decode(Encode(ValidPack(7, 42))), RejectCause::kNone);
+  EXPECT_EQ(codec.seq(), 7);
+  EXPECT_EQ(codec.run_id(), 42);
+  DataPack pack;
+  codec.CopyTo(&pack);
+  EXPECT_EQ(pack.seq, 7);
+  EXPECT_EQ(pack.run_id, 42);
+  EXPECT_EQ(pack.t_last_ns, 7000);
+  EXPECT_DOUBLE_EQ(pack.t_last_s, 0.699);
+  EXPECT_DOUBLE_EQ(pack.dt, 1e-3);
+  EXPECT_EQ(pack.num_samples, 100);
+  EXPECT_EQ(pack.num_inputs, 2);
+  EXPECT_DOUBLE_EQ(pack.y[99], 9.9);
+  EXPECT_DOUBLE_EQ(pack.u[99][0], 0.99);
+  EXPECT_DOUBLE_EQ(pack.u[0][1], 0.5);
+  EXPECT_EQ(pack.Validate(), Status::kOk);
+}
+
+TEST(PackCodec, AcceptsTheLargestPack) {
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->n_samples = data_pack_t::MAX_SAMPLES; }), RejectCause::kNone);
+}
+
+TEST(PackCodec, RejectsAnotherTypeByItsFingerprint) {
+  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  EXPECT_EQ(codec.Decode(Encode(plant_truth_t{})), RejectCause::kFingerprint);
+}
+
+TEST(PackCodec, RejectsAWrongLength) {
+  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  auto bytes = Encode(ValidPack(1));
+  bytes.push_back(0);
+  EXPECT_EQ(codec.Decode(bytes), RejectCause::kLength) << "trailing byte";
+  bytes.resize(bytes.size() - 2);
+  EXPECT_EQ(codec.Decode(bytes), RejectCause::kLength) << "one byte short";
+  bytes.resize(5);
+  EXPECT_EQ(codec.Decode(bytes), RejectCause::kLength) << "no room for a fingerprint";
+  EXPECT_EQ(codec.Decode({}), RejectCause::kLength);
+}
+
+TEST(PackCodec, RejectsWhatTheModelDoesNotExpect) {
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->plant_kind = data_pack_t::PLANT_SOFT_ACTUATOR; }),
+            RejectCause::kPlantKind);
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->n_inputs = 4; }), RejectCause::kInputCount);
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->n_inputs = -1; }), RejectCause::kInputCount);
+}
+
+TEST(PackCodec, RejectsCountsOutOfRange) {
+  for (const int n : {0, -1, data_pack_t::MAX_SAMPLES + 1, std::numeric_limits<int>::max()}) {
+    EXPECT_EQ(DecodeWith([n](data_pack_t* p) { p->n_samples = n; }), RejectCause::kSampleCount) << n;
+  }
+  for (const double dt : {0.0, -1e-3, 11.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_EQ(DecodeWith([dt](data_pack_t* p) { p->dt = dt; }), RejectCause::kSampleInterval) << dt;
+  }
+}
+
+TEST(PackCodec, RejectsNonFiniteAndImpossibleValues) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    EXPECT_EQ(DecodeWith([bad](data_pack_t* p) { p->y[99] = bad; }), RejectCause::kNotFinite);
+    EXPECT_EQ(DecodeWith([bad](data_pack_t* p) { p->u[0][1] = bad; }), RejectCause::kNotFinite);
+    EXPECT_EQ(DecodeWith([bad](data_pack_t* p) { p->t_last_s = bad; }), RejectCause::kNotFinite);
+  }
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->y[0] = 1e10; }), RejectCause::kOutOfRange);
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->seq = 0; }), RejectCause::kOutOfRange);
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->seq = std::numeric_limits<std::int64_t>::max(); }),
+            RejectCause::kOutOfRange);
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->t_last_s = -1.0; }), RejectCause::kOutOfRange);
+}
+
+TEST(PackCodec, IgnoresValuesThatAreNotUsed) {
+  EXPECT_EQ(DecodeWith([](data_pack_t* p) {
+              p->y[100] = std::nan("");
+              p->u[0][2] = std::nan("");
+            }),
+            RejectCause::kNone);
+}
+
+TEST(PackCodec, PutsEveryCauseIntoAGroupAndWords) {
+  EXPECT_EQ(GroupOf(RejectCause::kFingerprint), RejectGroup::kType);
+  EXPECT_EQ(GroupOf(RejectCause::kPlantKind), RejectGroup::kType);
+  EXPECT_EQ(GroupOf(RejectCause::kLength), RejectGroup::kSize);
+  EXPECT_EQ(GroupOf(RejectCause::kSampleCount), RejectGroup::kSize);
+  EXPECT_EQ(GroupOf(RejectCause::kInputCount), RejectGroup::kSize);
+  EXPECT_EQ(GroupOf(RejectCause::kSampleInterval), RejectGroup::kSize);
+  EXPECT_EQ(GroupOf(RejectCause::kNotFinite), RejectGroup::kValue);
+  EXPECT_EQ(GroupOf(RejectCause::kOutOfRange), RejectGroup::kValue);
+  for (std::size_t i = 0; i < kNumRejectCauses; ++i) EXPECT_NE(ToString(static_cast<RejectCause>(i)), "unknown");
+}
+
+TEST(PackCodec, ThePackFitsIntoOneDatagram) {
+  EXPECT_LT(static_cast<std::size_t>(data_pack_t{}.getEncodedSize()) + kMaxChannelLength + 1, kMaxShortMessage);
+}
+
+}  // namespace
+}  // namespace armcmc::rt

@@ -1,0 +1,107 @@
+#include "armcmc/rt/release_grid.hpp"
+
+#include <gtest/gtest.h>
+
+namespace armcmc::rt {
+namespace {
+
+TEST(NextRelease, IsOnePeriodLaterWhenTheIterationEndedInTime) {
+  const Release r = NextRelease(/*release_ns=*/100, /*now_ns=*/150, /*period_ns=*/100);
+  EXPECT_EQ(r.time_ns, 200);
+  EXPECT_EQ(r.missed, 0U);
+}
+
+TEST(NextRelease, OverrunSkipsToNextGridPointAndCounts) {
+  const Release r = NextRelease(/*release_ns=*/100, /*now_ns=*/450, /*period_ns=*/100);
+  EXPECT_EQ(r.time_ns, 500);
+  EXPECT_EQ(r.missed, 3U);
+}
+
+TEST(ReleaseGrid, ReleasesAPackThatIsOnTimeAtItsArrival) {
+  ReleaseGrid grid(100);
+  EXPECT_EQ(grid.Lock(1000).release_ns, 1000);
+  const auto point = grid.OnPack(1, 1100);
+  EXPECT_EQ(point.release_ns, 1100);
+  EXPECT_EQ(point.lateness_ns, 0);
+  EXPECT_EQ(grid.next_due_ns(), 1200);
+}
+
+TEST(ReleaseGrid, ReleasesALatePackAtItsGridPointSoThatItsLatenessShows) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  const auto point = grid.OnPack(1, 1160);
+  EXPECT_EQ(point.release_ns, 1100);
+  EXPECT_EQ(point.lateness_ns, 60);
+  EXPECT_EQ(grid.next_due_ns(), 1200) << "one late pack does not move the grid";
+}
+
+TEST(ReleaseGrid, MovesWithAPackThatIsEarly) {
+  ReleaseGrid grid(100);
+  grid.Lock(1030);
+  const auto point = grid.OnPack(1, 1100);
+  EXPECT_EQ(point.release_ns, 1100);
+  EXPECT_EQ(point.lateness_ns, 0);
+  EXPECT_EQ(grid.next_due_ns(), 1200);
+}
+
+TEST(ReleaseGrid, CountsLostPacksAsPassedGridPoints) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  EXPECT_EQ(grid.OnPack(5, 1510).lateness_ns, 10);
+}
+
+TEST(ReleaseGrid, FollowsAPhaseThatStaysLateAfterAWindow) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  Nanos arrival = 1040;
+  for (int i = 0; i < ReleaseGrid::kWindow; ++i) EXPECT_EQ(grid.OnPack(1, arrival += 100).lateness_ns, 40);
+  EXPECT_EQ(grid.OnPack(1, arrival += 100).lateness_ns, 0);
+}
+
+TEST(ReleaseGrid, KeepsItsPhaseWhenOnlySomePacksAreLate) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  Nanos due = 1000;
+  for (int i = 1; i <= 50; ++i) {
+    due += 100;
+    const Nanos jitter = i % 3 == 0 ? 0 : 30;
+    EXPECT_EQ(grid.OnPack(1, due + jitter).lateness_ns, jitter);
+  }
+}
+
+TEST(ReleaseGrid, RelocksAfterAPauseOnceTheLatenessWasReported) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  const auto point = grid.OnPack(1, 3345);
+  EXPECT_EQ(point.release_ns, 1100);
+  EXPECT_EQ(point.lateness_ns, 2245);
+  EXPECT_EQ(grid.OnPack(1, 3445).lateness_ns, 0);
+}
+
+TEST(ReleaseGrid, DoesNotTakeABurstThatCatchesUpForANewPhase) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  EXPECT_EQ(grid.OnPack(1, 1480).lateness_ns, 380);
+  EXPECT_EQ(grid.OnPack(1, 1481).lateness_ns, 281) << "late on the old grid, not early on a new one";
+  EXPECT_EQ(grid.OnPack(1, 1482).lateness_ns, 182);
+  EXPECT_EQ(grid.OnPack(1, 1483).lateness_ns, 83);
+  EXPECT_EQ(grid.OnPack(1, 1500).lateness_ns, 0) << "caught up";
+  EXPECT_EQ(grid.OnPack(1, 1600).lateness_ns, 0);
+}
+
+TEST(ReleaseGrid, KeepsItsPhaseThroughALongBurst) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  EXPECT_EQ(grid.OnPack(1, 6100).lateness_ns, 5000);
+  for (Nanos i = 1; i <= 40; ++i) EXPECT_EQ(grid.OnPack(1, 6100 + i).lateness_ns, 5000 - 99 * i);
+}
+
+TEST(ReleaseGrid, ExpectsTheNextPackAPeriodAfterOneThatCameFarTooLate) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  grid.OnPack(1, 3345);
+  EXPECT_EQ(grid.next_due_ns(), 3445);
+}
+
+}  // namespace
+}  // namespace armcmc::rt

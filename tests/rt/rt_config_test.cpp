@@ -1,0 +1,96 @@
+#include "rt_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "armcmc/support/estimator_config.hpp"
+#include "support/paths.hpp"
+
+namespace armcmc::app {
+namespace {
+
+using support::ConfigError;
+using support::StrictTable;
+
+rt::RtSettings Read(const std::string& text) {
+  StrictTable root = StrictTable::FromText(text, "test.toml");
+  const rt::RtSettings settings = ReadRtSettings(root);
+  root.Finish();
+  return settings;
+}
+
+std::string Complaint(const std::string& text) {
+  try {
+    (void)Read(text);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ReadRtSettings, TakesTheDefaultsFromNothing) {
+  const rt::RtSettings settings = Read("");
+  EXPECT_EQ(settings.period_ns, 100'000'000);
+  EXPECT_EQ(settings.mode, rt::RtMode::kBestEffort);
+}
+
+TEST(ReadRtSettings, DerivesDeadlineAndBudgetFromThePeriod) {
+  const rt::RtSettings settings = Read("[timing]\nperiod_ms = 10\n");
+  EXPECT_EQ(settings.deadline_ns, 10'000'000);
+  EXPECT_EQ(settings.adjust_budget_ns, 8'000'000);
+}
+
+TEST(ReadRtSettings, ReadsEveryKey) {
+  const rt::RtSettings s = Read(
+      "[timing]\nperiod_ms = 1\ndeadline_ms = 2.5\nadjust_budget_ms = 0.75\n"
+      "[rt]\nmode = \"enforce\"\nlock_memory = false\n"
+      "[rt.collect]\npriority = 61\ncpu = 2\n[rt.adjust]\npriority = 62\ncpu = 3\n[rt.execute]\npriority = 63\ncpu = "
+      "4\n"
+      "[rt.publish]\npriority = 20\ncpu = 5\n[rt.witness]\npriority = 64\n"
+      "[lcm]\nurl = \"udpm://239.255.76.67:7700?ttl=1\"\nprefix = \"A_\"\n");
+  EXPECT_EQ(s.period_ns, 1'000'000);
+  EXPECT_EQ(s.deadline_ns, 2'500'000);
+  EXPECT_EQ(s.adjust_budget_ns, 750'000);
+  EXPECT_EQ(s.mode, rt::RtMode::kEnforce);
+  EXPECT_FALSE(s.lock_memory);
+  EXPECT_EQ(s.collect.priority, 61);
+  EXPECT_EQ(s.adjust.cpu, 3);
+  EXPECT_EQ(s.execute.priority, 63);
+  EXPECT_EQ(s.publish.cpu, 5);
+  EXPECT_EQ(s.witness_priority, 64);
+  EXPECT_EQ(s.lcm_url, "udpm://239.255.76.67:7700?ttl=1");
+  EXPECT_EQ(s.prefix, "A_");
+}
+
+TEST(ReadRtSettings, NamesLineKeyAndRangeOfAMistake) {
+  const std::string period = Complaint("[timing]\nperiod_ms = 0\n");
+  EXPECT_NE(period.find("test.toml:2"), std::string::npos) << period;
+  EXPECT_NE(period.find("period_ms"), std::string::npos) << period;
+  EXPECT_NE(Complaint("[timing]\nperiod = 1\n").find("period_ms"), std::string::npos) << "the nearest known key";
+  EXPECT_NE(Complaint("[rt]\nmode = \"hard\"\n").find("best_effort"), std::string::npos);
+  EXPECT_NE(Complaint("[lcm]\nurl = \"tcpq://\"\n").find("udpm://"), std::string::npos);
+  EXPECT_NE(Complaint("[rt.witness]\npriority = 10\n").find("rt.witness.priority"), std::string::npos);
+  EXPECT_NE(Complaint("[timing]\ndeadline_ms = 50\nadjust_budget_ms = 50\n").find("adjust_budget_ms"),
+            std::string::npos);
+}
+
+class ShippedConfig : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedConfig, IsReadCompletelyAndNamesItsModel) {
+  const auto path = armcmc::test::SourceDir() / "rt" / "config" / (std::string(GetParam()) + ".toml");
+  StrictTable root = StrictTable::FromFile(path);
+  const EstimatorSettings estimator = support::ReadEstimatorSettings(root, "");
+  const rt::RtSettings settings = ReadRtSettings(root);
+  EXPECT_NO_THROW(root.Finish());
+  EXPECT_NO_THROW(estimator.Validate());
+  EXPECT_EQ(settings.period_ns, 100'000'000);
+  EXPECT_EQ(settings.deadline_ns, 100'000'000);
+  EXPECT_EQ(settings.adjust_budget_ns, 80'000'000);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
+                         ::testing::Values("hunt_crossley", "soft_actuator", "soft_actuator_excited"));
+
+}  // namespace
+}  // namespace armcmc::app

@@ -1,0 +1,84 @@
+#include "armcmc/rt/spsc_ring.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace armcmc::rt {
+namespace {
+
+TEST(SpscRing, IsEmptyAtFirst) {
+  SpscRing<int, 4> ring;
+  EXPECT_EQ(ring.Front(), nullptr);
+  EXPECT_EQ(ring.size(), 0U);
+}
+
+TEST(SpscRing, HandsElementsOnInOrderWithoutCopying) {
+  SpscRing<int, 4> ring;
+  int* first = ring.Claim();
+  *first = 1;
+  ring.Commit();
+  *ring.Claim() = 2;
+  ring.Commit();
+  EXPECT_EQ(ring.size(), 2U);
+  EXPECT_EQ(ring.Front(), first) << "the slot itself, not a copy";
+  EXPECT_EQ(*ring.Front(), 1);
+  ring.Pop();
+  EXPECT_EQ(*ring.Front(), 2);
+  ring.Pop();
+  EXPECT_EQ(ring.Front(), nullptr);
+}
+
+TEST(SpscRing, RefusesAClaimWhenFullUntilOneIsPopped) {
+  SpscRing<int, 4> ring;
+  for (int i = 0; i < 4; ++i) {
+    *ring.Claim() = i;
+    ring.Commit();
+  }
+  EXPECT_EQ(ring.Claim(), nullptr);
+  ring.Pop();
+  EXPECT_NE(ring.Claim(), nullptr);
+}
+
+TEST(SpscRing, AClaimThatIsNotCommittedIsNotSeen) {
+  SpscRing<int, 4> ring;
+  int* slot = ring.Claim();
+  EXPECT_EQ(ring.Front(), nullptr);
+  EXPECT_EQ(ring.Claim(), slot);
+}
+
+TEST(SpscRing, LosesNothingBetweenTwoThreads) {
+  struct Element {
+    long a, b;
+  };
+  constexpr long kCount = 100'000;
+  SpscRing<Element, 8> ring;
+  std::thread producer([&ring] {
+    for (long i = 0; i < kCount;) {
+      Element* slot = ring.Claim();
+      if (slot == nullptr) {
+        std::this_thread::yield();
+        continue;
+      }
+      *slot = {i, -i};
+      ring.Commit();
+      ++i;
+    }
+  });
+  long wrong = 0;
+  for (long i = 0; i < kCount;) {
+    const Element* element = ring.Front();
+    if (element == nullptr) {
+      std::this_thread::yield();
+      continue;
+    }
+    if (element->a != i || element->b != -i) ++wrong;
+    ring.Pop();
+    ++i;
+  }
+  producer.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace armcmc::rt

@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "armcmc/adjust_result.hpp"
+#include "armcmc/estimator.hpp"
+#include "armcmc/parameter_space.hpp"
+#include "contact_packs.hpp"
+
+namespace armcmc {
+namespace {
+
+using test::ContactTruth;
+using test::MakeContactPack;
+using test::Motion;
+using test::Normal;
+
+constexpr int kBins = 20;
+constexpr int kRanks = 199;  // thinned draws; ranks 0..199 fill 20 bins of 10
+
+/// Truth drawn from the truncated normal prior by rejection.
+std::array<double, 3> DrawTruth(const EstimatorSettings& s, Normal* normal) {
+  std::array<double, 3> theta{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const ParameterSettings& p = s.parameters[d];
+    do theta[d] = p.mean + p.sd * (*normal)();
+    while (theta[d] < p.lower || theta[d] > p.upper);
+  }
+  return theta;
+}
+
+using Histogram = std::array<std::array<int, kBins>, 3>;
+
+/// Rank histograms of simulation-based calibration (Talts et al. 2018) over `simulations` sequences of `packs` packs.
+Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs, std::uint64_t seed) {
+  Histogram histogram{};
+  Normal normal(seed);
+  for (int sim = 0; sim < simulations; ++sim) {
+    settings.sampler.seed = seed * 100'003 + static_cast<std::uint64_t>(sim);
+    Estimator estimator(settings);
+    const auto result = estimator.MakeResult();
+    const std::array<double, 3> theta = DrawTruth(settings, &normal);
+    const Motion motion{0.6 + 0.6 * normal.Uniform(), 0.1 + 0.4 * normal.Uniform(), 1.0 + 6.0 * normal.Uniform(),
+                        6.28 * normal.Uniform()};
+    for (int k = 1; k <= packs; ++k)
+      estimator.Adjust(MakeContactPack(k, motion, {theta[0], theta[1], theta[2]}, settings.noise[0].std, &normal), 0,
+                       {}, result.get());
+    const ModeDraws& draws = result->modes[0];
+    const ParameterSpace space(settings, settings.noise[0]);
+    const int first = draws.burn_in;
+    for (std::size_t d = 0; d < 3; ++d) {
+      int rank = 0;
+      for (int i = 0; i < kRanks; ++i) {
+        const int at = first + static_cast<int>((static_cast<long>(draws.draws - first) * i) / kRanks);
+        if (space.Theta(static_cast<int>(d), draws.u[d][draws.chain[at]]) < theta[d]) ++rank;
+      }
+      ++histogram[d][static_cast<std::size_t>(rank * kBins / (kRanks + 1))];
+    }
+  }
+  return histogram;
+}
+
+double ChiSquare(const std::array<int, kBins>& counts) {
+  double total = 0.0;
+  for (const int c : counts) total += c;
+  double chi2 = 0.0;
+  for (const int c : counts) chi2 += (c - total / kBins) * (c - total / kBins) / (total / kBins);
+  return chi2;
+}
+
+// Quantiles of chi-square with 19 degrees of freedom (R 4.2 qchisq): 1 - 1e-4 / 3 and 1 - 1e-9.
+constexpr double kPass = 52.5;
+constexpr double kFail = 83.9;
+
+TEST(SimulationBasedCalibration, RanksOfSinglePacksAreUniform) {
+  const Histogram h = RankHistograms(BuiltinSettings("hunt_crossley"), 1000, 1, 11);
+  for (const auto& counts : h) EXPECT_LT(ChiSquare(counts), kPass);
+}
+
+TEST(SimulationBasedCalibration, RanksAfterFivePacksOfTheRecursionAreUniform) {
+  const Histogram h = RankHistograms(BuiltinSettings("hunt_crossley"), 1000, 5, 12);
+  for (const auto& counts : h) EXPECT_LT(ChiSquare(counts), kPass);
+}
+
+TEST(SimulationBasedCalibration, FailsWhenTheProposalRatioIsDropped) {
+  EstimatorSettings broken = BuiltinSettings("hunt_crossley");
+  broken.sampler.use_proposal_ratio = false;
+  const Histogram h = RankHistograms(broken, 1000, 1, 11);
+  double worst = 0.0;
+  for (const auto& counts : h) worst = std::fmax(worst, ChiSquare(counts));
+  EXPECT_GT(worst, kFail);
+}
+
+}  // namespace
+}  // namespace armcmc

@@ -1,0 +1,32 @@
+# armcmc_add_test(NAME source... LIBS target... [LABELS label...] [TIMEOUT seconds] [SERIAL])
+#
+# A GoogleTest executable, every TEST of it a test of ctest. Tests find recordings and programs through
+# "support/paths.hpp", under ctest as well as by hand. TIMEOUT (60 s) is per TEST. SERIAL: never
+# beside another test, for what needs the processors to itself. Labels default to the folder's name.
+function(armcmc_add_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "TIMEOUT" "LIBS;LABELS")
+  if(NOT arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "armcmc_add_test(${name}): no sources")
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 60)
+  endif()
+  if(NOT arg_LABELS)
+    get_filename_component(arg_LABELS "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
+  endif()
+  add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
+  # Beside the programs stands nothing but programs.
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  target_link_libraries(${name} PRIVATE
+    ${arg_LIBS} armcmc_test_support armcmc_warnings GTest::gmock GTest::gtest_main)
+  set(properties TIMEOUT ${arg_TIMEOUT})
+  if(arg_SERIAL)
+    list(APPEND properties RUN_SERIAL TRUE)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 TEST_LIST ${name}_tests PROPERTIES ${properties})
+  # A list does not survive the way through gtest_discover_tests, so the labels are set where ctest reads the tests.
+  set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake")
+  file(WRITE "${labels_file}" "if(${name}_tests)\n"
+    "  set_tests_properties(\${${name}_tests} PROPERTIES LABELS \"${arg_LABELS}\")\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${labels_file}")
+endfunction()

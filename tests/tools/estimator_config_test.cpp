@@ -1,0 +1,170 @@
+#include "armcmc/support/estimator_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "armcmc/estimator.hpp"
+
+namespace armcmc::support {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+EstimatorSettings Read(const std::string& text, const std::string& model_override = "") {
+  StrictTable root = StrictTable::FromText(text, "f.toml");
+  EstimatorSettings settings = ReadEstimatorSettings(root, model_override);
+  root.Finish();
+  return settings;
+}
+
+std::string ErrorOf(const std::string& text, const std::string& model_override = "") {
+  try {
+    Read(text, model_override);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no ConfigError was thrown for:\n" << text;
+  return "";
+}
+
+const std::string kHunt = "schema = 1\n[model]\nname = \"hunt_crossley\"\n";
+const std::string kActuator = "schema = 1\n[model]\nname = \"soft_actuator\"\n";
+
+TEST(EstimatorConfig, AnEmptyFileIsTheBuiltInModel) {
+  const EstimatorSettings read = Read(kHunt), built_in = BuiltinSettings("hunt_crossley");
+  EXPECT_EQ(read.model, "hunt_crossley");
+  ASSERT_EQ(read.num_parameters, built_in.num_parameters);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(read.num_parameters); ++i) {
+    EXPECT_EQ(read.parameters[i].name, built_in.parameters[i].name);
+    EXPECT_EQ(read.parameters[i].mean, built_in.parameters[i].mean);
+    EXPECT_EQ(read.parameters[i].lower, built_in.parameters[i].lower);
+  }
+  EXPECT_EQ(read.noise[0].std, built_in.noise[0].std);
+  EXPECT_EQ(read.forgetting.threshold, built_in.forgetting.threshold);
+  EXPECT_EQ(read.sampler.seed, built_in.sampler.seed);
+  EXPECT_EQ(read.sampler.rule, built_in.sampler.rule);
+}
+
+TEST(EstimatorConfig, EveryKeyArrives) {
+  const EstimatorSettings s = Read(kHunt + R"(
+[model.parameters.K]
+prior = "normal"
+mean = 3
+sd = 1.5
+lower = 0.5
+upper = 7
+[model.parameters.p]
+prior = "uniform"
+lower = 1.1
+upper = 2.4
+[noise]
+kind = "mixture"
+std = 0.2
+mean = 0.01
+estimate_std = true
+std_log_sd = 0.5
+dof = 5
+outlier_weight = 0.1
+outlier_scale = 8
+[forgetting]
+index = "signed_mean"
+threshold = 2.5
+mu = 0.1
+lambda_max = 0.9
+rho = 0.01
+min_samples = 7
+[sampler]
+epsilon = 0.02
+delta = 0.8
+draws = "k_min"
+max_draws = 20000
+lambda_q_min = 0.1
+lambda_q_max = 0.6
+seed = 42
+)");
+  EXPECT_EQ(s.parameters[0].mean, 3.0);
+  EXPECT_EQ(s.parameters[0].sd, 1.5);
+  EXPECT_EQ(s.parameters[0].lower, 0.5);
+  EXPECT_EQ(s.parameters[0].upper, 7.0);
+  EXPECT_EQ(s.parameters[2].prior, PriorKind::kUniform);
+  EXPECT_EQ(s.noise[0].kind, NoiseKind::kMixture);
+  EXPECT_EQ(s.noise[0].std, 0.2);
+  EXPECT_EQ(s.noise[0].mean, 0.01);
+  EXPECT_TRUE(s.noise[0].estimate_std);
+  EXPECT_EQ(s.noise[0].std_log_sd, 0.5);
+  EXPECT_EQ(s.noise[0].dof, 5.0);
+  EXPECT_EQ(s.noise[0].outlier_weight, 0.1);
+  EXPECT_EQ(s.noise[0].outlier_scale, 8.0);
+  EXPECT_EQ(s.forgetting.index, MismatchIndex::kSignedMean);
+  EXPECT_EQ(s.forgetting.threshold, 2.5);
+  EXPECT_EQ(s.forgetting.mu, 0.1);
+  EXPECT_EQ(s.forgetting.lambda_max, 0.9);
+  EXPECT_EQ(s.forgetting.rho, 0.01);
+  EXPECT_EQ(s.forgetting.min_samples, 7);
+  EXPECT_EQ(s.sampler.epsilon, 0.02);
+  EXPECT_EQ(s.sampler.delta, 0.8);
+  EXPECT_EQ(s.sampler.rule, DrawRule::kKMin);
+  EXPECT_EQ(s.sampler.max_draws, 20'000);
+  EXPECT_EQ(s.sampler.lambda_q_min, 0.1);
+  EXPECT_EQ(s.sampler.lambda_q_max, 0.6);
+  EXPECT_EQ(s.sampler.seed, 42u);
+}
+
+TEST(EstimatorConfig, ANumberOfDrawsIsFixedAndFits) {
+  const EstimatorSettings s = Read(kHunt + "[sampler]\ndraws = 30000\n");
+  EXPECT_EQ(s.sampler.rule, DrawRule::kFixed);
+  EXPECT_EQ(s.sampler.fixed_draws, 30'000);
+  EXPECT_GE(s.sampler.max_draws, 30'000);
+}
+
+TEST(EstimatorConfig, NoiseOfOneModeOverridesTheOthers) {
+  const EstimatorSettings plain = BuiltinSettings("soft_actuator");
+  const std::string second{Estimator(plain).mode_name(1)};
+  const EstimatorSettings s =
+      Read(kActuator + "[noise]\nkind = \"laplace\"\nstd = 2e-4\n[noise." + second + "]\nstd = 3e-4\n");
+  EXPECT_EQ(s.noise[0].std, 2e-4);
+  EXPECT_EQ(s.noise[1].std, 3e-4);
+  EXPECT_EQ(s.noise[1].kind, NoiseKind::kLaplace);
+}
+
+TEST(EstimatorConfig, ConstantsBelongToTheActuator) {
+  EXPECT_EQ(Read(kActuator + "[model.constants]\nq1 = 0.07\n").constants.q1, 0.07);
+  EXPECT_THAT(ErrorOf(kHunt + "[model.constants]\nq1 = 0.07\n"), HasSubstr("model.constants"));
+}
+
+TEST(EstimatorConfig, TheModelOfTheCommandLineWins) {
+  EXPECT_EQ(Read(kHunt, "soft_actuator").model, "soft_actuator");
+  EXPECT_EQ(Read("schema = 1\n", "hunt_crossley").model, "hunt_crossley");
+}
+
+TEST(EstimatorConfig, UnknownModelsAreNamed) {
+  EXPECT_THAT(ErrorOf("schema = 1\n[model]\nname = \"hunt\"\n"), HasSubstr("f.toml:3: model.name = \"hunt\""));
+  EXPECT_THAT(ErrorOf(kHunt, "hunt"), HasSubstr("--model hunt"));
+  EXPECT_THAT(ErrorOf("schema = 1\n"), HasSubstr("model.name is missing"));
+}
+
+TEST(EstimatorConfig, TyposAndForeignNamesAreErrorsWithTheirLine) {
+  EXPECT_THAT(ErrorOf(kHunt + "[sampler]\nsed = 1\n"), AllOf(HasSubstr("f.toml:5"), HasSubstr("did you mean seed?")));
+  EXPECT_THAT(ErrorOf(kHunt + "[model.parameters.Q]\nmean = 1\n"), HasSubstr("f.toml:4: model.parameters.Q"));
+  EXPECT_THAT(ErrorOf(kHunt + "[noise.valve]\nstd = 1\n"), HasSubstr("noise.valve"));
+  EXPECT_THAT(ErrorOf(kHunt + "[samplr]\n"), HasSubstr("did you mean sampler?"));
+}
+
+TEST(EstimatorConfig, ValuesOutOfRangeAreErrors) {
+  EXPECT_THAT(ErrorOf("schema = 2\n[model]\nname = \"hunt_crossley\"\n"), HasSubstr("f.toml:1: schema = 2"));
+  for (const char* line :
+       {"[noise]\nstd = 0", "[noise]\nstd = -1", "[noise]\nkind = \"normal\"", "[noise]\noutlier_weight = 0.7",
+        "[noise]\noutlier_scale = 1", "[forgetting]\nthreshold = 0", "[forgetting]\nlambda_max = 1.5",
+        "[forgetting]\nrho = -1", "[forgetting]\nmin_samples = 0", "[sampler]\nepsilon = 0", "[sampler]\ndelta = 1",
+        "[sampler]\ndraws = 10", "[sampler]\ndraws = \"many\"", "[sampler]\nseed = -1",
+        "[sampler]\nlambda_q_min = 0.7\nlambda_q_max = 0.6", "[model.parameters.K]\nlower = 3\nupper = 2",
+        "[model.parameters.K]\nsd = 0", "[model.parameters.K]\nprior = \"uniform\"\nmean = 2"}) {
+    EXPECT_THAT(ErrorOf(kHunt + line + "\n"), HasSubstr("f.toml")) << line;
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::support

@@ -1,0 +1,103 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "support/paths.hpp"
+#include "support/process.hpp"
+#include "tools/replay_data.hpp"
+
+namespace armcmc::replay {
+namespace {
+
+using test::Outcome;
+using ::testing::HasSubstr;
+
+class ReplayProgram : public ::testing::Test {
+ protected:
+  ReplayProgram() {
+    std::ofstream(dir_ / "contact.csv") << ContactCsv(301);
+    std::ofstream(dir_ / "own.toml") << "schema = 1\n[model]\nname = \"hunt_crossley\"\n[sampler]\ndraws = 500\n"
+                                        "[timing]\nperiod_ms = 100\n[rt]\nmode = \"enforce\"\n";
+  }
+  std::vector<std::string> Good() {
+    return {"--config", dir_ / "own.toml", "--data", dir_ / "contact.csv", "--out", dir_ / "out.csv"};
+  }
+  static Outcome Run(const std::vector<std::string>& arguments) {
+    return test::RunProgram(test::Program("armcmc-replay"), arguments);
+  }
+  static void ExpectBadInput(const std::vector<std::string>& arguments, const std::string& words) {
+    const Outcome o = Run(arguments);
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(words));
+  }
+  std::string Text(const std::string& name) {
+    std::ifstream file(dir_ / name);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+  test::ScratchDir dir_;
+};
+
+TEST_F(ReplayProgram, WritesEstimatesPredictionsAndReportAndSaysWhatItDid) {
+  auto arguments = Good();
+  arguments.insert(arguments.end(),
+                   {"--predictions", dir_ / "pred.csv", "--report", dir_ / "report.json", "--seed", "5"});
+  const Outcome o = Run(arguments);
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(o.err, "");
+  EXPECT_THAT(o.out, HasSubstr("3 packs (0.3 s)"));
+  EXPECT_THAT(o.out, HasSubstr("times real time"));
+  const std::string csv = Text("out.csv"), predictions = Text("pred.csv"), report = Text("report.json");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
+  EXPECT_EQ(std::count(predictions.begin(), predictions.end(), '\n'), 301);
+  EXPECT_THAT(report, HasSubstr("\"schema\": 1"));
+  EXPECT_THAT(report, HasSubstr("\"seed\": 5"));
+}
+
+TEST_F(ReplayProgram, HelpTeachesWithAnExample) {
+  const Outcome help = Run({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out, HasSubstr("Example:"));
+  EXPECT_EQ(Run({"--version"}).code, 0);
+}
+
+TEST_F(ReplayProgram, FindsTheConfigurationThatCameWithItByName) {
+  auto arguments = Good();
+  arguments[1] = "hunt_crossley";
+  const Outcome o = Run(arguments);
+  EXPECT_EQ(o.code, 0) << o.err;
+}
+
+TEST_F(ReplayProgram, BadInputIsOneLineThatNamesThePlace) {
+  ExpectBadInput({}, "--config");
+  auto arguments = Good();
+  arguments[1] = dir_ / "none.toml";
+  ExpectBadInput(arguments, "none.toml");
+  arguments = Good();
+  arguments[3] = dir_ / "none.csv";
+  ExpectBadInput(arguments, "none.csv");
+  arguments = Good();
+  arguments[5] = dir_ / "no/such/folder/out.csv";
+  ExpectBadInput(arguments, "cannot be written");
+  arguments = Good();
+  arguments.insert(arguments.end(), {"--model", "banana"});
+  ExpectBadInput(arguments, "banana");
+
+  std::ofstream(dir_ / "typo.toml") << Text("own.toml") << "[sampler2]\n";
+  arguments = Good();
+  arguments[1] = dir_ / "typo.toml";
+  ExpectBadInput(arguments, "typo.toml:10: sampler2: unknown key (did you mean sampler?)");
+
+  std::ofstream(dir_ / "nan.csv") << "t,x,v,f\n0,0,0,0\n0.001,nan,0,0\n";
+  arguments = Good();
+  arguments[3] = dir_ / "nan.csv";
+  ExpectBadInput(arguments, "nan.csv:3: x = nan");
+}
+
+}  // namespace
+}  // namespace armcmc::replay

@@ -1,0 +1,84 @@
+#include "report.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "armcmc/support/program.hpp"
+#include "armcmc/support/text_table.hpp"
+
+namespace armcmc::replay {
+
+std::string SummaryText(const Estimator& estimator, const PackSource& source, const ReplaySummary& summary) {
+  using support::Significant;
+  std::ostringstream out;
+  const PackCounts counts = source.counts();
+  out << summary.packs << " packs (" << Significant(summary.data_s, 4) << " s), " << summary.held << " of them held, "
+      << summary.modifications << " modifications, " << summary.truncated << " cut; lost " << counts.lost
+      << ", duplicate " << counts.duplicate << ", reordered " << counts.reordered << ", rejected "
+      << counts.rejected + summary.refused << ", unused " << counts.unused << '\n';
+  for (const std::string& note : source.notes()) out << "note: " << note << '\n';
+
+  support::TextTable table({"mode", "quantity", "estimate", "sd", "95 % from", "to", "unit"});
+  bool any_known = false;
+  for (int m = 0; m < estimator.num_modes(); ++m) {
+    const ModeEstimate& mode = summary.last.modes[static_cast<std::size_t>(m)];
+    any_known = any_known || mode.known;
+    for (int i = 0; i < estimator.num_reported() && mode.known; ++i) {
+      const MarginalSummary& q = mode.marginal[static_cast<std::size_t>(i)];
+      table.AddRow({std::string(estimator.mode_name(m)), std::string(estimator.reported(i).name),
+                    Significant(q.ar_map, 5), Significant(q.sd, 2), Significant(q.q025, 5), Significant(q.q975, 5),
+                    std::string(estimator.reported(i).unit)});
+    }
+  }
+  out << (any_known ? table.ToString() : std::string("nothing is known: no pack said anything about a parameter\n"));
+  if (summary.packs > 0 && summary.compute_s > 0.0)
+    out << "computed in " << Significant(summary.compute_s, 3) << " s, "
+        << Significant(summary.data_s / summary.compute_s, 3) << " times real time, "
+        << Significant(1e3 * summary.compute_s / static_cast<double>(summary.packs), 3) << " ms a pack on "
+        << InstructionSet() << '\n';
+  return out.str();
+}
+
+void WriteReport(const std::filesystem::path& path, const Estimator& estimator, const PackSource& source,
+                 const ReplaySummary& summary) {
+  using nlohmann::ordered_json;
+  const PackCounts counts = source.counts();
+  ordered_json report;
+  report["schema"] = 1;
+  report["program"] = "armcmc-replay " + support::Version();
+  report["model"] = estimator.settings().model;
+  report["seed"] = estimator.settings().sampler.seed;
+  report["packs"] = {{"used", summary.packs},
+                     {"held", summary.held},
+                     {"modifications", summary.modifications},
+                     {"truncated", summary.truncated},
+                     {"lost", counts.lost},
+                     {"duplicate", counts.duplicate},
+                     {"reordered", counts.reordered},
+                     {"rejected", counts.rejected + summary.refused},
+                     {"unused", counts.unused}};
+  ordered_json modes = ordered_json::object();
+  for (int m = 0; m < estimator.num_modes(); ++m) {
+    const ModeEstimate& mode = summary.last.modes[static_cast<std::size_t>(m)];
+    if (!mode.known) continue;
+    ordered_json& parameters = modes[std::string(estimator.mode_name(m))];
+    for (int i = 0; i < estimator.num_reported(); ++i) {
+      const MarginalSummary& q = mode.marginal[static_cast<std::size_t>(i)];
+      parameters[std::string(estimator.reported(i).name)] = {
+          {"ar_map", q.ar_map}, {"ar_ap", q.ar_ap}, {"sd", q.sd},
+          {"q025", q.q025},     {"q975", q.q975},   {"unit", estimator.reported(i).unit}};
+    }
+  }
+  report["estimates"] = modes;
+  report["data_s"] = summary.data_s;
+  report["compute_s"] = summary.compute_s;
+  report["instruction_set"] = InstructionSet();
+  report["notes"] = source.notes();
+  std::ofstream file(path);
+  file << report.dump(2) << '\n';
+  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+}  // namespace armcmc::replay

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include "armcmc/replay/draw_record.hpp"
+#include "armcmc/replay/pack_source.hpp"
+#include "armcmc/support/csv.hpp"
+
+namespace armcmc::replay {
+
+/// Packs from a CSV of samples. The first row is sample 0; pack k holds the samples (k-1) N + 1 .. k N, N = period /
+/// dt.
+///
+/// A sample's number follows from its time, so that a row that is missing or was skipped leaves a gap. Such a pack is
+/// used with the samples that it has when the model does not mind (Hunt-Crossley), else it counts as lost, as does one
+/// without samples. Samples behind the last full pack are left out.
+class CsvSource final : public PackSource {
+ public:
+  /// @throws support::InputError when the file is bad, or the period is not a whole number of samples in
+  /// [1, kMaxPackSamples].
+  CsvSource(const SourceRequest& request, std::optional<DrawRecord> record);
+
+  bool Next(RecordedPack* next) override;
+  [[nodiscard]] PackCounts counts() const override { return counts_; }
+  [[nodiscard]] std::vector<std::string> notes() const override;
+  [[nodiscard]] double progress() const override;
+
+ private:
+  void NumberSamples(const SourceRequest& request);
+  void Fill(std::size_t end_row, DataPack* pack, std::array<double, kMaxPackSamples>* t) const;
+
+  PlantKind plant_;
+  support::CsvSamples samples_;
+  std::optional<DrawRecord> record_;
+  double dt_ = 0.0;
+  std::int64_t samples_per_pack_ = 0;
+  std::vector<std::int64_t> number_;  // of each row
+  std::size_t row_ = 1;
+  std::int64_t pack_ = 0;  // the last one looked at
+  std::int64_t last_pack_ = 0;
+  std::int64_t incomplete_ = 0;  // packs used although samples are missing
+  PackCounts counts_;
+};
+
+}  // namespace armcmc::replay

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "armcmc/replay/draw_record.hpp"
+#include "armcmc/replay/pack_source.hpp"
+#include "armcmc/support/lcm_log.hpp"
+
+namespace armcmc::replay {
+
+/// Packs from the PLANT_PACK events of an LCM log, checked and sequenced by the code of the real-time process.
+///
+/// With a draw record, packs that the recorded run made no estimate from are left out: it was not running
+/// yet, or had dropped them.
+class LcmSource final : public PackSource {
+ public:
+  LcmSource(const SourceRequest& request, std::optional<DrawRecord> record);
+  ~LcmSource() override;
+
+  bool Next(RecordedPack* next) override;
+  [[nodiscard]] PackCounts counts() const override;
+  [[nodiscard]] std::vector<std::string> notes() const override;
+  [[nodiscard]] double progress() const override { return log_.progress(); }
+
+ private:
+  struct Checks;  // codec and sequence tracker of the real-time process
+  std::string channel_;
+  support::LcmLogReader log_;
+  std::optional<DrawRecord> record_;
+  std::unique_ptr<Checks> checks_;
+  std::int64_t rejected_ = 0, unused_ = 0;
+};
+
+}  // namespace armcmc::replay

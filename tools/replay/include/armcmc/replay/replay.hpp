@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "armcmc/estimate.hpp"
+#include "armcmc/estimator.hpp"
+#include "armcmc/replay/pack_source.hpp"
+
+namespace armcmc::replay {
+
+/// What a replay did.
+struct ReplaySummary {
+  std::int64_t packs = 0;  ///< Used.
+  std::int64_t held = 0;   ///< Of those, packs that said nothing about any parameter.
+  std::int64_t modifications = 0;
+  std::int64_t truncated = 0;  ///< Cut at the recorded number of draws.
+  std::int64_t refused = 0;    ///< By the estimator; nothing was learnt from them.
+  double data_s = 0.0;         ///< Time that the packs span.
+  double compute_s = 0.0;      ///< Time that adjust and execute took.
+  Estimate last;               ///< After the last pack.
+};
+
+/// Drives an estimator over a recording: no thread, no deadline, the same result every time.
+/// @param on_estimate  Called after each pack.
+ReplaySummary Replay(PackSource* source, Estimator* estimator,
+                     const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate);
+
+}  // namespace armcmc::replay

@@ -1,0 +1,129 @@
+#include "armcmc/replay/csv_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "armcmc/support/program.hpp"
+
+namespace armcmc::replay {
+namespace {
+
+constexpr std::int64_t kRunId = 1;
+
+/// Column order of the result: t, inputs in the order of DataPack::u, output.
+support::CsvRequest Columns(const SourceRequest& request) {
+  if (request.plant == PlantKind::kHuntCrossley) return {{"t", "x", "v", "f"}, {{"v", "x"}}, request.skip_bad};
+  return {{"t", "u_c", "u_d", "p", "pdot", "alpha"}, {{"pdot", "p"}}, request.skip_bad};
+}
+
+/// The decimal number that was meant: times are written in decimals, and their differences are not.
+double Snapped(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return std::strtod(text.data(), nullptr);
+}
+
+double MedianStep(const std::vector<double>& t) {
+  std::vector<double> steps(t.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = t[i + 1] - t[i];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+}  // namespace
+
+CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> record)
+    : plant_(request.plant), samples_(support::ReadCsv(request.data, Columns(request))), record_(std::move(record)) {
+  if (samples_.num_rows() < 2)
+    throw support::InputError(request.data.string() + ": one row is too few, the sample interval is unknown");
+  NumberSamples(request);
+  last_pack_ = number_.back() / samples_per_pack_;
+  if (last_pack_ == 0)
+    throw support::InputError(request.data.string() + ": " + std::to_string(number_.size()) +
+                              " rows do not fill a pack; expected sample 0 and at least " +
+                              std::to_string(samples_per_pack_) + " more");
+}
+
+void CsvSource::NumberSamples(const SourceRequest& request) {
+  const std::vector<double>& t = samples_.columns.front();
+  const double step = MedianStep(t);
+  number_.resize(t.size());
+  number_[0] = 0;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    const double steps = std::round((t[i] - t[i - 1]) / step);
+    number_[i] = number_[i - 1] + static_cast<std::int64_t>(std::clamp(steps, 1.0, 1e12));
+  }
+  dt_ = Snapped((t.back() - t.front()) / static_cast<double>(number_.back()));
+  const double ratio = request.period / dt_;
+  samples_per_pack_ = std::llround(std::min(ratio, 1e6));
+  if (samples_per_pack_ < 1 || samples_per_pack_ > kMaxPackSamples ||
+      std::fabs(ratio - std::round(ratio)) > 1e-3 * ratio)
+    throw support::InputError(
+        request.data.string() + ": is sampled every " + support::ExactNumber(dt_) +
+        " s, which does not divide timing.period_ms = " + support::ExactNumber(request.period * 1e3) + " into 1 to " +
+        std::to_string(kMaxPackSamples) + " samples; change timing.period_ms");
+}
+
+void CsvSource::Fill(std::size_t end_row, DataPack* pack, std::array<double, kMaxPackSamples>* t) const {
+  const std::size_t num_inputs = samples_.columns.size() - 2;
+  pack->seq = pack_;
+  pack->run_id = kRunId;
+  pack->t_last_s = samples_.columns.front()[end_row - 1];
+  pack->t_last_ns = static_cast<Nanos>(std::llround(pack->t_last_s * 1e9));
+  pack->dt = dt_;
+  pack->plant = plant_;
+  pack->num_samples = static_cast<int>(end_row - row_);
+  pack->num_inputs = static_cast<int>(num_inputs);
+  for (std::size_t row = row_; row < end_row; ++row) {
+    const std::size_t n = row - row_;
+    (*t)[n] = samples_.columns.front()[row];
+    pack->y[n] = samples_.columns.back()[row];
+    for (std::size_t i = 0; i < num_inputs; ++i) pack->u[n][i] = samples_.columns[i + 1][row];
+  }
+}
+
+bool CsvSource::Next(RecordedPack* next) {
+  while (pack_ < last_pack_) {
+    ++pack_;
+    std::size_t end_row = row_;
+    while (end_row < number_.size() && number_[end_row] <= pack_ * samples_per_pack_) ++end_row;
+    const auto missing = samples_per_pack_ - static_cast<std::int64_t>(end_row - row_);
+    // The angle of the actuator is integrated over time; the contact force is not.
+    const bool usable = missing == 0 || (missing < samples_per_pack_ && plant_ == PlantKind::kHuntCrossley);
+    if (usable) Fill(end_row, &next->pack, &next->t);
+    row_ = end_row;
+    if (!usable) {
+      ++counts_.lost;
+      continue;
+    }
+    next->limits = kNoDrawLimits;
+    if (record_) {
+      const std::optional<DrawLimits> limits = record_->Find(0, pack_);
+      if (!limits) {
+        ++counts_.unused;
+        continue;
+      }
+      next->limits = *limits;
+    }
+    if (missing > 0) ++incomplete_;
+    return true;
+  }
+  return false;
+}
+
+std::vector<std::string> CsvSource::notes() const {
+  std::vector<std::string> notes = samples_.notes;
+  if (incomplete_ > 0) notes.push_back(std::to_string(incomplete_) + " packs are used although samples are missing");
+  if (const std::int64_t left = number_.back() % samples_per_pack_; left > 0)
+    notes.push_back("the last " + std::to_string(left) + " samples do not fill a pack and are left out");
+  return notes;
+}
+
+double CsvSource::progress() const { return static_cast<double>(pack_) / static_cast<double>(last_pack_); }
+
+}  // namespace armcmc::replay

@@ -1,0 +1,90 @@
+#include "armcmc/replay/lcm_source.hpp"
+
+#include <set>
+#include <utility>
+
+#include "armcmc/rt/pack_codec.hpp"
+#include "armcmc/rt/sequence_tracker.hpp"
+#include "armcmc/support/program.hpp"
+
+namespace armcmc::replay {
+namespace {
+
+void RequireChannel(const std::filesystem::path& path, const std::string& channel) {
+  support::LcmLogReader log(path);
+  support::LcmLogEvent event;
+  std::set<std::string> seen;
+  while (log.Next(&event)) {
+    if (event.channel == channel) return;
+    seen.emplace(event.channel);
+  }
+  std::string names;
+  for (const std::string& name : seen) names += (names.empty() ? "" : ", ") + name;
+  throw support::InputError(path.string() + ": holds no event of channel " + channel + " (--prefix?); it has " + names);
+}
+
+}  // namespace
+
+struct LcmSource::Checks {
+  rt::PackCodec codec;
+  rt::SequenceTracker tracker;
+};
+
+LcmSource::LcmSource(const SourceRequest& request, std::optional<DrawRecord> record)
+    : channel_(request.prefix + "PLANT_PACK"),
+      log_(request.data),
+      record_(std::move(record)),
+      checks_(std::make_unique<Checks>(Checks{rt::PackCodec(request.plant, request.num_inputs), {}})) {
+  RequireChannel(request.data, channel_);
+}
+
+LcmSource::~LcmSource() = default;
+
+bool LcmSource::Next(RecordedPack* next) {
+  support::LcmLogEvent event;
+  while (log_.Next(&event)) {
+    if (event.channel != channel_) continue;
+    rt::PackCodec& codec = checks_->codec;
+    if (codec.Decode(event.data) != rt::RejectCause::kNone) {
+      ++rejected_;
+      if (codec.decoded()) checks_->tracker.OnUnusable(codec.seq(), codec.run_id());
+      continue;
+    }
+    if (!rt::IsUsable(checks_->tracker.OnPack(codec.seq(), codec.run_id()).verdict)) continue;
+    next->limits = kNoDrawLimits;
+    if (record_) {
+      const std::optional<DrawLimits> limits = record_->Find(codec.run_id(), codec.seq());
+      if (!limits) {
+        ++unused_;
+        continue;
+      }
+      next->limits = *limits;
+    }
+    codec.CopyTo(&next->pack);
+    const DataPack& pack = next->pack;
+    for (int n = 0; n < pack.num_samples; ++n)
+      next->t[static_cast<std::size_t>(n)] = pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt;
+    return true;
+  }
+  return false;
+}
+
+PackCounts LcmSource::counts() const {
+  const rt::SequenceTracker::Counts& seen = checks_->tracker.counts();
+  return {seen.lost, seen.duplicate, seen.reordered, rejected_, unused_};
+}
+
+std::vector<std::string> LcmSource::notes() const {
+  std::vector<std::string> notes;
+  const support::LcmLogDamage& damage = log_.damage();
+  if (damage.any())
+    notes.push_back("the log is damaged: " + std::to_string(damage.resyncs) + " places skipped, " +
+                    std::to_string(damage.missing_events) + " events missing" +
+                    (damage.cut_off ? ", cut off at its end" : ""));
+  if (record_)
+    notes.push_back("draws are cut where " + std::to_string(record_->size()) + " recorded estimates were" +
+                    (unused_ > 0 ? "; " + std::to_string(unused_) + " packs that have none are left out" : ""));
+  return notes;
+}
+
+}  // namespace armcmc::replay

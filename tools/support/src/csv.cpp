@@ -1,0 +1,224 @@
+#include "armcmc/support/csv.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "armcmc/support/program.hpp"
+#include "nearest.hpp"
+
+namespace armcmc::support {
+namespace {
+
+constexpr std::size_t kAbsent = std::numeric_limits<std::size_t>::max();
+
+std::string_view Trim(std::string_view text) {
+  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+void Split(std::string_view line, std::vector<std::string_view>* fields) {
+  fields->clear();
+  for (std::size_t from = 0;;) {
+    const std::size_t comma = line.find(',', from);
+    fields->push_back(Trim(line.substr(from, comma == std::string_view::npos ? comma : comma - from)));
+    if (comma == std::string_view::npos) return;
+    from = comma + 1;
+  }
+}
+
+std::optional<double> ParseDouble(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size()) return std::nullopt;
+  // Beyond the range of a double the nearest value is zero or infinite; from_chars leaves that to the caller.
+  if (error == std::errc::result_out_of_range) return std::strtod(std::string(text).c_str(), nullptr);
+  if (error != std::errc()) return std::nullopt;
+  return value;
+}
+
+/// Reads lines and remembers whether the last one had a line end.
+class LineReader {
+ public:
+  explicit LineReader(const std::filesystem::path& path) : file_(path, std::ios::binary) {}
+  [[nodiscard]] bool is_open() const { return file_.is_open(); }
+  bool Next(std::string* line) {
+    if (!std::getline(file_, *line)) return false;
+    complete_ = !file_.eof();
+    ++number_;
+    if (number_ == 1 && line->starts_with("\xEF\xBB\xBF")) line->erase(0, 3);  // byte order mark
+    return true;
+  }
+  [[nodiscard]] std::size_t number() const { return number_; }
+  [[nodiscard]] bool complete() const { return complete_; }
+
+ private:
+  std::ifstream file_;
+  std::size_t number_ = 0;
+  bool complete_ = true;
+};
+
+bool IsBlankOrComment(std::string_view line) {
+  const std::string_view text = Trim(line);
+  return text.empty() || text.front() == '#';
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, const CsvRequest& request) : path_(path), request_(request), lines_(path) {
+    if (!lines_.is_open() || std::filesystem::is_directory(path))
+      throw InputError(path.string() + ": cannot be read, expected a CSV file");
+  }
+
+  CsvSamples Read() {
+    ReadHeader();
+    result_.columns.resize(request_.columns.size());
+    std::string line;
+    while (lines_.Next(&line)) {
+      if (IsBlankOrComment(line)) continue;
+      ReadRow(line);
+    }
+    if (result_.num_rows() == 0) throw InputError(path_.string() + ": holds no valid row of numbers");
+    if (result_.bad.total() > result_.num_rows())
+      throw InputError(path_.string() + ": " + std::to_string(result_.bad.total()) + " rows are bad and only " +
+                       std::to_string(result_.num_rows()) + " good; this is not skipping but guessing");
+    NoteBadRows();
+    Derive();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] InputError Error(const std::string& what) const {
+    return InputError(path_.string() + ":" + std::to_string(lines_.number()) + ": " + what);
+  }
+
+  void ReadHeader() {
+    std::string line;
+    do {
+      if (!lines_.Next(&line))
+        throw InputError(path_.string() + ": is empty, expected a header line " + Joined(request_.columns));
+    } while (IsBlankOrComment(line));
+    std::vector<std::string_view> fields;
+    Split(line, &fields);
+    std::vector<std::string> header;
+    for (std::string_view field : fields) {
+      if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
+      header.emplace_back(field);
+    }
+    num_fields_ = header.size();
+    for (const std::string& name : request_.columns) source_.push_back(Find(header, name));
+  }
+
+  [[nodiscard]] std::size_t Find(const std::vector<std::string>& header, const std::string& name) const {
+    const auto found = std::find(header.begin(), header.end(), name);
+    if (found == header.end()) {
+      const auto derived = std::find_if(request_.derived.begin(), request_.derived.end(),
+                                        [&](const DerivedColumn& d) { return d.name == name; });
+      if (derived != request_.derived.end()) return kAbsent;
+      throw Error("column " + name + " is missing" + DidYouMean(name, header) + "; the header has " + Joined(header) +
+                  ", expected " + Joined(request_.columns));
+    }
+    if (std::find(found + 1, header.end(), name) != header.end())
+      throw Error("column " + name + " appears twice in the header");
+    return static_cast<std::size_t>(found - header.begin());
+  }
+
+  /// Counts a bad row, or throws when bad rows are not to be skipped.
+  void Reject(std::size_t BadRows::*cause, const std::string& what) {
+    if (!request_.skip_bad) throw Error(what + " (--skip-bad counts and skips bad rows)");
+    ++(result_.bad.*cause);
+  }
+
+  void ReadRow(const std::string& line) {
+    Split(line, &fields_);
+    if (!lines_.complete())
+      return Reject(&BadRows::malformed, "the last line has no line end: the file is cut off here");
+    if (fields_.size() != num_fields_)
+      return Reject(&BadRows::malformed, "has " + std::to_string(fields_.size()) + " fields, expected " +
+                                             std::to_string(num_fields_) + " as in the header");
+    row_.clear();
+    for (std::size_t i = 0; i < source_.size(); ++i) {
+      if (source_[i] == kAbsent) continue;
+      const std::string_view text = fields_[source_[i]];
+      const std::string what = request_.columns[i] + " = " + (text.empty() ? "(empty)" : std::string(text));
+      const std::optional<double> value = text.empty() ? std::numeric_limits<double>::quiet_NaN() : ParseDouble(text);
+      if (!value) return Reject(&BadRows::malformed, what + ": expected a number");
+      if (!std::isfinite(*value)) return Reject(&BadRows::non_finite, what + ": expected a finite number");
+      row_.push_back(*value);
+    }
+    std::vector<double>& t = result_.columns.front();
+    if (!t.empty() && row_.front() <= t.back())
+      return Reject(&BadRows::not_increasing, request_.columns.front() + " = " + ExactNumber(row_.front()) +
+                                                  ": expected more than " + ExactNumber(t.back()) +
+                                                  " of the row before, time must increase");
+    for (std::size_t i = 0, next = 0; i < source_.size(); ++i)
+      if (source_[i] != kAbsent) result_.columns[i].push_back(row_[next++]);
+  }
+
+  void NoteBadRows() {
+    const BadRows& bad = result_.bad;
+    if (bad.total() == 0) return;
+    result_.notes.push_back("skipped " + std::to_string(bad.total()) + " bad rows: " + std::to_string(bad.malformed) +
+                            " malformed, " + std::to_string(bad.non_finite) + " not finite, " +
+                            std::to_string(bad.not_increasing) + " with a time that does not increase");
+  }
+
+  void Derive() {
+    const std::vector<double>& t = result_.columns.front();
+    for (std::size_t i = 0; i < source_.size(); ++i) {
+      if (source_[i] != kAbsent) continue;
+      const auto rule = std::find_if(request_.derived.begin(), request_.derived.end(),
+                                     [&](const DerivedColumn& d) { return d.name == request_.columns[i]; });
+      const auto from = std::find(request_.columns.begin(), request_.columns.end(), rule->from);
+      const std::vector<double>& x = result_.columns[static_cast<std::size_t>(from - request_.columns.begin())];
+      if (t.size() < 2) throw InputError(path_.string() + ": one row is too few to derive " + rule->name);
+      std::vector<double>& v = result_.columns[i];
+      v.resize(t.size());
+      for (std::size_t n = 0; n < t.size(); ++n) {
+        const std::size_t before = n == 0 ? 0 : n - 1, after = std::min(n + 1, t.size() - 1);
+        v[n] = (x[after] - x[before]) / (t[after] - t[before]);
+      }
+      result_.notes.push_back("column " + rule->name + " is missing: derived from " + rule->from +
+                              " by central differences");
+    }
+  }
+
+  const std::filesystem::path& path_;
+  const CsvRequest& request_;
+  LineReader lines_;
+  std::size_t num_fields_ = 0;
+  std::vector<std::size_t> source_;  // field of each wanted column, or kAbsent
+  std::vector<std::string_view> fields_;
+  std::vector<double> row_;
+  CsvSamples result_;
+};
+
+}  // namespace
+
+CsvSamples ReadCsv(const std::filesystem::path& path, const CsvRequest& request) {
+  return Reader(path, request).Read();
+}
+
+std::string ExactNumber(double value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
+
+}  // namespace armcmc::support

@@ -1,0 +1,54 @@
+#include "armcmc/support/program.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+#include "armcmc/support/strict_toml.hpp"
+
+namespace armcmc::support {
+namespace {
+
+int Complain(const std::string& name, std::string what, int code) {
+  // One line, whatever the message holds.
+  for (char& c : what)
+    if (c == '\n') c = ' ';
+  while (!what.empty() && what.back() == ' ') what.pop_back();
+  std::cerr << name << ": " << what << '\n';
+  return code;
+}
+
+}  // namespace
+
+std::string Version() { return ARMCMC_VERSION; }
+
+int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, const std::function<int()>& body) {
+  app.name(name);
+  app.set_version_flag("--version", name + " " + Version(), "Print the version and exit");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return app.exit(wanted);
+  } catch (const CLI::Error& error) {
+    return Complain(name, std::string(error.what()) + " (see " + name + " --help)", kExitBadInput);
+  }
+  try {
+    const int code = body();
+    // A full disk or a closed pipe shows only now.
+    if (!std::cout.flush()) return Complain(name, "cannot write to standard output", kExitFailure);
+    return code;
+  } catch (const ConfigError& error) {
+    return Complain(name, error.what(), kExitBadInput);
+  } catch (const InputError& error) {
+    return Complain(name, error.what(), kExitBadInput);
+  } catch (const std::invalid_argument& error) {
+    return Complain(name, error.what(), kExitBadInput);
+  } catch (const std::bad_alloc&) {
+    return Complain(name, "out of memory", kExitFailure);
+  } catch (const std::exception& error) {
+    return Complain(name, error.what(), kExitFailure);
+  }
+}
+
+}  // namespace armcmc::support
