@@ -142,15 +142,16 @@ void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, i
 /// take out of noise.
 bool BendPays(const simd::Kernels& kernels, const WeightedDraws& draws, const double* const* e,
               const DensityBlock& block) noexcept {
-  constexpr double kPays = 0.005;
   std::array<double, 2 + kMaxParams> sums{};
   kernels.first_moments(block.dim, e, draws.weight, draws.size, sums.data());
+  const double ess = sums[0] * sums[0] / sums[1];
+  const double pays = 0.004 + 2.5 * (DensityBlock::kDegree + 1) / ess;
   for (int i = 1; i < block.dim; ++i) {
     const double* row = e[i];
     const double mean = sums[static_cast<std::size_t>(2 + i)] / sums[0];
     double square = 0.0;
     kernels.second_moments(1, &row, draws.weight, &mean, draws.size, &square);
-    if (square / sums[0] < 1.0 - kPays) return true;
+    if (square / sums[0] < 1.0 - pays) return true;
   }
   return false;
 }

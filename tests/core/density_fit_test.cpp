@@ -87,7 +87,9 @@ TEST(FitBlock, MeanAndCovarianceEqualThoseOfTheDraws) {
   Sample s(3, 5001, Correlated);
   std::mt19937_64 generator(8);
   for (std::size_t k = 0; k < 5001; ++k) s.weight[k] = std::exp(0.5 * normal(generator));
-  EXPECT_GT(s.Fit(), 1000.0);
+  const double ess = s.Fit();
+  EXPECT_GT(ess, 1000.0);
+  const double unbiased = 1.0 / (1.0 - 1.0 / ess);
   const ParamVector mean = MeanOf(s.block);
   const ParamMatrix covariance = CovarianceOf(s.block);
   for (int i = 0; i < 3; ++i) {
@@ -96,7 +98,8 @@ TEST(FitBlock, MeanAndCovarianceEqualThoseOfTheDraws) {
     EXPECT_NEAR(mean[i], s.Mean(ii), 1e-9 * sd_i) << i;
     for (int j = 0; j < 3; ++j) {
       const auto jj = static_cast<std::size_t>(j);
-      EXPECT_NEAR(covariance(i, j), s.Covariance(ii, jj), 1e-9 * sd_i * std::sqrt(s.Covariance(jj, jj))) << i << j;
+      EXPECT_NEAR(covariance(i, j), unbiased * s.Covariance(ii, jj), 1e-9 * sd_i * std::sqrt(s.Covariance(jj, jj)))
+          << i << j;
     }
   }
 }
@@ -104,12 +107,12 @@ TEST(FitBlock, MeanAndCovarianceEqualThoseOfTheDraws) {
 TEST(FitBlock, LawItselfHasTheMeanAndVarianceOfTheDraws) {
   // One coordinate: nothing bends, so that the moments of the tabulated marginal are those of the block.
   Sample s(1, 3000, [](std::mt19937_64& g, double* u) { u[0] = 7.0 + std::exp(0.5 * normal(g)); });
-  s.Fit();
+  const double ess = s.Fit();
   const double spread = s.block.unwhiten[0][0];
   const double mean = s.block.mean[0] + spread * (s.block.center[0] + s.block.scale[0] * s.tables[0].Mean());
   const double variance = std::pow(spread * s.block.scale[0], 2) * s.tables[0].Variance();
   EXPECT_NEAR(mean, s.Mean(0), 1e-9 * std::sqrt(s.Covariance(0, 0)));
-  EXPECT_NEAR(variance / s.Covariance(0, 0), 1.0, 1e-9);
+  EXPECT_NEAR(variance / s.Covariance(0, 0), 1.0 / (1.0 - 1.0 / ess), 1e-9);
 }
 
 TEST(FitBlock, ReturnsTheKishSizeOfTheWeights) {
