@@ -54,6 +54,7 @@ struct Estimator::Impl {
 
   void PrepareMode(const DataPack& pack, int mode, ModeData* data) const noexcept {
     AllModels::kPrepare[static_cast<std::size_t>(model)](pack, settings.constants, mode, data);
+    data->pack_share = static_cast<double>(data->num_samples) / pack.num_samples;
     const double rho = settings.forgetting.rho;
     // Weights by the distance from the end of the pack, within the samples of the mode.
     for (int n = 0; n < data->num_samples; ++n)

@@ -56,14 +56,16 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
       excess = m.zeta - settings.mu;
       break;
   }
-  m.threshold = settings.threshold + m.allowance;
+  // The end of a contact, a dozen samples of a pack, weighs what it is: it may not undo what whole packs have taught.
+  const double weight = std::sqrt(data.pack_share);
+  m.threshold = settings.threshold / weight + m.allowance;
   if (!(excess < m.threshold)) {  // also when a NaN got here
     m.decision = Decision::kModification;
     m.lambda = 0.0;
     return m;
   }
   m.decision = Decision::kReinforcement;
-  m.lambda = std::min(std::exp(-std::fmax(0.0, excess - m.allowance)), settings.lambda_max);
+  m.lambda = std::min(std::exp(-weight * std::fmax(0.0, excess - m.allowance)), settings.lambda_max);
   return m;
 }
 

@@ -20,7 +20,8 @@ constexpr double kRefitShare = 0.4;        // effective share of the draws below
 constexpr double kMinimumGroup = 2e-3;     // posterior probability below which a group of draws gets no block
 constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
 constexpr FitOptions kMemoryFit{.bandwidth_factor = 0.7, .tail_weight = 0.02, .tail_sd = 1.25};
-constexpr double kInformedSd = 0.9;  // of the prior's: a posterior narrower than that in any parameter says something
+constexpr double kNoiseMemory = 0.3;  // standard deviation of log s that a posterior hands on at least
+constexpr double kInformedSd = 0.9;   // of the prior's: a posterior narrower than that in any parameter says something
 
 constexpr int RoundUp(int n) noexcept { return (n + kTileLanes - 1) / kTileLanes * kTileLanes; }
 
@@ -36,13 +37,20 @@ double WeightEss(const std::vector<double>& weight, int first, int last) noexcep
   return square > 0.0 ? sum * sum / square : 0.0;
 }
 
-enum Purpose : std::uint64_t { kMismatchStream = 0, kDrawStream = 1, kAcceptStream = 2, kNumPurposes = 3 };
+enum Purpose : std::uint64_t {
+  kMismatchStream = 0,
+  kDrawStream = 1,
+  kAcceptStream = 2,
+  kNoiseStream = 3,
+  kNumPurposes = 4
+};
 
 }  // namespace
 
 SamplerWorkspace::SamplerWorkspace(int dim, int capacity) {
   const auto cap = static_cast<std::size_t>(std::max(RoundUp(capacity), Proposal::kMaxBatch) + kTileLanes);
-  for (auto* v : {&log_likelihood, &proposal, &initial_prior, &likelihood, &weight, &group_weight, &first_share})
+  for (auto* v : {&log_likelihood, &proposal, &initial_prior, &likelihood, &weight, &group_weight, &first_share,
+                  &noise_coordinate})
     v->resize(cap);
   for (auto& m : memory) m.resize(cap);
   component.resize(cap);
@@ -371,13 +379,38 @@ void ModeSampler::RunChain(const RandomStream& stream, SamplerWorkspace* ws, Mod
   out->acceptance = static_cast<double>(accepted) / (draws - out->burn_in);
 }
 
-void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int first, SamplerWorkspace* ws,
-                           PosteriorMemory* next, ModeDraws* out) noexcept {
+const double* ModeSampler::SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
+                                            const ModeDraws& draws) const noexcept {
+  const auto d = static_cast<std::size_t>(space_.dim - 1);
+  const double* u = draws.u[d];
+  double mean = 0.0;
+  double square = 0.0;
+  for (int k = first; k < draws.draws; ++k) {
+    mean += draws.weight[k] * u[k];
+    square += draws.weight[k] * u[k] * u[k];
+  }
+  const double variance = std::fmax(square - mean * mean, 0.0);
+  const double wanted = kNoiseMemory / space_.scale[d];
+  const double jitter = std::sqrt(std::fmax(wanted * wanted - variance, 0.0));
+  const int end = first + RoundUp(draws.draws - first);
+  double* row = ws->noise_coordinate.data();
+  kernels_.uniforms(stream.origin(), 0, 1, end - first, row + first);
+  for (int k = first; k < end; ++k)
+    row[k] = std::clamp(u[k] + jitter * normal_table_.Draw(row[k]), space_.lower[d], space_.upper[d]);
+  return row;
+}
+
+void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
+                           SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {
   const int count = out->draws - first;
   const auto offset = static_cast<std::size_t>(first);
   WeightedDraws group{.dim = space_.dim, .size = count, .u = {}, .weight = ws->group_weight.data() + offset};
   for (int d = 0; d < space_.dim; ++d)
     group.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
+  // The level of the noise is carried on loosely. Held as tightly as thousands of samples allow, a quieter or louder
+  // stretch could only be explained by everything having changed, and the parameters would be forgotten with it.
+  if (space_.samples_noise_scale())
+    group.u[static_cast<std::size_t>(space_.dim - 1)] = SpreadNoiseScale(first, stream, ws, *out) + first;
 
   // Where a draw's prior came from: the first block of the memory, the second, or drawn anew.
   const bool use_previous = lambda > 0.0;
@@ -551,7 +584,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& previous, s
   out->num_samples = data.num_samples;
   FindMode(data, ws, out);
   RunChain(stream_of(kAcceptStream), ws, out);
-  Compress(previous, lambda, pilot, ws, next, out);
+  Compress(previous, lambda, pilot, stream_of(kNoiseStream), ws, next, out);
   double log_scale = space_.log_noise_scale;
   if (space_.samples_noise_scale()) {
     const auto d = static_cast<std::size_t>(space_.dim - 1);

@@ -19,8 +19,8 @@ struct PredictiveMoments {
 struct Mismatch {
   double zeta = 0.0;       ///< The index, in noise scales (nats for log_predictive).
   double allowance = 0.0;  ///< Three standard deviations of zeta if nothing has changed.
-  double threshold = 0.0;  ///< zeta_th + allowance.
-  double lambda = 0.0;     ///< exp(-max(0, |mu_nu - zeta| - allowance)) <= lambda_max; 0 in a modification.
+  double threshold = 0.0;  ///< zeta_th / sqrt(share) + allowance; share: samples of the mode over those of the pack.
+  double lambda = 0.0;     ///< exp(-sqrt(share) max(0, |mu_nu - zeta| - allowance)) <= lambda_max; 0 in a modification.
   Decision decision = Decision::kModification;
 };
 

@@ -12,6 +12,7 @@ inline constexpr int kTileLanes = 32;   ///< Candidates scored side by side.
 /// The samples of one pack that belong to one mode, in time order, as the scoring kernels read them.
 struct alignas(64) ModeData {
   int num_samples = 0;
+  double pack_share = 1.0;                       ///< num_samples over the samples of the whole pack, in (0, 1].
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.

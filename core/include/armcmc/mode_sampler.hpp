@@ -30,8 +30,9 @@ class SamplerWorkspace {
   std::vector<double> log_likelihood, proposal, initial_prior, likelihood;
   std::array<std::vector<double>, PosteriorMemory::kMaxBlocks> memory;  ///< Density of each block of the memory.
   std::vector<double> weight, group_weight;
-  std::vector<double> first_share;     ///< Posterior share of the memory's first block at a candidate.
-  std::vector<std::int8_t> component;  ///< Component that a candidate was drawn from.
+  std::vector<double> first_share;       ///< Posterior share of the memory's first block at a candidate.
+  std::vector<double> noise_coordinate;  ///< The noise scale\'s coordinate, spread out for the memory.
+  std::vector<std::int8_t> component;    ///< Component that a candidate was drawn from.
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept;
   LaplaceScratch laplace;
@@ -97,8 +98,12 @@ class ModeSampler {
   /// Mode of the target: the best draw, climbed to the top after a modification (when AR-MAP reports it).
   void FindMode(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
   void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
-  void Compress(const PosteriorMemory& previous, double lambda, int first, SamplerWorkspace* ws, PosteriorMemory* next,
-                ModeDraws* out) noexcept;
+  void Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
+                SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept;
+  /// Spreads the noise scale's coordinate of the draws [first, draws) to a standard deviation of log s of at least
+  /// kNoiseMemory. @return the spread row.
+  const double* SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
+                                 const ModeDraws& draws) const noexcept;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept;
 
   const simd::Kernels& kernels_;
