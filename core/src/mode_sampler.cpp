@@ -20,7 +20,7 @@ constexpr double kRefitShare = 0.4;        // effective share of the draws below
 constexpr double kMinimumGroup = 2e-3;     // posterior probability below which a group of draws gets no block
 constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
 constexpr FitOptions kMemoryFit{.bandwidth_factor = 0.7, .tail_weight = 0.02, .tail_sd = 1.25};
-constexpr double kNoiseMemory = 0.3;  // standard deviation of log s that a posterior hands on at least
+constexpr double kNoiseMemory = 0.1;  // standard deviation of log s that a posterior hands on at least
 constexpr double kInformedSd = 0.9;   // of the prior's: a posterior narrower than that in any parameter says something
 
 constexpr int RoundUp(int n) noexcept { return (n + kTileLanes - 1) / kTileLanes * kTileLanes; }
