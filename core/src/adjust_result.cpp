@@ -6,7 +6,7 @@ namespace armcmc {
 
 AdjustResult::AdjustResult(int num_modes_in, int dim, int capacity) : num_modes(num_modes_in) {
   // Whole tiles, and one more: kernels write whole tiles.
-  const auto cap = static_cast<std::size_t>((capacity + 2 * kTileLanes - 1) / kTileLanes * kTileLanes);
+  const auto cap = static_cast<std::size_t>(RoundUpToTile(capacity) + kTileLanes);
   const auto modes_count = static_cast<std::size_t>(num_modes);
   doubles_.resize(modes_count * cap * static_cast<std::size_t>(dim + 1));
   integers_.resize(modes_count * cap * 2);

@@ -9,6 +9,9 @@ namespace armcmc {
 inline constexpr int kMaxFeatures = 6;  ///< Precomputed inputs a model may keep for each sample.
 inline constexpr int kTileLanes = 32;   ///< Candidates scored side by side.
 
+/// Arrays of candidates are padded to whole tiles.
+[[nodiscard]] constexpr int RoundUpToTile(int n) noexcept { return (n + kTileLanes - 1) / kTileLanes * kTileLanes; }
+
 /// The samples of one pack that belong to one mode, in time order, as the scoring kernels read them.
 struct alignas(64) ModeData {
   int num_samples = 0;

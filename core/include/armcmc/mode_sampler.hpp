@@ -87,8 +87,8 @@ class ModeSampler {
                     int count, const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
   /// Weights of [first, last) from the scored quantities. @return log of the factor taken out, or NaN if none is
   /// finite.
-  double Weigh(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
-               const ModeDraws& draws) const noexcept;
+  double Weigh(const PosteriorMemory& previous, double lambda, int first, int last,
+               SamplerWorkspace* ws) const noexcept;
   /// Fits the pilot's weighted draws [first, last). @return number of blocks; *ess their effective number.
   int FitPilot(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
                const ModeDraws& draws, double* ess) noexcept;

@@ -1,0 +1,183 @@
+// The posterior of ModeSampler: weights, chain, and what is handed on to the next pack.
+
+#include "armcmc/mode_sampler.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/density_fit.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kMinimumGroup = 2e-3;  // posterior probability below which a group of draws gets no block
+constexpr double kNoiseMemory = 0.1;    // standard deviation of log s that a posterior hands on at least
+constexpr double kInformedSd = 0.9;  // of the prior's: a posterior narrower than that in any parameter says something
+constexpr FitOptions kMemoryFit{.bandwidth_factor = 0.7, .tail_weight = 0.02, .tail_sd = 1.25};
+
+}  // namespace
+
+double ModeSampler::Weigh(const PosteriorMemory& previous, double lambda, int first, int last,
+                          SamplerWorkspace* ws) const noexcept {
+  double reference = -HUGE_VAL;
+  for (int k = first; k < last; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double value = ws->log_likelihood[i];
+    if (ws->initial_prior[i] > 0.0 && value > reference && std::isfinite(value)) reference = value;
+  }
+  if (!std::isfinite(reference)) return std::nan("");
+  // Whole vectors: first is a multiple of the lanes, and the arrays are padded past last.
+  kernels_.relative_likelihood(&ws->log_likelihood[static_cast<std::size_t>(first)], reference,
+                               RoundUpToTile(last - first), &ws->likelihood[static_cast<std::size_t>(first)]);
+  const bool use_previous = lambda > 0.0;
+  const double w0 = use_previous ? lambda * previous.weight[0] / memory_inside_ : 0.0;
+  const double w1 = use_previous && previous.num_blocks > 1 ? lambda * previous.weight[1] / memory_inside_ : 0.0;
+  for (int k = first; k < last; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    double prior = (1.0 - lambda) * ws->initial_prior[i];
+    if (use_previous) prior += w0 * ws->memory[0][i] + (w1 > 0.0 ? w1 * ws->memory[1][i] : 0.0);
+    const double q = sampler_.use_proposal_ratio ? ws->proposal[i] : 1.0;
+    const double w = ws->initial_prior[i] > 0.0 ? ws->likelihood[i] * prior / q : 0.0;
+    ws->weight[i] = std::isfinite(w) ? w : 0.0;
+  }
+  return reference;
+}
+
+void ModeSampler::FindMode(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
+  ParamVector best(space_.dim);
+  for (int d = 0; d < space_.dim; ++d) best[d] = out->u[static_cast<std::size_t>(d)][out->mode_index];
+  if (out->decision == Decision::kModification) {
+    // The target is likelihood x P_0, which is what the Laplace fit climbs; a uniform prior is flat inside its bounds.
+    Gaussian prior{ParamVector::Zero(space_.dim), ParamMatrix::Zero(space_.dim, space_.dim)};
+    for (int d = 0; d < space_.dim; ++d)
+      prior.precision(d, d) = std::fmax(space_.normal[static_cast<std::size_t>(d)], 1e-9);
+    Gaussian fit;
+    LaplaceFit(kernels_, model_, data, noise_, space_, prior, best, &ws->laplace, &fit);
+    if (fit.mean.allFinite()) best = fit.mean;
+  }
+  for (int d = 0; d < space_.dim; ++d) out->mode_u[static_cast<std::size_t>(d)] = best[d];
+}
+
+void ModeSampler::RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
+  const int draws = out->draws;
+  std::fill(out->visits, out->visits + draws, 0);
+  double* gamma = ws->group_weight.data();  // free between the fits
+  kernels_.uniforms(stream.origin(), 0, 1, RoundUpToTile(draws), gamma);
+  int state = 0;
+  double state_weight = ws->weight[0];
+  int accepted = 0;
+  for (int k = 0; k < draws; ++k) {
+    const double w = ws->weight[static_cast<std::size_t>(k)];
+    // gamma <= w / w_state without a division; a state of weight zero accepts everything.
+    const bool accept = gamma[k] * state_weight <= w && (w > 0.0 || state_weight <= 0.0);
+    state = accept ? k : state;
+    state_weight = accept ? w : state_weight;
+    out->chain[k] = state;
+    if (k >= out->burn_in) {
+      ++out->visits[state];
+      accepted += accept ? 1 : 0;
+    }
+  }
+  out->acceptance = static_cast<double>(accepted) / (draws - out->burn_in);
+}
+
+const double* ModeSampler::SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
+                                            const ModeDraws& draws) const noexcept {
+  const auto d = static_cast<std::size_t>(space_.dim - 1);
+  const double* u = draws.u[d];
+  double mean = 0.0;
+  double square = 0.0;
+  for (int k = first; k < draws.draws; ++k) {
+    mean += draws.weight[k] * u[k];
+    square += draws.weight[k] * u[k] * u[k];
+  }
+  const double variance = std::fmax(square - mean * mean, 0.0);
+  const double wanted = kNoiseMemory / space_.scale[d];
+  const double jitter = std::sqrt(std::fmax(wanted * wanted - variance, 0.0));
+  const int end = first + RoundUpToTile(draws.draws - first);
+  double* row = ws->noise_coordinate.data();
+  kernels_.uniforms(stream.origin(), 0, 1, end - first, row + first);
+  for (int k = first; k < end; ++k)
+    row[k] = std::clamp(u[k] + jitter * normal_table_.Draw(row[k]), space_.lower[d], space_.upper[d]);
+  return row;
+}
+
+void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
+                           SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {
+  const int count = out->draws - first;
+  const auto offset = static_cast<std::size_t>(first);
+  WeightedDraws group{.dim = space_.dim, .size = count, .u = {}, .weight = ws->group_weight.data() + offset};
+  for (int d = 0; d < space_.dim; ++d)
+    group.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
+  // The level of the noise is carried on loosely. Held as tightly as thousands of samples allow, a quieter or louder
+  // stretch could only be explained by everything having changed, and the parameters would be forgotten with it.
+  if (space_.samples_noise_scale())
+    group.u[static_cast<std::size_t>(space_.dim - 1)] = SpreadNoiseScale(first, stream, ws, *out) + first;
+
+  // Where a draw's prior came from: the first block of the memory, the second, or drawn anew.
+  const bool use_previous = lambda > 0.0;
+  const double w0 = use_previous ? lambda * previous.weight[0] / memory_inside_ : 0.0;
+  const double w1 = use_previous && previous.num_blocks > 1 ? lambda * previous.weight[1] / memory_inside_ : 0.0;
+  double mass_first = 0.0;
+  double mass_new = 0.0;
+  if (use_previous) {
+    for (int k = first; k < out->draws; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const double a = w0 * ws->memory[0][i];
+      const double b = w1 > 0.0 ? w1 * ws->memory[1][i] : 0.0;
+      const double c = (1.0 - lambda) * ws->initial_prior[i];
+      const double total = a + b + c + 1e-300;
+      ws->first_share[i] = a / total;
+      mass_first += out->weight[k] * a / total;
+      mass_new += out->weight[k] * c / total;
+    }
+  }
+  out->p_changed = use_previous ? std::clamp(mass_new, 0.0, 1.0) : 1.0;
+
+  next->num_blocks = 0;
+  for (int k = out->draws; k < first + RoundUpToTile(count); ++k) ws->group_weight[static_cast<std::size_t>(k)] = 0.0;
+  // A group's weights are (constant + slope x share of the first block) of the draws' weights.
+  const auto fit_group = [&](double mass, double constant, double slope) noexcept {
+    if (mass < kMinimumGroup) return;
+    for (int k = first; k < out->draws; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      ws->group_weight[i] = out->weight[k] * (slope == 0.0 ? constant : constant + slope * ws->first_share[i]);
+    }
+    const auto b = static_cast<std::size_t>(next->num_blocks);
+    const double ess =
+        FitBlock(kernels_, group, kMemoryFit, ws->StraightRows().data(), next->tables[b].data(), &next->block[b]);
+    if (ess < kMinimumEss) return;
+    next->weight[b] = mass;
+    ++next->num_blocks;
+  };
+  if (!use_previous) {
+    fit_group(1.0, 1.0, 0.0);
+  } else if (mass_first >= 0.5) {
+    fit_group(mass_first, 0.0, 1.0);
+    fit_group(1.0 - mass_first, 1.0, -1.0);
+  } else {
+    fit_group(1.0 - mass_first, 1.0, -1.0);
+    fit_group(mass_first, 0.0, 1.0);
+  }
+  if (next->num_blocks == 0) {
+    // Too few effective draws for moments: the Laplace fit, widened, is the safer summary.
+    const Gaussian& fit = use_previous ? fit_persisted_ : fit_fresh_;
+    SetElliptic(fit.mean, fit.precision.inverse(), 1.5, &normal_table_, &next->block[0]);
+    next->num_blocks = 1;
+    next->weight[0] = 1.0;
+  }
+  double total = 0.0;
+  for (int b = 0; b < next->num_blocks; ++b) total += next->weight[static_cast<std::size_t>(b)];
+  for (int b = 0; b < next->num_blocks; ++b) next->weight[static_cast<std::size_t>(b)] /= total;
+  next->mean = MeanOf(next->block[0]);
+  next->covariance = CovarianceOf(next->block[0]);
+  next->valid = true;
+  next->informed = previous.valid && previous.informed;
+  for (int d = 0; d < space_.num_parameters; ++d)
+    next->informed = next->informed ||
+                     std::sqrt(next->covariance(d, d)) < kInformedSd * space_.prior_sd[static_cast<std::size_t>(d)];
+}
+
+}  // namespace armcmc
