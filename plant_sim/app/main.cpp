@@ -4,11 +4,15 @@
 #include <armcmc/support/shared_files.hpp>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 #include <string>
 
+#include "armcmc/plant_sim/effects/hide.hpp"
 #include "live_run.hpp"
 #include "offline_run.hpp"
 #include "scenario_file.hpp"
+#include "sealed_file.hpp"
 
 namespace {
 
@@ -30,7 +34,56 @@ constexpr const char* kFooter =
     "Faults of --inject, each KIND@PACK: nan (a NaN among the samples), size (more samples than a pack holds),\n"
     "duplicate (sent twice), reorder (sent after the next), drop (not sent), foreign (another LCM type before it),\n"
     "garbage (undecodable bytes before it), late@PACK:MS (sent MS milliseconds late).\n"
+    "Hidden effects: --hide-effect NAME[:VARIANT][,NAME[:VARIANT]] adds one or two effects that the base equations\n"
+    "lack; \"random\" draws nothing, one, two, or one that no catalogue names; \"none\" hides nothing and says so.\n"
+    "  armcmc-plant --hide-effect random --seed 5 --sealed truth.json --csv data.csv\n"
+    "  armcmc-plant --hide-effect coulomb_friction:tanh --effect-gate from:8 --sealed truth.json --csv data.csv\n"
+    "The truth goes to the sealed file alone, whose SHA-256 is printed. The CSV keeps its columns: an effect shows in "
+    "f,\n"
+    "the truth columns stay those of the base equations. A scenario hides effects by [[hidden_effect]] tables with "
+    "name,\n"
+    "variant, gate, strength, seed (of the first table) and a table of parameters that are not to be drawn.\n"
     "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.";
+
+/// The options about hidden effects, as given.
+struct HideOptions {
+  std::string effect, gate, sealed_path;
+  double strength = 1.0;
+};
+
+/// Puts what --hide-effect asks for into the scenario and writes the sealed file.
+void Hide(const CLI::App& app, const HideOptions& hide, std::uint64_t seed, Scenario* scenario) {
+  using namespace armcmc::plant_sim;
+  const bool asked = app.count("--hide-effect") > 0;
+  for (const char* option : {"--effect-strength", "--effect-gate"})
+    if (!asked && app.count(option) > 0) throw InputError(std::string(option) + " needs --hide-effect");
+  if (asked && hide.sealed_path.empty())
+    throw InputError("--hide-effect needs --sealed FILE: else nobody would ever know what was hidden");
+  if (asked && !scenario->hidden.empty())
+    throw InputError("--hide-effect: the scenario hides effects of its own ([[hidden_effect]])");
+  if (!(hide.strength >= 1e-3 && hide.strength <= 1e3))
+    throw InputError("--effect-strength " + std::to_string(hide.strength) + ": expected a gap ratio in [0.001, 1000]");
+  std::optional<Gate> gate;
+  try {
+    if (!hide.gate.empty()) gate = Gate::Parse(hide.gate);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(std::string("--effect-gate ") + error.what());
+  }
+  if (asked && hide.effect != "none") {
+    try {
+      scenario->hidden =
+          hide.effect == "random"
+              ? DrawEffects(*scenario, hide.strength, gate, seed)
+              : DecideEffects(*scenario, ParseEffectRequests(hide.effect, gate.value_or(Gate{}), hide.strength), seed);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(std::string("--hide-effect ") + error.what());
+    }
+  }
+  if (hide.sealed_path.empty()) return;
+  if (!asked && scenario->hidden.empty()) throw InputError("--sealed: nothing is hidden; give --hide-effect");
+  const std::string hash = WriteSealedFile(*scenario, seed, hide.sealed_path);
+  std::printf("sealed %s: SHA-256 %s\n", hide.sealed_path.c_str(), hash.c_str());
+}
 
 /// LCM reads a channel name as a regular expression when subscribing: only characters that mean themselves.
 void CheckPrefix(const std::string& prefix) {
@@ -49,6 +102,7 @@ int main(int argc, char** argv) {
   std::string scenario_name = "hunt_crossley_paper", inject;
   double duration_s = 0.0;
   PlantOptions options;
+  HideOptions hide;
   app.add_option("--scenario", scenario_name, "Scenario file, or the name of one that came with the program")
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of the sensor noise: the same seed gives the same data")
@@ -61,6 +115,12 @@ int main(int argc, char** argv) {
   app.add_option("--csv", options.csv_path, "Write the samples and the truth; without --lcm-url nothing is published");
   app.add_option("--report", options.report_path, "Write the score as JSON");
   app.add_option("--inject", inject, "Faults to inject on purpose, comma separated");
+  app.add_option("--hide-effect", hide.effect, "Effects that the base equations lack: names, random, or none");
+  app.add_option("--effect-strength", hide.strength,
+                 "Gap ratio R of each: rms of what the refitted base parameters cannot absorb, over the noise's sd")
+      ->capture_default_str();
+  app.add_option("--effect-gate", hide.gate, "When they act: always, contact, free, from:S or until:S (seconds)");
+  app.add_option("--sealed", hide.sealed_path, "Write the truth about what is hidden, as JSON for the scorer");
 
   return armcmc::support::RunProgram(app, "armcmc-plant", argc, argv, [&] {
     if (app.count("--inject") > 0) {
@@ -71,17 +131,21 @@ int main(int argc, char** argv) {
       }
     }
     CheckPrefix(options.prefix);
-    Scenario scenario = armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name));
+    std::optional<double> duration;
     if (app.count("--duration") > 0) {
       if (!std::isfinite(duration_s) || duration_s <= 0.0 || duration_s > 1e6)
         throw InputError("--duration " + std::to_string(duration_s) + ": expected seconds in (0, 1000000]");
-      scenario.duration_s = duration_s;
+      duration = duration_s;
     }
+    Scenario scenario =
+        armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name), duration);
     if (scenario.num_packs() < 1)
       throw InputError("the duration of " + std::to_string(scenario.duration_s) + " s does not hold one pack of " +
                        std::to_string(scenario.pack_period_s()) + " s");
-    if (options.csv_path.empty() || url->count() > 0) return armcmc::plant_sim::RunLive(scenario, options);
-    if (!options.report_path.empty()) throw InputError("--report needs a live run: give --lcm-url, or leave --csv out");
-    return armcmc::plant_sim::RunOffline(scenario, options);
+    const bool live = options.csv_path.empty() || url->count() > 0;
+    if (!live && !options.report_path.empty())
+      throw InputError("--report needs a live run: give --lcm-url, or leave --csv out");
+    Hide(app, hide, options.seed, &scenario);
+    return live ? armcmc::plant_sim::RunLive(scenario, options) : armcmc::plant_sim::RunOffline(scenario, options);
   });
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "armcmc/data_pack_t.hpp"
+#include "armcmc/plant_sim/effects/hide.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
@@ -113,9 +114,60 @@ std::vector<NoiseLaw> ReadSensors(StrictTable* root, const PlantFamily& family) 
   return laws;
 }
 
+const EffectSpec* FindSpec(const PlantFamily& family, const std::string& name, const std::string& variant) {
+  for (const EffectSpec& spec : EffectRegistry(family))
+    if (spec.name == name && spec.variant == variant) return &spec;
+  return nullptr;
+}
+
+/// Keys of [hidden_effect.parameters], which only a chosen formula gives a meaning.
+void ReadEffectValues(StrictTable table, const EffectSpec* spec, EffectRequest* request) {
+  if (table.Keys().empty()) return;
+  if (spec == nullptr) throw table.Error(table.Keys().front(), "needs the effect's variant");
+  for (const EffectParameter& parameter : spec->parameters)
+    if (table.Has(parameter.name))
+      request->values.emplace_back(parameter.name, table.RequiredNumber(parameter.name, -1e9, 1e9));
+}
+
+struct HiddenEffects {
+  std::vector<EffectRequest> requests;
+  std::uint64_t seed = 1;
+};
+
+HiddenEffects ReadHiddenEffects(StrictTable* root, const PlantFamily& family) {
+  HiddenEffects hidden;
+  for (StrictTable& entry : root->Tables("hidden_effect")) {
+    EffectRequest request;
+    request.name = entry.RequiredChoice("name", EffectNames(family));
+    std::vector<std::string> variants;
+    for (const EffectSpec& spec : EffectRegistry(family))
+      if (spec.name == request.name) variants.push_back(spec.variant);
+    if (entry.Has("variant")) request.variant = entry.RequiredChoice("variant", variants);
+    try {
+      request.gate = Gate::Parse(entry.Text("gate", "always"));
+    } catch (const std::invalid_argument& error) {
+      throw entry.Error("gate", error.what());
+    }
+    request.gap_ratio = entry.Number("strength", 1.0, 1e-3, 1e3);
+    if (hidden.requests.empty()) {
+      constexpr std::int64_t kMaxSeed = 1'000'000'000;
+      hidden.seed = static_cast<std::uint64_t>(entry.Integer("seed", 1, 0, kMaxSeed));
+    }
+    const std::string variant = variants.size() == 1 ? variants.front() : request.variant;
+    const EffectSpec* spec = FindSpec(family, request.name, variant);
+    ReadEffectValues(entry.Table("parameters"), spec, &request);
+    if (entry.Has("strength"))
+      for (const auto& value : request.values)
+        if (value.first == spec->parameters.front().name)
+          throw entry.Error("strength", "contradicts parameters." + value.first + ", which it would find");
+    hidden.requests.push_back(std::move(request));
+  }
+  return hidden;
+}
+
 }  // namespace
 
-Scenario LoadScenario(const std::filesystem::path& path) {
+Scenario LoadScenario(const std::filesystem::path& path, std::optional<double> duration_s) {
   StrictTable root = StrictTable::FromFile(path);
   static_cast<void>(root.RequiredInteger("schema", 1, 1));
   Scenario scenario;
@@ -127,9 +179,12 @@ Scenario LoadScenario(const std::filesystem::path& path) {
   scenario.schedule = ReadSchedule(&root, *scenario.family);
   scenario.options = ReadOptions(&root, *scenario.family);
   scenario.noise = ReadSensors(&root, *scenario.family);
+  const HiddenEffects hidden = ReadHiddenEffects(&root, *scenario.family);
   root.Finish();
+  if (duration_s) scenario.duration_s = *duration_s;
   try {
     static_cast<void>(scenario.family->make(scenario.schedule, scenario.options, scenario.sample_interval_s));
+    scenario.hidden = DecideEffects(scenario, hidden.requests, hidden.seed);
   } catch (const std::invalid_argument& error) {
     throw ConfigError(path.string() + ": " + error.what());
   }

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "armcmc/plant_sim/scenario.hpp"
 
 namespace armcmc::plant_sim {
 
-/// Reads a scenario file strictly. @throws support::ConfigError naming file, line, key and what is allowed.
-[[nodiscard]] Scenario LoadScenario(const std::filesystem::path& path);
+/// Reads a scenario file strictly and decides the effects that it hides.
+/// @param duration_s instead of the file's; a gap ratio belongs to a duration.
+/// @throws support::ConfigError naming file, line, key and what is allowed.
+[[nodiscard]] Scenario LoadScenario(const std::filesystem::path& path, std::optional<double> duration_s = {});
 
 }  // namespace armcmc::plant_sim

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "armcmc/plant_sim/effects/hidden_effect.hpp"
 #include "armcmc/plant_sim/noise.hpp"
 #include "armcmc/plant_sim/options.hpp"
 #include "armcmc/plant_sim/plant.hpp"
@@ -19,7 +20,8 @@ struct Scenario {
   int pack_samples = 100;           ///< N_s = T_s / T, in [1, 256].
   Schedule schedule{{}, {}};
   Options options{{}};
-  std::vector<NoiseLaw> noise;  ///< One per input channel, then one of the output.
+  std::vector<NoiseLaw> noise;       ///< One per input channel, then one of the output.
+  std::vector<HiddenEffect> hidden;  ///< What the base equations lack. Empty: plant and sensors alone.
 
   /// T_s in seconds.
   [[nodiscard]] double pack_period_s() const noexcept { return sample_interval_s * pack_samples; }

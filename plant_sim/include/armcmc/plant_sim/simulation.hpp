@@ -2,14 +2,17 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "armcmc/plant_sim/effects/effect_chain.hpp"
 #include "armcmc/plant_sim/scenario.hpp"
 #include "armcmc/plant_sim/sensors.hpp"
 
 namespace armcmc::plant_sim {
 
-/// A scenario in motion: plant, then sensors. Two simulations of one scenario and seed give the same samples to
-/// the bit, so whoever needs the samples runs one of its own.
+/// A scenario in motion: plant, then hidden effects, then sensors. The truth is the plant's own, without the effects.
+/// Two simulations of one scenario and seed give the same samples to the bit, so whoever needs the samples runs one of
+/// its own.
 class Simulation {
  public:
   /// @throws std::invalid_argument when the plant's options contradict each other.
@@ -26,6 +29,7 @@ class Simulation {
 
  private:
   std::unique_ptr<Plant> plant_;
+  std::optional<EffectChain> effects_;  ///< None: what is true reaches the sensors as it is.
   Sensors sensors_;
   int num_inputs_;
   PlantSample truth_, measured_;

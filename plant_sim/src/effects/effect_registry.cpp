@@ -1,0 +1,35 @@
+#include <algorithm>
+#include <iterator>
+
+#include "armcmc/plant_sim/effects/effect.hpp"
+
+namespace armcmc::plant_sim {
+
+const char* FormulaKindName(FormulaKind kind) noexcept {
+  switch (kind) {
+    case FormulaKind::kCatalogue: return "catalogue";
+    case FormulaKind::kVariant: return "variant";
+    case FormulaKind::kOutside: return "outside";
+  }
+  return "";
+}
+
+const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family) {
+  static const std::vector<EffectSpec> none;
+  static const std::vector<EffectSpec> contact = [] {
+    std::vector<EffectSpec> all;
+    for (std::vector<EffectSpec> part : {ForceEffects(), FrictionEffects(), MaterialEffects(), SensorEffects()})
+      std::move(part.begin(), part.end(), std::back_inserter(all));
+    return all;
+  }();
+  return family.name == "hunt_crossley" ? contact : none;
+}
+
+std::vector<std::string> EffectNames(const PlantFamily& family) {
+  std::vector<std::string> names;
+  for (const EffectSpec& spec : EffectRegistry(family))
+    if (std::find(names.begin(), names.end(), spec.name) == names.end()) names.push_back(spec.name);
+  return names;
+}
+
+}  // namespace armcmc::plant_sim

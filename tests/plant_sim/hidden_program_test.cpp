@@ -1,0 +1,156 @@
+// armcmc-plant as a process that hides effects.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "armcmc/plant_sim/sha256.hpp"
+#include "process.hpp"
+#include "support/paths.hpp"
+
+namespace armcmc::plant_sim {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+struct Ended {
+  int code;
+  std::string out, err;
+};
+
+Ended RunPlant(const std::vector<std::string>& arguments, const test::ScratchDir& folder) {
+  Process process(test::Program("armcmc-plant").string(), arguments, folder.path().string());
+  const int code = process.Wait();
+  return {code, process.Out(), process.Err()};
+}
+
+std::string Text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> Fields(const std::string& line) {
+  std::vector<std::string> fields;
+  std::stringstream stream(line);
+  for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+TEST(PlantProgramHides, OnlyTheMeasuredForceDiffersFromAPlantWithoutTheEffect) {
+  const test::ScratchDir folder;
+  ASSERT_EQ(RunPlant({"--seed", "3", "--csv", "plain.csv", "--log", "plain.lcm"}, folder).code, 0);
+  const Ended ended = RunPlant({"--seed", "3", "--csv", "a.csv", "--hide-effect", "coulomb_friction:tanh",
+                                "--effect-gate", "from:8", "--sealed", "truth.json"},
+                               folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  std::ifstream plain(folder / "plain.csv"), hiding(folder / "a.csv");
+  int line_number = 0, changed = 0;
+  for (std::string a, b; std::getline(plain, a); ++line_number) {
+    ASSERT_TRUE(std::getline(hiding, b));
+    std::vector<std::string> x = Fields(a), y = Fields(b);
+    ASSERT_EQ(x.size(), y.size());
+    const bool same_force = x[3] == y[3];
+    if (!same_force) ++changed;
+    if (line_number <= 8000) {
+      EXPECT_TRUE(same_force) << "before the gate: line " << line_number;
+    }
+    x[3] = y[3] = "";
+    ASSERT_EQ(x, y) << "line " << line_number;
+  }
+  EXPECT_GT(changed, 11'000);
+}
+
+TEST(PlantProgramHides, NothingButTheSealedFileTellsWhat) {
+  const test::ScratchDir folder;
+  const Ended ended = RunPlant({"--seed", "3", "--csv", "a.csv", "--log", "a.lcm", "--hide-effect",
+                                "coulomb_friction,sensor_delay", "--sealed", "truth.json"},
+                               folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string sealed = Text(folder / "truth.json");
+  EXPECT_THAT(ended.out, HasSubstr(Sha256(sealed)));
+  const nlohmann::json truth = nlohmann::json::parse(sealed);
+  EXPECT_EQ(truth.at("schema"), 1);
+  EXPECT_EQ(truth.at("kind"), "pair");
+  ASSERT_EQ(truth.at("effects").size(), 2u);
+  EXPECT_EQ(truth["effects"][1].at("name"), "sensor_delay");
+  EXPECT_EQ(truth["effects"][1].at("gate"), "always");
+  EXPECT_EQ(truth["effects"][1].at("formula_kind"), "catalogue");
+  EXPECT_NEAR(truth["effects"][1].at("gap_ratio").get<double>(), 1.0, 0.05);
+  EXPECT_GT(truth["effects"][1].at("parameters").at("delay").at("value").get<double>(), 0.0);
+  EXPECT_EQ(truth.at("base_parameters").at("K"), 4.0);
+  for (const std::string& text : {ended.out, ended.err, Text(folder / "a.csv"), Text(folder / "a.lcm")})
+    for (const char* word : {"coulomb", "friction", "delay", "pair", "always", "gap"})
+      EXPECT_THAT(text, Not(HasSubstr(word)));
+}
+
+TEST(PlantProgramHides, ARandomDrawIsReproducedToTheByteAndNoneIsSealedToo) {
+  const test::ScratchDir folder;
+  for (const std::string name : {"a", "b"})
+    ASSERT_EQ(
+        RunPlant({"--seed", "6", "--csv", name + ".csv", "--hide-effect", "random", "--sealed", name + ".json"}, folder)
+            .code,
+        0);
+  EXPECT_EQ(Text(folder / "a.csv"), Text(folder / "b.csv"));
+  EXPECT_EQ(Text(folder / "a.json"), Text(folder / "b.json"));
+  ASSERT_EQ(RunPlant({"--seed", "6", "--csv", "plain.csv"}, folder).code, 0);
+  ASSERT_EQ(
+      RunPlant({"--seed", "6", "--csv", "none.csv", "--hide-effect", "none", "--sealed", "none.json"}, folder).code, 0);
+  EXPECT_EQ(Text(folder / "none.csv"), Text(folder / "plain.csv"));
+  EXPECT_EQ(nlohmann::json::parse(Text(folder / "none.json")).at("kind"), "none");
+}
+
+TEST(PlantProgramHides, AScenarioFileMayNameTheEffect) {
+  const test::ScratchDir folder;
+  const std::string paper = Text(test::SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml");
+  const auto run = [&](const std::string& table) {
+    std::ofstream(folder / "s.toml") << paper << "\n[[hidden_effect]]\n" << table;
+    return RunPlant({"--scenario", "s.toml", "--csv", "a.csv", "--sealed", "truth.json"}, folder);
+  };
+  ASSERT_EQ(run("name = \"force_bias\"\ngate = \"until:5\"\n[hidden_effect.parameters]\nforce = -0.25\n").code, 0);
+  const nlohmann::json effect = nlohmann::json::parse(Text(folder / "truth.json")).at("effects").at(0);
+  EXPECT_EQ(effect.at("parameters").at("force").at("value"), -0.25);
+  EXPECT_EQ(effect.at("gate"), "until:5");
+  const auto expect = [&](const std::string& table, const std::string& words) {
+    const Ended ended = run(table);
+    EXPECT_EQ(ended.code, 2) << table;
+    EXPECT_THAT(ended.err, HasSubstr(words));
+  };
+  expect("name = \"gremlin\"\n", "coulomb_friction");
+  expect("name = \"inertia\"\nstrenght = 1.0\n", "strenght");
+  expect("name = \"inertia\"\ngate = \"never\"\n", "until:S");
+  expect("name = \"sensor_lag\"\nvariant = \"third_order\"\n", "second_order");
+  expect("name = \"force_bias\"\n[hidden_effect.parameters]\nforze = 1.0\n", "forze");
+  expect("name = \"force_bias\"\nstrength = 1.0\n[hidden_effect.parameters]\nforce = 1.0\n", "contradicts");
+  expect("name = \"sensor_lag\"\n[hidden_effect.parameters]\ntau = 0.1\n", "variant");
+}
+
+TEST(PlantProgramHides, BadUsageEndsWithTwoAndOneClearLine) {
+  const test::ScratchDir folder;
+  const auto expect = [&folder](std::vector<std::string> arguments, const std::string& words) {
+    arguments.insert(arguments.end(), {"--csv", "a.csv"});
+    const Ended ended = RunPlant(arguments, folder);
+    EXPECT_EQ(ended.code, 2) << words;
+    EXPECT_THAT(ended.err, HasSubstr(words));
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  };
+  expect({"--hide-effect", "inertia"}, "--sealed");
+  expect({"--sealed", "t.json"}, "--hide-effect");
+  expect({"--effect-gate", "free"}, "--hide-effect");
+  expect({"--hide-effect", "gremlin", "--sealed", "t.json"}, "gremlin");
+  expect({"--hide-effect", "inertia", "--sealed", "t.json", "--effect-gate", "late"}, "--effect-gate");
+  expect({"--hide-effect", "inertia", "--sealed", "t.json", "--effect-strength", "0"}, "--effect-strength");
+  expect({"--scenario", "soft_actuator_excited", "--hide-effect", "random", "--seed", "3", "--sealed", "t.json"},
+         "soft_actuator");
+}
+
+}  // namespace
+}  // namespace armcmc::plant_sim

@@ -1,0 +1,145 @@
+#include "armcmc/plant_sim/effects/hide.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+
+#include "armcmc/plant_sim/effects/gap_meter.hpp"
+#include "armcmc/plant_sim/simulation.hpp"
+#include "builtin_scenario.hpp"
+
+namespace armcmc::plant_sim {
+namespace {
+
+/// The paper's contact, short, so that many searches take seconds.
+Scenario Short() {
+  Scenario scenario = BuiltinScenario("hunt_crossley_paper");
+  scenario.duration_s = 8.0;
+  return scenario;
+}
+
+EffectRequest Request(const std::string& name, const std::string& variant, double gap_ratio) {
+  EffectRequest request;
+  request.name = name;
+  request.variant = variant;
+  request.gap_ratio = gap_ratio;
+  return request;
+}
+
+TEST(GapMeter, SeesNothingInWhatTheBaseParametersAbsorb) {
+  const Scenario scenario = Short();
+  const std::unique_ptr<GapMeter> meter = MakeGapMeter(scenario);
+  EXPECT_LT(meter->GapRatio({}), 1e-9);
+  // A stiffness that is another from the start is just another K.
+  EffectRequest request = Request("stiffness_drift", "exponential", 1.0);
+  request.values = {{"share", 0.4}, {"tau", 1e-9}};
+  EXPECT_LT(DecideEffects(scenario, {request}, 1)[0].gap_ratio, 1e-3);
+}
+
+TEST(GapMeter, MeasuresWhatAConstantLeaves) {
+  // Out of contact a bias is seen whole, in contact a part of it is absorbed.
+  EffectRequest request = Request("force_bias", "", 1.0);
+  request.values = {{"force", 0.1}};
+  request.gate = Gate::Parse("free");
+  const Scenario scenario = Short();
+  Simulation simulation(scenario, 1);
+  int free_samples = 0;
+  for (int i = 0; i <= 8000; ++i) {
+    ASSERT_TRUE(simulation.Next());
+    free_samples += simulation.truth().mode;
+  }
+  EXPECT_NEAR(DecideEffects(scenario, {request}, 1)[0].gap_ratio, std::sqrt(free_samples / 8001.0), 1e-6);
+}
+
+TEST(Hide, TheStrengthGivesTheGapRatioOfEveryEffect) {
+  Scenario scenario = Short();
+  const std::unique_ptr<GapMeter> meter = MakeGapMeter(scenario);
+  for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
+    for (const double gap_ratio : {0.3, 1.0}) {
+      const std::vector<HiddenEffect> effects =
+          DecideEffects(scenario, {Request(spec.name, spec.variant, gap_ratio)}, 3);
+      ASSERT_EQ(effects.size(), 1u);
+      EXPECT_NEAR(meter->GapRatio(effects), gap_ratio, 0.05 * gap_ratio) << spec.name << ":" << spec.variant;
+    }
+  }
+}
+
+TEST(Hide, TheSimulationCarriesTheEffectAndOnlyInTheOutput) {
+  Scenario scenario = Short();
+  Simulation plain(scenario, 5);
+  scenario.hidden = DecideEffects(scenario, {Request("coulomb_friction", "tanh", 1.0)}, 5);
+  Simulation hiding(scenario, 5), again(scenario, 5);
+  double largest = 0.0;
+  for (int i = 0; i <= 8000; ++i) {
+    ASSERT_TRUE(plain.Next() && hiding.Next() && again.Next());
+    ASSERT_EQ(hiding.truth().output, plain.truth().output);
+    ASSERT_EQ(hiding.measured().inputs, plain.measured().inputs);
+    ASSERT_EQ(hiding.measured().output, again.measured().output);
+    largest = std::max(largest, std::abs(hiding.measured().output - plain.measured().output));
+  }
+  EXPECT_NEAR(largest, scenario.hidden[0].values[0], 0.05 * largest);
+}
+
+TEST(Hide, TheDrawIsTheSameForASeedAndComesToEverythingOverSeeds) {
+  Scenario scenario = Short();
+  scenario.duration_s = 7.0;
+  scenario.sample_interval_s = 0.01;
+  scenario.pack_samples = 10;
+  std::map<HiddenKind, int> kinds;
+  std::set<std::string> names, gates, forms;
+  constexpr int kSeeds = 400;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const std::vector<HiddenEffect> effects = DrawEffects(scenario, 1.0, {}, seed);
+    if (seed <= 20) {
+      const std::vector<HiddenEffect> again = DrawEffects(scenario, 1.0, {}, seed);
+      ASSERT_EQ(again.size(), effects.size());
+      for (std::size_t i = 0; i < effects.size(); ++i) {
+        EXPECT_EQ(again[i].spec, effects[i].spec);
+        EXPECT_EQ(again[i].values, effects[i].values);
+        EXPECT_EQ(again[i].gate.Text(), effects[i].gate.Text());
+      }
+    }
+    ++kinds[KindOf(effects)];
+    for (const HiddenEffect& effect : effects) {
+      EXPECT_NEAR(effect.gap_ratio, 1.0, 0.05) << effect.spec->name;
+      names.insert(effect.spec->name);
+      forms.insert(FormulaKindName(effect.spec->kind));
+      gates.insert(effect.gate.Text().substr(0, 4));
+    }
+    if (effects.size() == 2) {
+      EXPECT_NE(effects[0].spec->name, effects[1].spec->name);
+    }
+  }
+  for (const HiddenKind kind : {HiddenKind::kNone, HiddenKind::kSingle, HiddenKind::kPair, HiddenKind::kOutside})
+    EXPECT_NEAR(kinds[kind], kSeeds / 4, kSeeds / 10) << HiddenKindName(kind);
+  EXPECT_EQ(names.size(), EffectNames(*scenario.family).size());
+  EXPECT_EQ(gates, (std::set<std::string>{"alwa", "cont", "free", "from", "unti"}));
+  EXPECT_EQ(forms.size(), 3u);
+}
+
+TEST(Hide, NamesWhatIsWrongWithARequest) {
+  const Scenario scenario = Short();
+  const auto problem = [&scenario](const std::string& text, double gap_ratio = 1.0) -> std::string {
+    try {
+      static_cast<void>(DecideEffects(scenario, ParseEffectRequests(text, {}, gap_ratio), 1));
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_NE(problem("gremlin").find("coulomb_friction"), std::string::npos);
+  EXPECT_NE(problem("coulomb_friction:wet").find("stribeck"), std::string::npos);
+  EXPECT_NE(problem("inertia,inertia").find("twice"), std::string::npos);
+  EXPECT_NE(problem("inertia,force_bias,adhesion").find("at most two"), std::string::npos);
+  EXPECT_NE(problem("inertia,").find("NAME"), std::string::npos);
+  EXPECT_NE(problem("sensor_saturation", 900.0).find("cannot reach"), std::string::npos);
+  EXPECT_THROW(DecideEffects(BuiltinScenario("soft_actuator_excited"), ParseEffectRequests("inertia", {}, 1.0), 1),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace armcmc::plant_sim
