@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "armcmc/plant_sim/effects/effect.hpp"
 #include "armcmc/plant_sim/latency_histogram.hpp"
 #include "armcmc/plant_sim/log_ring.hpp"
 #include "armcmc/plant_sim/pack_builder.hpp"
@@ -34,6 +35,26 @@ TEST_P(PublishingPath, DoesNotAllocate) {
   EXPECT_TRUE(finite);
   EXPECT_EQ(ring.lost(), 0);
   EXPECT_EQ(allocations, 0);
+}
+
+TEST(HiddenEffects, DoNotAllocateOnThePublishingPath) {
+  if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  Scenario scenario = BuiltinScenario("hunt_crossley_paper");
+  for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
+    std::vector<double> values;
+    for (const EffectParameter& parameter : spec.parameters) values.push_back(0.05 * parameter.hi);
+    scenario.hidden = {HiddenEffect{&spec, values, Gate{}, 0.0}};
+    PackBuilder builder(scenario, 1, 1);
+    bool finite = true;
+    long allocations = 0;
+    {
+      test::AllocCounter guard;
+      for (int k = 0; k < 20; ++k) finite = builder.Next() && finite;
+      allocations = guard.count();
+    }
+    EXPECT_TRUE(finite) << spec.name;
+    EXPECT_EQ(allocations, 0) << spec.name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, PublishingPath,
