@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
+#include "armcmc/effects/composition.hpp"
 #include "armcmc/mode_sampler.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/output_predictor.hpp"
@@ -35,15 +36,16 @@ struct Estimator::Impl {
   explicit Impl(const EstimatorSettings& s)
       : settings(s),
         model(ModelIndex(s)),
-        info(*AllModels::kInfos[static_cast<std::size_t>(model)]),
+        composition(s),
+        info(composition.info()),
         kernels(simd::Best()),
         predictor(info, s.constants),
         summary(s.sampler.max_draws) {
-    dim = settings.num_parameters;
+    dim = info.num_parameters;
     samplers.reserve(static_cast<std::size_t>(info.num_modes));
     for (int m = 0; m < info.num_modes; ++m) {
       const NoiseSettings& noise = settings.noise[static_cast<std::size_t>(m)];
-      const ParameterSpace space(settings, noise);
+      const ParameterSpace space(composition.sampled(), noise);
       dim = std::max(dim, space.dim);
       samplers.emplace_back(std::make_unique<ModeSampler>(kernels, model, settings.sampler, settings.forgetting, space,
                                                           NoiseModel(noise)));
@@ -52,8 +54,12 @@ struct Estimator::Impl {
     workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws);
   }
 
-  void PrepareMode(const DataPack& pack, int mode, ModeData* data) const noexcept {
-    AllModels::kPrepare[static_cast<std::size_t>(model)](pack, settings.constants, mode, data);
+  void PrepareMode(const DataPack& pack, const EffectPack& effects, int mode, ModeData* data) const noexcept {
+    if (composition.empty()) {
+      AllModels::kPrepare[static_cast<std::size_t>(model)](pack, settings.constants, mode, data);
+    } else {
+      Composition::Fill(pack, effects, data);
+    }
     data->pack_share = static_cast<double>(data->num_samples) / pack.num_samples;
     const double rho = settings.forgetting.rho;
     // Weights by the distance from the end of the pack, within the samples of the mode.
@@ -63,6 +69,7 @@ struct Estimator::Impl {
 
   EstimatorSettings settings;
   int model;
+  Composition composition;
   const ModelInfo& info;
   const simd::Kernels& kernels;
   int dim = 0;
@@ -79,10 +86,13 @@ struct Estimator::Impl {
   ModeData execute_data;
   std::array<ThetaTile, kMaxModes> band_theta;  ///< Thinned chain of the last update of each mode.
   PredictionTile band_prediction;
+  ThetaTile shown_theta;
   std::array<ModeEstimate, kMaxModes> last_estimates;
   std::array<ShownEstimates, 2> shown;  ///< After the previous pack, and after the one before it.
   int report_mode = 0;
 
+  /// Output at every sample of the pack with the estimates on display, for a model with effects.
+  void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
   void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
   void StoreBandDraws(int mode, const ModeDraws& draws) noexcept;
   /// Output at the last sample and its band; `band_prediction` holds the predictions of `mode`.
@@ -110,7 +120,8 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
     draws.known = memory.slot[memory.current].valid && memory.slot[memory.current].informed;
     draws.num_samples = 0;
   }
-  if (pack.Validate() != Status::kOk || pack.plant != s.info.plant || pack.num_inputs < s.info.num_inputs) {
+  if (pack.Validate() != Status::kOk || pack.plant != s.info.plant || pack.num_inputs < s.info.num_inputs ||
+      (!s.composition.empty() && !s.composition.Prepare(pack, &result->effects))) {
     result->status = Status::kBadPack;
     result->pack = DataPack{};
     result->pack.seq = pack.seq;
@@ -123,7 +134,7 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
   std::array<bool, kMaxModes> active{};
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
-    s.PrepareMode(pack, m, &s.adjust_data[i]);
+    s.PrepareMode(pack, result->effects, m, &s.adjust_data[i]);
     result->modes[i].num_samples = s.adjust_data[i].num_samples;
     active[i] = s.adjust_data[i].num_samples >= s.settings.forgetting.min_samples;
     pending += active[i] ? 1 : 0;
@@ -155,7 +166,11 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
 
 void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
   const DataPack& pack = result.pack;
-  predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
+  if (composition.empty()) {
+    predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
+  } else {
+    PredictShown(result, e);
+  }
   const auto last = static_cast<std::size_t>(pack.num_samples - 1);
   e->y_free_run = e->y_shown_free_run[last];
   e->y_pred = e->y_lo = e->y_hi = 0.0;
@@ -169,7 +184,7 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
     const ModeDraws& draws = result.modes[i];
     if (draws.updated) StoreBandDraws(m, draws);
     if (!last_estimates[i].known) continue;
-    PrepareMode(pack, m, &execute_data);
+    PrepareMode(pack, result.effects, m, &execute_data);
     if (execute_data.num_samples == 0) continue;
     kernels.predict(model, execute_data, band_theta[i], &band_prediction);
     for (int n = 0; n < execute_data.num_samples; ++n) {
@@ -179,17 +194,31 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
       square += error * error;
       ++count;
     }
-    if (m == e->mode) PredictLastSample(pack, m, e);
+    if (m == e->mode || !composition.empty()) PredictLastSample(pack, m, e);
   }
   e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
   if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
+}
+
+void Estimator::Impl::PredictShown(const AdjustResult& result, Estimate* e) noexcept {
+  const auto samples = static_cast<std::size_t>(result.pack.num_samples);
+  if (!shown[1].known[0]) {
+    std::fill_n(e->y_shown.begin(), samples, kUnknown);
+  } else {
+    for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
+      shown_theta.value[d].fill(shown[1].theta[0][d]);
+    PrepareMode(result.pack, result.effects, 0, &execute_data);
+    kernels.predict(model, execute_data, shown_theta, &band_prediction);
+    for (std::size_t n = 0; n < samples; ++n) e->y_shown[n] = band_prediction.value[n][0];
+  }
+  std::copy_n(e->y_shown.begin(), samples, e->y_shown_free_run.begin());
 }
 
 void Estimator::Impl::StoreBandDraws(int mode, const ModeDraws& draws) noexcept {
   const auto i = static_cast<std::size_t>(mode);
   for (int lane = 0; lane < kBandDraws; ++lane) {
     const int k = BandDraw(draws, lane);
-    for (int d = 0; d < settings.num_parameters; ++d)
+    for (int d = 0; d < info.num_parameters; ++d)
       band_theta[i].value[static_cast<std::size_t>(d)][static_cast<std::size_t>(lane)] =
           samplers[i]->space().Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
   }
@@ -201,7 +230,7 @@ void Estimator::Impl::PredictLastSample(const DataPack& pack, int mode, Estimate
   for (std::size_t lane = 0; lane < kBandDraws; ++lane) {
     if (info.plant == PlantKind::kSoftActuator) {
       std::array<double, kMaxParams> theta{};
-      for (std::size_t d = 0; d < static_cast<std::size_t>(settings.num_parameters); ++d)
+      for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
         theta[d] = band_theta[i].value[d][lane];
       outputs[lane] = predictor.LastAngle(pack, shown[0], mode, theta.data());
     } else {
@@ -261,7 +290,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
     s.shown[0].known[i] = e->modes[i].known;
-    for (int d = 0; d < s.settings.num_parameters; ++d)
+    for (int d = 0; d < s.info.num_parameters; ++d)
       s.shown[0].theta[i][static_cast<std::size_t>(d)] = e->modes[i].marginal[static_cast<std::size_t>(d)].ar_map;
   }
 }
@@ -272,6 +301,7 @@ void Estimator::Reset() noexcept {
   for (auto& estimate : s.last_estimates) estimate = ModeEstimate{};
   for (auto& shown : s.shown) shown = ShownEstimates{};
   s.predictor.Reset();
+  s.composition.Reset();
   s.report_mode = 0;
 }
 

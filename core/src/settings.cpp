@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "armcmc/effects/registry.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/sample_size.hpp"
 
@@ -41,8 +42,7 @@ void ValidateNoise(const std::string& key, const NoiseSettings& noise) {
   Closed(key + ".outlier_scale", noise.outlier_scale, 1.0 + 1e-6, 1e4);
 }
 
-void ValidateParameter(const ParameterSettings& p) {
-  const std::string key = "parameters." + p.name;
+void ValidateParameter(const std::string& key, const ParameterSettings& p) {
   if (!(std::isfinite(p.lower) && std::isfinite(p.upper) && p.lower < p.upper))
     throw std::invalid_argument(key + ": lower must be below upper, both finite");
   if (p.prior == PriorKind::kUniform) return;
@@ -53,7 +53,73 @@ void ValidateParameter(const ParameterSettings& p) {
     throw std::invalid_argument(key + ": the bounds hold none of the prior's mass (mean more than 5 sd outside)");
 }
 
+std::string KnownEffects() {
+  std::string known;
+  for (const EffectInfo* info : AllEffects::kInfos) known += (known.empty() ? "" : ", ") + std::string(info->name);
+  return known;
+}
+
+void ValidateEffect(const EffectSettings& effect, const EffectInfo& info) {
+  const std::string key = "effect." + effect.name;
+  if (!info.online) throw std::invalid_argument(key + " is for offline fits only");
+  for (int i = 0; i < info.num_shapes; ++i) {
+    const EffectShape& shape = info.shapes[static_cast<std::size_t>(i)];
+    Closed(key + "." + std::string(shape.name), effect.shapes[static_cast<std::size_t>(i)], shape.lower, shape.upper);
+  }
+  for (int i = 0; i < info.num_amplitudes; ++i) {
+    const EffectAmplitude& amplitude = info.amplitudes[static_cast<std::size_t>(i)];
+    const ParameterSettings& p = effect.amplitudes[static_cast<std::size_t>(i)];
+    const std::string name = key + "." + std::string(amplitude.name);
+    if (p.name != amplitude.name)
+      throw std::invalid_argument(name + ": the settings call this parameter '" + p.name + "'");
+    ValidateParameter(name, p);
+    if (amplitude.lower == 0.0) Closed(name + ".lower", p.lower, 0.0, HUGE_VAL);
+  }
+  if (effect.gate == EffectGate::kFrom) Open(key + ".from_s", effect.from_s, -HUGE_VAL, HUGE_VAL);
+}
+
+void ValidateEffects(const EstimatorSettings& s, const ModelInfo& model) {
+  Closed("number of effects", s.num_effects, 0, kMaxEffects);
+  if (s.num_effects == 0) return;
+  if (model.plant != PlantKind::kHuntCrossley)
+    throw std::invalid_argument("effect: model '" + s.model + "' takes no effects");
+  int coordinates = model.num_parameters + (s.noise[0].estimate_std ? 1 : 0);
+  for (int e = 0; e < s.num_effects; ++e) {
+    const EffectSettings& effect = s.effects[static_cast<std::size_t>(e)];
+    const int index = FindEffect(effect.name);
+    if (index < 0)
+      throw std::invalid_argument("effect.name = '" + effect.name + "' is not an effect; known are " + KnownEffects());
+    for (int other = 0; other < e; ++other)
+      if (s.effects[static_cast<std::size_t>(other)].name == effect.name)
+        throw std::invalid_argument("effect '" + effect.name + "' is named twice");
+    const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(index)];
+    ValidateEffect(effect, info);
+    coordinates += info.num_amplitudes;
+  }
+  if (coordinates > kMaxParams)
+    throw std::invalid_argument("the model with its effects has " + std::to_string(coordinates) +
+                                " parameters to sample (noise scale included), at most " + std::to_string(kMaxParams) +
+                                " are possible: remove an effect or fix the noise scale");
+}
+
 }  // namespace
+
+EffectSettings MakeEffect(const std::string& name, const EffectScales& scales) {
+  const int index = FindEffect(name);
+  if (index < 0) throw std::invalid_argument("unknown effect '" + name + "'; known are " + KnownEffects());
+  const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(index)];
+  EffectSettings effect;
+  effect.name = name;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_amplitudes); ++i) {
+    const EffectAmplitude& a = info.amplitudes[i];
+    const double unit = a.unit_size(scales);
+    effect.amplitudes[i] = {std::string(a.name), PriorKind::kNormal, a.mean * unit,
+                            a.sd * unit,         a.lower * unit,     a.upper * unit};
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_shapes); ++i)
+    effect.shapes[i] = info.shapes[i].typical * info.shapes[i].unit_size(scales);
+  return effect;
+}
 
 void EstimatorSettings::Validate() const {
   const int index = FindModel(model);
@@ -67,8 +133,9 @@ void EstimatorSettings::Validate() const {
     if (parameters[i].name != info.parameters[i].name)
       throw std::invalid_argument("parameter " + std::to_string(d) + " is called '" + parameters[i].name +
                                   "', expected '" + std::string(info.parameters[i].name) + "'");
-    ValidateParameter(parameters[i]);
+    ValidateParameter("parameters." + parameters[i].name, parameters[i]);
   }
+  ValidateEffects(*this, info);
   for (int m = 0; m < info.num_modes; ++m)
     ValidateNoise("noise." + std::string(info.modes[static_cast<std::size_t>(m)]), noise[static_cast<std::size_t>(m)]);
   Open("forgetting.threshold", forgetting.threshold, 0.0, HUGE_VAL);

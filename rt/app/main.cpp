@@ -13,6 +13,7 @@
 #include "armcmc/rt/process_setup.hpp"
 #include "armcmc/rt/step_engine.hpp"
 #include "armcmc/support/estimator_config.hpp"
+#include "armcmc/support/model_file.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/shared_files.hpp"
 #include "armcmc/support/strict_toml.hpp"
@@ -53,13 +54,13 @@ struct Configuration {
 
 Configuration Load(const Options& options) {
   // Without --config the model has a file of its own; with both, --model replaces the model of the file.
-  const std::string file = !options.config.empty()  ? options.config
-                           : !options.model.empty() ? options.model
-                                                    : "hunt_crossley";
-  if (!options.model.empty()) (void)BuiltinSettings(options.model);  // a wrong name is the model's fault, not a file's
+  // A wrong name or model file is told first: it is the model's fault, not the configuration's.
+  const std::string base = options.model.empty() ? "hunt_crossley" : support::BaseModel(options.model);
+  const std::string file = options.config.empty() ? base : options.config;
+  const bool decides = !options.config.empty() || support::IsModelFile(options.model);
   auto root = support::StrictTable::FromFile(support::FindSharedFile("config", file));
   Configuration configuration;
-  configuration.estimator = support::ReadEstimatorSettings(root, options.config.empty() ? "" : options.model);
+  configuration.estimator = support::ReadEstimatorSettings(root, decides ? options.model : "");
   configuration.rt = ReadRtSettings(root);
   root.Finish();
   if (!options.lcm_url.empty()) configuration.rt.lcm_url = options.lcm_url;
@@ -155,7 +156,8 @@ int main(int argc, char** argv) {
   cli.add_option("--config", options.config,
                  "Configuration: a file, or the name of one that came with the product. Default: that of the model")
       ->type_name("FILE");
-  cli.add_option("--model", options.model, "Model: hunt_crossley, soft_actuator or soft_actuator_excited")
+  cli.add_option("--model", options.model,
+                 "Model: hunt_crossley, soft_actuator, soft_actuator_excited or a model file (.toml)")
       ->type_name("NAME");
   cli.add_option("--lcm-url", options.lcm_url,
                  "LCM bus, for example udpm://239.255.76.67:7667?ttl=0. Default: the configuration's")

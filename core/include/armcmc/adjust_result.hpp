@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "armcmc/data_pack.hpp"
+#include "armcmc/effects/effect_pack.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/types.hpp"
 
@@ -40,6 +41,7 @@ class AdjustResult {
   AdjustResult(int num_modes, int dim, int capacity);
 
   DataPack pack;
+  EffectPack effects;  ///< Of `pack`, when the model has effects.
   Status status = Status::kOk;
   int num_modes = 0;
   std::array<ModeDraws, kMaxModes> modes;

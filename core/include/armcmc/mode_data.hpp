@@ -6,6 +6,8 @@
 
 namespace armcmc {
 
+struct EffectPack;
+
 inline constexpr int kMaxFeatures = 6;  ///< Precomputed inputs a model may keep for each sample.
 inline constexpr int kTileLanes = 32;   ///< Candidates scored side by side.
 
@@ -19,6 +21,7 @@ struct alignas(64) ModeData {
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
+  const EffectPack* effects = nullptr;  ///< Not null: the prediction comes from there, features are not read.
 };
 
 /// Predictions of kTileLanes candidates: value[n][lane].

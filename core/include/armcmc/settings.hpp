@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "armcmc/effects/effect.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
@@ -79,6 +80,23 @@ struct PlantConstants {
   double q3 = 3319.4;        ///< 1/s^2
 };
 
+/// When an effect acts.
+enum class EffectGate : std::uint8_t {
+  kAlways,
+  kContact,  ///< While the measured x >= 0.
+  kFree,     ///< While it is not.
+  kFrom,     ///< From plant time from_s on.
+};
+
+/// One effect added to the model: its amplitudes are estimated with the parameters, its shapes are frozen.
+struct EffectSettings {
+  std::string name;  ///< Of the catalogue; see effects/registry.hpp.
+  EffectGate gate = EffectGate::kAlways;
+  double from_s = 0.0;                                             ///< For kFrom, s.
+  std::array<ParameterSettings, kMaxEffectAmplitudes> amplitudes;  ///< Named as in the catalogue.
+  std::array<double, kMaxEffectShapes> shapes{};                   ///< In the order of the catalogue.
+};
+
 /// Everything that decides what the estimator computes. Build it by hand, from a built-in model
 /// (BuiltinSettings), or from a configuration file.
 struct EstimatorSettings {
@@ -89,6 +107,8 @@ struct EstimatorSettings {
   ForgettingSettings forgetting;
   SamplerSettings sampler;
   PlantConstants constants;
+  std::array<EffectSettings, kMaxEffects> effects;  ///< Contact plant only, each at most once.
+  int num_effects = 0;
 
   /// @throws std::invalid_argument naming the key, its value and the allowed range.
   void Validate() const;
@@ -97,5 +117,9 @@ struct EstimatorSettings {
 /// Settings of a built-in model with its default priors, bounds and noise.
 /// @throws std::invalid_argument listing the known names.
 [[nodiscard]] EstimatorSettings BuiltinSettings(const std::string& model);
+
+/// An effect with the priors and typical shapes of the catalogue, for motion and forces of these sizes, always on.
+/// @throws std::invalid_argument listing the known names.
+[[nodiscard]] EffectSettings MakeEffect(const std::string& name, const EffectScales& scales = {});
 
 }  // namespace armcmc

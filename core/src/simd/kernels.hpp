@@ -16,7 +16,8 @@ inline constexpr int kMaxMomentRows = 10;
 struct Kernels {
   std::string_view name;
 
-  /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes AllModels.
+  /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes AllModels; effects come with
+  /// `data`.
   void (*predict)(int model, const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept;
 
   /// out[lane] = sum_n log p((target_n - tile[n][lane] - noise mean) weight_n), in nats, at scale exp(log_scale[lane]).

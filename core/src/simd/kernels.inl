@@ -1,7 +1,11 @@
 // Compiled once per instruction set; see vector.hpp. Everything lives in the instruction set's own namespace so that
 // no other translation unit can pick up code that its CPU cannot run.
 
+// The effects are written in the terms of vector.hpp.
+// clang-format off
 #include "simd/vector.hpp"
+#include "simd/effects.inl"
+// clang-format on
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
@@ -33,6 +37,10 @@ void PredictAny(ModelList<Models...>, int model, const ModeData& data, const The
 }
 
 void Predict(int model, const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept {
+  if (data.effects != nullptr) {
+    PredictComposed(*data.effects, theta, tile);
+    return;
+  }
   PredictAny(AllModels{}, model, data, theta, tile);
 }
 

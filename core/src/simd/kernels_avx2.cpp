@@ -1,3 +1,4 @@
+#include "armcmc/effects/registry.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/rng.hpp"
 #include "simd/kernels.hpp"

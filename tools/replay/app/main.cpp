@@ -35,7 +35,8 @@ void Declare(CLI::App* app, Arguments* a) {
          "Recording: a CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha) or an LCM log")
       ->required();
   app->add_option("--out", a->out, "CSV of estimates to write, one row a pack")->required();
-  app->add_option("--model", a->model, "Built-in model instead of that of the configuration");
+  app->add_option("--model", a->model,
+                  "Built-in model or model file (.toml) instead of the model of the configuration");
   app->add_option("--seed", a->seed, "Seed instead of that of the configuration");
   app->add_option(
       "--draws-from", a->draws_from,

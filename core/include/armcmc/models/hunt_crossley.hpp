@@ -58,8 +58,15 @@ struct HuntCrossley {
   template <class S>
   static typename S::V Predict(const typename S::V* theta, const ModeData& data, int n) noexcept {
     const auto in = static_cast<std::size_t>(n);
-    const auto power = S::Exp2(theta[2] * S::Set(data.feature[0][in]));
-    return power * S::Fma(theta[1], S::Set(data.feature[1][in]), theta[0]);
+    return Law<S>(theta[0], theta[1], theta[2], S::Set(data.feature[0][in]), S::Set(data.feature[1][in]));
+  }
+
+  /// The constitutive law for log2 of the depth and its rate.
+  template <class S>
+  static typename S::V Law(typename S::V stiffness, typename S::V damping, typename S::V exponent, typename S::V log2_x,
+                           typename S::V v) noexcept {
+    const auto power = S::Exp2(exponent * log2_x);
+    return power * S::Fma(damping, v, stiffness);
   }
 };
 

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/effects/effect_pack.hpp"
+#include "armcmc/effects/registry.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/model.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc {
+
+/// A base model with the effects of the settings: parameters and reported quantities of both, and the memory that the
+/// effects carry from pack to pack.
+///
+/// The parameters are those of the base, then the amplitudes in the order of the settings, called NAME_PARAMETER. With
+/// effects, mode 0 uses every sample of a pack: free motion says something on a bias, a drag or a mass.
+class Composition {
+ public:
+  /// @pre settings.Validate() passes.
+  explicit Composition(const EstimatorSettings& settings);
+  Composition(const Composition&) = delete;  // info_ points into names_
+  Composition& operator=(const Composition&) = delete;
+
+  [[nodiscard]] bool empty() const noexcept { return num_terms_ == 0; }
+  [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
+  /// The settings with the amplitudes appended to the parameters: what a ParameterSpace is made from.
+  [[nodiscard]] const EstimatorSettings& sampled() const noexcept { return sampled_; }
+
+  /// Features of the pack, from the memory of the pack before; then remembers this one. A gap in the pack numbers,
+  /// another run or another sample interval starts with an empty memory.
+  /// @return false when a feature is not finite: nothing is remembered.
+  /// @pre !empty(), pack.Validate() == kOk.
+  /// @rt No heap, no lock, no throw. O(samples).
+  [[nodiscard]] bool Prepare(const DataPack& pack, EffectPack* out) noexcept;
+
+  /// What the sampler scores. `effects` must outlive `data`.
+  static void Fill(const DataPack& pack, const EffectPack& effects, ModeData* data) noexcept;
+
+  /// Forgets the packs before.
+  void Reset() noexcept { memory_[0].seq = memory_[1].seq = -1; }
+
+ private:
+  struct Term {
+    const EffectInfo* info = nullptr;
+    EffectFeatureFn feature = nullptr;
+    std::array<double, kMaxEffectShapes> shapes{};
+    EffectGate gate = EffectGate::kAlways;
+    double from_s = 0.0;
+    int parameter = 0;  ///< Row of its first amplitude among the parameters.
+  };
+  /// What one pack leaves to the next. Two of them, so that a pack that fails changes nothing.
+  struct Memory {
+    std::int64_t seq = -1, run_id = 0;
+    double dt = 0.0;
+    std::array<std::array<double, kEffectMemory>, kMaxEffects> filter{};
+    EffectPack pack;
+  };
+
+  void Assign(EffectPack* pack) const noexcept;
+  [[nodiscard]] int HistoryFor(double dt) const noexcept;
+  static void CopyRows(const EffectPack& from, int first, int count, EffectPack* to) noexcept;
+  void FillRow(const EffectInput& in, int row, Memory* memory) const noexcept;
+
+  ModelInfo info_;
+  EstimatorSettings sampled_;
+  std::array<std::string, kMaxParams> names_;
+  int num_terms_ = 0;
+  std::array<Term, kMaxEffects> terms_;
+  double longest_delay_ = 0.0, longest_lag_ = 0.0;  ///< Upper bounds of the priors, s.
+  std::array<Memory, 2> memory_;
+  int current_ = 0;
+};
+
+}  // namespace armcmc

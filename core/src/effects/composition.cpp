@@ -1,0 +1,181 @@
+#include "armcmc/effects/composition.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/models/registry.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kLagMemory = 8.0;  // time constants after which a low pass has forgotten its start
+
+void ReportAll(const double* theta, const PlantConstants&, double* reported) noexcept {
+  std::copy(theta, theta + kMaxReported, reported);
+}
+static_assert(kMaxReported == kMaxParams);
+
+double GateOf(EffectGate gate, double from_s, const EffectInput& in) noexcept {
+  switch (gate) {
+    case EffectGate::kContact: return in.x >= 0.0 ? 1.0 : 0.0;
+    case EffectGate::kFree: return in.x >= 0.0 ? 0.0 : 1.0;
+    case EffectGate::kFrom: return in.t >= from_s ? 1.0 : 0.0;
+    case EffectGate::kAlways: break;
+  }
+  return 1.0;
+}
+
+}  // namespace
+
+Composition::Composition(const EstimatorSettings& settings)
+    : info_(*AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]), sampled_(settings) {
+  if (settings.num_effects == 0) return;
+  info_.report = &ReportAll;
+  for (int e = 0; e < settings.num_effects; ++e) {
+    const EffectSettings& effect = settings.effects[static_cast<std::size_t>(e)];
+    const auto index = static_cast<std::size_t>(FindEffect(effect.name));
+    Term& term = terms_[static_cast<std::size_t>(num_terms_++)];
+    term.info = AllEffects::kInfos[index];
+    term.feature = AllEffects::kFeatures[index];
+    term.shapes = effect.shapes;
+    term.gate = effect.gate;
+    term.from_s = effect.from_s;
+    term.parameter = info_.num_parameters;
+    for (int a = 0; a < term.info->num_amplitudes; ++a) {
+      const EffectAmplitude& amplitude = term.info->amplitudes[static_cast<std::size_t>(a)];
+      const ParameterSettings& prior = effect.amplitudes[static_cast<std::size_t>(a)];
+      const auto d = static_cast<std::size_t>(info_.num_parameters++);
+      names_[d] = std::string(term.info->name) + "_" + std::string(amplitude.name);
+      info_.parameters[d] = {names_[d], amplitude.unit, prior.mean, prior.sd, prior.lower, prior.upper};
+      info_.reported[d] = {names_[d], amplitude.unit};
+      sampled_.parameters[d] = prior;
+      sampled_.parameters[d].name = names_[d];
+    }
+    if (term.info->slot == EffectSlot::kSensorDelay) longest_delay_ = effect.amplitudes[0].upper;
+    if (term.info->slot == EffectSlot::kSensorLag) longest_lag_ = effect.amplitudes[0].upper;
+  }
+  info_.num_reported = sampled_.num_parameters = info_.num_parameters;
+  Assign(&memory_[0].pack);
+  Assign(&memory_[1].pack);
+}
+
+void Composition::Assign(EffectPack* pack) const noexcept {
+  for (int i = 0; i < num_terms_; ++i) {
+    const Term& term = terms_[static_cast<std::size_t>(i)];
+    switch (term.info->slot) {
+      case EffectSlot::kInputMap: pack->contact_offset = term.parameter; break;
+      case EffectSlot::kConstitutiveLaw: pack->stiffness_rate = term.parameter; break;
+      case EffectSlot::kSensorDelay: pack->delay = term.parameter; break;
+      case EffectSlot::kSensorLag: pack->lag = term.parameter; break;
+      case EffectSlot::kSensorStatics: pack->limit = term.parameter; break;
+      case EffectSlot::kAdditive:
+        for (int a = 0; a < term.info->num_amplitudes; ++a)
+          pack->additive_amplitude[static_cast<std::size_t>(pack->num_additive++)] = term.parameter + a;
+        break;
+    }
+  }
+}
+
+int Composition::HistoryFor(double dt) const noexcept {
+  const double samples = (longest_delay_ + kLagMemory * longest_lag_) / dt;
+  if (!(samples > 0.0)) return 0;
+  return static_cast<int>(std::fmin(std::ceil(samples) + 1.0, kMaxHistory));
+}
+
+void Composition::CopyRows(const EffectPack& from, int first, int count, EffectPack* to) noexcept {
+  const auto copy = [&](const EffectPack::Row& source, EffectPack::Row* target) noexcept {
+    std::copy_n(source.begin() + first, count, target->begin());
+  };
+  copy(from.x, &to->x);
+  copy(from.log2_x, &to->log2_x);
+  copy(from.v, &to->v);
+  for (std::size_t a = 0; a < static_cast<std::size_t>(from.num_additive); ++a) copy(from.feature[a], &to->feature[a]);
+  copy(from.elapsed, &to->elapsed);
+  copy(from.contact_offset_gate, &to->contact_offset_gate);
+  copy(from.delay_gate, &to->delay_gate);
+  copy(from.lag_gate, &to->lag_gate);
+  copy(from.limit_gate, &to->limit_gate);
+}
+
+void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const noexcept {
+  constexpr double kLog2OfZero = -1000.0;
+  const auto r = static_cast<std::size_t>(row);
+  EffectPack& pack = memory->pack;
+  pack.x[r] = in.x;
+  pack.v[r] = in.v;
+  pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), kLog2OfZero) : kLog2OfZero;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(num_terms_); ++i) {
+    const Term& term = terms_[i];
+    const double gate = GateOf(term.gate, term.from_s, in);
+    std::array<double, kMaxEffectAmplitudes> feature{};
+    // A closed gate hides the feature; its memory goes on.
+    if (term.feature != nullptr) term.feature(in, term.shapes.data(), memory->filter[i].data(), feature.data());
+    switch (term.info->slot) {
+      case EffectSlot::kInputMap: pack.contact_offset_gate[r] = gate; break;
+      case EffectSlot::kConstitutiveLaw: pack.elapsed[r] = gate * feature[0]; break;
+      case EffectSlot::kSensorDelay: pack.delay_gate[r] = gate; break;
+      case EffectSlot::kSensorLag: pack.lag_gate[r] = gate; break;
+      case EffectSlot::kSensorStatics: pack.limit_gate[r] = gate; break;
+      case EffectSlot::kAdditive:
+        for (std::size_t a = 0; a < static_cast<std::size_t>(term.info->num_amplitudes); ++a)
+          pack.feature[next++][r] = gate * feature[a];
+        break;
+    }
+  }
+}
+
+bool Composition::Prepare(const DataPack& pack, EffectPack* out) noexcept {
+  const Memory& before = memory_[static_cast<std::size_t>(current_)];
+  Memory& after = memory_[static_cast<std::size_t>(1 - current_)];
+  const bool continues =
+      before.seq >= 0 && pack.seq == before.seq + 1 && pack.run_id == before.run_id && pack.dt == before.dt;
+  after.seq = pack.seq;
+  after.run_id = pack.run_id;
+  after.dt = pack.dt;
+  after.filter = before.filter;
+  EffectPack& rows = after.pack;
+  rows.dt = pack.dt;
+  rows.num_samples = pack.num_samples;
+  rows.history = continues ? std::min(HistoryFor(pack.dt), before.pack.rows()) : 0;
+  CopyRows(before.pack, before.pack.rows() - rows.history, rows.history, &rows);
+  for (int n = 0; n < pack.num_samples; ++n) {
+    const auto& u = pack.u[static_cast<std::size_t>(n)];
+    const EffectInput in{.t = pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt,
+                         .dt = pack.dt,
+                         .x = u[0],
+                         .v = u[1],
+                         .first = n == 0 && !continues};
+    FillRow(in, rows.history + n, &after);
+  }
+  bool finite = true;
+  for (int r = rows.history; r < rows.rows(); ++r) {
+    const auto i = static_cast<std::size_t>(r);
+    finite = finite && std::isfinite(rows.elapsed[i]);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(rows.num_additive); ++a)
+      finite = finite && std::isfinite(rows.feature[a][i]);
+  }
+  if (!finite) return false;
+  current_ = 1 - current_;
+  // Members by hand: rows past the last are not copied.
+  out->history = rows.history;
+  out->num_samples = rows.num_samples;
+  out->dt = rows.dt;
+  out->num_additive = rows.num_additive;
+  out->additive_amplitude = rows.additive_amplitude;
+  out->stiffness_rate = rows.stiffness_rate;
+  out->contact_offset = rows.contact_offset;
+  out->delay = rows.delay;
+  out->lag = rows.lag;
+  out->limit = rows.limit;
+  CopyRows(rows, 0, rows.rows(), out);
+  return true;
+}
+
+void Composition::Fill(const DataPack& pack, const EffectPack& effects, ModeData* data) noexcept {
+  data->num_samples = pack.num_samples;
+  std::copy_n(pack.y.begin(), pack.num_samples, data->target.begin());
+  data->effects = &effects;
+}
+
+}  // namespace armcmc

@@ -1,0 +1,116 @@
+// Prediction of the contact plant with effects; included by kernels.inl, once per instruction set.
+
+#include <iterator>
+
+#include "armcmc/effects/effect_pack.hpp"
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+namespace {
+
+/// Additive effects: one FMA each a sample, their number known to the compiler.
+template <std::size_t kAdditive>
+void PredictAdditive(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
+  using V = Simd::V;
+  for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
+    const auto at = static_cast<std::size_t>(lane);
+    const V stiffness = Simd::Load(&theta.value[0][at]);
+    const V damping = Simd::Load(&theta.value[1][at]);
+    const V exponent = Simd::Load(&theta.value[2][at]);
+    V amplitude[kAdditive];
+    for (std::size_t a = 0; a < kAdditive; ++a)
+      amplitude[a] = Simd::Load(&theta.value[static_cast<std::size_t>(pack.additive_amplitude[a])][at]);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
+      V f = HuntCrossley::Law<Simd>(stiffness, damping, exponent, Simd::Set(pack.log2_x[n]), Simd::Set(pack.v[n]));
+      for (std::size_t a = 0; a < kAdditive; ++a) f = Simd::Fma(amplitude[a], Simd::Set(pack.feature[a][n]), f);
+      Simd::Store(&tile->value[n][at], f);
+    }
+  }
+}
+
+/// Where a gate is shut the series stays as it is.
+Simd::V Gated(double gate, Simd::V yes, Simd::V no) noexcept { return gate != 0.0 ? yes : no; }
+
+/// Plant forces of one vector of candidates, history included: input map, constitutive law, additive terms.
+void PlantForces(const EffectPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
+  using V = Simd::V;
+  const auto amplitude_of = [&](int parameter) noexcept {
+    return parameter < 0 ? V{} : Simd::Load(&theta.value[static_cast<std::size_t>(parameter)][at]);
+  };
+  const V stiffness = amplitude_of(0);
+  const V damping = amplitude_of(1);
+  const V exponent = amplitude_of(2);
+  const V offset = amplitude_of(pack.contact_offset);
+  const V rate = amplitude_of(pack.stiffness_rate);
+  V amplitude[kMaxAdditive];
+  for (int a = 0; a < pack.num_additive; ++a)
+    amplitude[a] = amplitude_of(pack.additive_amplitude[static_cast<std::size_t>(a)]);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(pack.rows()); ++n) {
+    const V log2_x = pack.contact_offset < 0 ? Simd::Set(pack.log2_x[n])
+                                             : ContactOffset::Log2Depth<Simd>(Simd::Set(pack.x[n]), offset,
+                                                                              Simd::Set(pack.contact_offset_gate[n]));
+    const V k = pack.stiffness_rate < 0 ? stiffness
+                                        : StiffnessDrift::Stiffness<Simd>(stiffness, rate, Simd::Set(pack.elapsed[n]));
+    V f = HuntCrossley::Law<Simd>(k, damping, exponent, log2_x, Simd::Set(pack.v[n]));
+    for (std::size_t a = 0; a < static_cast<std::size_t>(pack.num_additive); ++a)
+      f = Simd::Fma(amplitude[a], Simd::Set(pack.feature[a][n]), f);
+    Simd::Store(series + n * Simd::kLanes, f);
+  }
+}
+
+/// What the sensor makes of them, in place: delay, low pass, limit.
+void Sense(const EffectPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
+  using V = Simd::V;
+  const int rows = pack.rows();
+  const auto amplitude_of = [&](int parameter) noexcept {
+    return Simd::Load(&theta.value[static_cast<std::size_t>(parameter)][at]);
+  };
+  const auto force = [&](int n) noexcept { return series + static_cast<std::size_t>(n) * Simd::kLanes; };
+  if (pack.delay >= 0) {
+    const V lag = amplitude_of(pack.delay) * Simd::Set(1.0 / pack.dt);
+    for (int n = rows - 1; n >= 0; --n)  // backwards: a sample reads earlier ones only
+      Simd::Store(force(n), Gated(pack.delay_gate[static_cast<std::size_t>(n)],
+                                  SensorDelay::Delayed<Simd>(series, n, lag), Simd::Load(force(n))));
+  }
+  if (pack.lag >= 0) {
+    const SensorLag::Filter<Simd> filter(amplitude_of(pack.lag), pack.dt);
+    V before = Simd::Load(force(0));
+    V state = before;
+    for (int n = 1; n < rows; ++n) {
+      const V f = Simd::Load(force(n));
+      state = filter.Next(state, f, before);
+      before = f;
+      Simd::Store(force(n), Gated(pack.lag_gate[static_cast<std::size_t>(n)], state, f));
+    }
+  }
+  if (pack.limit >= 0) {
+    const V limit = amplitude_of(pack.limit);
+    for (int n = pack.history; n < rows; ++n) {
+      const V f = Simd::Load(force(n));
+      Simd::Store(force(n),
+                  Gated(pack.limit_gate[static_cast<std::size_t>(n)], SensorSaturation::Clip<Simd>(f, limit), f));
+    }
+  }
+}
+
+void PredictSensed(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
+  alignas(64) double series[kMaxEffectSamples * Simd::kLanes];
+  for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
+    const auto at = static_cast<std::size_t>(lane);
+    PlantForces(pack, theta, at, series);
+    Sense(pack, theta, at, series);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n)
+      Simd::Store(&tile->value[n][at],
+                  Simd::Load(series + (static_cast<std::size_t>(pack.history) + n) * Simd::kLanes));
+  }
+}
+
+void PredictComposed(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
+  using Fn = void (*)(const EffectPack&, const ThetaTile&, PredictionTile*) noexcept;
+  static constexpr Fn kByNumber[] = {&PredictSensed,      &PredictAdditive<1>, &PredictAdditive<2>,
+                                     &PredictAdditive<3>, &PredictAdditive<4>, &PredictAdditive<5>};
+  static_assert(std::size(kByNumber) == kMaxAdditive + 1);
+  (pack.additive_only() ? kByNumber[pack.num_additive] : &PredictSensed)(pack, theta, tile);
+}
+
+}  // namespace
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE

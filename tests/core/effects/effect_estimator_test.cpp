@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "contact_series.hpp"
+#include "estimator_rig.hpp"
+#include "support/alloc_counter.hpp"
+
+namespace armcmc {
+namespace {
+
+using test::Catalogue;
+using test::HiddenEffect;
+using test::Rig;
+using test::Series;
+
+constexpr std::size_t kPack = 100;
+
+/// A recording with noise of sd 0.1 N, cut into packs.
+std::vector<DataPack> Packs(const std::vector<HiddenEffect>& effects, int packs, unsigned seed) {
+  Series series(packs * static_cast<int>(kPack));
+  test::Simulate(effects, &series);
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  for (double& f : series.f) f += noise(generator);
+  std::vector<DataPack> out;
+  for (int k = 0; k < packs; ++k) out.push_back(series.Pack(k + 1, static_cast<std::size_t>(k) * kPack, kPack));
+  return out;
+}
+
+EstimatorSettings Quick(EstimatorSettings settings) {
+  settings.sampler.rule = DrawRule::kFixed;
+  settings.sampler.fixed_draws = 6000;
+  return settings;
+}
+
+/// Largest distance of the estimates from the truth over the last two thirds of the packs, in posterior standard
+/// deviations.
+double WorstDistance(const EstimatorSettings& settings, const std::vector<DataPack>& packs,
+                     const std::vector<double>& truth) {
+  Rig rig(settings);
+  double worst = 0.0;
+  for (std::size_t k = 0; k < packs.size(); ++k) {
+    rig.Step(packs[k]);
+    for (std::size_t d = 0; k >= packs.size() / 3 && d < truth.size(); ++d) {
+      const MarginalSummary& m = rig.estimate().modes[0].marginal[d];
+      worst = std::fmax(worst, std::fabs(m.ar_ap - truth[d]) / m.sd);
+    }
+  }
+  return worst;
+}
+
+std::vector<double> Truth(const std::vector<HiddenEffect>& effects) {
+  std::vector<double> truth{4.0, 2.3, 1.7};
+  for (const HiddenEffect& e : effects) truth.insert(truth.end(), e.amplitude.begin(), e.amplitude.end());
+  return truth;
+}
+
+TEST(EffectEstimator, EveryEffectIsRecoveredWhereTheBaseModelIsBiased) {
+  for (const HiddenEffect& e : Catalogue()) {
+    const auto packs = Packs({e}, 30, 3);
+    const double with = WorstDistance(Quick(test::WithEffects({e})), packs, Truth({e}));
+    const double without = WorstDistance(Quick(BuiltinSettings("hunt_crossley")), packs, Truth({}));
+    EXPECT_LT(with, 4.0) << e.name;
+    EXPECT_GT(without, 15.0) << e.name;
+  }
+}
+
+TEST(EffectEstimator, IntervalsCoverTheTruthOverSeeds) {
+  const auto all = Catalogue();
+  const std::vector<HiddenEffect> effects{all[2], all[0]};  // Coulomb friction and a bias
+  const std::vector<double> truth = Truth(effects);
+  constexpr int kSeeds = 40;
+  int covered = 0;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    Rig rig(Quick(test::WithEffects(effects)));
+    for (const DataPack& pack : Packs(effects, 12, seed)) rig.Step(pack);
+    for (std::size_t d = 0; d < truth.size(); ++d) {
+      const MarginalSummary& m = rig.estimate().modes[0].marginal[d];
+      covered += m.q025 <= truth[d] && truth[d] <= m.q975 ? 1 : 0;
+    }
+  }
+  const double share = covered / (kSeeds * 5.0);
+  EXPECT_GT(share, 0.88);
+  EXPECT_LT(share, 1.0);
+}
+
+TEST(EffectEstimator, FreeMotionTellsTheBiasAndKeepsTheRest) {
+  const std::vector<HiddenEffect> effects{Catalogue()[0]};
+  auto packs = Packs(effects, 30, 5);
+  Rig rig(Quick(test::WithEffects(effects)));
+  for (const DataPack& pack : packs) rig.Step(pack);
+  const ModeEstimate before = rig.estimate().modes[0];
+  std::mt19937_64 generator(9);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  for (std::int64_t seq = 31; seq <= 90; ++seq) {  // six seconds in the air
+    DataPack free = packs.back();
+    free.seq = seq;
+    free.t_last_s += 0.1 * static_cast<double>(seq - 30);
+    for (std::size_t n = 0; n < kPack; ++n) {
+      free.u[n] = {-0.2, 0.0};
+      free.y[n] = 0.7 + noise(generator);
+    }
+    rig.Step(free);
+  }
+  const ModeEstimate& after = rig.estimate().modes[0];
+  EXPECT_LT(after.marginal[3].sd, 0.8 * before.marginal[3].sd) << "the air shows the bias";
+  EXPECT_NEAR(after.marginal[3].ar_ap, 0.7, 4.0 * after.marginal[3].sd);
+  for (std::size_t d = 0; d < 3; ++d) {
+    EXPECT_NEAR(after.marginal[d].ar_ap, before.marginal[d].ar_ap, 2.0 * before.marginal[d].sd) << d;
+    EXPECT_LT(after.marginal[d].sd, 3.0 * before.marginal[d].sd) << d << ": nothing was forgotten in the air";
+  }
+  EXPECT_FALSE(rig.estimate().active);
+  EXPECT_NEAR(rig.estimate().y_pred, 0.7, 0.1) << "the sensor shows its bias in the air too";
+  EXPECT_NEAR(rig.estimate().y_shown[50], 0.7, 0.1);
+}
+
+TEST(EffectEstimator, ReportsAmplitudesUnderTheirOwnNames) {
+  const auto all = Catalogue();
+  const Estimator estimator(test::WithEffects({all[2], all[12]}));
+  ASSERT_EQ(estimator.num_reported(), 6);
+  EXPECT_EQ(estimator.reported(2).name, "p");
+  EXPECT_EQ(estimator.reported(3).name, "coulomb_friction_force");
+  EXPECT_EQ(estimator.reported(3).unit, "N");
+  EXPECT_EQ(estimator.reported(5).name, "periodic_disturbance_sine");
+  EXPECT_EQ(estimator.num_modes(), 1);
+}
+
+TEST(EffectEstimator, TwoRunsAreEqualToTheBit) {
+  const auto all = Catalogue();
+  for (const auto& effects : {std::vector<HiddenEffect>{all[3], all[8]}, std::vector<HiddenEffect>{all[6], all[7]}}) {
+    const EstimatorSettings settings = Quick(test::WithEffects(effects));
+    Rig first(settings), second(settings);
+    auto packs = Packs(effects, 6, 2);
+    for (const DataPack& pack : packs) test::ExpectSameBits(first.Step(pack), second.Step(pack));
+    first.estimator.Reset();
+    Rig fresh(settings);
+    for (const DataPack& pack : packs) {
+      first.Step(pack);
+      fresh.Step(pack);
+    }
+    for (std::size_t d = 0; d < 5; ++d)
+      EXPECT_EQ(first.estimate().modes[0].marginal[d].ar_ap, fresh.estimate().modes[0].marginal[d].ar_ap)
+          << "a reset estimator is a new one";
+  }
+}
+
+TEST(EffectEstimator, ABadPackChangesNothing) {
+  const auto all = Catalogue();
+  const EstimatorSettings settings = Quick(test::WithEffects({all[8], all[7]}));
+  Rig first(settings), second(settings);
+  const auto packs = Packs({all[8], all[7]}, 4, 2);
+  for (std::size_t k = 0; k < packs.size(); ++k) {
+    if (k == 2) {
+      DataPack bad = packs[k];
+      bad.u[7][0] = std::nan("");
+      first.Step(bad);
+      EXPECT_EQ(first.status, Status::kBadPack);
+      bad = packs[k];
+      bad.u[7][0] = 1e308;
+      bad.u[8][0] = -1e308;
+      bad.seq = -1;
+      first.Step(bad);
+      EXPECT_EQ(first.status, Status::kBadPack);
+    }
+    first.Step(packs[k]);
+    second.Step(packs[k]);
+  }
+  for (std::size_t d = 0; d < 5; ++d)
+    EXPECT_EQ(first.estimate().modes[0].marginal[d].ar_ap, second.estimate().modes[0].marginal[d].ar_ap);
+}
+
+TEST(EffectEstimator, StepsDoNotTouchTheHeap) {
+  if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  const auto all = Catalogue();
+  for (const auto& effects : {std::vector<HiddenEffect>{all[3], all[8], all[5]},
+                              std::vector<HiddenEffect>{all[6], all[7], all[10], all[11], all[13]}}) {
+    const auto packs = Packs(effects, 8, 2);
+    Rig rig(Quick(test::WithEffects(effects)));
+    const test::AllocCounter guard;
+    for (const DataPack& pack : packs) rig.Step(pack);
+    DataPack bad = packs.back();
+    bad.num_samples = 0;
+    rig.Step(bad);
+    rig.estimator.Reset();
+    rig.Step(packs[0]);
+    EXPECT_EQ(guard.count() + guard.frees(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace armcmc

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "armcmc/effects/composition.hpp"
+#include "armcmc/models/registry.hpp"
+#include "contact_series.hpp"
+#include "kernel_sets.hpp"
+
+namespace armcmc {
+namespace {
+
+using test::Catalogue;
+using test::HiddenEffect;
+using test::Series;
+
+/// Predicts a recording pack by pack, with packs of different sizes.
+class Predictor {
+ public:
+  explicit Predictor(const std::vector<HiddenEffect>& effects, const simd::Kernels& kernels)
+      : composition_(test::WithEffects(effects)), kernels_(kernels) {
+    std::vector<double> theta{4.0, 2.3, 1.7};
+    for (const HiddenEffect& e : effects) theta.insert(theta.end(), e.amplitude.begin(), e.amplitude.end());
+    for (std::size_t d = 0; d < theta.size(); ++d) theta_.value[d].fill(theta[d]);
+  }
+
+  /// The lane that is compared, so that the lanes next to it may hold anything.
+  void Shift(std::size_t parameter, std::size_t lane, double by) { theta_.value[parameter][lane] += by; }
+
+  /// Lane `lane` of the whole recording.
+  std::vector<double> Run(const Series& series, std::size_t lane = 5) {
+    static constexpr std::size_t kSizes[] = {100, 1, 37, 256, 100, 2};
+    std::vector<double> out;
+    std::int64_t seq = 1;
+    for (std::size_t first = 0; first < series.size();) {
+      const std::size_t count = std::min(kSizes[static_cast<std::size_t>(seq) % 6], series.size() - first);
+      const DataPack pack = series.Pack(seq++, first, count);
+      EXPECT_TRUE(composition_.Prepare(pack, pack_.get()));
+      Composition::Fill(pack, *pack_, data_.get());
+      kernels_.predict(FindModel("hunt_crossley"), *data_, theta_, tile_.get());
+      for (std::size_t n = 0; n < count; ++n) out.push_back(tile_->value[n][lane]);
+      first += count;
+    }
+    return out;
+  }
+
+  Composition composition_;
+
+ private:
+  const simd::Kernels& kernels_;
+  ThetaTile theta_{};
+  std::unique_ptr<EffectPack> pack_ = std::make_unique<EffectPack>();
+  std::unique_ptr<ModeData> data_ = std::make_unique<ModeData>();
+  std::unique_ptr<PredictionTile> tile_ = std::make_unique<PredictionTile>();
+};
+
+void ExpectEqualsReference(const std::vector<HiddenEffect>& effects, const std::string& what) {
+  Series series(2000);
+  test::Simulate(effects, &series);
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    Predictor predictor(effects, *kernels);
+    const std::vector<double> predicted = predictor.Run(series);
+    ASSERT_EQ(predicted.size(), series.size());
+    double worst = 0.0;
+    for (std::size_t n = 0; n < series.size(); ++n) worst = std::fmax(worst, std::fabs(predicted[n] - series.f[n]));
+    // Reference filters are integrated in small steps (error 1e-6), the low pass starts from its history.
+    EXPECT_LT(worst, 3e-5) << what << " on " << kernels->name;
+  }
+}
+
+TEST(EffectPrediction, EveryEffectOfTheCatalogueEqualsTheReference) {
+  ASSERT_EQ(Catalogue().size(), static_cast<std::size_t>(AllEffects::kSize)) << "an effect without a reference";
+  for (const HiddenEffect& e : Catalogue()) ExpectEqualsReference({e}, e.name);
+}
+
+TEST(EffectPrediction, GatesOpenWhereTheyShould) {
+  for (HiddenEffect e : Catalogue())
+    for (const EffectGate gate : {EffectGate::kContact, EffectGate::kFree, EffectGate::kFrom}) {
+      e.gate = gate;
+      e.from_s = 0.7505;
+      ExpectEqualsReference({e}, e.name + " gate " + std::to_string(static_cast<int>(gate)));
+    }
+}
+
+TEST(EffectPrediction, SlotsComposeInTheFixedOrder) {
+  const auto all = Catalogue();
+  const auto named = [&](const char* name) {
+    for (const auto& e : all)
+      if (e.name == name) return e;
+    return HiddenEffect{};
+  };
+  const std::vector<HiddenEffect> sensed{named("sensor_saturation"), named("sensor_lag"), named("coulomb_friction"),
+                                         named("sensor_delay"), named("contact_offset")};
+  ExpectEqualsReference(sensed, "five slots, named in reverse");
+  ExpectEqualsReference({named("stiffness_drift"), named("stress_relaxation"), named("force_bias")}, "law and added");
+  ExpectEqualsReference({named("inertia"), named("adhesion"), named("viscous_friction"), named("periodic_disturbance")},
+                        "five amplitudes");
+}
+
+TEST(EffectPrediction, InstructionSetsAgree) {
+  for (const HiddenEffect& e : Catalogue()) {
+    Series series(700);
+    const auto sets = test::RunnableKernels();
+    std::vector<double> first = Predictor({e}, *sets.front()).Run(series);
+    for (const simd::Kernels* kernels : sets) {
+      const std::vector<double> other = Predictor({e}, *kernels).Run(series);
+      for (std::size_t n = 0; n < first.size(); ++n)
+        ASSERT_NEAR(other[n], first[n], 1e-10 * (1.0 + std::fabs(first[n]))) << e.name << " " << kernels->name;
+    }
+  }
+}
+
+TEST(EffectPrediction, EveryAddedParameterMovesThePrediction) {
+  for (const HiddenEffect& e : Catalogue())
+    for (std::size_t a = 0; a < e.amplitude.size(); ++a) {
+      Series series(2000);
+      Predictor predictor({e}, simd::Best());
+      const double step = 1e-3 * (std::fabs(e.amplitude[a]) + 1e-3);
+      predictor.Shift(3 + a, 9, step);
+      const std::vector<double> base = predictor.Run(series, 5);
+      predictor.composition_.Reset();
+      const std::vector<double> moved = predictor.Run(series, 9);
+      double largest = 0.0;
+      for (std::size_t n = 0; n < base.size(); ++n) largest = std::fmax(largest, std::fabs(moved[n] - base[n]) / step);
+      EXPECT_GT(largest, 0.1) << e.name << " amplitude " << a;
+    }
+}
+
+TEST(EffectPrediction, AGapStartsTheMemoryAnew) {
+  const HiddenEffect relaxation{"stress_relaxation", {2.0}, {0.2}};
+  Series series(400);
+  Composition composition(test::WithEffects({relaxation})), fresh(test::WithEffects({relaxation}));
+  auto pack = std::make_unique<EffectPack>(), other = std::make_unique<EffectPack>();
+  ASSERT_TRUE(composition.Prepare(series.Pack(1, 0, 100), pack.get()));
+  ASSERT_TRUE(composition.Prepare(series.Pack(3, 200, 100), pack.get())) << "pack 2 is lost";
+  ASSERT_TRUE(fresh.Prepare(series.Pack(3, 200, 100), other.get()));
+  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->feature[0][n], other->feature[0][n]);
+}
+
+TEST(EffectPrediction, APackThatOverflowsIsRefusedAndForgotten) {
+  const HiddenEffect inertia{"inertia", {0.3}, {0.0}};
+  Series series(400);
+  Composition composition(test::WithEffects({inertia})), fresh(test::WithEffects({inertia}));
+  auto pack = std::make_unique<EffectPack>(), other = std::make_unique<EffectPack>();
+  ASSERT_TRUE(composition.Prepare(series.Pack(1, 0, 100), pack.get()));
+  ASSERT_TRUE(fresh.Prepare(series.Pack(1, 0, 100), other.get()));
+  DataPack broken = series.Pack(2, 100, 100);
+  broken.u[50][1] = 1e308;
+  ASSERT_FALSE(composition.Prepare(broken, pack.get()));
+  ASSERT_TRUE(composition.Prepare(series.Pack(2, 100, 100), pack.get()));
+  ASSERT_TRUE(fresh.Prepare(series.Pack(2, 100, 100), other.get()));
+  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->feature[0][n], other->feature[0][n]);
+}
+
+}  // namespace
+}  // namespace armcmc

@@ -1,0 +1,121 @@
+#include "model_tables.hpp"
+
+#include <cmath>
+
+#include "armcmc/effects/registry.hpp"
+#include "armcmc/estimator.hpp"
+#include "read_word.hpp"
+
+namespace armcmc::support {
+namespace {
+
+void ReadPrior(StrictTable table, ParameterSettings* prior) {
+  ParameterSettings& p = *prior;
+  p.prior =
+      ReadWord<PriorKind>(table, "prior", p.prior, {{"normal", PriorKind::kNormal}, {"uniform", PriorKind::kUniform}});
+  p.mean = table.Number("mean", p.mean, -kMax, kMax);
+  p.sd = table.Number("sd", p.sd, kTiny, kMax);
+  p.lower = table.Number("lower", p.lower, -kMax, kMax);
+  p.upper = table.Number("upper", p.upper, -kMax, kMax);
+  if (!(p.lower < p.upper))
+    throw table.Error(
+        table.Has("upper") ? "upper" : "lower",
+        "expected lower < upper, they are " + std::to_string(p.lower) + " and " + std::to_string(p.upper));
+  if (p.prior == PriorKind::kUniform)
+    for (const char* key : {"mean", "sd"})
+      if (table.Has(key))
+        throw table.Error(key, "a uniform prior has bounds only; remove this key or use prior = \"normal\"");
+}
+
+void ReadNoiseLaw(StrictTable& table, NoiseSettings* noise) {
+  noise->kind = ReadWord<NoiseKind>(table, "kind", noise->kind,
+                                    {{"gaussian", NoiseKind::kGaussian},
+                                     {"student_t", NoiseKind::kStudentT},
+                                     {"laplace", NoiseKind::kLaplace},
+                                     {"mixture", NoiseKind::kMixture}});
+  noise->std = table.Number("std", noise->std, kTiny, kMax);
+  noise->mean = table.Number("mean", noise->mean, -kMax, kMax);
+  noise->estimate_std = table.Boolean("estimate_std", noise->estimate_std);
+  noise->std_log_sd = table.Number("std_log_sd", noise->std_log_sd, kTiny, kMax);
+  noise->dof = table.Number("dof", noise->dof, kTiny, kMax);
+  noise->outlier_weight = table.Number("outlier_weight", noise->outlier_weight, kTiny, 0.5);
+  noise->outlier_scale = table.Number("outlier_scale", noise->outlier_scale, std::nextafter(1.0, 2.0), kMax);
+}
+
+void ReadEffect(StrictTable& table, EffectSettings* effect) {
+  const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(FindEffect(effect->name))];
+  effect->gate = ReadWord<EffectGate>(
+      table, "when", effect->gate,
+      {{"always", EffectGate::kAlways}, {"contact", EffectGate::kContact}, {"free", EffectGate::kFree}});
+  if (table.Has("from_s")) {
+    if (table.Has("when")) throw table.Error("from_s", "an effect has `when` or `from_s`, not both");
+    effect->gate = EffectGate::kFrom;
+    effect->from_s = table.Number("from_s", 0.0, -kMax, kMax);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_shapes); ++i) {
+    const EffectShape& shape = info.shapes[i];
+    effect->shapes[i] = table.Number(shape.name, effect->shapes[i], shape.lower, shape.upper);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_amplitudes); ++i)
+    ReadPrior(table.Table(info.amplitudes[i].name), &effect->amplitudes[i]);
+}
+
+}  // namespace
+
+ModelFacts FactsOf(const EstimatorSettings& settings) {
+  // They belong to the model; an estimator with few draws is the way to ask for them.
+  EstimatorSettings small = BuiltinSettings(settings.model);
+  small.sampler.rule = DrawRule::kFixed;
+  small.sampler.fixed_draws = small.sampler.max_draws = SamplerSettings::kMinDraws;
+  const Estimator probe(small);
+  ModelFacts facts{.plant = probe.plant(), .modes = {}};
+  for (int mode = 0; mode < probe.num_modes(); ++mode) facts.modes.emplace_back(probe.mode_name(mode));
+  return facts;
+}
+
+void ReadParameters(StrictTable parameters, EstimatorSettings* settings) {
+  for (int i = 0; i < settings->num_parameters; ++i) {
+    ParameterSettings& p = settings->parameters[static_cast<std::size_t>(i)];
+    ReadPrior(parameters.Table(p.name), &p);
+  }
+}
+
+void ReadNoise(StrictTable noise, const std::vector<std::string>& modes, EstimatorSettings* settings) {
+  for (std::size_t mode = 0; mode < modes.size(); ++mode) {
+    ReadNoiseLaw(noise, &settings->noise[mode]);
+    StrictTable one = noise.Table(modes[mode]);
+    ReadNoiseLaw(one, &settings->noise[mode]);
+  }
+}
+
+void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* settings) {
+  if (plant != PlantKind::kSoftActuator) {
+    if (holder.Has("constants")) throw holder.Error("constants", settings->model + " has no constants");
+    return;
+  }
+  StrictTable table = holder.Table("constants");
+  PlantConstants& c = settings->constants;
+  c.p_atm = table.Number("p_atm", c.p_atm, 0.0, kMax);
+  c.p_supply = table.Number("p_supply", c.p_supply, kTiny, kMax);
+  c.q1 = table.Number("q1", c.q1, -kMax, kMax);
+  c.q2 = table.Number("q2", c.q2, 0.0, kMax);
+  c.q3 = table.Number("q3", c.q3, 0.0, kMax);
+}
+
+void ReadEffects(StrictTable& root, EstimatorSettings* settings) {
+  std::vector<StrictTable> tables = root.Tables("effect");
+  if (tables.empty()) return;
+  if (tables.size() > static_cast<std::size_t>(kMaxEffects))
+    throw root.Error("effect", "a model takes at most " + std::to_string(kMaxEffects) + " effects, there are " +
+                                   std::to_string(tables.size()));
+  std::vector<std::string> names;
+  for (const EffectInfo* info : AllEffects::kInfos) names.emplace_back(info->name);
+  settings->num_effects = 0;
+  for (StrictTable& table : tables) {
+    EffectSettings& effect = settings->effects[static_cast<std::size_t>(settings->num_effects++)];
+    effect = MakeEffect(table.RequiredChoice("name", names));
+    ReadEffect(table, &effect);
+  }
+}
+
+}  // namespace armcmc::support
