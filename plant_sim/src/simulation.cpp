@@ -9,7 +9,9 @@ Simulation::Simulation(const Scenario& scenario, std::uint64_t seed)
       sensors_(scenario.noise, seed),
       num_inputs_(scenario.family->num_inputs()) {
   if (scenario.hidden.empty()) return;
-  effects_.emplace(scenario.hidden, EffectTiming{scenario.sample_interval_s, scenario.duration_s}, plant_.get());
+  const EffectTiming timing{scenario.sample_interval_s, scenario.duration_s};
+  plant_->Hide(scenario.hidden, timing);
+  effects_.emplace(scenario.hidden, timing, plant_.get());
 }
 
 bool Simulation::Next() noexcept {

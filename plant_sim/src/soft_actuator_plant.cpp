@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "armcmc/data_pack_t.hpp"
+#include "armcmc/plant_sim/effects/hidden_effect.hpp"
 #include "armcmc/plant_sim/solver.hpp"
 
 namespace armcmc::plant_sim {
@@ -43,7 +44,48 @@ double SoftActuatorPlant::Flow(const ValveOpening& valve, double gauge_pressure)
 
 double SoftActuatorPlant::PressureRate(const ValveOpening& valve, double gauge_pressure, double t_s) const noexcept {
   const Theta theta = Truth(Mode(valve), t_s);
-  return Flow(valve, gauge_pressure) / (theta[0] + theta[1] * gauge_pressure);
+  double flow = Flow(valve, gauge_pressure);
+  if (Mode(valve) == kFill && !hidden_.empty()) {
+    double supply = p_supply_;
+    for (const Hidden& hidden : hidden_)
+      if (Acts(hidden, t_s)) supply = hidden.effect->Supply(supply, valve.fill);
+    if (supply != p_supply_) flow = valve.fill * SignedRoot(supply - p_atm_ - gauge_pressure);
+  }
+  return flow / (theta[0] + theta[1] * gauge_pressure);
+}
+
+void SoftActuatorPlant::Hide(const std::vector<HiddenEffect>& effects, const EffectTiming& timing) {
+  for (const HiddenEffect& effect : effects)
+    if (effect.spec->make_inner != nullptr)
+      hidden_.push_back({effect.gate, effect.spec->make_inner(effect.values, timing)});
+}
+
+bool SoftActuatorPlant::Acts(const Hidden& hidden, double t_s) noexcept {
+  PlantSample at;
+  at.t_s = t_s;
+  return hidden.gate.Open(at);
+}
+
+SoftActuatorPlant::State SoftActuatorPlant::HiddenDerivative(double t_s, const State& state,
+                                                             const State& base) const noexcept {
+  const ActuatorState here{t_s, state[0], state[1], state[2]};
+  State added = State::Zero();
+  for (const Hidden& hidden : hidden_) {
+    if (!Acts(hidden, t_s)) continue;
+    added[1] += hidden.effect->Bend(here, base[1]);
+    added[2] += hidden.effect->PressureRate(here);
+  }
+  return added;
+}
+
+ValveOpening SoftActuatorPlant::StepHidden(double t_s, const ValveOpening& command) noexcept {
+  ValveOpening valve = command;
+  for (const Hidden& hidden : hidden_) {
+    hidden.effect->Step({t_s, state_[0], state_[1], state_[2]});
+    const ValveOpening stands = hidden.effect->Valve(valve);
+    if (Acts(hidden, t_s)) valve = stands;
+  }
+  return valve;
 }
 
 void SoftActuatorPlant::Advance(PlantSample* sample) noexcept {
@@ -51,19 +93,22 @@ void SoftActuatorPlant::Advance(PlantSample* sample) noexcept {
     // Openings and parameters are those of the last sample until this one.
     const double t = static_cast<double>(k_) * dt_;
     const double h = dt_ / substeps_;
-    const auto derivative = [this, t](double /*at*/, const State& y) -> State {
-      return {y[1], q1_ * y[2] - q2_ * y[1] - q3_ * y[0], PressureRate(valve_, y[2], t)};
+    const auto derivative = [this, t](double at, const State& y) -> State {
+      const State base(y[1], q1_ * y[2] - q2_ * y[1] - q3_ * y[0], PressureRate(valve_, y[2], t));
+      return hidden_.empty() ? base : State(base + HiddenDerivative(at, y, base));
     };
     last_angle_ = state_[0];
     for (int i = 0; i < substeps_; ++i) state_ = BogackiShampineStep(derivative, t + i * h, state_, h);
   }
   ++k_;
   const double t = static_cast<double>(k_) * dt_;
-  valve_ = controller_->Step({t, p_atm_ + state_[2], last_angle_, last_pdot_});
+  const ValveOpening command = controller_->Step({t, p_atm_ + state_[2], last_angle_, last_pdot_});
+  valve_ = StepHidden(t, command);
   last_pdot_ = PressureRate(valve_, state_[2], t);
+  if (!hidden_.empty()) last_pdot_ += HiddenDerivative(t, state_, State::Zero())[2];
   sample->t_s = t;
-  sample->mode = Mode(valve_);
-  sample->inputs = {valve_.fill, valve_.vent, p_atm_ + state_[2], last_pdot_};
+  sample->mode = Mode(command);
+  sample->inputs = {command.fill, command.vent, p_atm_ + state_[2], last_pdot_};
   sample->output = state_[0];
 }
 

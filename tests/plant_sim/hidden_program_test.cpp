@@ -148,8 +148,9 @@ TEST(PlantProgramHides, BadUsageEndsWithTwoAndOneClearLine) {
   expect({"--hide-effect", "gremlin", "--sealed", "t.json"}, "gremlin");
   expect({"--hide-effect", "inertia", "--sealed", "t.json", "--effect-gate", "late"}, "--effect-gate");
   expect({"--hide-effect", "inertia", "--sealed", "t.json", "--effect-strength", "0"}, "--effect-strength");
-  expect({"--scenario", "soft_actuator_excited", "--hide-effect", "random", "--seed", "3", "--sealed", "t.json"},
-         "soft_actuator");
+  expect({"--scenario", "soft_actuator_excited", "--hide-effect", "leak", "--effect-gate", "contact", "--sealed", "t"},
+         "makes no contact");
+  expect({"--scenario", "soft_actuator_paper", "--hide-effect", "leak", "--sealed", "t"}, "no noise");
 }
 
 }  // namespace

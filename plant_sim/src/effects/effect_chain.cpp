@@ -7,7 +7,8 @@ namespace armcmc::plant_sim {
 EffectChain::EffectChain(const std::vector<HiddenEffect>& effects, const EffectTiming& timing, const Plant* plant)
     : plant_(plant), dt_(timing.dt_s) {
   for (const HiddenEffect& effect : effects)
-    links_.push_back({effect.spec->stage, effect.gate, effect.spec->make(effect.values, timing)});
+    if (effect.spec->make != nullptr)
+      links_.push_back({effect.spec->stage, effect.gate, effect.spec->make(effect.values, timing)});
   std::stable_sort(links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.stage < b.stage; });
   while (law_at_ < links_.size() && links_[law_at_].stage <= EffectStage::kParameters) ++law_at_;
 }

@@ -15,14 +15,15 @@ const char* FormulaKindName(FormulaKind kind) noexcept {
 }
 
 const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family) {
-  static const std::vector<EffectSpec> none;
+  static const std::vector<EffectSpec> none, actuator = ActuatorEffects();
   static const std::vector<EffectSpec> contact = [] {
     std::vector<EffectSpec> all;
     for (std::vector<EffectSpec> part : {ForceEffects(), FrictionEffects(), MaterialEffects(), SensorEffects()})
       std::move(part.begin(), part.end(), std::back_inserter(all));
     return all;
   }();
-  return family.name == "hunt_crossley" ? contact : none;
+  if (family.name == "hunt_crossley") return contact;
+  return family.name == "soft_actuator" ? actuator : none;
 }
 
 std::vector<std::string> EffectNames(const PlantFamily& family) {

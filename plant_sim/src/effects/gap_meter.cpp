@@ -10,19 +10,6 @@
 namespace armcmc::plant_sim {
 namespace {
 
-/// Standard deviation of a law; its scale where it has none.
-double StandardDeviation(const NoiseLaw& law) {
-  switch (law.kind) {
-    case NoiseKind::kNone: return 0.0;
-    case NoiseKind::kGaussian: return law.std;
-    case NoiseKind::kStudentT: return law.dof > 2.0 ? law.std * std::sqrt(law.dof / (law.dof - 2.0)) : law.std;
-    case NoiseKind::kLaplace: return std::sqrt(2.0) * law.std;
-    case NoiseKind::kMixture:
-      return law.std * std::sqrt(1.0 + law.outlier_weight * (law.outlier_scale * law.outlier_scale - 1.0));
-  }
-  return 0.0;
-}
-
 /// Least squares of K, B, p, each with a constant correction d of its schedule:
 ///   min_d sum (y - x^(p + d3) (K + d1 + (B + d2) v))^2
 /// by Gauss-Newton with Levenberg's damping.
@@ -31,7 +18,7 @@ class ContactGapMeter final : public GapMeter {
   explicit ContactGapMeter(const Scenario& scenario)
       : plant_(scenario.family->make(scenario.schedule, scenario.options, scenario.sample_interval_s)),
         timing_{scenario.sample_interval_s, scenario.duration_s},
-        noise_sd_(StandardDeviation(scenario.noise.back())) {
+        noise_sd_(NoiseSd(scenario.noise.back())) {
     if (!(noise_sd_ > 0.0))
       throw std::invalid_argument("the scenario has no noise on " + scenario.family->output.name +
                                   ": a gap ratio means nothing");
@@ -147,9 +134,22 @@ class ContactGapMeter final : public GapMeter {
 
 }  // namespace
 
+double NoiseSd(const NoiseLaw& law) {
+  switch (law.kind) {
+    case NoiseKind::kNone: return 0.0;
+    case NoiseKind::kGaussian: return law.std;
+    case NoiseKind::kStudentT: return law.dof > 2.0 ? law.std * std::sqrt(law.dof / (law.dof - 2.0)) : law.std;
+    case NoiseKind::kLaplace: return std::sqrt(2.0) * law.std;
+    case NoiseKind::kMixture:
+      return law.std * std::sqrt(1.0 + law.outlier_weight * (law.outlier_scale * law.outlier_scale - 1.0));
+  }
+  return 0.0;
+}
+
 std::unique_ptr<GapMeter> MakeGapMeter(const Scenario& scenario) {
   if (EffectRegistry(*scenario.family).empty())
     throw std::invalid_argument("no effects can be hidden in a plant of the family " + scenario.family->name);
+  if (scenario.family->name == "soft_actuator") return MakeActuatorGapMeter(scenario);
   return std::make_unique<ContactGapMeter>(scenario);
 }
 

@@ -158,6 +158,10 @@ std::vector<HiddenEffect> DecideEffects(const Scenario& scenario, const std::vec
     effect.spec = &ChooseSpec(*scenario.family, request, &rng);
     effect.values = DrawValues(*effect.spec, meter->scales(), &rng);
     effect.gate = request.gate;
+    if (scenario.family->name != "hunt_crossley" &&
+        (effect.gate.kind == Gate::Kind::kContact || effect.gate.kind == Gate::Kind::kFree))
+      throw std::invalid_argument("a plant of the family " + scenario.family->name + " makes no contact: no gate " +
+                                  effect.gate.Text());
     if (SetValues(request, &effect)) {
       effect.gap_ratio = meter->GapRatio({effect});
     } else if (!FindStrength(*meter, request.gap_ratio, &effect)) {
@@ -177,6 +181,9 @@ std::vector<HiddenEffect> DrawEffects(const Scenario& scenario, double gap_ratio
   const auto kind = static_cast<HiddenKind>(Pick(4, &rng));
   if (kind == HiddenKind::kNone) return {};
   const std::unique_ptr<GapMeter> meter = MakeGapMeter(scenario);
+  if (gate && scenario.family->name != "hunt_crossley" &&
+      (gate->kind == Gate::Kind::kContact || gate->kind == Gate::Kind::kFree))
+    throw std::invalid_argument("no gate " + gate->Text() + " without contact");
   const bool outside = kind == HiddenKind::kOutside;
   std::vector<HiddenEffect> effects = {DrawEffect(scenario, *meter, gap_ratio, gate, outside, "", &rng)};
   if (kind == HiddenKind::kPair)

@@ -26,10 +26,16 @@ struct PlantSample {
 /// Parameters as an estimator reports them for one mode, order of PlantFamily::truth_names.
 using Theta = std::array<double, kMaxTruth>;
 
+struct HiddenEffect;
+struct EffectTiming;
+
 /// A plant with its own equations. It knows its parameters; nobody else does.
 class Plant {
  public:
   virtual ~Plant() = default;
+
+  /// Puts effects that act inside the equations into them, before the first instant; leaves the others alone.
+  virtual void Hide(const std::vector<HiddenEffect>& /*effects*/, const EffectTiming& /*timing*/) {}
 
   /// The next instant, free of sensor noise: the first call gives t = 0, each further one t + T.
   /// @rt No heap, no lock, no throw.

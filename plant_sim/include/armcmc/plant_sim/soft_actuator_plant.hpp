@@ -2,7 +2,10 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
+#include "armcmc/plant_sim/effects/actuator_effect.hpp"
+#include "armcmc/plant_sim/effects/gate.hpp"
 #include "armcmc/plant_sim/plant.hpp"
 #include "armcmc/plant_sim/valve_controller.hpp"
 
@@ -20,6 +23,7 @@ class SoftActuatorPlant final : public Plant {
  public:
   SoftActuatorPlant(const Schedule& schedule, const Options& options, double sample_interval_s);
 
+  void Hide(const std::vector<HiddenEffect>& effects, const EffectTiming& timing) override;
   void Advance(PlantSample* sample) noexcept override;
   [[nodiscard]] Theta Truth(int mode, double t_s) const noexcept override;
   [[nodiscard]] double Predict(const Theta& theta, const PlantSample& sample) const noexcept override;
@@ -35,13 +39,23 @@ class SoftActuatorPlant final : public Plant {
   /// Fill while u_c > 0; with both valves shut the vent side stays selected, as in the paper.
   [[nodiscard]] static int Mode(const ValveOpening& valve) noexcept { return valve.fill > 0.0 ? kFill : kVent; }
   [[nodiscard]] double PressureRate(const ValveOpening& valve, double gauge_pressure, double t_s) const noexcept;
+  struct Hidden {
+    Gate gate;
+    std::unique_ptr<ActuatorEffect> effect;
+  };
+  [[nodiscard]] static bool Acts(const Hidden& hidden, double t_s) noexcept;
+  /// What hidden effects add to the derivative.
+  [[nodiscard]] State HiddenDerivative(double t_s, const State& state, const State& base) const noexcept;
+  /// What the valves do when commanded so; effects with memory go one sample on.
+  [[nodiscard]] ValveOpening StepHidden(double t_s, const ValveOpening& command) noexcept;
 
   Schedule schedule_;
   double p_atm_, p_supply_, q1_, q2_, q3_, dt_;
   int substeps_;
   std::unique_ptr<ValveController> controller_;
   State state_ = State::Zero();
-  ValveOpening valve_;
+  std::vector<Hidden> hidden_;
+  ValveOpening valve_;  ///< As the valves stand, not as they are commanded.
   double last_angle_ = 0.0, last_pdot_ = 0.0;
   long long k_ = -1;  ///< Index of the last sample.
 };

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/plant_sim/effects/actuator_effect.hpp"
 #include "armcmc/plant_sim/plant.hpp"
 
 namespace armcmc::plant_sim {
@@ -94,6 +95,9 @@ struct EffectSpec {
   /// The first is the strength; its range runs from the weakest to the strongest, which may be the smaller value.
   std::vector<EffectParameter> parameters;
   std::unique_ptr<Effect> (*make)(const std::vector<double>& values, const EffectTiming& timing) = nullptr;
+  /// Instead of make, for an effect inside the soft actuator\'s equations.
+  std::unique_ptr<ActuatorEffect> (*make_inner)(const std::vector<double>& values,
+                                                const EffectTiming& timing) = nullptr;
 };
 
 /// Effects of the contact plant by kind of physics.
@@ -101,6 +105,8 @@ struct EffectSpec {
 [[nodiscard]] std::vector<EffectSpec> FrictionEffects();
 [[nodiscard]] std::vector<EffectSpec> MaterialEffects();
 [[nodiscard]] std::vector<EffectSpec> SensorEffects();
+/// Effects of the soft actuator.
+[[nodiscard]] std::vector<EffectSpec> ActuatorEffects();
 
 /// All effects of a family of plants, in a fixed order; none for a family that offers none.
 [[nodiscard]] const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family);

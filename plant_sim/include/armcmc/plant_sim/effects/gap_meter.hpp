@@ -27,6 +27,11 @@ inline constexpr long long kMaxGapSamples = 200'000;
 ///         run leaves the finite range.
 [[nodiscard]] std::unique_ptr<GapMeter> MakeGapMeter(const Scenario& scenario);
 
+/// What MakeGapMeter gives for the soft actuator: R of the flow equation or of the bend equation, whichever is larger.
+[[nodiscard]] std::unique_ptr<GapMeter> MakeActuatorGapMeter(const Scenario& scenario);
+/// Standard deviation of a noise law; its scale where it has none.
+[[nodiscard]] double NoiseSd(const NoiseLaw& law);
+
 /// Sets the strength of an effect, its first parameter, such that its gap ratio is `gap_ratio` to 1 %: a scan over its
 /// range from the weakest end to the first crossing, then bisection, both geometric. At most 80 refits.
 /// @return false when no strength in the range gives that ratio; the effect is then unusable.
