@@ -59,6 +59,20 @@ TEST_F(ReplayProgram, WritesEstimatesPredictionsAndReportAndSaysWhatItDid) {
   EXPECT_THAT(report, HasSubstr("\"seed\": 5"));
 }
 
+TEST_F(ReplayProgram, AModelFileAddsItsEffectsToTheEstimates) {
+  std::ofstream(dir_ / "model.toml")
+      << "schema = 1\nbase = \"hunt_crossley\"\n[[effect]]\nname = \"coulomb_friction\"\n"
+         "speed = 0.05\nforce = { mean = 0.1, sd = 0.2 }\n";
+  auto arguments = Good();
+  arguments.insert(arguments.end(), {"--model", dir_ / "model.toml"});
+  const Outcome o = Run(arguments);
+  ASSERT_EQ(o.code, 0) << o.err;
+  const std::string csv = Text("out.csv");
+  EXPECT_THAT(csv.substr(0, csv.find('\n')), HasSubstr(",coulomb_friction_force,coulomb_friction_force_ap,"));
+  std::ofstream(dir_ / "model.toml") << "schema = 1\nbase = \"hunt_crossley\"\n[[effect]]\nname = \"stiction\"\n";
+  ExpectBadInput(arguments, "model.toml:4");
+}
+
 TEST_F(ReplayProgram, HelpTeachesWithAnExample) {
   const Outcome help = Run({"--help"});
   EXPECT_EQ(help.code, 0);

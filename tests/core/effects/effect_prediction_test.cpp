@@ -126,6 +126,30 @@ TEST(EffectPrediction, EveryAddedParameterMovesThePrediction) {
     }
 }
 
+TEST(EffectPrediction, AnEffectOfSizeZeroIsTheBaseModelToTheBit) {
+  for (const HiddenEffect& e : {HiddenEffect{"force_bias", {0.0}, {}}, HiddenEffect{"sensor_delay", {0.0}, {}},
+                                HiddenEffect{"stiffness_drift", {0.0}, {0.0}}}) {
+    const Series series(1000);
+    auto data = std::make_unique<ModeData>();
+    auto theta = std::make_unique<ThetaTile>();
+    auto tile = std::make_unique<PredictionTile>();
+    const double truth[] = {4.0, 2.3, 1.7};
+    for (std::size_t d = 0; d < 3; ++d) theta->value[d].fill(truth[d]);
+    for (const simd::Kernels* kernels : test::RunnableKernels()) {
+      const std::vector<double> composed = Predictor({e}, *kernels).Run(series);
+      for (std::size_t first = 0; first < series.size(); first += 100) {
+        HuntCrossley::Prepare(series.Pack(1, first, 100), PlantConstants{}, 0, data.get());
+        kernels->predict(FindModel("hunt_crossley"), *data, *theta, tile.get());
+        std::size_t m = 0;
+        for (std::size_t n = first; n < first + 100; ++n) {
+          if (series.x[n] < 0.0) continue;
+          ASSERT_EQ(composed[n], tile->value[m++][0]) << e.name << " " << kernels->name;
+        }
+      }
+    }
+  }
+}
+
 TEST(EffectPrediction, AGapStartsTheMemoryAnew) {
   const HiddenEffect relaxation{"stress_relaxation", {2.0}, {0.2}};
   Series series(400);
