@@ -76,6 +76,7 @@ void ValidateEffect(const EffectSettings& effect, const EffectInfo& info) {
     if (amplitude.lower == 0.0) Closed(name + ".lower", p.lower, 0.0, HUGE_VAL);
   }
   if (effect.gate == EffectGate::kFrom) Open(key + ".from_s", effect.from_s, -HUGE_VAL, HUGE_VAL);
+  if (effect.gate == EffectGate::kUntil) Open(key + ".until_s", effect.until_s, -HUGE_VAL, HUGE_VAL);
 }
 
 void ValidateEffects(const EstimatorSettings& s, const ModelInfo& model) {

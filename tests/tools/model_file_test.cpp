@@ -61,6 +61,7 @@ void ExpectSameModel(const EstimatorSettings& a, const EstimatorSettings& b) {
     EXPECT_EQ(p.name, q.name);
     EXPECT_EQ(p.gate, q.gate) << p.name;
     EXPECT_EQ(p.from_s, q.from_s) << p.name;
+    EXPECT_EQ(p.until_s, q.until_s) << p.name;
     EXPECT_EQ(p.shapes, q.shapes) << p.name;
     for (std::size_t i = 0; i < p.amplitudes.size(); ++i) ExpectSamePrior(p.amplitudes[i], q.amplitudes[i]);
   }
@@ -77,8 +78,9 @@ TEST_F(ModelFile, EveryEffectReadsBackToTheBit) {
     settings.noise[0].estimate_std = k % 2 == 0;
     EffectSettings& effect = settings.effects[0];
     effect = MakeEffect(std::string(info->name), {.force = 0.7, .length = 3e-3, .speed = 0.011});
-    effect.gate = static_cast<EffectGate>(k++ % 4);
+    effect.gate = static_cast<EffectGate>(k++ % 5);
     effect.from_s = effect.gate == EffectGate::kFrom ? 12.1 : 0.0;
+    effect.until_s = effect.gate == EffectGate::kUntil ? 7.3 : 0.0;
     settings.num_effects = 1;
     if (info->name != "force_bias") {
       settings.effects[1] = MakeEffect("force_bias");
@@ -158,6 +160,8 @@ TEST_F(ModelFile, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(ErrorOf(start + "[[effect]]\nname = \"coulomb_friction\"\nspeed = -1.0\n"),
               AllOf(HasSubstr("model.toml:5"), HasSubstr("speed = -1")));
   EXPECT_THAT(ErrorOf(start + "[[effect]]\nname = \"force_bias\"\nwhen = \"contact\"\nfrom_s = 1.0\n"),
+              HasSubstr("not both"));
+  EXPECT_THAT(ErrorOf(start + "[[effect]]\nname = \"force_bias\"\nuntil_s = 2.0\nfrom_s = 1.0\n"),
               HasSubstr("not both"));
   EXPECT_THAT(ErrorOf(start + "[[effect]]\nname = \"force_bias\"\nwhen = \"never\"\n"), HasSubstr("never"));
   EXPECT_THAT(ErrorOf(start + "[[effect]]\nname = \"viscous_friction\"\ncoefficient = { lower = -1.0 }\n"),

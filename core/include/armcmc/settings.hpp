@@ -86,6 +86,7 @@ enum class EffectGate : std::uint8_t {
   kContact,  ///< While the measured x >= 0.
   kFree,     ///< While it is not.
   kFrom,     ///< From plant time from_s on.
+  kUntil,    ///< Before plant time until_s.
 };
 
 /// One effect added to the model: its amplitudes are estimated with the parameters, its shapes are frozen.
@@ -93,6 +94,7 @@ struct EffectSettings {
   std::string name;  ///< Of the catalogue; see effects/registry.hpp.
   EffectGate gate = EffectGate::kAlways;
   double from_s = 0.0;                                             ///< For kFrom, s.
+  double until_s = 0.0;                                            ///< For kUntil, s.
   std::array<ParameterSettings, kMaxEffectAmplitudes> amplitudes;  ///< Named as in the catalogue.
   std::array<double, kMaxEffectShapes> shapes{};                   ///< In the order of the catalogue.
 };

@@ -15,11 +15,12 @@ void ReportAll(const double* theta, const PlantConstants&, double* reported) noe
 }
 static_assert(kMaxReported == kMaxParams);
 
-double GateOf(EffectGate gate, double from_s, const EffectInput& in) noexcept {
+double GateOf(EffectGate gate, double from_s, double until_s, const EffectInput& in) noexcept {
   switch (gate) {
     case EffectGate::kContact: return in.x >= 0.0 ? 1.0 : 0.0;
     case EffectGate::kFree: return in.x >= 0.0 ? 0.0 : 1.0;
     case EffectGate::kFrom: return in.t >= from_s ? 1.0 : 0.0;
+    case EffectGate::kUntil: return in.t < until_s ? 1.0 : 0.0;
     case EffectGate::kAlways: break;
   }
   return 1.0;
@@ -40,6 +41,7 @@ Composition::Composition(const EstimatorSettings& settings)
     term.shapes = effect.shapes;
     term.gate = effect.gate;
     term.from_s = effect.from_s;
+    term.until_s = effect.until_s;
     term.parameter = info_.num_parameters;
     for (int a = 0; a < term.info->num_amplitudes; ++a) {
       const EffectAmplitude& amplitude = term.info->amplitudes[static_cast<std::size_t>(a)];
@@ -107,7 +109,7 @@ void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const 
   std::size_t next = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(num_terms_); ++i) {
     const Term& term = terms_[i];
-    const double gate = GateOf(term.gate, term.from_s, in);
+    const double gate = GateOf(term.gate, term.from_s, term.until_s, in);
     std::array<double, kMaxEffectAmplitudes> feature{};
     // A closed gate hides the feature; its memory goes on.
     if (term.feature != nullptr) term.feature(in, term.shapes.data(), memory->filter[i].data(), feature.data());

@@ -56,7 +56,7 @@ struct HiddenEffect {
   std::vector<double> amplitude;
   std::vector<double> shape;
   EffectGate gate = EffectGate::kAlways;
-  double from_s = 0.0;
+  double from_s = 0.0, until_s = 0.0;
 };
 
 /// Fills series->f from the textbook formulas, sample by sample over the whole recording, in plain scalar code that
@@ -70,6 +70,7 @@ inline void Simulate(const std::vector<HiddenEffect>& effects, Series* s) {
   const auto open = [&](const HiddenEffect& e, std::size_t n) {
     if (e.gate == EffectGate::kContact) return s->x[n] >= 0.0;
     if (e.gate == EffectGate::kFree) return s->x[n] < 0.0;
+    if (e.gate == EffectGate::kUntil) return s->t[n] < e.until_s;
     return e.gate != EffectGate::kFrom || s->t[n] >= e.from_s;
   };
   const std::size_t size = s->size();
@@ -178,6 +179,7 @@ inline EffectSettings SettingsOf(const HiddenEffect& hidden) {
   EffectSettings effect = MakeEffect(hidden.name, {.force = 5.0, .length = 1.0, .speed = 2.0, .acceleration = 8.0});
   effect.gate = hidden.gate;
   effect.from_s = hidden.from_s;
+  effect.until_s = hidden.until_s;
   for (std::size_t i = 0; i < hidden.shape.size(); ++i) effect.shapes[i] = hidden.shape[i];
   if (hidden.name == "sensor_lag") effect.amplitudes[0].upper = 0.02;
   // A limit above every force has no gradient: its prior must know about where it is.

@@ -75,9 +75,9 @@ TEST(EffectPrediction, EveryEffectOfTheCatalogueEqualsTheReference) {
 
 TEST(EffectPrediction, GatesOpenWhereTheyShould) {
   for (HiddenEffect e : Catalogue())
-    for (const EffectGate gate : {EffectGate::kContact, EffectGate::kFree, EffectGate::kFrom}) {
+    for (const EffectGate gate : {EffectGate::kContact, EffectGate::kFree, EffectGate::kFrom, EffectGate::kUntil}) {
       e.gate = gate;
-      e.from_s = 0.7505;
+      e.from_s = e.until_s = 0.7505;
       ExpectEqualsReference({e}, e.name + " gate " + std::to_string(static_cast<int>(gate)));
     }
 }

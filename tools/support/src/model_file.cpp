@@ -49,6 +49,7 @@ void WriteEffect(const EffectSettings& effect, std::ostream& out) {
     case EffectGate::kContact: out << "when = \"contact\"\n"; break;
     case EffectGate::kFree: out << "when = \"free\"\n"; break;
     case EffectGate::kFrom: out << "from_s = " << Text(effect.from_s) << '\n'; break;
+    case EffectGate::kUntil: out << "until_s = " << Text(effect.until_s) << '\n'; break;
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_shapes); ++i)
     out << info.shapes[i].name << " = " << Text(effect.shapes[i]) << "  # " << info.shapes[i].unit << '\n';

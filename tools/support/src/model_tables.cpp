@@ -47,10 +47,17 @@ void ReadEffect(StrictTable& table, EffectSettings* effect) {
   effect->gate = ReadWord<EffectGate>(
       table, "when", effect->gate,
       {{"always", EffectGate::kAlways}, {"contact", EffectGate::kContact}, {"free", EffectGate::kFree}});
+  const int gates = table.Has("when") + table.Has("from_s") + table.Has("until_s");
+  if (gates > 1)
+    throw table.Error(table.Has("from_s") ? "from_s" : "until_s",
+                      "an effect has `when`, `from_s` or `until_s`, not both");
   if (table.Has("from_s")) {
-    if (table.Has("when")) throw table.Error("from_s", "an effect has `when` or `from_s`, not both");
     effect->gate = EffectGate::kFrom;
     effect->from_s = table.Number("from_s", 0.0, -kMax, kMax);
+  }
+  if (table.Has("until_s")) {
+    effect->gate = EffectGate::kUntil;
+    effect->until_s = table.Number("until_s", 0.0, -kMax, kMax);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_shapes); ++i) {
     const EffectShape& shape = info.shapes[i];

@@ -48,7 +48,7 @@ class Composition {
     EffectFeatureFn feature = nullptr;
     std::array<double, kMaxEffectShapes> shapes{};
     EffectGate gate = EffectGate::kAlways;
-    double from_s = 0.0;
+    double from_s = 0.0, until_s = 0.0;
     int parameter = 0;  ///< Row of its first amplitude among the parameters.
   };
   /// What one pack leaves to the next. Two of them, so that a pack that fails changes nothing.

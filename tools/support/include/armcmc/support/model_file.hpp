@@ -16,7 +16,7 @@ namespace armcmc::support {
 //   [noise]  [noise.contact]           as in a configuration
 //   [[effect]]                         what is added to it, in any order
 //   name = "coulomb_friction"
-//   when = "always"                    or "contact", "free"; or from_s = 12.5
+//   when = "always"                    or "contact", "free"; or from_s = 12.5, or until_s = 12.5
 //   speed = 0.02                       shapes are numbers
 //   force = { mean = 0.4, sd = 0.1, lower = 0.0, upper = 2.0 }     amplitudes are priors
 //

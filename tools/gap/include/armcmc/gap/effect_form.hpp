@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/coordinate.hpp"
+#include "armcmc/gap/prediction.hpp"
+#include "armcmc/gap/signals.hpp"
+#include "armcmc/gap/types.hpp"
+
+namespace armcmc::gap {
+
+/// Where an effect acts; also the order of evaluation, the same as in the estimator.
+enum class Slot : std::uint8_t {
+  kInputMap,   ///< Shifts the position that the law is given.
+  kParameter,  ///< Scales the law's first parameter.
+  kMemory,     ///< Adds a filtered copy of the law's elastic part.
+  kAdditive,   ///< Adds amplitudes x features of the inputs.
+  kDelay,      ///< Acts on the series of outputs: dead time first,
+  kLag,        ///< then low passes,
+  kStatics,    ///< then a map of each output.
+};
+
+/// One formula of one effect of the catalogue, scaled to a recording.
+///
+/// An effect has the catalogue's formula and may have variants: other formulas that nature uses for the same physics.
+/// A variant that wins names the effect, and says that the formula is approximate.
+struct EffectForm {
+  std::string effect;   ///< Name in the catalogue.
+  std::string variant;  ///< Empty: the catalogue's own formula.
+  std::string family;
+  std::string formula;
+  bool listed = true;  ///< Of the catalogue. An unlisted effect is never named: it competes, so that no name is given
+                       ///< to what it explains better, and describes what is found.
+  Slot slot = Slot::kAdditive;
+  std::vector<Coordinate> coordinates;      ///< Amplitudes first, then shapes.
+  int num_amplitudes = 1;                   ///< Coordinates that multiply features.
+  bool linear = true;                       ///< The prediction is linear in the amplitudes, given the shapes.
+  bool gates_by_mode = false;               ///< May act in contact or in free motion only.
+  bool gates_by_time = true;                ///< May start or end during the recording.
+  std::vector<std::vector<double>> starts;  ///< Coordinates to start fits from.
+  std::vector<std::string> own_groups;      ///< Feature groups in which a formula of its own may live.
+
+  /// Further starts that depend on what is left to explain; may be null.
+  std::function<std::vector<std::vector<double>>(const Signals&, const Vector& whitened_residual)> find_starts;
+  /// kAdditive, kInputMap, kParameter: what the amplitudes multiply, [row][amplitude], from the shapes.
+  std::function<Matrix(const Signals&, const double* shape)> features;
+  /// kMemory: filters a series by the shapes; one filter an amplitude.
+  std::function<Vector(const Signals&, const Vector& series, int amplitude, const double* shape)> filter;
+  /// kDelay, kLag, kStatics: acts on a prediction; own columns from `first` on.
+  std::function<void(const Signals&, const double* coordinates, int first, Prediction*)> sense;
+
+  [[nodiscard]] int size() const { return static_cast<int>(coordinates.size()); }
+  [[nodiscard]] bool exact() const { return variant.empty() && listed; }
+};
+
+}  // namespace armcmc::gap

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "armcmc/gap/types.hpp"
+
+namespace armcmc::gap {
+
+/// `count` quantiles (1 % to 99 %) of the series where `mask` is not zero; equal ones once.
+[[nodiscard]] Vector QuantileKnots(const Vector& series, const Vector& mask, int count);
+/// `count` knots from 0 to 1.
+[[nodiscard]] Vector EvenKnots(int count);
+/// Piecewise linear basis: column k is 1 at knot k and 0 at the others, constant beyond the ends. [row][knot]
+[[nodiscard]] Matrix Hats(const Vector& series, const Vector& knots);
+/// Every column times `weight`.
+[[nodiscard]] Matrix Gated(const Matrix& columns, const Vector& weight);
+/// Columns of both.
+[[nodiscard]] Matrix Beside(const Matrix& left, const Matrix& right);
+/// Products of every column of a with every column of b.
+[[nodiscard]] Matrix Products(const Matrix& a, const Matrix& b);
+/// Bristle deflection of dry friction over a distance, from speed:  z' = v / distance (1 - z sign v),  in [-1, 1].
+[[nodiscard]] Vector Bristle(const Vector& velocity, double distance, double dt);
+
+/// A spectral line: the frequency whose power stands out most from its surroundings.
+struct Line {
+  double frequency = 0.0;   ///< Hz
+  double prominence = 0.0;  ///< Power over the median of the neighbouring frequencies.
+};
+[[nodiscard]] Line StrongestLine(const Vector& series, double dt);
+/// Cosine and sine of `harmonics` multiples of the frequency. [row][2 harmonics]
+[[nodiscard]] Matrix Waves(const Vector& t, double frequency, int first_harmonic, int last_harmonic);
+
+}  // namespace armcmc::gap

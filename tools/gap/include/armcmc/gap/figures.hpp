@@ -1,0 +1,12 @@
+#pragma once
+
+#include "armcmc/gap/diagnose.hpp"
+#include "armcmc/gap/result.hpp"
+
+namespace armcmc::gap {
+
+/// Everything that the report plots, from the fits of the diagnosis.
+[[nodiscard]] Figures MakeFigures(const Equation& equation, const Signals& signals, const Look& look,
+                                  const Fitted& before, const Fitted& after);
+
+}  // namespace armcmc::gap

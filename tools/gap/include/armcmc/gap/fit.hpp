@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "armcmc/gap/blocks.hpp"
+#include "armcmc/gap/equation.hpp"
+#include "armcmc/gap/hypothesis.hpp"
+#include "armcmc/gap/whitener.hpp"
+
+namespace armcmc::gap {
+
+/// A hypothesis fitted to a recording.
+struct Fitted {
+  Hypothesis hypothesis;
+  std::vector<Coordinate> coordinates;
+  Vector theta;
+  Vector predicted;            ///< [row]
+  Vector whitened_residual;    ///< [row]
+  Matrix whitened_jacobian;    ///< [row][coordinate], raw units.
+  std::vector<bool> at_bound;  ///< Coordinates that rest on a bound: no columns of theirs are validated.
+  double squares = 0.0;        ///< Sum of the squared whitened residual.
+  Vector heldout;              ///< Log score of each block with the fit to all others, nats.
+  double log_evidence = 0.0;   ///< Laplace, with the catalogue's priors, nats.
+
+  [[nodiscard]] double score() const { return heldout.sum(); }
+  /// s2 H^-1 of the whitened fit, zero for coordinates at a bound.
+  [[nodiscard]] Matrix Covariance(double s2) const;
+};
+
+/// Fits hypotheses to one recording with one noise model.
+class Fitter {
+ public:
+  Fitter(const Equation& equation, const Signals& signals, Whitener whitener);
+
+  [[nodiscard]] const Equation& equation() const { return *equation_; }
+  [[nodiscard]] const Signals& signals() const { return *signals_; }
+  [[nodiscard]] const Whitener& whitener() const { return whitener_; }
+
+  /// Bounded Levenberg-Marquardt from `start`, then scores.
+  [[nodiscard]] Fitted Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps = 12) const;
+  /// The best fit of `parent` with one more term: grid over the term's starts by projected score, then Fit.
+  [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
+
+ private:
+  /// Fills at_bound, heldout and log_evidence.
+  void Score(Fitted* fitted) const;
+
+  const Equation* equation_;
+  const Signals* signals_;
+  Whitener whitener_;
+};
+
+}  // namespace armcmc::gap

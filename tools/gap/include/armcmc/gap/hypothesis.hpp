@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/equation.hpp"
+#include "armcmc/gap/prediction.hpp"
+
+namespace armcmc::gap {
+
+/// An effect in a hypothesis: which formula, and when it acts.
+struct Term {
+  const EffectForm* form = nullptr;
+  When when;
+};
+
+/// The base law with effects. Coordinates: those of the law, then those of each term in order.
+struct Hypothesis {
+  std::vector<Term> terms;
+};
+
+/// 1 where the gate is open, 0 where it is shut.
+[[nodiscard]] Vector GateOf(const When& when, const Signals& signals);
+/// "coulomb_friction", "force_bias from 4.25 s".
+[[nodiscard]] std::string TermText(const Term& term);
+[[nodiscard]] std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& signals,
+                                                    const Hypothesis& hypothesis);
+
+/// Prediction and exact derivatives: law and effects pass the columns of the slots before them on.
+[[nodiscard]] Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis,
+                                  const Vector& theta);
+
+}  // namespace armcmc::gap

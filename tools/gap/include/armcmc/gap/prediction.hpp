@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "armcmc/gap/types.hpp"
+
+namespace armcmc::gap {
+
+/// Predicted output and its derivative by every coordinate of a hypothesis.
+struct Prediction {
+  Vector y;         ///< [row]
+  Matrix jacobian;  ///< [row][coordinate]
+  /// The part of the law that does not depend on rates (the elastic force of a contact), for effects that remember it.
+  Vector elastic;
+  Matrix elastic_jacobian;
+};
+
+/// What effects change before the law is evaluated.
+struct LawInput {
+  Vector shift;  ///< Subtracted from the position. Empty: nothing.
+  Vector gain;   ///< Factor of the law's first parameter. Empty: one.
+  /// Derivatives of the two: which coordinate, and by how much each row moves.
+  struct Slope {
+    int coordinate;
+    Vector rows;
+  };
+  std::vector<Slope> shift_slopes, gain_slopes;
+};
+
+}  // namespace armcmc::gap

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/blocks.hpp"
+#include "armcmc/gap/fit.hpp"
+
+namespace armcmc::gap {
+
+/// What a flexible, anonymous model can still predict after a hypothesis took what it could.
+struct Remainder {
+  Vector gain;                  ///< Log score of each block above that of the hypothesis, nats.
+  Vector unexplained;           ///< Whitened residual of hypothesis and flexible model together.
+  double line_frequency = 0.0;  ///< Hz, of the spectral line among the columns; 0: none.
+  [[nodiscard]] double total() const { return gain.sum(); }
+};
+
+/// The adequacy referee: ridge regression of the residual on hats over every variable, memory, reversals, and a
+/// spectral line. It names nothing; what it can predict on blocks left out is there to be explained.
+class Referee {
+ public:
+  /// @param predicted  Of the base model: features of the force are built from it.
+  Referee(const Fitter& fitter, const Vector& predicted);
+
+  [[nodiscard]] Remainder Judge(const Fitted& fitted) const;
+  /// Gain of the groups of these names and of `extra` columns (not whitened), alone.
+  [[nodiscard]] Vector GainOf(const Fitted& fitted, const std::vector<std::string>& groups, const Matrix& extra) const;
+  /// Gain of all groups and `extra` columns (whitened) together.
+  [[nodiscard]] Vector GainOfAll(const Fitted& fitted, const Matrix& extra) const;
+  [[nodiscard]] const std::vector<FeatureGroup>& groups() const { return groups_; }
+
+ private:
+  [[nodiscard]] Vector Gain(const Fitted& fitted, const Matrix& whitened, Vector* unexplained) const;
+  /// As Gain with all columns, whose products are known.
+  [[nodiscard]] Vector GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* unexplained) const;
+
+  const Fitter* fitter_;
+  std::vector<FeatureGroup> groups_;
+  Matrix columns_;    ///< All groups, whitened, each column of rms one.
+  BlockGrams grams_;  ///< Of columns_; cross and squares are not used.
+};
+
+}  // namespace armcmc::gap

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/blocks.hpp"
+#include "armcmc/gap/fit.hpp"
+#include "armcmc/gap/referee.hpp"
+#include "armcmc/gap/thresholds.hpp"
+
+namespace armcmc::gap {
+
+/// A fitted hypothesis with what the referee says of it, once asked.
+struct Candidate {
+  Fitted fit;
+  std::optional<Remainder> remainder;
+  double probability = 0.0;
+
+  /// Effects by name, sorted: what a verdict calls it.
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// Families of the effects, sorted.
+  [[nodiscard]] std::vector<std::string> families() const;
+  [[nodiscard]] bool exact() const;  ///< Every effect by the catalogue's own formula.
+};
+using CandidatePtr = std::shared_ptr<Candidate>;
+
+/// What the search finds in one recording with one noise model.
+struct Finding {
+  Verdict verdict = Verdict::kNone;
+  bool approximate = false;  ///< The family is named, no formula is adequate.
+  CandidatePtr base;
+  CandidatePtr best;                ///< Of the set; of all candidates where nothing is named; base for none.
+  std::vector<CandidatePtr> set;    ///< Hypotheses that are equally good. Empty unless named or ambiguous.
+  CandidatePtr unlisted;            ///< Physics outside the catalogue that explains the gap; null: none does.
+  std::vector<CandidatePtr> tried;  ///< Singles and pairs, best held-out score first.
+  double gap = 0.0;                 ///< Explainable share of the noise variance beyond the base model.
+  double p_missing = 0.0;           ///< That anything is missing.
+  double remainder = 0.0;           ///< Share of the noise variance that `best` leaves explainable.
+  double p_unnamed = 0.0;           ///< That `best` leaves something, or that physics without a name explains it.
+};
+
+/// The third step: names what is missing.
+class Search {
+ public:
+  Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const BlockBootstrap& bootstrap,
+         const Thresholds& thresholds);
+
+  /// @param pairs  Whether two effects at once are tried.
+  [[nodiscard]] Finding Run(bool pairs);
+  [[nodiscard]] const Referee& referee() const { return *referee_; }
+
+ private:
+  using Candidates = std::vector<CandidatePtr>;
+
+  [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
+  [[nodiscard]] Candidates Pairs(const Candidates& order) const;
+  [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
+  [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;
+  [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
+  [[nodiscard]] const Remainder& Judge(const CandidatePtr& candidate) const;
+  [[nodiscard]] bool Adequate(const CandidatePtr& candidate) const;
+  [[nodiscard]] bool Better(const Fitted& a, const Fitted& b) const;
+  [[nodiscard]] double Margin() const;
+  [[nodiscard]] Candidates Near(const Candidates& sorted, std::size_t count) const;
+  [[nodiscard]] double Gain(const CandidatePtr& candidate) const;
+  [[nodiscard]] double Closure(const CandidatePtr& candidate) const;
+  void AssignProbabilities(Finding* finding) const;
+  [[nodiscard]] bool FamilyHolds(const CandidatePtr& best, const Candidates& singles) const;
+  [[nodiscard]] Candidates OnePerName(const Candidates& candidates) const;
+
+  const Fitter* fitter_;
+  const std::vector<EffectForm>* catalogue_;
+  const BlockBootstrap* bootstrap_;
+  Thresholds limits_;
+  std::unique_ptr<Referee> referee_;
+  CandidatePtr base_;
+  double rows_ = 0.0;
+  double gap_ = 0.0;
+};
+
+}  // namespace armcmc::gap

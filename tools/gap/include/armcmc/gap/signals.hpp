@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "armcmc/gap/types.hpp"
+
+namespace armcmc::gap {
+
+/// What a measured or derived quantity means for the plant. Effects ask for roles, never for columns, so that one
+/// effect serves every plant that has the roles it needs.
+enum class Role : std::uint8_t {
+  kPosition,      ///< Depth of a contact, angle of a joint: what a spring acts on.
+  kVelocity,      ///< Its rate.
+  kAcceleration,  ///< Its second derivative.
+  kCount,
+};
+inline constexpr std::size_t kNumRoles = static_cast<std::size_t>(Role::kCount);
+
+/// One recording as an equation sees it: smoothed inputs by role, the measured output, the mode of every sample.
+///
+/// Inputs are smoothed without phase shift: noise on an input makes a model noisier than the data, and a delay or a low
+/// pass would then fit better for the wrong reason.
+struct Signals {
+  double dt = 0.0;  ///< s
+  Vector t;         ///< s
+  Vector output;
+  std::array<Vector, kNumRoles> input;
+  std::array<double, kNumRoles> scale{};  ///< Root mean square of each input while the law acts.
+  double output_scale = 1.0;              ///< Root mean square of the output while the law acts.
+  double output_peak = 1.0;               ///< Largest output, outliers aside.
+  double origin = 0.0;                    ///< Time from which effects that drift count; s.
+  double duration = 1.0;                  ///< Time over which they reach their amplitude; s.
+  double velocity_noise = 0.0;            ///< Standard deviation of what smoothing took off the velocity.
+  Vector active;                          ///< 1 where the law acts (contact), 0 where it does not.
+
+  [[nodiscard]] Eigen::Index rows() const { return t.size(); }
+  [[nodiscard]] const Vector& at(Role role) const { return input[static_cast<std::size_t>(role)]; }
+  [[nodiscard]] Vector& at(Role role) { return input[static_cast<std::size_t>(role)]; }
+  [[nodiscard]] double scale_of(Role role) const { return scale[static_cast<std::size_t>(role)]; }
+  /// Time since the origin over the duration: in [0, 1] on the recording that was diagnosed.
+  [[nodiscard]] Vector Elapsed() const { return ((t.array() - origin) / duration).matrix(); }
+};
+
+}  // namespace armcmc::gap

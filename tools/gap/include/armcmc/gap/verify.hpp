@@ -1,0 +1,41 @@
+#pragma once
+
+#include "armcmc/gap/diagnose.hpp"
+#include "armcmc/gap/result.hpp"
+
+namespace armcmc::gap {
+
+/// Predictions of a fitted hypothesis on data that had no part in the fit.
+struct Trial {
+  Vector residual;  ///< [held-out row]
+  Vector predicted;
+  Vector band_sd;  ///< Of the prediction: noise and parameters.
+  Vector whitened;
+  Matrix whitened_jacobian;
+};
+
+/// The sealed part of the data, opened once at the end.
+class HeldOut {
+ public:
+  /// @param recording  Rows [first, end) are held out; those before only start the memory of effects.
+  HeldOut(const Equation& equation, const Look& look, const Recording& recording, Eigen::Index first);
+
+  [[nodiscard]] Trial Try(const Fitted& fitted) const;
+  [[nodiscard]] Fit Judge(const Trial& trial) const;
+  /// Standard deviation of what no model explains: the error of `after` less what a flexible model still predicts of
+  /// it.
+  [[nodiscard]] double NoiseFloor(const Trial& after) const;
+  [[nodiscard]] const Signals& signals() const { return tail_; }
+
+ private:
+  const Equation* equation_;
+  const Look* look_;
+  Signals all_, tail_;
+  Eigen::Index first_;
+};
+
+/// Step five: the gap on held-out data with the base model and with `after`, and with `control` instead (may be null).
+[[nodiscard]] GapSummary ShowGap(const Equation& equation, const HeldOut& data, const BlockBootstrap& bootstrap,
+                                 const Fitted& before, const Fitted& after, const Fitted* control);
+
+}  // namespace armcmc::gap

@@ -1,0 +1,218 @@
+#include "armcmc/gap/contact_equation.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "armcmc/gap/features.hpp"
+#include "armcmc/gap/smoothing.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+enum Base { kStiffness = 0, kDamping = 1, kExponent = 2, kNumBase = 3 };
+constexpr double kMinContactShare = 0.02;  // of the samples, below which a law of contact cannot be fitted
+constexpr Eigen::Index kMinRows = 400;     // ten samples a block
+constexpr int kAccelerationExtra = 26;     // samples by which the window of a derivative is wider
+constexpr double kPeakQuantile = 0.9995;
+
+double Rms(const Vector& series, const Vector& weight) {
+  return std::sqrt((series.array().square() * weight.array()).sum() / std::max(weight.sum(), 1.0));
+}
+
+double Quantile(const Vector& series, double q) {
+  std::vector<double> sorted(series.data(), series.data() + series.size());
+  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
+  return sorted[static_cast<std::size_t>(at)];
+}
+
+class ContactEquation final : public Equation {
+ public:
+  std::string output_name() const override { return "force"; }
+  std::string output_unit() const override { return "N"; }
+  std::vector<std::string> columns() const override { return {"t", "x", "v", "f"}; }
+  std::string active_name() const override { return "contact"; }
+  std::string passive_name() const override { return "free motion"; }
+
+  Signals Prepare(const Recording& recording, int window) const override {
+    Signals s = Smooth(recording, window);
+    if (s.rows() < kMinRows)
+      throw std::invalid_argument(recording.source + ": holds " + std::to_string(s.rows()) + " samples; at least " +
+                                  std::to_string(kMinRows) + " are needed to judge a model");
+    const double share = s.active.mean();
+    if (share < kMinContactShare)
+      throw std::invalid_argument(recording.source +
+                                  ": x is hardly ever above 0: without contact nothing can be said on a contact law");
+    const Vector depth = s.at(Role::kPosition).cwiseMax(0.0);
+    const Vector all = Vector::Ones(s.rows());
+    s.scale[static_cast<std::size_t>(Role::kPosition)] = Rms(depth, s.active);
+    s.scale[static_cast<std::size_t>(Role::kVelocity)] = Rms(s.at(Role::kVelocity), all);
+    s.scale[static_cast<std::size_t>(Role::kAcceleration)] = Rms(s.at(Role::kAcceleration), all);
+    s.output_scale = Rms(s.output, s.active);
+    s.output_peak = Quantile(s.output, kPeakQuantile);
+    for (const double scale : s.scale)
+      if (!(scale > 0.0)) throw std::invalid_argument(recording.source + ": x or v does not move");
+    if (!(s.output_scale > 0.0) || !(s.output_peak > 0.0))
+      throw std::invalid_argument(recording.source + ": f is not positive anywhere in contact");
+    return s;
+  }
+
+  Signals PrepareLike(const Recording& recording, int window, const Signals& like) const override {
+    Signals s = Smooth(recording, window);
+    s.origin = like.origin;
+    s.duration = like.duration;
+    s.scale = like.scale;
+    s.output_scale = like.output_scale;
+    s.output_peak = like.output_peak;
+    return s;
+  }
+
+  std::vector<Coordinate> base(const Signals& s) const override {
+    (void)s;
+    return {{"K", "N/m^p", 1e-6, 100.0, 1.0, 2.0, 1.0, false},
+            {"B", "N s/m^(p+1)", -20.0, 20.0, 0.0, 1.0, 1.0, false},
+            {"p", "-", 0.3, 4.5, 1.5, 0.5, 1.0, false}};
+  }
+
+  Vector Start(const Signals& s) const override {
+    (void)s;
+    return Vector{{1.0, 0.05, 1.5}};
+  }
+
+  void Law(const Signals& s, const double* theta, const LawInput& input, Prediction* out) const override {
+    const double k = theta[kStiffness], b = theta[kDamping], p = theta[kExponent];
+    const double depth_scale = s.scale_of(Role::kPosition), speed_scale = s.scale_of(Role::kVelocity);
+    const Vector& position = s.at(Role::kPosition);
+    const Vector& velocity = s.at(Role::kVelocity);
+    out->y = Vector::Zero(s.rows());
+    out->elastic = Vector::Zero(s.rows());
+    Vector slope_by_position = Vector::Zero(s.rows()), elastic_slope = Vector::Zero(s.rows());
+    Vector slope_by_gain = Vector::Zero(s.rows());
+    for (Eigen::Index i = 0; i < s.rows(); ++i) {
+      const double shift = input.shift.size() > 0 ? input.shift[i] : 0.0;
+      const double u = (position[i] - shift) / depth_scale;
+      if (!(u > 0.0)) continue;
+      const double log_u = std::log(u);
+      const double power = s.output_scale * std::exp(p * log_u);
+      const double rate = velocity[i] / speed_scale;
+      const double gain = input.gain.size() > 0 ? input.gain[i] : 1.0;
+      const double elastic = power * k * gain;
+      const double force = elastic + power * b * rate;
+      out->y[i] = force;
+      out->elastic[i] = elastic;
+      out->jacobian(i, kStiffness) = out->elastic_jacobian(i, kStiffness) = power * gain;
+      out->jacobian(i, kDamping) = power * rate;
+      out->jacobian(i, kExponent) = force * log_u;
+      out->elastic_jacobian(i, kExponent) = elastic * log_u;
+      const double per_position = p / (u * depth_scale);
+      slope_by_position[i] = force * per_position;
+      elastic_slope[i] = elastic * per_position;
+      slope_by_gain[i] = power * k;
+    }
+    for (const LawInput::Slope& slope : input.shift_slopes) {
+      out->jacobian.col(slope.coordinate) -= slope_by_position.cwiseProduct(slope.rows);
+      out->elastic_jacobian.col(slope.coordinate) -= elastic_slope.cwiseProduct(slope.rows);
+    }
+    for (const LawInput::Slope& slope : input.gain_slopes) {
+      out->jacobian.col(slope.coordinate) += slope_by_gain.cwiseProduct(slope.rows);
+      out->elastic_jacobian.col(slope.coordinate) += slope_by_gain.cwiseProduct(slope.rows);
+    }
+  }
+
+  std::vector<ParameterEstimate> Report(const Signals& s, const Vector& theta,
+                                        const Matrix& covariance) const override {
+    const double force = s.output_scale, depth = s.scale_of(Role::kPosition), speed = s.scale_of(Role::kVelocity);
+    const double p = theta[kExponent];
+    const double stiffness = force * theta[kStiffness] * std::pow(depth, -p);
+    const double damping = force * theta[kDamping] * std::pow(depth, -p) / speed;
+    Matrix slopes = Matrix::Zero(3, 3);
+    slopes(0, kStiffness) = stiffness / theta[kStiffness];
+    slopes(0, kExponent) = -stiffness * std::log(depth);
+    slopes(1, kDamping) = force * std::pow(depth, -p) / speed;
+    slopes(1, kExponent) = -damping * std::log(depth);
+    slopes(2, kExponent) = 1.0;
+    const Matrix reported = slopes * covariance.topLeftCorner(3, 3) * slopes.transpose();
+    const auto sd = [&](int i) { return std::sqrt(std::max(reported(i, i), 0.0)); };
+    return {{"K", "N/m^p", stiffness, sd(0)}, {"B", "N s/m^(p+1)", damping, sd(1)}, {"p", "-", p, sd(2)}};
+  }
+
+  std::vector<EffectForm> Catalogue(const Signals& s) const override { return ContactCatalogue(s); }
+
+  std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
+
+  std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
+    return {{"depth x, m", s.at(Role::kPosition)},
+            {"speed v, m/s", s.at(Role::kVelocity)},
+            {"acceleration, m/s^2", s.at(Role::kAcceleration)},
+            {"time, s", s.t}};
+  }
+
+ private:
+  static Signals Smooth(const Recording& recording, int window) {
+    Signals s;
+    s.dt = recording.dt;
+    s.t = recording.t;
+    s.output = recording.Column("f");
+    s.origin = s.t[0];
+    s.duration = std::max(s.t[s.rows() - 1] - s.t[0], s.dt);
+    const Vector& v = recording.Column("v");
+    s.at(Role::kPosition) = SavitzkyGolay(recording.Column("x"), window, 0);
+    s.at(Role::kVelocity) = SavitzkyGolay(v, window, 0);
+    s.velocity_noise = Rms(v - s.at(Role::kVelocity), Vector::Ones(s.rows()));
+    const int wide = window < 5 ? window : window + kAccelerationExtra;
+    s.at(Role::kAcceleration) = SavitzkyGolay(v, wide, 1) / s.dt;
+    s.active = (s.at(Role::kPosition).array() > 0.0).cast<double>();
+    return s;
+  }
+};
+
+// Hats over quantiles: where the data are, there are the knots.
+std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector& predicted) const {
+  const Vector& x = s.at(Role::kPosition);
+  const Vector& v = s.at(Role::kVelocity);
+  const Vector& a = s.at(Role::kAcceleration);
+  const Vector all = Vector::Ones(s.rows());
+  const Vector free = 1.0 - s.active.array();
+  const Vector depth = x.cwiseMax(0.0);
+  const Vector time = s.Elapsed();
+  const Vector direction = (v / (0.05 * s.scale_of(Role::kVelocity))).array().tanh();
+  const double samples = s.duration / s.dt;
+
+  std::vector<FeatureGroup> groups;
+  groups.push_back({"depth", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 8)), s.active), free)});
+  groups.push_back({"speed", Hats(v, QuantileKnots(v, all, 9))});
+  groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v, s.active, 5)), s.active)});
+  groups.push_back({"time", Hats(time, EvenKnots(9))});
+  groups.push_back({"time x force", Gated(Hats(time, EvenKnots(4)), predicted)});
+  groups.push_back({"acceleration", Hats(a, QuantileKnots(a, all, 6))});
+  groups.push_back(
+      {"direction of motion", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 5)), direction.cwiseProduct(s.active)),
+                                     direction.cwiseProduct(free))});
+  Matrix memory(s.rows(), 4);
+  for (int i = 0; i < 4; ++i) memory.col(i) = depth - Leaky(depth, 30.0 * std::pow(samples / 300.0, i / 3.0));
+  groups.push_back({"memory of the past", memory});
+  Matrix reversals(s.rows(), 2);
+  reversals.col(0) = Bristle(v, 0.025 * s.scale_of(Role::kPosition), s.dt);
+  reversals.col(1) = Bristle(v, 0.1 * s.scale_of(Role::kPosition), s.dt);
+  groups.push_back({"distance since reversal", reversals});
+  const Vector rate = SavitzkyGolay(predicted, 3, 1);
+  Matrix change(s.rows(), 3);
+  change.col(0) = rate;
+  change.col(1) = SavitzkyGolay(rate, 3, 1);
+  change.col(2) = predicted - Leaky(predicted, 20.0);
+  groups.push_back({"rate of force", change});
+  groups.push_back({"force", Gated(Hats(predicted, QuantileKnots(predicted, s.active, 6)), s.active)});
+  groups.push_back(
+      {"depth x speed",
+       Gated(Products(Hats(x, QuantileKnots(x, s.active, 4)), Hats(v, QuantileKnots(v, s.active, 4))), s.active)});
+  return groups;
+}
+
+}  // namespace
+
+std::unique_ptr<Equation> MakeContactEquation() { return std::make_unique<ContactEquation>(); }
+
+}  // namespace armcmc::gap

@@ -1,0 +1,85 @@
+#include "armcmc/gap/diagnose.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace armcmc::gap {
+namespace {
+
+constexpr int kWideWindow = 15, kNarrowWindow = 7;
+constexpr int kNoisePasses = 2;
+constexpr double kCleaner = 0.97;  // of the innovation variance, below which the first noise model hid an effect
+
+/// Noise model from what a hypothesis and the flexible model leave together.
+Whitener NoiseLeftBy(const Fitter& fitter, const Remainder& remainder) {
+  return FitNoise(fitter.whitener().Colour(remainder.unexplained));
+}
+
+std::unique_ptr<Look> LookAt(const Equation& equation, const Recording& recording, int window,
+                             const DiagnoseOptions& options, const BlockBootstrap& bootstrap) {
+  auto look = std::make_unique<Look>();
+  look->signals = equation.Prepare(recording, window);
+  look->catalogue = equation.Catalogue(look->signals);
+  std::erase_if(look->catalogue, [&](const EffectForm& form) {
+    return std::find(options.without.begin(), options.without.end(), form.effect) != options.without.end();
+  });
+  Whitener whitener;
+  for (int pass = 0; pass < kNoisePasses; ++pass) {
+    const Fitter fitter(equation, look->signals, whitener);
+    const Fitted base = fitter.Fit({}, equation.Start(look->signals), 30);
+    whitener = NoiseLeftBy(fitter, Referee(fitter, base.predicted).Judge(base));
+  }
+  // What no additive basis expresses (an onset, a clipped force) hides in the first noise model.
+  for (int pass = 0; pass < 2; ++pass) {
+    look->fitter = std::make_unique<Fitter>(equation, look->signals, whitener);
+    look->search = std::make_unique<Search>(*look->fitter, look->catalogue, bootstrap, options.thresholds);
+    look->finding = look->search->Run(options.pairs);
+    if (look->finding.verdict == Verdict::kNone || !look->finding.best->remainder) break;
+    const Whitener cleaner = NoiseLeftBy(*look->fitter, *look->finding.best->remainder);
+    if (!(cleaner.s2 < kCleaner * whitener.s2)) break;
+    whitener = cleaner;
+  }
+  return look;
+}
+
+std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
+  std::set<std::vector<std::string>> names;
+  for (const CandidatePtr& candidate : finding.set) names.insert(candidate->names());
+  return names;
+}
+
+bool Names(const Finding& finding) {
+  return finding.verdict == Verdict::kNamed || finding.verdict == Verdict::kAmbiguous;
+}
+
+/// Applies the vote of the narrow look.
+void Vote(const Finding& other, Finding* finding) {
+  if (!Names(*finding)) return;
+  const auto mine = NamesOf(*finding), theirs = NamesOf(other);
+  if (mine == theirs) return;
+  if (Names(other)) {
+    for (const CandidatePtr& candidate : other.set)
+      if (!mine.contains(candidate->names())) finding->set.push_back(candidate);
+    finding->verdict = Verdict::kAmbiguous;
+  } else if (finding->approximate || finding->best->fit.hypothesis.terms.size() > 1) {
+    finding->verdict = Verdict::kUnnamed;
+    finding->approximate = false;
+    finding->set.clear();
+  }
+}
+
+}  // namespace
+
+Diagnosis Diagnose(const Equation& equation, const Recording& recording, const DiagnoseOptions& options) {
+  Diagnosis diagnosis;
+  diagnosis.bootstrap = std::make_unique<BlockBootstrap>(options.seed);
+  diagnosis.look = LookAt(equation, recording, kWideWindow, options, *diagnosis.bootstrap);
+  diagnosis.finding = diagnosis.look->finding;
+  if (Names(diagnosis.finding)) {
+    const auto narrow = LookAt(equation, recording, kNarrowWindow, options, *diagnosis.bootstrap);
+    Vote(narrow->finding, &diagnosis.finding);
+  }
+  return diagnosis;
+}
+
+}  // namespace armcmc::gap

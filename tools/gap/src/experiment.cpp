@@ -1,0 +1,132 @@
+#include "armcmc/gap/experiment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <sstream>
+
+#include "armcmc/gap/smoothing.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kSeconds = 6.0;
+constexpr Eigen::Index kMaxRows = 6000;
+constexpr std::size_t kCompared = 3;  // candidates; more ties are resolved by a second experiment
+constexpr double kEnough = 10.0;      // nats that decide
+constexpr double kSmoothing_s = 0.015;
+constexpr int kSteps = 10;
+
+double Share(double t, double period) { return t / period - std::floor(t / period); }
+double Tap(double share) { return 0.5 - 0.5 * std::cos(kTwoPi * share); }
+double Sweep(double t) { return kTwoPi * (0.3 * t + 0.5 * (8.0 - 0.3) * t * t / 10.0); }
+
+double SlowTriangle(double t) { return -0.1 + 1.1 * (1.0 - std::abs(2.0 * Share(t, 4.0) - 1.0)); }
+double FastTaps(double t) { return -0.15 + 1.15 * Tap(Share(t, 0.2)); }
+double StepHold(double t) {
+  constexpr std::array<double, 3> kLevels = {1.0, 0.5, 0.75};
+  const double s = 2.0 * Share(t, 2.0);
+  return s < 1.4 ? kLevels[static_cast<std::size_t>(t / 2.0) % kLevels.size()] : -0.1;
+}
+double TapsOfDepths(double t) {
+  constexpr std::array<double, 6> kDepths = {0.3, 0.9, 0.5, 1.0, 0.2, 0.7};
+  return -0.1 + (kDepths[static_cast<std::size_t>(t / 0.8) % kDepths.size()] + 0.1) * Tap(Share(t, 0.8));
+}
+double ContactChirp(double t) { return 0.6 + 0.35 * std::sin(Sweep(t)); }
+double FreeAirChirp(double t) { return -0.6 + 0.4 * std::sin(Sweep(t)); }
+
+/// A motion of the plant's library, in units of the deepest press.
+struct Program {
+  const char* name;
+  const char* words;
+  double (*position)(double t);
+};
+constexpr std::array<Program, 6> kPrograms = {{
+    {"taps_of_depths", "press and release to several depths, one tap every 0.8 s", TapsOfDepths},
+    {"fast_taps", "tap five times a second, to full depth", FastTaps},
+    {"step_hold", "press quickly and hold for more than a second, at three depths", StepHold},
+    {"slow_triangle", "press and release slowly at constant speed, 2 s each way", SlowTriangle},
+    {"contact_chirp", "stay in contact and sweep a sine from 0.3 to 8 Hz", ContactChirp},
+    {"free_air_chirp", "stay out of contact and sweep a sine from 0.3 to 8 Hz", FreeAirChirp},
+}};
+
+Signals Simulate(const Program& program, const Signals& like, double depth) {
+  Signals s = like;
+  const auto rows = std::min(static_cast<Eigen::Index>(kSeconds / like.dt), kMaxRows);
+  const double dt = kSeconds / static_cast<double>(rows);
+  Vector x(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) x[i] = depth * program.position(static_cast<double>(i) * dt);
+  // Corners that no drive follows.
+  for (int pass = 0; pass < 2; ++pass) {
+    const double tau = kSmoothing_s / dt;
+    x = Leaky(x, tau).eval();
+    x = Leaky(Vector(x.reverse()), tau).reverse().eval();
+  }
+  s.dt = dt;
+  s.t = Vector::LinSpaced(rows, like.t[0], like.t[0] + static_cast<double>(rows - 1) * dt);
+  s.at(Role::kPosition) = x;
+  s.at(Role::kVelocity) = SavitzkyGolay(x, 3, 1) / dt;
+  s.at(Role::kAcceleration) = SavitzkyGolay(s.at(Role::kVelocity), 3, 1) / dt;
+  s.active = (x.array() > 0.0).cast<double>();
+  return s;
+}
+
+double Separation(const Equation& equation, Signals* s, const Whitener& whitener, const Fitted& truth,
+                  const Fitted& rival) {
+  s->output = Evaluate(equation, *s, truth.hypothesis, truth.theta).y;
+  const Fitter fitter(equation, *s, whitener);
+  return 0.5 * fitter.Fit(rival.hypothesis, rival.theta, kSteps).squares / whitener.s2;
+}
+
+}  // namespace
+
+Experiment SeparatingExperiment(const Equation& equation, const Look& look,
+                                const std::vector<CandidatePtr>& candidates) {
+  const std::size_t count = std::min(candidates.size(), kCompared);
+  const double depth = std::max(look.signals.at(Role::kPosition).maxCoeff(), look.signals.scale_of(Role::kPosition));
+  Experiment best;
+  best.nats = -1.0;
+  for (const Program& program : kPrograms) {
+    Signals s = Simulate(program, look.signals, depth);
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < count; ++j)
+        if (i != j && least > 0.0)
+          least = std::min(least,
+                           Separation(equation, &s, look.fitter->whitener(), candidates[i]->fit, candidates[j]->fit));
+    if (least > best.nats) {
+      best.nats = least;
+      best.program = program.name;
+      best.words = program.words;
+    }
+  }
+  best.depth = depth;
+  char evidence[160];
+  std::snprintf(evidence, sizeof(evidence),
+                "; %.0f s of it bring about %.0f nats of evidence between the closest pair%s", kSeconds, best.nats,
+                best.nats < kEnough ? ", which may not be enough: repeat it, or press deeper" : "");
+  best.words = "To separate them: " + best.words + evidence + ".";
+  return best;
+}
+
+std::string ScenarioText(const Equation& equation, const Look& look, const Experiment& experiment) {
+  const Whitener& whitener = look.fitter->whitener();
+  const Fitted& fit = look.finding.best->fit;
+  const auto base = equation.Report(look.signals, fit.theta, fit.Covariance(whitener.s2));
+  std::ostringstream out;
+  out.precision(10);
+  out << "# " << experiment.words
+      << "\nschema = 1\nplant = \"hunt_crossley\"\nduration_s = 10.0\nsample_interval_s = " << look.signals.dt
+      << "\npack_period_s = " << 100.0 * look.signals.dt << "\n\n[parameters]\n";
+  for (const ParameterEstimate& parameter : base)
+    out << parameter.name << " = " << parameter.mean << "   # " << parameter.unit << '\n';
+  out << "\n[motion]\ntracking = \"prescribed\"\nprogram = \"" << experiment.program
+      << "\"\ndepth = " << experiment.depth
+      << "   # m\n\n[noise.f]\nkind = \"gaussian\"\nstd = " << std::sqrt(whitener.s2 * whitener.Gain()) << "   # N\n";
+  return out.str();
+}
+
+}  // namespace armcmc::gap

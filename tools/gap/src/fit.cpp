@@ -1,0 +1,197 @@
+#include "armcmc/gap/fit.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // relative decrease of the squares that ends a fit
+constexpr int kMaxDampings = 6;
+constexpr double kSmallAmplitude = 1e-3;  // where an amplitude starts that its bounds would hold at zero
+constexpr std::size_t kRefinedStarts = 2;
+
+void Clamp(const std::vector<Coordinate>& coordinates, Vector* theta) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    double& value = (*theta)[static_cast<Eigen::Index>(i)];
+    value = std::clamp(value, coordinates[i].lower, coordinates[i].upper);
+  }
+}
+
+/// Coordinates that rest on a bound and are pushed against it.
+std::vector<bool> Blocked(const std::vector<Coordinate>& coordinates, const Vector& theta, const Vector& ascent) {
+  std::vector<bool> blocked(coordinates.size());
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    blocked[i] = (theta[k] <= coordinates[i].lower && ascent[k] <= 0.0) ||
+                 (theta[k] >= coordinates[i].upper && ascent[k] >= 0.0);
+  }
+  return blocked;
+}
+
+std::vector<Eigen::Index> FreeOf(const std::vector<bool>& blocked) {
+  std::vector<Eigen::Index> free;
+  for (std::size_t i = 0; i < blocked.size(); ++i)
+    if (!blocked[i]) free.push_back(static_cast<Eigen::Index>(i));
+  return free;
+}
+
+/// Orthonormal basis of the columns, for projecting them out.
+Matrix Basis(const Matrix& columns) {
+  Matrix scaled = columns;
+  for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
+  Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
+  qr.setThreshold(1e-10);
+  return qr.householderQ() * Matrix::Identity(scaled.rows(), qr.rank());
+}
+
+}  // namespace
+
+Matrix Fitted::Covariance(double s2) const {
+  std::vector<Eigen::Index> free = FreeOf(at_bound);
+  Matrix covariance = Matrix::Zero(theta.size(), theta.size());
+  if (free.empty()) return covariance;
+  const Matrix columns = whitened_jacobian(Eigen::all, free);
+  Matrix gram = columns.transpose() * columns;
+  gram.diagonal() *= 1.0 + 1e-12;
+  covariance(free, free) = s2 * gram.ldlt().solve(Matrix::Identity(gram.rows(), gram.cols()));
+  return covariance;
+}
+
+Fitter::Fitter(const Equation& equation, const Signals& signals, Whitener whitener)
+    : equation_(&equation), signals_(&signals), whitener_(std::move(whitener)) {}
+
+Fitted Fitter::Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps) const {
+  const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
+  Vector theta = start;
+  Clamp(coordinates, &theta);
+  Prediction prediction = Evaluate(*equation_, *signals_, hypothesis, theta);
+  Vector residual = whitener_.Apply(Vector(signals_->output - prediction.y));
+  double squares = residual.squaredNorm();
+  double damping = 1e-6;
+  for (int step = 0; step < max_steps; ++step) {
+    const Matrix columns = whitener_.Apply(prediction.jacobian);
+    const Vector ascent = columns.transpose() * residual;
+    const std::vector<Eigen::Index> free = FreeOf(Blocked(coordinates, theta, ascent));
+    if (free.empty()) break;
+    const Matrix free_columns = columns(Eigen::all, free);
+    const Matrix gram = free_columns.transpose() * free_columns;
+    bool improved = false;
+    double decrease = 0.0;
+    for (int i = 0; i < kMaxDampings && !improved; ++i) {
+      Matrix damped = gram;
+      damped.diagonal() *= 1.0 + damping;
+      damped.diagonal().array() += 1e-300;
+      Vector tried = theta;
+      tried(free) += damped.ldlt().solve(ascent(free));
+      Clamp(coordinates, &tried);
+      Prediction next = Evaluate(*equation_, *signals_, hypothesis, tried);
+      Vector next_residual = whitener_.Apply(Vector(signals_->output - next.y));
+      const double next_squares = next_residual.squaredNorm();
+      if (!(next_squares < squares)) {
+        damping = std::max(10.0 * damping, 1e-4);
+        continue;
+      }
+      improved = true;
+      decrease = (squares - next_squares) / squares;
+      theta = tried;
+      prediction = std::move(next);
+      residual = std::move(next_residual);
+      squares = next_squares;
+      damping = std::max(0.2 * damping, 1e-8);
+    }
+    if (!improved || decrease < kTolerance) break;
+  }
+  Fitted fitted;
+  fitted.hypothesis = hypothesis;
+  fitted.coordinates = coordinates;
+  fitted.theta = theta;
+  fitted.predicted = prediction.y;
+  fitted.whitened_residual = residual;
+  fitted.whitened_jacobian = whitener_.Apply(prediction.jacobian);
+  fitted.squares = squares;
+  Score(&fitted);
+  return fitted;
+}
+
+void Fitter::Score(Fitted* fitted) const {
+  const Vector ascent = fitted->whitened_jacobian.transpose() * fitted->whitened_residual;
+  fitted->at_bound = Blocked(fitted->coordinates, fitted->theta, ascent);
+  // A shape of an amplitude of zero has no column either.
+  for (std::size_t i = 0; i < fitted->at_bound.size(); ++i)
+    if (fitted->whitened_jacobian.col(static_cast<Eigen::Index>(i)).isZero(0.0)) fitted->at_bound[i] = true;
+  const std::vector<Eigen::Index> free = FreeOf(fitted->at_bound);
+  const Matrix columns = fitted->whitened_jacobian(Eigen::all, free);
+  const BlockGrams grams = MakeGrams(columns, fitted->whitened_residual);
+  fitted->heldout = -0.5 / whitener_.s2 * LeaveBlockOut(grams, Vector::Zero(columns.cols()));
+
+  // Laplace: the Hessian of the log posterior at the fit, prior included.
+  Matrix hessian = fitted->whitened_jacobian.transpose() * fitted->whitened_jacobian / whitener_.s2;
+  double log_prior = 0.0;
+  for (std::size_t i = 0; i < fitted->coordinates.size(); ++i) {
+    const Coordinate& c = fitted->coordinates[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    const double precision = 1.0 / (c.prior_sd * c.prior_sd);
+    const double off = fitted->theta[k] - c.prior_mean;
+    hessian(k, k) += precision;
+    log_prior += 0.5 * std::log(precision) - 0.5 * off * off * precision;
+  }
+  const Vector pivots = hessian.ldlt().vectorD().cwiseMax(1e-300);
+  fitted->log_evidence = -0.5 * fitted->squares / whitener_.s2 + log_prior - 0.5 * pivots.array().log().sum();
+}
+
+Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
+  const EffectForm& form = *term.form;
+  Hypothesis hypothesis = parent.hypothesis;
+  hypothesis.terms.push_back(term);
+  const Eigen::Index first = parent.theta.size();
+  const Matrix basis = Basis(parent.whitened_jacobian);
+  const auto project = [&](const Matrix& columns) -> Matrix { return columns - basis * (basis.transpose() * columns); };
+
+  std::vector<std::pair<double, Vector>> starts;
+  std::vector<std::vector<double>> grid = form.starts;
+  if (form.find_starts)
+    for (std::vector<double>& start : form.find_starts(*signals_, parent.whitened_residual))
+      grid.push_back(std::move(start));
+  for (const std::vector<double>& start : grid) {
+    Vector theta(first + form.size());
+    theta << parent.theta, Eigen::Map<const Vector>(start.data(), form.size());
+    const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
+    if (form.linear) theta.segment(first, form.num_amplitudes).setZero();
+    const Prediction prediction = Evaluate(*equation_, *signals_, hypothesis, theta);
+    double squares = 0.0;
+    if (form.linear) {
+      const Matrix columns =
+          project(whitener_.Apply(Matrix(prediction.jacobian.middleCols(first, form.num_amplitudes))));
+      Matrix gram = columns.transpose() * columns;
+      gram.diagonal().array() += 1e-12 * gram.trace() + 1e-300;
+      Vector amplitudes = gram.ldlt().solve(columns.transpose() * parent.whitened_residual);
+      for (int a = 0; a < form.num_amplitudes; ++a) {
+        const Coordinate& c = form.coordinates[static_cast<std::size_t>(a)];
+        amplitudes[a] = std::clamp(amplitudes[a], c.lower, c.upper);
+      }
+      squares = (parent.whitened_residual - columns * amplitudes).squaredNorm();
+      // An amplitude of zero has no slope by its shapes.
+      if (amplitudes.isZero(0.0)) amplitudes[0] = kSmallAmplitude;
+      theta.segment(first, form.num_amplitudes) = amplitudes;
+    } else {
+      const Vector step = whitener_.Apply(Vector(prediction.y - parent.predicted));
+      squares = (parent.whitened_residual - project(step).col(0)).squaredNorm();
+    }
+    Clamp(coordinates, &theta);
+    starts.emplace_back(squares, theta);
+  }
+  std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const std::size_t tries = starts.size() > 1 ? std::min(kRefinedStarts, starts.size()) : 1;
+  Fitted best = Fit(hypothesis, starts.front().second);
+  for (std::size_t i = 1; i < tries; ++i) {
+    Fitted other = Fit(hypothesis, starts[i].second);
+    if (other.squares < best.squares) best = std::move(other);
+  }
+  return best;
+}
+
+}  // namespace armcmc::gap

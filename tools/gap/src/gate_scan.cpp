@@ -1,0 +1,158 @@
+#include "armcmc/gap/gate_scan.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kEdgeShare = 0.08;       // of the recording, at each end, where an onset means nothing
+constexpr double kActiveShare = 0.02;     // of the busiest block's energy, from which a block counts as active
+constexpr double kMinIndependent = 1e-6;  // of a template's energy that the parent's columns must leave
+
+Matrix OrthonormalBasis(const Matrix& columns) {
+  Matrix scaled = columns;
+  for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
+  Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
+  qr.setThreshold(1e-10);
+  return qr.householderQ() * Matrix::Identity(scaled.rows(), qr.rank());
+}
+
+int ActiveBlocks(const Vector& block_energy) {
+  return static_cast<int>((block_energy.array() > kActiveShare * block_energy.maxCoeff()).count());
+}
+
+struct Sums {
+  double cross = 0.0, energy = 0.0;
+  Vector basis;
+};
+
+/// Decrease of the squares by the best amplitude; 0 where the sign is wrong or nothing is left of the template.
+double GainOf(const Sums& s, bool positive) {
+  const double independent = s.energy - s.basis.squaredNorm();
+  if (independent < kMinIndependent * s.energy || !(s.energy > 0.0)) return 0.0;
+  if (positive && s.cross <= 0.0) return 0.0;
+  return s.cross * s.cross / independent;
+}
+
+class Scan {
+ public:
+  Scan(const Fitter& fitter, const Fitted& parent, const EffectForm& form, int min_active)
+      : signals_(fitter.signals()),
+        residual_(parent.whitened_residual),
+        basis_(OrthonormalBasis(parent.whitened_jacobian)),
+        positive_(form.linear ? form.num_amplitudes == 1 && form.coordinates[0].lower >= 0.0 : true),
+        min_active_(min_active) {}
+
+  void Consider(const EffectForm& form, const Vector& c, std::vector<GateCandidate>* best) const {
+    const Eigen::Index n = c.size();
+    Sums total = Sum(c);
+    const double always = GainOf(total, positive_);
+    if (form.gates_by_mode) {
+      for (const When::Kind kind : {When::Kind::kContact, When::Kind::kFree}) {
+        const Vector gate = GateOf({kind, 0.0}, signals_);
+        const Vector gated = c.cwiseProduct(gate);
+        if (ActiveBlocks(BlockSquares(gated)) >= min_active_)
+          Keep({{&form, {kind, 0.0}}, GainOf(Sum(gated), positive_), always}, best);
+      }
+    }
+    if (!form.gates_by_time) return;
+    const auto edges = BlockEdges(n);
+    const Vector energy = BlockSquares(c);
+    const auto edge = static_cast<Eigen::Index>(kEdgeShare * static_cast<double>(n));
+    Sums until;
+    until.basis = Vector::Zero(basis_.cols());
+    GateCandidate from_best{{&form, {When::Kind::kFrom, 0.0}}, 0.0, always};
+    GateCandidate until_best{{&form, {When::Kind::kUntil, 0.0}}, 0.0, always};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (i >= edge && i < n - edge) {
+        const Sums from{total.cross - until.cross, total.energy - until.energy, total.basis - until.basis};
+        const double from_gain = GainOf(from, positive_), until_gain = GainOf(until, positive_);
+        if (from_gain > from_best.gain) from_best = {{&form, {When::Kind::kFrom, signals_.t[i]}}, from_gain, always};
+        if (until_gain > until_best.gain)
+          until_best = {{&form, {When::Kind::kUntil, signals_.t[i]}}, until_gain, always};
+      }
+      until.cross += c[i] * residual_[i];
+      until.energy += c[i] * c[i];
+      until.basis += c[i] * basis_.row(i).transpose();
+    }
+    for (const GateCandidate& candidate : {from_best, until_best}) {
+      const bool from = candidate.term.when.kind == When::Kind::kFrom;
+      Vector active = energy;
+      for (int b = 0; b < kNumBlocks; ++b) {
+        const double start = signals_.t[edges[static_cast<std::size_t>(b)]];
+        if (from != (start >= candidate.term.when.time_s)) active[b] = 0.0;
+      }
+      if (candidate.gain > 0.0 && ActiveBlocks(active) >= min_active_) Keep(candidate, best);
+    }
+  }
+
+ private:
+  [[nodiscard]] Sums Sum(const Vector& c) const { return {c.dot(residual_), c.squaredNorm(), basis_.transpose() * c}; }
+  static void Keep(const GateCandidate& candidate, std::vector<GateCandidate>* best) {
+    for (GateCandidate& kept : *best) {
+      if (kept.term.when.kind != candidate.term.when.kind) continue;
+      kept.always_gain = std::max(kept.always_gain, candidate.always_gain);
+      if (candidate.gain > kept.gain) {
+        kept.gain = candidate.gain;
+        kept.term = candidate.term;
+      }
+      return;
+    }
+    best->push_back(candidate);
+  }
+
+  const Signals& signals_;
+  const Vector& residual_;
+  Matrix basis_;
+  bool positive_;
+  int min_active_;
+};
+
+}  // namespace
+
+std::vector<GateCandidate> ScanGates(const Fitter& fitter, const Fitted& parent, const EffectForm& form,
+                                     const std::vector<Vector>& templates, int min_active_blocks) {
+  const Scan scan(fitter, parent, form, min_active_blocks);
+  std::vector<GateCandidate> best;
+  for (const Vector& c : templates) scan.Consider(form, c, &best);
+  std::sort(best.begin(), best.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+  return best;
+}
+
+std::vector<Vector> Templates(const Fitter& fitter, const Fitted& parent, const EffectForm& form,
+                              const Fitted* fitted) {
+  constexpr double kUnit = 0.05;  // amplitude of a template, of a coordinate of order one
+  Hypothesis hypothesis = parent.hypothesis;
+  hypothesis.terms.push_back({&form, {}});
+  std::vector<std::vector<double>> starts = form.starts;
+  if (form.find_starts)
+    for (std::vector<double>& start : form.find_starts(fitter.signals(), parent.whitened_residual))
+      starts.push_back(std::move(start));
+  const Eigen::Index first = parent.theta.size();
+  if (fitted != nullptr) {
+    const Vector own = fitted->theta.tail(form.size());
+    starts.emplace_back(own.data(), own.data() + own.size());
+  }
+  std::vector<Vector> templates;
+  for (const std::vector<double>& start : starts) {
+    Vector theta(first + form.size());
+    theta << parent.theta, Eigen::Map<const Vector>(start.data(), form.size());
+    for (int a = 0; form.linear && a < form.num_amplitudes; ++a) {
+      // Each amplitude alone, so that a phase is not frozen.
+      Vector alone = theta;
+      alone.segment(first, form.num_amplitudes).setZero();
+      alone[first + a] = kUnit;
+      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, alone);
+      templates.push_back(fitter.whitener().Apply(Vector(p.y - parent.predicted)));
+    }
+    if (!form.linear) {
+      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, theta);
+      templates.push_back(fitter.whitener().Apply(Vector(p.y - parent.predicted)));
+    }
+  }
+  return templates;
+}
+
+}  // namespace armcmc::gap

@@ -1,0 +1,160 @@
+#include "armcmc/gap/hypothesis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace armcmc::gap {
+namespace {
+
+/// A term with its gate and the place of its coordinates.
+struct Placed {
+  const EffectForm* form;
+  Vector gate;
+  int first;
+  const double* theta;
+  [[nodiscard]] const double* shapes() const { return theta + form->num_amplitudes; }
+};
+
+constexpr double kShapeStep = 1e-4;  // of a coordinate of order one: error 1e-4 of a derivative
+
+std::vector<Placed> Place(const Signals& signals, const Hypothesis& hypothesis, int num_base, const Vector& theta) {
+  std::vector<Placed> placed;
+  int first = num_base;
+  for (const Term& term : hypothesis.terms) {
+    placed.push_back({term.form, GateOf(term.when, signals), first, theta.data() + first});
+    first += term.form->size();
+  }
+  return placed;
+}
+
+/// Features times amplitudes, gate included, with the derivative by every coordinate of the term.
+struct Sum {
+  Vector value;
+  Matrix slopes;  ///< [row][coordinate of the term]
+};
+
+Sum Evaluate(const Signals& signals, const Placed& term) {
+  const EffectForm& form = *term.form;
+  const Matrix columns = term.gate.asDiagonal() * form.features(signals, term.shapes());
+  const Eigen::Map<const Vector> amplitudes(term.theta, form.num_amplitudes);
+  Sum sum{columns * amplitudes, Matrix(signals.rows(), form.size())};
+  sum.slopes.leftCols(form.num_amplitudes) = columns;
+  std::vector<double> shape(term.shapes(), term.theta + form.size());
+  for (std::size_t s = 0; s < shape.size(); ++s) {
+    const double at = shape[s];
+    shape[s] = at + kShapeStep;
+    const Vector moved = term.gate.asDiagonal() * form.features(signals, shape.data()) * amplitudes;
+    sum.slopes.col(form.num_amplitudes + static_cast<Eigen::Index>(s)) = (moved - sum.value) / kShapeStep;
+    shape[s] = at;
+  }
+  return sum;
+}
+
+void AddToInput(const Sum& sum, const Placed& term, Vector* value, std::vector<LawInput::Slope>* slopes) {
+  if (value->size() == 0) *value = Vector::Zero(sum.value.size());
+  *value += sum.value;
+  for (Eigen::Index c = 0; c < sum.slopes.cols(); ++c)
+    slopes->push_back({term.first + static_cast<int>(c), sum.slopes.col(c)});
+}
+
+void AddMemory(const Signals& signals, const Placed& term, Prediction* out) {
+  const EffectForm& form = *term.form;
+  std::vector<double> shape(term.shapes(), term.theta + form.size());
+  for (int a = 0; a < form.num_amplitudes; ++a) {
+    const double amplitude = term.theta[a];
+    const Vector branch = form.filter(signals, out->elastic, a, shape.data());
+    out->y += amplitude * term.gate.cwiseProduct(branch);
+    out->jacobian.col(term.first + a) += term.gate.cwiseProduct(branch);
+    for (Eigen::Index c = 0; c < out->elastic_jacobian.cols(); ++c)
+      if (!out->elastic_jacobian.col(c).isZero(0.0))
+        out->jacobian.col(c) +=
+            amplitude * term.gate.cwiseProduct(form.filter(signals, out->elastic_jacobian.col(c), a, shape.data()));
+    for (std::size_t s = 0; s < shape.size(); ++s) {
+      const double at = shape[s];
+      shape[s] = at + kShapeStep;
+      out->jacobian.col(term.first + form.num_amplitudes + static_cast<Eigen::Index>(s)) +=
+          amplitude / kShapeStep * term.gate.cwiseProduct(form.filter(signals, out->elastic, a, shape.data()) - branch);
+      shape[s] = at;
+    }
+  }
+}
+
+void Sense(const Signals& signals, const Placed& term, Prediction* out) {
+  if ((term.gate.array() == 1.0).all()) {
+    term.form->sense(signals, term.theta, term.first, out);
+    return;
+  }
+  const Prediction before = *out;
+  term.form->sense(signals, term.theta, term.first, out);
+  const Vector shut = 1.0 - term.gate.array();
+  out->y = term.gate.cwiseProduct(out->y) + shut.cwiseProduct(before.y);
+  out->jacobian = term.gate.asDiagonal() * out->jacobian;
+  out->jacobian += shut.asDiagonal() * before.jacobian;
+}
+
+}  // namespace
+
+Vector GateOf(const When& when, const Signals& signals) {
+  switch (when.kind) {
+    case When::Kind::kContact: return signals.active;
+    case When::Kind::kFree: return 1.0 - signals.active.array();
+    case When::Kind::kFrom: return (signals.t.array() >= when.time_s).cast<double>();
+    case When::Kind::kUntil: return (signals.t.array() < when.time_s).cast<double>();
+    case When::Kind::kAlways: break;
+  }
+  return Vector::Ones(signals.rows());
+}
+
+std::string TermText(const Term& term) {
+  char time[32];
+  std::snprintf(time, sizeof(time), "%.4g s", term.when.time_s);
+  switch (term.when.kind) {
+    case When::Kind::kContact: return term.form->effect + " in contact";
+    case When::Kind::kFree: return term.form->effect + " in free motion";
+    case When::Kind::kFrom: return term.form->effect + " from " + time;
+    case When::Kind::kUntil: return term.form->effect + " until " + time;
+    case When::Kind::kAlways: break;
+  }
+  return term.form->effect;
+}
+
+std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis) {
+  std::vector<Coordinate> coordinates = equation.base(signals);
+  for (const Term& term : hypothesis.terms)
+    coordinates.insert(coordinates.end(), term.form->coordinates.begin(), term.form->coordinates.end());
+  return coordinates;
+}
+
+Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis,
+                    const Vector& theta) {
+  int num_terms = 0;
+  for (const Term& term : hypothesis.terms) num_terms += term.form->size();
+  const std::vector<Placed> terms = Place(signals, hypothesis, static_cast<int>(theta.size()) - num_terms, theta);
+  LawInput input;
+  for (const Placed& term : terms) {
+    if (term.form->slot == Slot::kInputMap)
+      AddToInput(Evaluate(signals, term), term, &input.shift, &input.shift_slopes);
+    if (term.form->slot == Slot::kParameter) AddToInput(Evaluate(signals, term), term, &input.gain, &input.gain_slopes);
+  }
+  if (input.gain.size() > 0) input.gain.array() += 1.0;
+  Prediction out;
+  out.jacobian = Matrix::Zero(signals.rows(), theta.size());
+  out.elastic_jacobian = Matrix::Zero(signals.rows(), theta.size());
+  equation.Law(signals, theta.data(), input, &out);
+  for (const Placed& term : terms) {
+    if (term.form->slot == Slot::kMemory) AddMemory(signals, term, &out);
+    if (term.form->slot == Slot::kAdditive) {
+      const Sum sum = Evaluate(signals, term);
+      out.y += sum.value;
+      out.jacobian.middleCols(term.first, term.form->size()) += sum.slopes;
+    }
+  }
+  for (const Slot slot : {Slot::kDelay, Slot::kLag, Slot::kStatics})
+    for (const Placed& term : terms)
+      if (term.form->slot == slot) Sense(signals, term, &out);
+  return out;
+}
+
+}  // namespace armcmc::gap

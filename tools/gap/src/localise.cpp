@@ -1,0 +1,183 @@
+#include "armcmc/gap/localise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+
+#include "armcmc/gap/features.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr int kDepth = 3;
+constexpr int kThresholds = 9;
+constexpr double kMinLeaf = 0.05;         // of the rows
+constexpr double kMinImprovement = 0.01;  // of the spread of the excess that a split must take
+constexpr int kShifts = 400;
+
+using Mask = std::vector<char>;
+
+struct Split {
+  std::size_t feature = 0;
+  double threshold = 0.0;
+  double gain = 0.0;
+};
+
+/// A variable to split by, with the words for both sides.
+struct Variable {
+  Vector value;
+  std::string below, above;  ///< "in free motion"; for numbers with %s in place of the threshold.
+  std::vector<double> thresholds;
+};
+
+std::string Filled(const std::string& words, double threshold) {
+  const std::size_t at = words.find("%s");
+  if (at == std::string::npos) return words;
+  char number[32];
+  std::snprintf(number, sizeof(number), "%.3g", threshold);
+  return words.substr(0, at) + number + words.substr(at + 2);
+}
+
+std::vector<double> Quantiles(const Vector& series) {
+  std::vector<double> sorted(series.data(), series.data() + series.size());
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<double> at;
+  for (int k = 1; k <= kThresholds; ++k)
+    at.push_back(sorted[static_cast<std::size_t>(static_cast<double>(sorted.size() - 1) * k / (kThresholds + 1))]);
+  return at;
+}
+
+class Tree {
+ public:
+  Tree(std::vector<Variable> variables, Vector excess) : variables_(std::move(variables)), excess_(std::move(excess)) {
+    Grow(Mask(static_cast<std::size_t>(excess_.size()), 1), "", kDepth);
+  }
+  struct Leaf {
+    Mask rows;
+    std::string words;
+  };
+  [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
+
+ private:
+  void Grow(const Mask& rows, const std::string& words, int depth) {
+    const Split split = depth > 0 ? BestSplit(rows) : Split{};
+    if (split.gain <= 0.0) {
+      if (!words.empty()) leaves_.push_back({rows, words});
+      return;
+    }
+    const Variable& variable = variables_[split.feature];
+    Mask below = rows, above = rows;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const bool is_below = variable.value[static_cast<Eigen::Index>(i)] <= split.threshold;
+      (is_below ? above : below)[i] = 0;
+    }
+    const std::string joint = words.empty() ? "" : words + ", ";
+    Grow(below, joint + Filled(variable.below, split.threshold), depth - 1);
+    Grow(above, joint + Filled(variable.above, split.threshold), depth - 1);
+  }
+
+  [[nodiscard]] Split BestSplit(const Mask& rows) const {
+    double count = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i] != 0) {
+        count += 1.0;
+        sum += excess_[static_cast<Eigen::Index>(i)];
+      }
+    Split best;
+    const auto smallest = kMinLeaf * static_cast<double>(rows.size());
+    for (std::size_t f = 0; f < variables_.size(); ++f) {
+      for (const double threshold : variables_[f].thresholds) {
+        double below_count = 0.0, below_sum = 0.0;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          if (rows[i] != 0 && variables_[f].value[static_cast<Eigen::Index>(i)] <= threshold) {
+            below_count += 1.0;
+            below_sum += excess_[static_cast<Eigen::Index>(i)];
+          }
+        const double above_count = count - below_count;
+        if (below_count < smallest || above_count < smallest) continue;
+        const double difference = below_sum / below_count - (sum - below_sum) / above_count;
+        const double gain = difference * difference * below_count * above_count / count;
+        const double mean = std::abs(sum) / count;
+        if (gain > best.gain && gain > kMinImprovement * mean * mean * count) best = {f, threshold, gain};
+      }
+    }
+    return best;
+  }
+
+  std::vector<Variable> variables_;
+  Vector excess_;
+  std::vector<Leaf> leaves_;
+};
+
+double ShareIn(const Mask& rows, const Vector& excess, std::size_t shift) {
+  double inside = 0.0;
+  const auto n = rows.size();
+  for (std::size_t i = 0; i < n; ++i)
+    if (rows[i] != 0) inside += excess[static_cast<Eigen::Index>(i + shift < n ? i + shift : i + shift - n)];
+  return inside / std::max(excess.sum(), 1e-300);
+}
+
+std::vector<Variable> VariablesOf(const Equation& equation, const Signals& s) {
+  std::vector<Variable> variables;
+  variables.push_back({s.active, "in " + equation.passive_name(), "in " + equation.active_name(), {0.5}});
+  variables.push_back({s.at(Role::kVelocity), "while retracting", "while advancing", {0.0}});
+  variables.push_back({s.at(Role::kPosition), "below x = %s", "above x = %s", Quantiles(s.at(Role::kPosition))});
+  const Vector speed = s.at(Role::kVelocity).cwiseAbs();
+  variables.push_back({speed, "slower than %s", "faster than %s", Quantiles(speed)});
+  variables.push_back({s.t, "before t = %s s", "after t = %s s", Quantiles(s.t)});
+  return variables;
+}
+
+}  // namespace
+
+std::vector<Where> FindWhere(const Equation& equation, const Look& look, const BlockBootstrap& bootstrap,
+                             unsigned long long seed) {
+  const Fitted& base = look.finding.base->fit;
+  const auto rows = static_cast<double>(look.signals.rows());
+  const double s2 = look.fitter->whitener().s2;
+  const Referee& referee = look.search->referee();
+  std::vector<Where> found;
+  const double explainable = std::max(look.finding.gap, 1e-12);
+  for (const FeatureGroup& group : referee.groups()) {
+    const Vector gain = referee.GainOf(base, {group.name}, Matrix(look.signals.rows(), 0));
+    const double size = std::max(2.0 * gain.sum() / rows, 0.0);
+    found.push_back(
+        {group.name, "", std::clamp(size / explainable, 0.0, 1.0), size, 1.0 - bootstrap.ProbabilityAbove(gain, 0.0)});
+  }
+  const Line line = StrongestLine(base.whitened_residual, look.signals.dt);
+  const Vector gain = referee.GainOf(base, {}, Waves(look.signals.t, line.frequency, 1, 1));
+  char words[64];
+  std::snprintf(words, sizeof(words), "a line at %.3g Hz", line.frequency);
+  const double size = std::max(2.0 * gain.sum() / rows, 0.0);
+  found.push_back({"frequency", words, std::clamp(size / explainable, 0.0, 1.0), size,
+                   1.0 - bootstrap.ProbabilityAbove(gain, 0.0)});
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Where& a, const Where& b) { return a.effect_size > b.effect_size; });
+
+  const Vector excess = base.whitened_residual.array().square() / s2 - 1.0;
+  if (excess.sum() <= 0.0) return found;
+  const Tree tree(VariablesOf(equation, look.signals), excess);
+  std::vector<Where> regions;
+  std::mt19937_64 engine(seed);
+  for (const Tree::Leaf& leaf : tree.leaves()) {
+    const double share = ShareIn(leaf.rows, excess, 0);
+    int as_large = 0;
+    for (int i = 0; i < kShifts; ++i) {
+      const auto shift = static_cast<std::size_t>(engine() % leaf.rows.size());
+      as_large += ShareIn(leaf.rows, excess, shift) >= share ? 1 : 0;
+    }
+    double inside = 0.0;
+    for (std::size_t i = 0; i < leaf.rows.size(); ++i)
+      if (leaf.rows[i] != 0) inside += excess[static_cast<Eigen::Index>(i)];
+    regions.push_back({"region", leaf.words, std::clamp(share, 0.0, 1.0), std::max(inside / rows, 0.0),
+                       (as_large + 1.0) / (kShifts + 1.0)});
+  }
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const Where& a, const Where& b) { return a.share_of_excess > b.share_of_excess; });
+  found.insert(found.end(), regions.begin(), regions.end());
+  return found;
+}
+
+}  // namespace armcmc::gap

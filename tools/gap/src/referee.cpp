@@ -1,0 +1,136 @@
+#include "armcmc/gap/referee.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "armcmc/gap/features.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kLineProminence = 40.0;                      // white noise of 10 000 samples reaches 20
+constexpr double kRidges[] = {3e-5, 3e-4, 3e-3, 3e-2, 3e-1};  // per row, for columns of rms one
+constexpr double kFreeRidge = 1e-9;                           // the hypothesis' own columns are not penalised
+
+Matrix UnitRms(Matrix columns) {
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    const double rms = columns.col(c).norm() / std::sqrt(static_cast<double>(columns.rows()));
+    columns.col(c) /= rms + 1e-300;
+  }
+  return columns;
+}
+
+Matrix FreeColumns(const Fitted& fitted) {
+  std::vector<Eigen::Index> free;
+  for (std::size_t i = 0; i < fitted.at_bound.size(); ++i)
+    if (!fitted.at_bound[i]) free.push_back(static_cast<Eigen::Index>(i));
+  return UnitRms(fitted.whitened_jacobian(Eigen::all, free));
+}
+
+/// Ridge with the penalty that leaves the least squared error on blocks left out.
+struct Best {
+  Vector squares;
+  Vector coefficients;
+};
+
+Best ChooseRidge(const BlockGrams& grams, Eigen::Index num_free, double rows) {
+  const Matrix total = grams.TotalGram();
+  const Vector cross = grams.TotalCross();
+  Best best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double strength : kRidges) {
+    Vector ridge = Vector::Constant(cross.size(), strength * rows);
+    ridge.head(num_free).setConstant(kFreeRidge * rows);
+    const Vector squares = LeaveBlockOut(grams, ridge);
+    if (!(squares.sum() < least)) continue;
+    least = squares.sum();
+    best.squares = squares;
+    Matrix penalised = total;
+    penalised.diagonal() += ridge;
+    best.coefficients = penalised.ldlt().solve(cross);
+  }
+  return best;
+}
+
+}  // namespace
+
+Referee::Referee(const Fitter& fitter, const Vector& predicted)
+    : fitter_(&fitter), groups_(fitter.equation().Groups(fitter.signals(), predicted)) {
+  Eigen::Index count = 0;
+  for (const FeatureGroup& group : groups_) count += group.columns.cols();
+  Matrix all(fitter.signals().rows(), count);
+  Eigen::Index at = 0;
+  for (const FeatureGroup& group : groups_) {
+    all.middleCols(at, group.columns.cols()) = group.columns;
+    at += group.columns.cols();
+  }
+  columns_ = UnitRms(fitter.whitener().Apply(all));
+  grams_ = MakeGrams(columns_, Vector::Zero(columns_.rows()));
+}
+
+Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* unexplained) const {
+  const Matrix free = FreeColumns(fitted);
+  const Eigen::Index f = free.cols(), e = extra.cols(), p = columns_.cols();
+  Matrix own(free.rows(), f + e);
+  own << free, extra;
+  const BlockGrams small = MakeGrams(own, fitted.whitened_residual);
+  const auto edges = BlockEdges(free.rows());
+  BlockGrams grams;
+  grams.squares = small.squares;
+  for (std::size_t b = 0; b < kNumBlocks; ++b) {
+    const Eigen::Index first = edges[b], rows = edges[b + 1] - edges[b];
+    const auto block = columns_.middleRows(first, rows);
+    Matrix gram(f + e + p, f + e + p);
+    gram.topLeftCorner(f + e, f + e) = small.gram[b];
+    gram.bottomRightCorner(p, p) = grams_.gram[b];
+    gram.bottomLeftCorner(p, f + e).noalias() = block.transpose() * own.middleRows(first, rows);
+    gram.topRightCorner(f + e, p) = gram.bottomLeftCorner(p, f + e).transpose();
+    Vector cross(f + e + p);
+    cross << small.cross[b], block.transpose() * fitted.whitened_residual.segment(first, rows);
+    grams.gram.push_back(std::move(gram));
+    grams.cross.push_back(std::move(cross));
+  }
+  const Best best = ChooseRidge(grams, f, static_cast<double>(free.rows()));
+  if (unexplained != nullptr)
+    *unexplained =
+        fitted.whitened_residual - own * best.coefficients.head(f + e) - columns_ * best.coefficients.tail(p);
+  return -0.5 / fitter_->whitener().s2 * best.squares - fitted.heldout;
+}
+
+Vector Referee::Gain(const Fitted& fitted, const Matrix& whitened, Vector* unexplained) const {
+  const Matrix free = FreeColumns(fitted);
+  Matrix columns(free.rows(), free.cols() + whitened.cols());
+  columns << free, UnitRms(whitened);
+  const Best best =
+      ChooseRidge(MakeGrams(columns, fitted.whitened_residual), free.cols(), static_cast<double>(free.rows()));
+  if (unexplained != nullptr) *unexplained = fitted.whitened_residual - columns * best.coefficients;
+  return -0.5 / fitter_->whitener().s2 * best.squares - fitted.heldout;
+}
+
+Remainder Referee::Judge(const Fitted& fitted) const {
+  const Signals& signals = fitter_->signals();
+  Remainder remainder;
+  const Line line = StrongestLine(fitted.whitened_residual, signals.dt);
+  Matrix extra(signals.rows(), 0);
+  if (line.prominence > kLineProminence) {
+    remainder.line_frequency = line.frequency;
+    extra = UnitRms(fitter_->whitener().Apply(Waves(signals.t, line.frequency, 1, 1)));
+  }
+  remainder.gain = GainOfAll(fitted, extra, &remainder.unexplained);
+  return remainder;
+}
+
+Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra) const {
+  return GainOfAll(fitted, UnitRms(extra), nullptr);
+}
+
+Vector Referee::GainOf(const Fitted& fitted, const std::vector<std::string>& groups, const Matrix& extra) const {
+  Matrix columns = extra;
+  for (const FeatureGroup& group : groups_)
+    if (std::find(groups.begin(), groups.end(), group.name) != groups.end()) columns = Beside(columns, group.columns);
+  return Gain(fitted, fitter_->whitener().Apply(columns), nullptr);
+}
+
+}  // namespace armcmc::gap

@@ -1,0 +1,154 @@
+#include "armcmc/gap/sensor_forms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/gap/smoothing.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+// A latency is sought up to this many samples, and up to this share of the time in which the motion changes.
+constexpr double kLongestSamples = 50.0, kLongestShare = 0.3;
+
+/// Low pass tau g' + g = f, exact for f linear between samples, started settled.
+Vector LowPass(const Vector& f, double tau_samples) {
+  const double ratio = std::max(tau_samples, 1e-6);
+  const double keep = std::exp(-1.0 / ratio);
+  const double ramp = (1.0 - keep) * ratio;
+  Vector g(f.size());
+  g[0] = f[0];
+  for (Eigen::Index i = 1; i < f.size(); ++i) g[i] = keep * g[i - 1] + (1.0 - ramp) * f[i] + (ramp - keep) * f[i - 1];
+  return g;
+}
+
+/// f(t - lag), linear between samples, the first value before the start.
+Vector Delayed(const Vector& f, double lag_samples) {
+  const auto whole = static_cast<Eigen::Index>(std::floor(lag_samples));
+  const double part = lag_samples - static_cast<double>(whole);
+  Vector g(f.size());
+  for (Eigen::Index i = 0; i < f.size(); ++i) {
+    const double near = f[std::max<Eigen::Index>(i - whole, 0)], far = f[std::max<Eigen::Index>(i - whole - 1, 0)];
+    g[i] = near + part * (far - near);
+  }
+  return g;
+}
+
+/// Applies a linear filter to the prediction and to every column that it has so far; the filter's own column is the
+/// difference quotient by its coordinate.
+template <class Filter>
+void Pass(const Filter& filter, double coordinate, int own, Prediction* out) {
+  constexpr double kStep = 1e-4;
+  const Vector before = out->y;
+  out->y = filter(before, coordinate);
+  for (Eigen::Index c = 0; c < out->jacobian.cols(); ++c)
+    if (!out->jacobian.col(c).isZero(0.0)) out->jacobian.col(c) = filter(out->jacobian.col(c), coordinate);
+  out->jacobian.col(own) = (filter(before, coordinate + kStep) - out->y) / kStep;
+}
+
+EffectForm Latency(const char* effect, const char* formula, Slot slot, const Signals& signals, const char* parameter) {
+  const double motion_s = signals.scale_of(Role::kVelocity) / signals.scale_of(Role::kAcceleration);
+  const double longest = std::max(kLongestSamples, kLongestShare * motion_s / signals.dt);
+  EffectForm form;
+  form.effect = effect;
+  form.family = "latency";
+  form.formula = formula;
+  form.slot = slot;
+  form.num_amplitudes = 0;
+  form.linear = false;
+  // In units of ten samples.
+  form.coordinates = {{parameter, "s", 0.0, 0.1 * longest, 0.0, 0.7, 10.0 * signals.dt, false}};
+  for (double start = 0.05; start < 0.1 * longest; start *= 2.5) form.starts.push_back({start});
+  return form;
+}
+
+}  // namespace
+
+std::vector<EffectForm> LatencyForms(const Signals& signals) {
+  EffectForm delay = Latency("sensor_delay", "f(t - time)", Slot::kDelay, signals, "time");
+  delay.sense = [](const Signals&, const double* c, int own, Prediction* out) {
+    Pass([](const Vector& f, double at) { return Delayed(f, 10.0 * at); }, c[0], own, out);
+  };
+  EffectForm lag = Latency("sensor_lag", "g, time_constant g' + g = f", Slot::kLag, signals, "time_constant");
+  lag.coordinates[0].lower = 1e-3;
+  lag.sense = [](const Signals&, const double* c, int own, Prediction* out) {
+    Pass([](const Vector& f, double at) { return LowPass(f, 10.0 * at); }, c[0], own, out);
+  };
+  EffectForm second = lag;
+  second.variant = "second_order";
+  second.formula = "g, (time_constant d/dt + 1)^2 g = f";
+  second.sense = [](const Signals&, const double* c, int own, Prediction* out) {
+    Pass([](const Vector& f, double at) { return LowPass(LowPass(f, 10.0 * at), 10.0 * at); }, c[0], own, out);
+  };
+  return {delay, lag, second};
+}
+
+std::vector<EffectForm> SaturationForms(const Signals& signals) {
+  EffectForm clip;
+  clip.effect = "sensor_saturation";
+  clip.family = "saturation";
+  clip.formula = "min(f, limit)";
+  clip.slot = Slot::kStatics;
+  clip.num_amplitudes = 0;
+  clip.linear = false;
+  clip.coordinates = {{"limit", "N", 0.05, 1.05, 0.8, 0.3, signals.output_peak, false}};
+  clip.starts = {{0.3}, {0.45}, {0.6}, {0.75}, {0.85}, {0.93}, {0.98}};
+  clip.own_groups = {"force"};
+  const double peak = signals.output_peak;
+  clip.sense = [peak](const Signals&, const double* c, int own, Prediction* out) {
+    const double limit = c[0] * peak;
+    for (Eigen::Index i = 0; i < out->y.size(); ++i)
+      if (out->y[i] > limit) {
+        out->y[i] = limit;
+        out->jacobian.row(i).setZero();
+        out->jacobian(i, own) = peak;
+      }
+  };
+  EffectForm soft = clip;
+  soft.variant = "soft";
+  soft.formula = "f / (1 + (f / limit)^8)^(1/8)";
+  soft.coordinates[0].upper = 1.6;
+  soft.starts = {{0.45}, {0.75}, {0.95}, {1.2}};
+  soft.sense = [peak](const Signals&, const double* c, int own, Prediction* out) {
+    const double limit = c[0] * peak;
+    for (Eigen::Index i = 0; i < out->y.size(); ++i) {
+      const double f = std::max(out->y[i], 0.0);
+      const double ratio = std::pow(f / limit, 8.0);
+      const double damp = std::pow(1.0 + ratio, -0.125);
+      out->y[i] *= damp;
+      out->jacobian.row(i) *= damp / (1.0 + ratio);
+      out->jacobian(i, own) = f / limit * damp * ratio / (1.0 + ratio) * peak;
+    }
+  };
+  return {clip, soft};
+}
+
+EffectForm DeadZoneForm(const Signals& signals) {
+  EffectForm form;
+  form.listed = false;
+  form.effect = "a dead zone of the sensor";
+  form.family = "dead zone";
+  form.formula = "sign(f) max(|f| - width, 0)";
+  form.slot = Slot::kStatics;
+  form.num_amplitudes = 0;
+  form.linear = false;
+  form.coordinates = {{"width", "N", 0.0, 2.0, 0.0, 0.2, signals.output_scale, false}};
+  form.starts = {{0.003}, {0.01}, {0.03}, {0.1}, {0.3}, {0.8}};
+  const double scale = signals.output_scale;
+  form.sense = [scale](const Signals&, const double* c, int own, Prediction* out) {
+    const double width = c[0] * scale;
+    for (Eigen::Index i = 0; i < out->y.size(); ++i) {
+      const double f = out->y[i];
+      if (std::abs(f) <= width) {
+        out->y[i] = 0.0;
+        out->jacobian.row(i).setZero();
+      } else {
+        out->y[i] = std::copysign(std::abs(f) - width, f);
+        out->jacobian(i, own) = -std::copysign(scale, f);
+      }
+    }
+  };
+  return form;
+}
+
+}  // namespace armcmc::gap

@@ -1,0 +1,135 @@
+#include "armcmc/gap/verify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace armcmc::gap {
+namespace {
+
+constexpr int kWindow = 15;
+constexpr double kBand95 = 1.959963984540054;
+constexpr int kLags = 25;
+
+Vector Rows(const Vector& v, Eigen::Index first) { return v.tail(v.size() - first); }
+
+Signals Tail(const Signals& all, Eigen::Index first) {
+  Signals tail = all;
+  tail.t = Rows(all.t, first);
+  tail.output = Rows(all.output, first);
+  tail.active = Rows(all.active, first);
+  for (std::size_t r = 0; r < kNumRoles; ++r) tail.input[r] = Rows(all.input[r], first);
+  return tail;
+}
+
+double LjungBox(const Vector& series) {
+  const Vector w = series.array() - series.mean();
+  const auto n = static_cast<double>(w.size());
+  double sum = 0.0;
+  for (int lag = 1; lag <= kLags; ++lag) {
+    const double r = w.head(w.size() - lag).dot(w.tail(w.size() - lag)) / w.squaredNorm();
+    sum += r * r / (n - lag);
+  }
+  return n * (n + 2.0) * sum / kLags;
+}
+
+double Quantile(Vector values, double q) {
+  const auto at = static_cast<Eigen::Index>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.data(), values.data() + at, values.data() + values.size());
+  return values[at];
+}
+
+double Rms(const Vector& v) {
+  return std::sqrt(v.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(v.size(), 1)));
+}
+
+ModeFit OfMode(const std::string& name, const Vector& mask, const Vector& before, const Vector& after) {
+  const double count = mask.sum();
+  const auto rms = [&](const Vector& e) {
+    return std::sqrt((e.array().square() * mask.array()).sum() / std::max(count, 1.0));
+  };
+  return {name, static_cast<int>(count), rms(before), rms(after)};
+}
+
+}  // namespace
+
+HeldOut::HeldOut(const Equation& equation, const Look& look, const Recording& recording, Eigen::Index first)
+    : equation_(&equation),
+      look_(&look),
+      all_(equation.PrepareLike(recording, kWindow, look.signals)),
+      tail_(Tail(all_, first)),
+      first_(first) {}
+
+Trial HeldOut::Try(const Fitted& fitted) const {
+  const Whitener& whitener = look_->fitter->whitener();
+  const Prediction p = Evaluate(*equation_, all_, fitted.hypothesis, fitted.theta);
+  Trial trial;
+  trial.predicted = Rows(p.y, first_);
+  trial.residual = Rows(Vector(all_.output - p.y), first_);
+  trial.whitened = Rows(whitener.Apply(Vector(all_.output - p.y)), first_);
+  trial.whitened_jacobian = whitener.Apply(p.jacobian).bottomRows(all_.rows() - first_);
+  const Matrix tail = p.jacobian.bottomRows(all_.rows() - first_);
+  const Vector parameters = (tail * fitted.Covariance(whitener.s2)).cwiseProduct(tail).rowwise().sum();
+  trial.band_sd = (parameters.cwiseMax(0.0).array() + whitener.s2 * whitener.Gain()).sqrt();
+  return trial;
+}
+
+Fit HeldOut::Judge(const Trial& trial) const {
+  const Vector size = trial.residual.cwiseAbs();
+  Fit fit;
+  fit.rmse = Rms(trial.residual);
+  fit.mae = size.mean();
+  fit.worst_1_percent = Quantile(size, 0.99);
+  fit.coverage95 = (size.array() <= kBand95 * trial.band_sd.array()).cast<double>().mean();
+  fit.whiteness = LjungBox(trial.whitened);
+  return fit;
+}
+
+double HeldOut::NoiseFloor(const Trial& after) const {
+  // The parameters may be wrong on these data, too: their columns are among those that are penalised, none is free.
+  const Whitener& whitener = look_->fitter->whitener();
+  const Fitter fitter(*equation_, tail_, whitener);
+  const Referee referee(fitter, after.predicted);
+  Fitted as_it_is;
+  as_it_is.whitened_residual = after.whitened;
+  as_it_is.whitened_jacobian = Matrix(after.whitened.size(), 0);
+  as_it_is.heldout = -0.5 / whitener.s2 * BlockSquares(after.whitened);
+  const Vector gain = referee.GainOfAll(as_it_is, after.whitened_jacobian);
+  const double squares = after.whitened.squaredNorm();
+  const double explained = std::clamp(2.0 * whitener.s2 * gain.sum(), 0.0, squares);
+  return Rms(after.residual) * std::sqrt(1.0 - explained / squares);
+}
+
+GapSummary ShowGap(const Equation& equation, const HeldOut& data, const BlockBootstrap& bootstrap, const Fitted& before,
+                   const Fitted& after, const Fitted* control) {
+  const Trial first = data.Try(before), second = data.Try(after);
+  GapSummary gap;
+  gap.unit = equation.output_unit();
+  gap.before = data.Judge(first);
+  gap.after = data.Judge(second);
+  gap.noise_floor = data.NoiseFloor(second);
+  const double floor = gap.noise_floor * gap.noise_floor;
+  const auto closed = [&](const Trial& trial) {
+    const double mse0 = std::pow(Rms(first.residual), 2), mse = std::pow(Rms(trial.residual), 2);
+    return mse0 > floor ? (mse0 - mse) / (mse0 - floor) : 0.0;
+  };
+  gap.closed_fraction = closed(second);
+  const auto rows = static_cast<double>(first.residual.size());
+  const Vector total = BlockSquares(first.residual).array() - floor * rows / kNumBlocks;
+  const Vector gained = BlockSquares(first.residual) - BlockSquares(second.residual);
+  gap.closed_low = bootstrap.RatioQuantile(gained, total, 0.025);
+  gap.closed_high = bootstrap.RatioQuantile(gained, total, 0.975);
+  gap.gap_ratio = std::sqrt(std::max(gap.before.rmse * gap.before.rmse / std::max(floor, 1e-300) - 1.0, 0.0));
+  const Vector& active = data.signals().active;
+  gap.modes = {OfMode(equation.active_name(), active, first.residual, second.residual),
+               OfMode(equation.passive_name(), 1.0 - active.array(), first.residual, second.residual)};
+  if (control != nullptr) {
+    std::string names;
+    for (const Term& term : control->hypothesis.terms) names += (names.empty() ? "" : " + ") + TermText(term);
+    gap.control_effects = names;
+    gap.control_closed_fraction = closed(data.Try(*control));
+  }
+  return gap;
+}
+
+}  // namespace armcmc::gap

@@ -1,0 +1,233 @@
+#include "armcmc/gap/workflow.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "armcmc/gap/contact_equation.hpp"
+#include "armcmc/gap/experiment.hpp"
+#include "armcmc/gap/figures.hpp"
+#include "armcmc/gap/localise.hpp"
+#include "armcmc/gap/model_writer.hpp"
+#include "armcmc/gap/verify.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kDiagnosisShare = 0.7;  // of the recording; the rest stays sealed to the end
+constexpr int kWindow = 15;
+constexpr std::size_t kListed = 20;
+
+/// Time of each step, and what is told of it.
+class Clock {
+ public:
+  Clock(const WorkflowRequest& request, Result* result) : request_(request), result_(result) {}
+  void Begin(const std::string& step, double share) {
+    End();
+    step_ = step;
+    start_ = std::chrono::steady_clock::now();
+    if (request_.progress) request_.progress(step, share);
+  }
+  void End() {
+    if (!step_.empty())
+      result_->seconds.emplace_back(step_,
+                                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+    step_.clear();
+  }
+
+ private:
+  const WorkflowRequest& request_;
+  Result* result_;
+  std::string step_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+std::string Joined(const std::vector<std::string>& words, const char* between) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
+
+std::vector<std::string> Texts(const Fitted& fit) {
+  std::vector<std::string> texts;
+  for (const Term& term : fit.hypothesis.terms) texts.push_back(TermText(term));
+  return texts;
+}
+
+std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePtr& candidate, int min_active) {
+  const Fitter& fitter = *diagnosis.look->fitter;
+  const Matrix covariance = candidate->fit.Covariance(fitter.whitener().s2);
+  std::vector<EffectFinding> effects;
+  int num_terms = 0;
+  for (const Term& term : candidate->fit.hypothesis.terms) num_terms += term.form->size();
+  Eigen::Index at = candidate->fit.theta.size() - num_terms;
+  for (const Term& term : candidate->fit.hypothesis.terms) {
+    EffectFinding effect;
+    effect.name = term.form->effect;
+    effect.family = term.form->family;
+    effect.formula_text = term.form->formula;
+    effect.probability = candidate->probability;
+    effect.when = term.when;
+    effect.approximate = diagnosis.finding.approximate || !term.form->exact();
+    Vector energy = Vector::Zero(kNumBlocks);
+    for (int a = 0; a < std::max(term.form->num_amplitudes, 1); ++a)
+      energy += BlockSquares(candidate->fit.whitened_jacobian.col(at + a));
+    effect.provisional = (energy.array() > 0.02 * energy.maxCoeff()).count() < min_active;
+    for (int c = 0; c < term.form->size(); ++c, ++at) {
+      const Coordinate& coordinate = term.form->coordinates[static_cast<std::size_t>(c)];
+      effect.parameters.push_back(
+          {coordinate.name, coordinate.unit, coordinate.Value(candidate->fit.theta[at]),
+           std::abs(coordinate.Slope(candidate->fit.theta[at])) * std::sqrt(std::max(covariance(at, at), 0.0))});
+    }
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+std::string Sentence(const Result& result, const Finding& finding) {
+  const auto percent = [](double p) {
+    char text[16];
+    std::snprintf(text, sizeof(text), "%.0f %%", 100.0 * p);
+    return std::string(text);
+  };
+  switch (result.verdict) {
+    case Verdict::kNone: return "Nothing beyond the noise: the model explains these data.";
+    case Verdict::kNamed:
+      return "Missing: " + Joined(Texts(finding.best->fit), " and ") +
+             (finding.approximate || !finding.best->exact() ? " (the family is right, the formula is approximate)"
+                                                            : "") +
+             ", with a probability of " + percent(finding.best->probability) + ".";
+    case Verdict::kAmbiguous: {
+      std::vector<std::string> sets;
+      for (const CandidatePtr& candidate : finding.set) sets.push_back(Joined(Texts(candidate->fit), " and "));
+      return "Missing: one of " + Joined(sets, ", or ") + "; these data cannot tell which.";
+    }
+    case Verdict::kUnnamed: break;
+  }
+  return finding.unlisted ? "Something is missing that is not in the catalogue; it looks like " +
+                                Joined(Texts(finding.unlisted->fit), " and ") + "."
+                          : "Something is missing that no effect of the catalogue explains.";
+}
+
+void Describe(const Diagnosis& diagnosis, int min_active, Result* result) {
+  const Finding& finding = diagnosis.finding;
+  result->verdict = finding.verdict;
+  result->probability_none = finding.verdict == Verdict::kNone
+                                 ? 1.0 - finding.p_missing * (finding.gap > 0.0 ? 0.5 : 0.0)
+                                 : 1.0 - finding.p_missing;
+  result->probability_unnamed = finding.p_unnamed;
+  if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active);
+  if (finding.verdict == Verdict::kAmbiguous)
+    for (const CandidatePtr& candidate : finding.set) result->ambiguous_set.push_back(candidate->names());
+  const double full = std::max(finding.gap, 1e-12);
+  const auto rows = static_cast<double>(diagnosis.look->signals.rows());
+  for (std::size_t i = 0; i < std::min(kListed, finding.tried.size()); ++i) {
+    const CandidatePtr& c = finding.tried[i];
+    const double score = c->fit.score() - finding.base->fit.score();
+    std::vector<std::string> texts = Texts(c->fit);
+    for (std::size_t k = 0; k < texts.size(); ++k)
+      if (!c->fit.hypothesis.terms[k].form->variant.empty())
+        texts[k] += " (" + c->fit.hypothesis.terms[k].form->variant + ")";
+    result->candidates.push_back({texts, c->fit.log_evidence - finding.base->fit.log_evidence, score, c->probability,
+                                  std::clamp(2.0 * score / rows / full, 0.0, 1.0)});
+  }
+  result->sentence = Sentence(*result, finding);
+}
+
+/// The best hypothesis of these names in the catalogue's own formulas: what the estimator can run.
+Fitted Runnable(const Diagnosis& diagnosis) {
+  const Fitter& fitter = *diagnosis.look->fitter;
+  const Fitted& best = diagnosis.finding.best->fit;
+  if (diagnosis.finding.best->exact()) return best;
+  Fitted fit = diagnosis.finding.base->fit;
+  for (const Term& term : best.hypothesis.terms)
+    for (const EffectForm& form : diagnosis.look->catalogue)
+      if (form.exact() && form.effect == term.form->effect) fit = fitter.Add(fit, {&form, term.when});
+  return fit;
+}
+
+const Fitted* Control(const Finding& finding) {
+  for (const CandidatePtr& candidate : finding.tried) {
+    const auto same = [&](const CandidatePtr& other) { return other->names() == candidate->names(); };
+    const bool listed = std::all_of(candidate->fit.hypothesis.terms.begin(), candidate->fit.hypothesis.terms.end(),
+                                    [](const Term& term) { return term.form->listed; });
+    if (listed && candidate->fit.hypothesis.terms.size() == finding.best->fit.hypothesis.terms.size() &&
+        std::none_of(finding.set.begin(), finding.set.end(), same))
+      return &candidate->fit;
+  }
+  return nullptr;
+}
+
+/// Rows that are diagnosed, and the recording whose rest shows the gap.
+struct Parts {
+  Recording diagnosis, shown;
+  Eigen::Index first_shown = 0;
+};
+
+Parts Divide(const WorkflowRequest& request) {
+  if (request.heldout) return {request.data, *request.heldout, 0};
+  const auto rows = static_cast<Eigen::Index>(kDiagnosisShare * static_cast<double>(request.data.rows()));
+  return {request.data.Slice(0, rows), request.data, rows};
+}
+
+}  // namespace
+
+WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
+  WorkflowOutcome outcome;
+  Result& result = outcome.result;
+  Clock clock(request, &result);
+  const std::unique_ptr<Equation> equation = MakeEquation(request.model);
+  const Parts parts = Divide(request);
+  result.model = request.model;
+  result.data_file = request.data.source;
+  result.seed = request.diagnose.seed;
+  result.rows = request.data.rows();
+  result.dt = request.data.dt;
+  result.notes = request.data.notes;
+
+  clock.Begin("compare and name", 0.0);
+  const Diagnosis diagnosis = Diagnose(*equation, parts.diagnosis, request.diagnose);
+  const Look& look = *diagnosis.look;
+  const double noise_sd = std::sqrt(look.fitter->whitener().s2 * look.fitter->whitener().Gain());
+  result.notes.insert(result.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
+  if (request.until >= Step::kFind) {
+    clock.Begin("find where", 0.6);
+    result.where = FindWhere(*equation, look, *diagnosis.bootstrap, request.diagnose.seed);
+  }
+  if (request.until >= Step::kName) Describe(diagnosis, request.diagnose.thresholds.min_active_blocks, &result);
+  if (request.until >= Step::kName && result.verdict == Verdict::kAmbiguous) {
+    clock.Begin("choose an experiment", 0.7);
+    result.separate_by = SeparatingExperiment(*equation, look, diagnosis.finding.set);
+    result.separate_by.scenario_text = ScenarioText(*equation, look, result.separate_by);
+  }
+  const bool adds = !diagnosis.finding.set.empty();
+  const Fitted after = adds ? Runnable(diagnosis) : diagnosis.finding.base->fit;
+  if (request.until >= Step::kAdd && adds) {
+    clock.Begin("add", 0.75);
+    outcome.augmented = AugmentedSettings(request.model, *look.fitter, after, noise_sd);
+  }
+  if (request.until >= Step::kShow) {
+    clock.Begin("show", 0.8);
+    const Fitted& before = diagnosis.finding.base->fit;
+    const HeldOut heldout(*equation, look, parts.shown, parts.first_shown);
+    result.gap =
+        ShowGap(*equation, heldout, *diagnosis.bootstrap, before, after, adds ? Control(diagnosis.finding) : nullptr);
+    const auto report = [&](const Fitted& fit) {
+      return equation->Report(look.signals, fit.theta, fit.Covariance(look.fitter->whitener().s2));
+    };
+    const auto first = report(before), second = report(after);
+    for (std::size_t i = 0; i < first.size(); ++i) result.parameters.push_back({first[i], second[i]});
+    const Signals all = equation->PrepareLike(parts.shown, kWindow, look.signals);
+    result.figures = MakeFigures(*equation, all, look, before, after);
+    result.figures.diagnosis_end_s =
+        request.heldout ? std::numeric_limits<double>::quiet_NaN() : parts.shown.t[parts.first_shown];
+  }
+  clock.End();
+  if (request.progress) request.progress("done", 1.0);
+  return outcome;
+}
+
+}  // namespace armcmc::gap
