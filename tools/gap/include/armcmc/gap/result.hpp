@@ -1,0 +1,178 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace armcmc::gap {
+
+/// What the data say about a missing effect.
+enum class Verdict {
+  kNone,       ///< Nothing beyond the noise.
+  kNamed,      ///< One set of effects explains the gap, all others are rejected.
+  kAmbiguous,  ///< More than one set explains it equally well: `ambiguous_set`.
+  kUnnamed,    ///< Something is missing that no effect of the catalogue explains.
+};
+
+/// When an effect acts.
+struct When {
+  enum class Kind { kAlways, kContact, kFree, kFrom, kUntil };
+  Kind kind = Kind::kAlways;
+  double time_s = 0.0;  ///< kFrom, kUntil: plant time.
+};
+
+/// Posterior of one parameter.
+struct ParameterEstimate {
+  std::string name;
+  std::string unit;
+  double mean = 0.0;
+  double sd = 0.0;
+};
+
+/// An effect that the verdict holds. In an ambiguous verdict: the most probable set.
+struct EffectFinding {
+  std::string name;    ///< In the catalogue.
+  std::string family;  ///< "dry friction"
+  double probability = 0.0;
+  std::vector<ParameterEstimate> parameters;
+  When when;
+  bool approximate = false;  ///< The family is right, the formula is not: a shape of its own fits better.
+  bool provisional = false;  ///< Seen in too few separate events to be validated on others.
+};
+
+/// One hypothesis of the search: the base model with a set of effects (none: the base model alone).
+struct CandidateScore {
+  std::vector<std::string> effects;  ///< "coulomb_friction", "force_bias from 4.25 s"
+  double log_evidence = 0.0;         ///< Laplace, nats.
+  double heldout_score = 0.0;        ///< Leave-block-out log score above that of the base model, nats.
+  double probability = 0.0;
+  double closed_fraction = 0.0;  ///< Share of the explainable gap that it closes, [0, 1].
+};
+
+/// Where the base model and the data disagree.
+struct Where {
+  std::string feature;          ///< "v", "time", "memory of the past"
+  std::string region;           ///< "in contact, v < 0": as a person would say it. Empty: everywhere.
+  double share_of_excess = 0.0;  ///< Of the squared error beyond the noise, [0, 1].
+  double effect_size = 0.0;      ///< Share of the noise variance that the feature predicts on blocks left out.
+  double p_value = 1.0;
+};
+
+/// How well a model predicts data that had no part in the diagnosis.
+struct Fit {
+  double rmse = 0.0;        ///< Unit of the output.
+  double mae = 0.0;         ///< Unit of the output.
+  double worst_1_percent = 0.0;  ///< 99 % quantile of the absolute error.
+  double coverage95 = 0.0;  ///< Share of samples inside the 95 % predictive band.
+  double whiteness = 0.0;   ///< Ljung-Box statistic of the whitened residual over its 25 degrees of freedom: 1 is white.
+};
+
+/// Fit of one regime of the plant.
+struct ModeFit {
+  std::string mode;
+  int samples = 0;
+  double rmse_before = 0.0, rmse_after = 0.0;
+};
+
+/// The gap, before and after the effect was added, on held-out data.
+struct GapSummary {
+  std::string unit;
+  Fit before, after;
+  double noise_floor = 0.0;       ///< Standard deviation of what no model explains.
+  double closed_fraction = 0.0;   ///< (mse before - mse after) / (mse before - floor^2).
+  double closed_low = 0.0, closed_high = 0.0;  ///< 95 % interval, bootstrap over blocks.
+  std::vector<ModeFit> modes;
+  std::string control_effects;     ///< Negative control: the second-ranked effects, added instead.
+  double control_closed_fraction = 0.0;
+  double gap_ratio = 0.0;  ///< Rms of the unexplained over the noise, base model refitted.
+};
+
+/// A parameter of the base model, whose bias the missing effect caused.
+struct ParameterChange {
+  ParameterEstimate before, after;
+};
+
+/// A sum of simple terms that describes what is found but not in the catalogue.
+struct SparseTerm {
+  std::string expression;  ///< "v |v|"
+  double coefficient = 0.0;
+  double share = 0.0;  ///< Of the gap, held out.
+};
+
+/// Step time of the estimator with the model, and what the allocation counter saw.
+struct Budget {
+  double adjust_ms_before = 0.0, adjust_ms_after = 0.0;
+  double deadline_ms = 0.0;
+  bool meets_deadline = true;
+  bool measured = false;
+};
+
+/// What separates an ambiguous set.
+struct Experiment {
+  std::string words;
+  std::string scenario_file;  ///< Relative to the output folder; empty when nothing needs to be separated.
+  double nats = 0.0;          ///< Expected evidence between the closest pair.
+};
+
+/// One curve of a figure. `low` and `high` may be empty.
+struct Curve {
+  std::string label;
+  std::vector<double> x, y, low, high;
+};
+
+/// Residual against one feature, in bins.
+struct FeatureFigure {
+  std::string feature;  ///< Axis title with unit.
+  Curve before, after;  ///< Mean residual with 95 % band.
+  Curve effect;         ///< What the added effects contribute; empty without any.
+};
+
+/// Excess error over two features.
+struct MapFigure {
+  std::string x_title, y_title, value_title;
+  std::vector<double> x_edges, y_edges;
+  std::vector<double> value;  ///< Row by row of y; NaN where there are no data.
+};
+
+/// Everything that the report plots.
+struct Figures {
+  std::string output_title;  ///< "force, N"
+  Curve measured, predicted_before, predicted_after;  ///< Against time.
+  Curve residual_before, residual_after;              ///< Against time.
+  double diagnosis_end_s = 0.0;                       ///< Data after this time were held out; NaN: another file was.
+  std::vector<FeatureFigure> features;
+  Curve spectrum_before, spectrum_after;  ///< Hz, power of the whitened residual over that of white noise.
+  MapFigure where;
+};
+
+/// One run of the workflow.
+struct Result {
+  std::string version;
+  std::string model;
+  std::string data_file;
+  std::string data_sha256;
+  unsigned long long seed = 0;
+  long long rows = 0;
+  double dt = 0.0;
+  std::vector<std::string> notes;  ///< What a reader should know: columns derived, rows skipped, aliases, limits.
+
+  Verdict verdict = Verdict::kNone;
+  std::string sentence;  ///< The verdict in one sentence.
+  double probability_none = 1.0;
+  double probability_unnamed = 0.0;
+  std::vector<EffectFinding> effects;
+  std::vector<std::vector<std::string>> ambiguous_set;
+  Experiment separate_by;
+  std::vector<CandidateScore> candidates;  ///< Most probable first.
+  std::vector<Where> where;                ///< Largest effect size first.
+  std::vector<std::string> aliases;        ///< What these inputs cannot show, whatever the data.
+  std::vector<SparseTerm> sparse;
+  GapSummary gap;
+  std::vector<ParameterChange> parameters;
+  Budget budget;
+  std::string model_file;  ///< model.toml, relative to the output folder; empty when no effect was added.
+  Figures figures;
+  std::vector<std::pair<std::string, double>> seconds;  ///< Time of each step.
+};
+
+}  // namespace armcmc::gap
