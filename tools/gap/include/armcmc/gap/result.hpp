@@ -51,8 +51,8 @@ struct CandidateScore {
 
 /// Where the base model and the data disagree.
 struct Where {
-  std::string feature;          ///< "v", "time", "memory of the past"
-  std::string region;           ///< "in contact, v < 0": as a person would say it. Empty: everywhere.
+  std::string feature;           ///< "v", "time", "memory of the past"
+  std::string region;            ///< "in contact, v < 0": as a person would say it. Empty: everywhere.
   double share_of_excess = 0.0;  ///< Of the squared error beyond the noise, [0, 1].
   double effect_size = 0.0;      ///< Share of the noise variance that the feature predicts on blocks left out.
   double p_value = 1.0;
@@ -60,11 +60,11 @@ struct Where {
 
 /// How well a model predicts data that had no part in the diagnosis.
 struct Fit {
-  double rmse = 0.0;        ///< Unit of the output.
-  double mae = 0.0;         ///< Unit of the output.
+  double rmse = 0.0;             ///< Unit of the output.
+  double mae = 0.0;              ///< Unit of the output.
   double worst_1_percent = 0.0;  ///< 99 % quantile of the absolute error.
-  double coverage95 = 0.0;  ///< Share of samples inside the 95 % predictive band.
-  double whiteness = 0.0;   ///< Ljung-Box statistic of the whitened residual over its 25 degrees of freedom: 1 is white.
+  double coverage95 = 0.0;       ///< Share of samples inside the 95 % predictive band.
+  double whiteness = 0.0;  ///< Ljung-Box statistic of the whitened residual over its 25 degrees of freedom: 1 is white.
 };
 
 /// Fit of one regime of the plant.
@@ -78,11 +78,11 @@ struct ModeFit {
 struct GapSummary {
   std::string unit;
   Fit before, after;
-  double noise_floor = 0.0;       ///< Standard deviation of what no model explains.
-  double closed_fraction = 0.0;   ///< (mse before - mse after) / (mse before - floor^2).
+  double noise_floor = 0.0;                    ///< Standard deviation of what no model explains.
+  double closed_fraction = 0.0;                ///< (mse before - mse after) / (mse before - floor^2).
   double closed_low = 0.0, closed_high = 0.0;  ///< 95 % interval, bootstrap over blocks.
   std::vector<ModeFit> modes;
-  std::string control_effects;     ///< Negative control: the second-ranked effects, added instead.
+  std::string control_effects;  ///< Negative control: the second-ranked effects, added instead.
   double control_closed_fraction = 0.0;
   double gap_ratio = 0.0;  ///< Rms of the unexplained over the noise, base model refitted.
 };
@@ -136,7 +136,7 @@ struct MapFigure {
 
 /// Everything that the report plots.
 struct Figures {
-  std::string output_title;  ///< "force, N"
+  std::string output_title;                           ///< "force, N"
   Curve measured, predicted_before, predicted_after;  ///< Against time.
   Curve residual_before, residual_after;              ///< Against time.
   double diagnosis_end_s = 0.0;                       ///< Data after this time were held out; NaN: another file was.
