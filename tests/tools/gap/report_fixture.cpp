@@ -1,4 +1,4 @@
-#include "gap/report_fixture.hpp"
+#include "tools/gap/report_fixture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -153,7 +153,8 @@ Result Common(Verdict verdict) {
   r.seed = 1;
   r.rows = kSamples;
   r.dt = kDt;
-  r.notes = {"Column v is derived from x by a smoothing spline.", "Rows 11201 to 11203 repeat a time and were skipped."};
+  r.notes = {"Column v is derived from x by a smoothing spline.",
+             "Rows 11201 to 11203 repeat a time and were skipped."};
   r.verdict = verdict;
   r.aliases = {"force_bias and a constant tilt of the arm: the same signal in this recording"};
   r.gap.unit = "N";
@@ -175,8 +176,13 @@ void MakeNamed(Result* r) {
   r->sentence = "The model lacks dry friction: a Coulomb force of 0.080 N against the motion.";
   r->probability_none = 1e-9;
   r->probability_unnamed = 0.006;
-  r->effects = {{"coulomb_friction", "dry friction", 0.991, {{"force", "N", 0.0801, 0.0007}, {"speed", "m/s", 0.02, 0.0}},
-                 {}, false, false}};
+  r->effects = {{"coulomb_friction",
+                 "dry friction",
+                 0.991,
+                 {{"force", "N", 0.0801, 0.0007}, {"speed", "m/s", 0.02, 0.0}},
+                 {},
+                 false,
+                 false}};
   r->candidates = {{{"coulomb_friction"}, 48211.3, 9120.4, 0.991, 0.996},
                    {{"presliding_friction"}, 48160.9, 9071.2, 0.002, 0.981},
                    {{"coulomb_friction", "force_bias"}, 48206.8, 9119.9, 0.001, 0.996},
@@ -198,13 +204,15 @@ void MakeAmbiguous(Result* r) {
   r->probability_unnamed = 0.021;
   r->effects = {{"sensor_lag", "latency", 0.541, {{"time_constant", "s", 0.00912, 0.00021}}, {}, false, true}};
   r->ambiguous_set = {{"sensor_lag"}, {"sensor_delay"}};
-  r->separate_by = {"Tap the surface five times in a second, 2 cm deep: a delay leaves the shape of a tap alone, a lag rounds it.",
-                    "separate.toml", 777.0};
+  r->separate_by = {
+      "Tap the surface five times in a second, 2 cm deep: a delay leaves the shape of a tap alone, a lag rounds it.",
+      "separate.toml", 777.0};
   r->candidates = {{{"sensor_lag"}, 47011.4, 8120.1, 0.541, 0.991},
                    {{"sensor_delay"}, 47011.2, 8119.8, 0.438, 0.990},
                    {{"stress_relaxation"}, 43100.7, 4110.3, 0.0, 0.533},
                    {{}, 38990.6, 0.0, 1e-6, 0.0}};
-  r->where = {{"rate of force dF/dt", "in contact", 0.97, 8.1, 1e-12}, {"speed v", "in contact, v > 0", 0.71, 3.0, 2e-6}};
+  r->where = {{"rate of force dF/dt", "in contact", 0.97, 8.1, 1e-12},
+              {"speed v", "in contact, v > 0", 0.71, 3.0, 2e-6}};
   r->gap.closed_fraction = 0.991, r->gap.closed_low = 0.981, r->gap.closed_high = 0.997;
   r->gap.control_effects = "sensor_delay", r->gap.control_closed_fraction = 0.990;
   r->model_file = "model.toml";
@@ -229,7 +237,8 @@ void MakeNone(Result* r) {
   r->sentence = "The model explains these data down to the noise.";
   r->probability_none = 0.987;
   r->probability_unnamed = 0.004;
-  r->candidates = {{{}, 48990.6, 0.0, 0.987, 0.0}, {{"viscous_friction"}, 48986.1, -1.3, 0.005, 0.002},
+  r->candidates = {{{}, 48990.6, 0.0, 0.987, 0.0},
+                   {{"viscous_friction"}, 48986.1, -1.3, 0.005, 0.002},
                    {{"force_drift"}, 48985.2, -2.0, 0.004, 0.001}};
   r->where = {{"speed v", "", 0.02, 0.0004, 0.34}};
   r->aliases.clear();

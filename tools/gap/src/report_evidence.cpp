@@ -74,8 +74,8 @@ std::string ScoreCells(const CandidateScore* score) {
   if (score == nullptr)
     return "<td class=\"num middle\"></td><td class=\"num middle\"></td><td class=\"num middle\"></td>";
   return "<td class=\"num middle\">" + (score->effects.empty() ? "" : PercentText(score->closed_fraction)) +
-         "</td><td class=\"num middle\">" + NumberText(score->heldout_score, 4) + "</td><td class=\"num middle\">" +
-         NumberText(score->log_evidence, 5) + "</td>";
+         "</td><td class=\"num middle\">" + plots::FixedText(score->heldout_score, 1) +
+         "</td><td class=\"num middle\">" + plots::FixedText(score->log_evidence, 1) + "</td>";
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace armcmc::gap {
 void AddHeadline(const Result& result, plots::Page* page);
 /// Gap before and after beside what was added.
 void AddGapAndEffects(const Result& result, plots::Page* page);
-/// The experiment that would separate what is ambiguous; the expression of what has no name.
+/// What is ambiguous, and the experiment that would separate it.
 void AddOpenQuestions(const Result& result, plots::Page* page);
 /// Curves against time.
 void AddTimeFigures(const Result& result, plots::Page* page);

@@ -31,9 +31,9 @@ VerdictWords VerdictWordsOf(Verdict verdict) {
               "I do not know which: these data fit more than one explanation equally well. The experiment below would "
               "tell them apart."};
     case Verdict::kUnnamed:
-      return {"unknown", "Unnamed",
+      return {"unknown", "Cause unknown",
               "I do not know what it is: something is missing, but no effect of the catalogue explains it. Nothing was "
-              "added to the model. Below stands where it acts and what it looks like."};
+              "added to the model; this page shows where it acts and what it looks like."};
     case Verdict::kNone: break;
   }
   return {"good", "Nothing missing",
@@ -101,7 +101,7 @@ void AddBars(const Result& result, std::ostream& out) {
     out << "</div></div>\n";
   };
   out << "<div class=\"bars\">\n";
-  row("before", "before", gap.before.rmse);
+  row("before", HasAfter(result) ? "before" : "model", gap.before.rmse);
   if (HasAfter(result)) row("after", "after", gap.after.rmse);
   out << "</div>\n";
 }
@@ -122,9 +122,13 @@ void AddGap(const Result& result, std::ostream& out) {
       out << " (95 % interval " << FixedText(100.0 * gap.closed_low, 1) << " to "
           << FixedText(100.0 * gap.closed_high, 1) << " %)";
     out << ".";
-    if (!gap.control_effects.empty())
-      out << " As a check, the runner-up (" << EscapeHtml(EffectTitle(gap.control_effects))
-          << ") was added instead: it closes " << PercentText(gap.control_closed_fraction) << ".";
+    if (!gap.control_effects.empty()) {
+      const std::string other = EscapeHtml(InSentence(gap.control_effects));
+      out << (result.verdict == Verdict::kAmbiguous
+                  ? " The alternative (" + other + ") closes "
+                  : " As a check, the runner-up (" + other + ") was added instead: it closes ")
+          << PercentText(gap.control_closed_fraction) << ".";
+    }
     out << "</p>\n";
   } else if (std::isfinite(gap.gap_ratio)) {
     out << "<p>What the model leaves unexplained is <b>" << NumberText(gap.gap_ratio, 2)
@@ -155,17 +159,49 @@ void AddEffect(const EffectFinding& effect, std::ostream& out) {
     out << "<p class=\"soft\">Provisional: seen in too few separate events to be checked on others.</p>\n";
 }
 
+/// The best of what was tried and not added.
+void AddNearest(const Result& result, std::ostream& out) {
+  std::vector<const CandidateScore*> nearest;
+  for (const CandidateScore& c : result.candidates)
+    if (!c.effects.empty()) nearest.push_back(&c);
+  if (nearest.empty()) return;
+  nearest.resize(std::min<std::size_t>(nearest.size(), 3));
+  out << "<p class=\"soft\">The nearest of what was tried:</p>\n<ul class=\"plain\">\n";
+  for (const CandidateScore* c : nearest)
+    out << "<li>" << EscapeHtml(EffectTitles(c->effects)) << ": closes " << PercentText(c->closed_fraction)
+        << " of the gap, probability " << PercentText(c->probability) << "</li>\n";
+  out << "</ul>\n";
+}
+
+void AddSparse(const Result& result, std::ostream& out) {
+  if (result.sparse.empty()) return;
+  out << "<h3>What it looks like</h3>\n<p class=\"soft\">The shortest sum of simple terms that describes what is "
+         "missing: a "
+         "description, not physics.</p>\n<div class=\"scroll\"><table>\n<tr><th>term</th><th "
+         "class=\"num\">coefficient, SI "
+         "units</th><th class=\"num\">share of the gap, on data left out</th></tr>\n";
+  for (const SparseTerm& term : result.sparse)
+    out << "<tr><td class=\"mono\">" << EscapeHtml(term.expression) << "</td><td class=\"num\">"
+        << NumberText(term.coefficient, 3) << "</td><td class=\"num\">" << PercentText(term.share) << "</td></tr>\n";
+  out << "</table></div>\n";
+}
+
+void AddNothing(const Result& result, std::ostream& out) {
+  out << "<p>Nothing: the model stays as it is. "
+      << (result.verdict == Verdict::kUnnamed
+              ? "A wrong name would do more harm than none: it would bend the parameters and hide the cause."
+              : "Every effect of the catalogue was tried; none earns its place.")
+      << "</p>\n";
+  AddNearest(result, out);
+}
+
 void AddEffects(const Result& result, std::ostream& out) {
   out << "<section class=\"card\" id=\"added\">\n<h2>What was added</h2>\n";
-  if (!HasAfter(result))
-    out << "<p>Nothing: the model stays as it is.</p>\n"
-        << (result.verdict == Verdict::kUnnamed
-                ? "<p class=\"soft\">A name that is wrong would do more harm than none: it would spoil the parameters "
-                  "and hide the cause.</p>\n"
-                : "<p class=\"soft\">Every effect of the catalogue was tried; none earns its place.</p>\n");
+  if (!HasAfter(result)) AddNothing(result, out);
   if (result.verdict == Verdict::kAmbiguous && HasAfter(result))
     out << "<p class=\"soft\">The most probable of the alternatives, so that the model predicts; not an answer.</p>\n";
   for (const EffectFinding& effect : result.effects) AddEffect(effect, out);
+  AddSparse(result, out);
   if (!result.model_file.empty())
     out << "<p class=\"soft\">The model with it stands in <code>" << EscapeHtml(result.model_file)
         << "</code>, for the estimator, the replay and the plant.</p>\n";
@@ -214,19 +250,6 @@ void AddOpenQuestions(const Result& result, plots::Page* page) {
             << "</code></p>\n";
     }
     out << "</section>\n";
-  }
-  if (!result.sparse.empty()) {
-    out << "<section class=\"card\" id=\"sparse\">\n<h2>What it looks like</h2>\n<p class=\"soft\">The shortest sum of "
-           "simple "
-           "terms that describes what is missing. It is a description, not physics.</p>\n<div "
-           "class=\"scroll\"><table>\n"
-           "<tr><th>term</th><th class=\"num\">coefficient, SI units</th><th class=\"num\">share of the gap it closes "
-           "on data "
-           "left out</th></tr>\n";
-    for (const SparseTerm& term : result.sparse)
-      out << "<tr><td class=\"mono\">" << EscapeHtml(term.expression) << "</td><td class=\"num\">"
-          << NumberText(term.coefficient, 3) << "</td><td class=\"num\">" << PercentText(term.share) << "</td></tr>\n";
-    out << "</table></div>\n</section>\n";
   }
   page->Html(out.view());
 }

@@ -65,7 +65,8 @@ void QualityRow(const char* what, const std::string& before, const std::string& 
 void AddModes(const Result& result, bool has_after, std::ostream& out) {
   if (result.gap.modes.empty()) return;
   const std::string unit = result.gap.unit.empty() ? "" : ", " + EscapeHtml(result.gap.unit);
-  out << "<h3>By regime</h3>\n<div class=\"scroll\"><table>\n<tr><th>regime</th><th class=\"num\">samples</th><th "
+  out << "<h3>By regime</h3>\n<div class=\"scroll\"><table class=\"narrow\">\n<tr><th>regime</th><th "
+         "class=\"num\">samples</th><th "
          "class=\"num\">"
       << (has_after ? "typical error before" : "typical error") << unit << "</th>"
       << (has_after ? "<th class=\"num\">after" + unit + "</th>" : "") << "</tr>\n";

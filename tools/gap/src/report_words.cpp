@@ -75,6 +75,14 @@ std::string AsPrecise(double value, double sd) {
   return FixedText(value, DecimalsFor(sd));
 }
 
+/// Not the names of people.
+std::string LowerFirst(std::string title) {
+  if (!title.starts_with("Coulomb") && !title.starts_with("Stribeck") && !title.empty() && title[0] >= 'A' &&
+      title[0] <= 'Z')
+    title[0] = static_cast<char>(title[0] - 'A' + 'a');
+  return title;
+}
+
 }  // namespace
 
 std::string EffectTitle(std::string_view name) {
@@ -87,14 +95,20 @@ std::string EffectTitle(std::string_view name) {
 
 std::string EffectTitles(const std::vector<std::string>& names) {
   if (names.empty()) return "nothing";
-  std::string out;
-  for (const std::string& name : names) {
-    std::string title = EffectTitle(name);
-    if (!out.empty() && !name.starts_with("coulomb") && title[0] >= 'A' && title[0] <= 'Z')
-      title[0] = static_cast<char>(title[0] - 'A' + 'a');
-    out += (out.empty() ? "" : " + ") + title;
-  }
+  std::string out = EffectTitle(names.front());
+  for (std::size_t i = 1; i < names.size(); ++i) out += " + " + LowerFirst(EffectTitle(names[i]));
   return out;
+}
+
+std::string InSentence(std::string_view names) {
+  constexpr std::string_view kAnd = " + ";
+  std::vector<std::string> parts;
+  for (std::size_t end = 0; end != std::string_view::npos;) {
+    end = names.find(kAnd);
+    parts.emplace_back(names.substr(0, end));
+    names.remove_prefix(end == std::string_view::npos ? names.size() : end + kAnd.size());
+  }
+  return LowerFirst(EffectTitles(parts));
 }
 
 EffectWords WordsOf(std::string_view name) {

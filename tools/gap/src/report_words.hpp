@@ -15,6 +15,10 @@ namespace armcmc::gap {
 /// "Coulomb friction + sensor lag"; "nothing" for no effect. Plain text.
 [[nodiscard]] std::string EffectTitles(const std::vector<std::string>& names);
 
+/// "coulomb_friction + sensor_lag" -> "Coulomb friction + sensor lag", "sensor_lag" -> "sensor lag": for the middle of
+/// a sentence. Plain text.
+[[nodiscard]] std::string InSentence(std::string_view names);
+
 /// What an effect of the catalogue does to the equations, and one sentence about what that is. Empty when it is not
 /// known here.
 struct EffectWords {

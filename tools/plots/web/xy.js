@@ -1,7 +1,7 @@
 // Curves with bands: what chart.cpp calls XyChart. One colour and one dash for each role, in every chart; the colours
 // are told apart by every kind of colour vision, and the dashes on grey paper.
 const ROLES = {
-  measured: {stroke: '#3b3f46', width: 1, dash: []},
+  measured: {stroke: '#a3aab5', width: 3, dash: []},
   before: {stroke: '#d55e00', width: 1.5, dash: []},
   after: {stroke: '#0072b2', width: 1.5, dash: []},
   effect: {stroke: '#111827', width: 2, dash: [7, 4]},
@@ -27,6 +27,13 @@ function withAlpha(hex, alpha) {
   return `rgba(${part(1)},${part(3)},${part(5)},${alpha})`;
 }
 
+function swatch(role, band) {
+  return `<svg width="26" height="10" aria-hidden="true">` +
+    (band ? `<rect x="0" y="0" width="26" height="10" fill="${withAlpha(role.stroke, 0.18)}"/>` : '') +
+    `<line x1="0" x2="26" y1="5" y2="5" stroke="${role.stroke}" stroke-width="2.5"` +
+    ` stroke-dasharray="${role.dash.join(' ')}"/></svg><span></span><output></output>`;
+}
+
 // The legend above a chart: shows the values under the cursor, a click hides and shows a curve.
 function makeLegend(spec, series) {
   const legend = document.createElement('div');
@@ -35,11 +42,7 @@ function makeLegend(spec, series) {
     const item = document.createElement('button');
     item.type = 'button';
     item.title = 'click to hide or show';
-    const role = ROLES[s.role];
-    item.innerHTML = `<svg width="26" height="10" aria-hidden="true">` +
-      (s.low ? `<rect x="0" y="0" width="26" height="10" fill="${withAlpha(role.stroke, 0.18)}"/>` : '') +
-      `<line x1="0" x2="26" y1="5" y2="5" stroke="${role.stroke}" stroke-width="2.5"` +
-      ` stroke-dasharray="${role.dash.join(' ')}"/></svg><span></span><output></output>`;
+    item.innerHTML = swatch(ROLES[s.role], s.low);
     item.querySelector('span').textContent = s.label;
     item.onclick = () => {
       const shown = item.classList.toggle('off') === false;
@@ -48,6 +51,12 @@ function makeLegend(spec, series) {
     legend.append(item);
     return item.querySelector('output');
   });
+  for (const rule of spec.rules) {
+    const item = document.createElement('span');
+    item.innerHTML = swatch({stroke: INK, dash: [5, 3]}, false);
+    item.querySelector('span').textContent = rule.label;
+    legend.append(item);
+  }
   legend.update = (u) => series.forEach((s, i) => {
     const index = u.cursor.idxs[s.columns[0]];
     const value = index == null ? null : u.data[s.columns[0]][index];
@@ -65,7 +74,7 @@ function drawShades(u, shades) {
     const left = Math.max(bbox.left, roundTo(u, shade.from, 'x'));
     const right = Math.min(bbox.left + bbox.width, roundTo(u, shade.to, 'x'));
     if (right <= left) continue;
-    ctx.fillStyle = '#f0f2f5';
+    ctx.fillStyle = '#eaeef3';
     ctx.fillRect(left, bbox.top, right - left, bbox.height);
     ctx.strokeStyle = '#9ca3af';
     ctx.lineWidth = uPlot.pxRatio;
@@ -80,24 +89,24 @@ function drawShades(u, shades) {
 
 function scaledFont() { return FONT.replace(/^\d+/, (size) => Math.round(0.92 * size * uPlot.pxRatio)); }
 
-function drawLabels(u, spec) {
+// Straight lines, and words at the top of tinted parts.
+function drawNotes(u, spec) {
   const {ctx, bbox} = u, px = uPlot.pxRatio;
   ctx.save();
   ctx.font = scaledFont();
   ctx.textBaseline = 'top';
-  // White behind the words keeps them readable on a curve.
-  const write = (text, x, y) => {
-    ctx.lineWidth = 4 * px;
-    ctx.strokeStyle = 'rgba(255,255,255,0.85)';
-    ctx.lineJoin = 'round';
-    ctx.strokeText(text, x, y);
-    ctx.fillStyle = INK;
-    ctx.fillText(text, x, y);
-  };
+  ctx.textAlign = 'left';
+  ctx.lineJoin = 'round';
   for (const shade of spec.shades) {
     const left = Math.max(bbox.left, roundTo(u, shade.from, 'x'));
     const right = Math.min(bbox.left + bbox.width, roundTo(u, shade.to, 'x'));
-    if (right - left > ctx.measureText(shade.label).width + 12 * px) write(shade.label, left + 7 * px, bbox.top + 5 * px);
+    if (right - left < ctx.measureText(shade.label).width + 12 * px) continue;
+    // White behind the words keeps them readable on a curve.
+    ctx.lineWidth = 4 * px;
+    ctx.strokeStyle = 'rgba(255,255,255,0.85)';
+    ctx.strokeText(shade.label, left + 7 * px, bbox.top + 5 * px);
+    ctx.fillStyle = INK;
+    ctx.fillText(shade.label, left + 7 * px, bbox.top + 5 * px);
   }
   for (const rule of spec.rules) {
     const y = roundTo(u, rule.y, 'y');
@@ -109,9 +118,6 @@ function drawLabels(u, spec) {
     ctx.moveTo(bbox.left, y);
     ctx.lineTo(bbox.left + bbox.width, y);
     ctx.stroke();
-    ctx.setLineDash([]);
-    write(rule.label, bbox.left + bbox.width - ctx.measureText(rule.label).width - 6 * px,
-      y - (y - bbox.top > 20 * px ? 17 : -4) * px);
   }
   ctx.restore();
 }
@@ -138,7 +144,7 @@ function drawXy(host, spec) {
   const options = [{}], bands = [], series = [];
   for (const s of spec.series) {
     const role = ROLES[s.role], column = options.length;
-    const busy = s.x.length > 1500;  // thick noise hides what lies behind it
+    const busy = s.role !== 'measured' && s.x.length > 1500;  // thick noise hides what lies behind it
     options.push({stroke: busy ? withAlpha(role.stroke, 0.8) : role.stroke, width: busy ? 1 : role.width, dash: role.dash,
       points: {show: s.x.length <= 60 && s.role !== 'effect', size: 5, fill: role.stroke}});
     if (s.low) {
@@ -151,7 +157,7 @@ function drawXy(host, spec) {
   host.replaceChildren(legend);
   const chart = new uPlot({
     width: host.clientWidth, height: spec.height, series: options, bands, legend: {show: false},
-    padding: [8, 12, 0, 0],
+    padding: [8, 22, 0, 0],
     axes: [axis(spec.x_title, false), axis(spec.y_title, true)],
     scales: {x: {time: false, distr: spec.log_x ? 3 : 1},
       y: spec.log_y ? {distr: 3} : {range: paddedRange}},
@@ -159,7 +165,7 @@ function drawXy(host, spec) {
       ...(spec.sync ? {sync: {key: spec.sync, setSeries: false, scales: ['x', null]}} : {})},
     hooks: {
       drawClear: [(u) => drawShades(u, spec.shades)],
-      draw: [(u) => drawLabels(u, spec)],
+      draw: [(u) => drawNotes(u, spec)],
       setCursor: [(u) => legend.update(u)],
     },
   }, data, host);
