@@ -1,6 +1,5 @@
 #include "armcmc/gap/report.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,45 +10,45 @@
 namespace armcmc::gap {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+// Instead of a matcher, which would print the whole page.
+bool Holds(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
 
 TEST(Report, NamedTellsEffectGapAndParameter) {
   const std::string html = ReportHtml(test::ExampleResult(Verdict::kNamed));
   for (const char* words : {"The model lacks dry friction", "Probability: 99.1 %", "0.0801 <small>N", "0.0203 <small>N",
                             "0.0200 <small>N", "<b>99.5 %</b> of the explainable", "0.07873 to 0.08147"})
-    EXPECT_THAT(html, HasSubstr(words));
-  EXPECT_THAT(html, Not(HasSubstr("I do not know")));
+    EXPECT_TRUE(Holds(html, words)) << words;
+  EXPECT_FALSE(Holds(html, "I do not know"));
 }
 
 TEST(Report, AmbiguousSaysThatItDoesNotKnowAndWhatWouldTell) {
   const std::string html = ReportHtml(test::ExampleResult(Verdict::kAmbiguous));
-  EXPECT_THAT(html, HasSubstr("Probability that it is one of these: 97.9 %"));
-  EXPECT_THAT(html, HasSubstr("I do not know which"));
-  EXPECT_THAT(html, HasSubstr("<li>Sensor delay</li>"));
-  EXPECT_THAT(html, HasSubstr("Tap the surface five times"));
-  EXPECT_THAT(html, HasSubstr("separate.toml"));
+  EXPECT_TRUE(Holds(html, "Probability that it is one of these: 97.9 %"));
+  EXPECT_TRUE(Holds(html, "I do not know which"));
+  EXPECT_TRUE(Holds(html, "<li>Sensor delay</li>"));
+  EXPECT_TRUE(Holds(html, "Tap the surface five times"));
+  EXPECT_TRUE(Holds(html, "separate.toml"));
 }
 
 TEST(Report, UnnamedSaysThatItDoesNotKnowAndAddsNothing) {
   const std::string html = ReportHtml(test::ExampleResult(Verdict::kUnnamed));
-  EXPECT_THAT(html, HasSubstr("I do not know what it is"));
-  EXPECT_THAT(html, HasSubstr("Nothing: the model stays as it is."));
-  EXPECT_THAT(html, HasSubstr("sin(9 x^2)"));
-  EXPECT_THAT(html, Not(HasSubstr("\"role\":\"after\"")));
+  EXPECT_TRUE(Holds(html, "I do not know what it is"));
+  EXPECT_TRUE(Holds(html, "Nothing: the model stays as it is."));
+  EXPECT_TRUE(Holds(html, "sin(9 x^2)"));
+  EXPECT_FALSE(Holds(html, "\"role\":\"after\""));
 }
 
 TEST(Report, NoneSaysThatNothingIsMissing) {
   const std::string html = ReportHtml(test::ExampleResult(Verdict::kNone));
-  EXPECT_THAT(html, HasSubstr("Probability that nothing is missing: 98.7 %"));
-  EXPECT_THAT(html, Not(HasSubstr("tile after")));
+  EXPECT_TRUE(Holds(html, "Probability that nothing is missing: 98.7 %"));
+  EXPECT_FALSE(Holds(html, "tile after"));
 }
 
 TEST(Report, ListsNothingAndNotInTheCatalogueAmongTheExplanations) {
   for (const Verdict verdict : {Verdict::kNone, Verdict::kNamed, Verdict::kAmbiguous, Verdict::kUnnamed}) {
     const std::string html = ReportHtml(test::ExampleResult(verdict));
-    EXPECT_THAT(html, HasSubstr("<i>Nothing is missing</i>"));
-    EXPECT_THAT(html, HasSubstr("<i>Something that is not in the catalogue</i>"));
+    EXPECT_TRUE(Holds(html, "<i>Nothing is missing</i>"));
+    EXPECT_TRUE(Holds(html, "<i>Something that is not in the catalogue</i>"));
   }
 }
 
@@ -57,15 +56,15 @@ TEST(Report, KeepsTheListOfExplanationsShort) {
   Result result = test::ExampleResult(Verdict::kNamed);
   for (int i = 0; i < 200; ++i) result.candidates.push_back({{"effect_" + std::to_string(i)}, 0.0, 0.0, 1e-6, 0.0});
   const std::string html = ReportHtml(result);
-  EXPECT_THAT(html, HasSubstr("more were tried; together they have < 0.1 %"));
-  EXPECT_THAT(html, Not(HasSubstr("Effect 199")));
-  EXPECT_THAT(html, HasSubstr("<i>Nothing is missing</i>"));
+  EXPECT_TRUE(Holds(html, "more were tried; together they have < 0.1 %"));
+  EXPECT_FALSE(Holds(html, "Effect 199"));
+  EXPECT_TRUE(Holds(html, "<i>Nothing is missing</i>"));
 }
 
 TEST(Report, ComposesASentenceWhereThereIsNone) {
   Result result = test::ExampleResult(Verdict::kNamed);
   result.sentence.clear();
-  EXPECT_THAT(ReportHtml(result), HasSubstr("<h1>The model lacks Coulomb friction.</h1>"));
+  EXPECT_TRUE(Holds(ReportHtml(result), "<h1>The model lacks Coulomb friction.</h1>"));
 }
 
 /// Puts the same text wherever the result has text.
@@ -92,14 +91,14 @@ TEST(Report, EscapesEveryTextOfTheResult) {
     Result result = test::ExampleResult(verdict);
     FillText(&result, "</script><img src=x onerror=\"alert('x')\">");
     const std::string html = ReportHtml(result);
-    EXPECT_THAT(html, Not(HasSubstr("<img")));
-    EXPECT_THAT(html, Not(HasSubstr("</script><")));
+    EXPECT_FALSE(Holds(html, "<img"));
+    EXPECT_FALSE(Holds(html, "</script><"));
     result.effects.clear();
-    EXPECT_THAT(ReportHtml(result), Not(HasSubstr("<img")));
+    EXPECT_FALSE(Holds(ReportHtml(result), "<img"));
   }
 }
 
-TEST(Report, ComesOutOfAnEmptyResult) { EXPECT_THAT(ReportHtml(Result{}), HasSubstr("</html>")); }
+TEST(Report, ComesOutOfAnEmptyResult) { EXPECT_TRUE(Holds(ReportHtml(Result{}), "</html>")); }
 
 TEST(Report, ComesOutOfAResultWithoutANumber) {
   Result r = test::ExampleResult(Verdict::kNamed);

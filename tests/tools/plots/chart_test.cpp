@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace armcmc::plots {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using nlohmann::json;
 
@@ -17,7 +20,7 @@ XyChart ChartOf(std::vector<double> x, std::vector<double> y) {
 }
 
 TEST(XyChart, TurnsWhatIsNotFiniteIntoGaps) {
-  const json spec = ToJson(ChartOf({0.0, 1.0, 2.0, 3.0}, {1.0, std::nan(""), INFINITY, 4.0}));
+  const json spec = ToJson(ChartOf({0.0, 1.0, 2.0, 3.0}, {1.0, std::nan(""), kInfinity, 4.0}));
   EXPECT_EQ(spec["series"][0]["y"], (json{1.0, nullptr, nullptr, 4.0}));
 }
 
@@ -61,7 +64,7 @@ TEST(XyChart, RefusesLengthsThatDoNotFit) {
 
 TEST(XyChart, KnowsWhenThereIsNothingToDraw) {
   EXPECT_FALSE(HasData(XyChart{}));
-  EXPECT_FALSE(HasData(ChartOf({0.0, 1.0}, {std::nan(""), INFINITY})));
+  EXPECT_FALSE(HasData(ChartOf({0.0, 1.0}, {std::nan(""), kInfinity})));
   EXPECT_TRUE(HasData(ChartOf({0.0, 1.0}, {std::nan(""), 0.0})));
 }
 

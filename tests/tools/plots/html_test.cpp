@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace armcmc::plots {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(EscapeHtml, LeavesNothingThatHtmlReads) {
   EXPECT_EQ(EscapeHtml("<a href=\"x\" title='y'>&amp;"), "&lt;a href=&quot;x&quot; title=&#39;y&#39;&gt;&amp;amp;");
@@ -33,7 +36,7 @@ TEST(ScriptJson, CannotEndTheScript) {
 }
 
 TEST(ScriptJson, WritesNullForWhatIsNotFinite) {
-  EXPECT_EQ(ScriptJson({1.5, std::nan(""), INFINITY}), "[1.5,null,null]");
+  EXPECT_EQ(ScriptJson({1.5, std::nan(""), kInfinity}), "[1.5,null,null]");
 }
 
 TEST(NumberText, KeepsSignificantDigits) {
@@ -45,7 +48,7 @@ TEST(NumberText, KeepsSignificantDigits) {
   EXPECT_EQ(NumberText(-1.23e-7, 3), "−1.23 × 10⁻⁷");
   EXPECT_EQ(NumberText(4.5e12, 2), "4.5 × 10¹²");
   EXPECT_EQ(NumberText(std::nan(""), 3), "–");
-  EXPECT_EQ(NumberText(-INFINITY, 3), "–");
+  EXPECT_EQ(NumberText(-kInfinity, 3), "–");
 }
 
 TEST(FixedText, HasNoNegativeZero) {

@@ -1,6 +1,5 @@
 #include "armcmc/plots/page.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,8 +7,8 @@
 namespace armcmc::plots {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+// Instead of a matcher, which would print the whole page.
+bool Holds(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
 
 XyChart OneCurve(const std::string& label) {
   XyChart chart;
@@ -21,23 +20,23 @@ TEST(Page, AsksNobodyForAnything) {
   Page page("title");
   page.Chart(OneCurve("curve"), "caption");
   const std::string html = page.ToString();
-  EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+  EXPECT_TRUE(Holds(html, "default-src 'none'"));
   for (const char* request : {"src=\"", "@import", "<link rel=\"stylesheet", "url(http"})
-    EXPECT_THAT(html, Not(HasSubstr(request)));
+    EXPECT_FALSE(Holds(html, request)) << request;
 }
 
 TEST(Page, CarriesTheLicenceOfThePlotLibrary) {
   const std::string html = Page("title").ToString();
-  EXPECT_THAT(html, HasSubstr("Leon Sorokin"));
-  EXPECT_THAT(html, HasSubstr("THE SOFTWARE IS PROVIDED \"AS IS\""));
+  EXPECT_TRUE(Holds(html, "Leon Sorokin"));
+  EXPECT_TRUE(Holds(html, "THE SOFTWARE IS PROVIDED \"AS IS\""));
 }
 
 TEST(Page, EscapesTitleAndLabels) {
   Page page("</title><script>alert(1)</script>");
   page.Chart(OneCurve("</script><script>alert(2)</script>"), "caption");
   const std::string html = page.ToString();
-  EXPECT_THAT(html, Not(HasSubstr("<script>alert")));
-  EXPECT_THAT(html, HasSubstr("&lt;/title&gt;"));
+  EXPECT_FALSE(Holds(html, "<script>alert"));
+  EXPECT_TRUE(Holds(html, "&lt;/title&gt;"));
 }
 
 TEST(Page, SaysWhenThereIsNothingToDraw) {
@@ -45,9 +44,9 @@ TEST(Page, SaysWhenThereIsNothingToDraw) {
   page.Chart(XyChart{}, "caption of curves");
   page.Chart(HeatMap{"", "", "", {0.0, 1.0}, {0.0, 1.0}, {std::nan("")}, 100}, "caption of map");
   const std::string html = page.ToString();
-  EXPECT_THAT(html, Not(HasSubstr("<figure class=\"chart\"")));
-  EXPECT_THAT(html, HasSubstr("There are no data for this figure."));
-  EXPECT_THAT(html, HasSubstr("caption of map"));
+  EXPECT_FALSE(Holds(html, "<figure class=\"chart\""));
+  EXPECT_TRUE(Holds(html, "There are no data for this figure."));
+  EXPECT_TRUE(Holds(html, "caption of map"));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // The curves and the map of the report.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "armcmc/plots/html.hpp"
@@ -20,7 +22,7 @@ void AddCurve(const Curve& curve, Role role, const char* label, XyChart* chart) 
 
 /// Tints what had no part in the diagnosis, when it is in the same recording.
 void ShadeHeldOut(const Figures& figures, XyChart* chart) {
-  double end = -INFINITY;
+  double end = -std::numeric_limits<double>::infinity();
   for (const Series& s : chart->series)
     for (const double x : s.x)
       if (std::isfinite(x)) end = std::max(end, x);

@@ -1,6 +1,7 @@
 // Numbers for the careful reader: parameters, quality, limits, provenance.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "armcmc/plots/html.hpp"
@@ -36,7 +37,8 @@ std::string Interval(const char* kind, const ParameterEstimate& p, const Scale& 
 
 std::string ParameterRow(const ParameterChange& change, bool has_after) {
   const ParameterEstimate &b = change.before, &a = change.after;
-  Scale scale{INFINITY, -INFINITY};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Scale scale{kInfinity, -kInfinity};
   for (const ParameterEstimate* p : {&b, has_after ? &a : &b}) {
     if (!std::isfinite(p->mean)) continue;
     scale.low = std::min(scale.low, p->mean - HalfWidth(*p));
