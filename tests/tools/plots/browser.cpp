@@ -14,12 +14,24 @@
 namespace armcmc::test {
 namespace {
 
-// Runs in the page after everything else: goes through the sizes of a print, then counts what can be seen. Curves are
+// Runs in the page after everything else: goes through the sizes of a print, plays a reader who points, zooms and hides
+// curves, then counts what can be seen. Curves are
 // the only saturated colours on a canvas; grid, axes and words are grey. Nearly clear pixels can have any colour.
 constexpr const char* kProbe = R"JS(<script>
 addEventListener('load', () => {
   dispatchEvent(new Event('beforeprint'));
   dispatchEvent(new Event('afterprint'));
+  const mouse = (element, type, x) => element.dispatchEvent(new MouseEvent(type,
+    {bubbles: true, cancelable: true, view: window, button: 0, clientX: element.getBoundingClientRect().left + x,
+     clientY: element.getBoundingClientRect().top + 50}));
+  document.querySelectorAll('.u-over').forEach((over) => {
+    mouse(over, 'mousemove', 100), mouse(over, 'mousedown', 100), mouse(over, 'mousemove', 300);
+    mouse(over, 'mouseup', 300), mouse(over, 'dblclick', 300);
+  });
+  document.querySelectorAll('.legend button').forEach((button) => { button.click(), button.click(); });
+  document.querySelectorAll('.cell').forEach((cell) => {
+    cell.dispatchEvent(new PointerEvent('pointerenter')), cell.dispatchEvent(new PointerEvent('pointerleave'));
+  });
   setTimeout(() => {
     document.querySelectorAll('figure.chart').forEach((figure) => {
       let marks = figure.querySelectorAll('svg .cell').length;

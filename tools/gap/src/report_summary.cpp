@@ -106,6 +106,16 @@ void AddBars(const Result& result, std::ostream& out) {
   out << "</div>\n";
 }
 
+/// Where most of the error is, in one line.
+void AddPlace(const Result& result, std::ostream& out) {
+  if (result.where.empty() || result.verdict == Verdict::kNone) return;
+  const Where& w = result.where.front();
+  out << "<p>The error depends most on <b>" << EscapeHtml(w.feature) << "</b>";
+  if (!w.region.empty())
+    out << "; " << PercentText(w.share_of_excess) << " of the excess lies where: " << EscapeHtml(w.region);
+  out << ".</p>\n";
+}
+
 void AddGap(const Result& result, std::ostream& out) {
   const GapSummary& gap = result.gap;
   out << "<section class=\"card\" id=\"gap\">\n<h2>The gap</h2>\n<p class=\"soft\">Typical error (root mean square) of "
@@ -134,6 +144,7 @@ void AddGap(const Result& result, std::ostream& out) {
     out << "<p>What the model leaves unexplained is <b>" << NumberText(gap.gap_ratio, 2)
         << " times</b> the noise (root mean square), its own parameters fitted as well as they can be.</p>\n";
   }
+  AddPlace(result, out);
   out << "</section>\n";
 }
 
@@ -176,10 +187,9 @@ void AddNearest(const Result& result, std::ostream& out) {
 void AddSparse(const Result& result, std::ostream& out) {
   if (result.sparse.empty()) return;
   out << "<h3>What it looks like</h3>\n<p class=\"soft\">The shortest sum of simple terms that describes what is "
-         "missing: a "
-         "description, not physics.</p>\n<div class=\"scroll\"><table>\n<tr><th>term</th><th "
-         "class=\"num\">coefficient, SI "
-         "units</th><th class=\"num\">share of the gap, on data left out</th></tr>\n";
+         "missing: a description, not physics. Shares are those of the gap on data left out.</p>\n"
+         "<div class=\"scroll\"><table>\n<tr><th>term</th><th class=\"num\">coefficient (SI)</th>"
+         "<th class=\"num\">share of the gap</th></tr>\n";
   for (const SparseTerm& term : result.sparse)
     out << "<tr><td class=\"mono\">" << EscapeHtml(term.expression) << "</td><td class=\"num\">"
         << NumberText(term.coefficient, 3) << "</td><td class=\"num\">" << PercentText(term.share) << "</td></tr>\n";

@@ -176,9 +176,8 @@ void AddProvenance(const Result& result, plots::Page* page) {
     }
     out << "together " << NumberText(sum, 2) << " s</dd>\n";
   }
-  out << "</dl>\n</section>\n<footer>Every number of this page also stands in result.json. The plots were drawn with "
-         "uPlot "
-         "(MIT licence, in the source of this page).</footer>\n";
+  out << "</dl>\n</section>\n<footer>Every number of this page but the curves also stands in result.json. The "
+         "plots were drawn with uPlot (MIT licence, in the source of this page).</footer>\n";
   page->Html(out.view());
 }
 

@@ -125,7 +125,8 @@ function drawNotes(u, spec) {
 function axis(title, vertical) {
   return {
     label: title, labelFont: FONT, font: FONT, stroke: INK, labelSize: 22, gap: 5,
-    size: vertical ? (u, values) => 14 + 7 * Math.max(2, ...(values || []).map((v) => (v || '').length)) : 34,
+    // The same for all usual numbers, so that charts above each other share their place.
+    size: vertical ? (u, values) => 14 + 7 * Math.max(6, ...(values || []).map((v) => (v || '').length)) : 34,
     grid: {stroke: GRID, width: 1}, ticks: {stroke: '#c4c8ce', width: 1, size: 5}, border: {show: true, stroke: '#c4c8ce', width: 1},
     values: (u, ticks) => ticks.map((tick) => tick == null ? '' : numberText(tick, 6)),
   };
