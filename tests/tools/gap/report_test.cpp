@@ -1,0 +1,121 @@
+#include "armcmc/gap/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tools/gap/report_fixture.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+// Instead of a matcher, which would print the whole page.
+bool Holds(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
+
+TEST(Report, NamedTellsEffectGapAndParameter) {
+  const std::string html = ReportHtml(test::ExampleResult(Verdict::kNamed));
+  for (const char* words : {"The model lacks dry friction", "Probability: 99.1 %", "0.0801 <small>N", "0.0203 <small>N",
+                            "0.0200 <small>N", "<b>99.5 %</b> of the explainable", "0.07873 to 0.08147"})
+    EXPECT_TRUE(Holds(html, words)) << words;
+  EXPECT_FALSE(Holds(html, "I do not know"));
+}
+
+TEST(Report, AmbiguousSaysThatItDoesNotKnowAndWhatWouldTell) {
+  const std::string html = ReportHtml(test::ExampleResult(Verdict::kAmbiguous));
+  EXPECT_TRUE(Holds(html, "Probability that it is one of these: 97.9 %"));
+  EXPECT_TRUE(Holds(html, "I do not know which"));
+  EXPECT_TRUE(Holds(html, "<li>Sensor delay</li>"));
+  EXPECT_TRUE(Holds(html, "Tap the surface five times"));
+  EXPECT_TRUE(Holds(html, "separate.toml"));
+}
+
+TEST(Report, UnnamedSaysThatItDoesNotKnowAndAddsNothing) {
+  const std::string html = ReportHtml(test::ExampleResult(Verdict::kUnnamed));
+  EXPECT_TRUE(Holds(html, "I do not know what it is"));
+  EXPECT_TRUE(Holds(html, "Nothing: the model stays as it is."));
+  EXPECT_TRUE(Holds(html, "sin(9 x^2)"));
+  EXPECT_FALSE(Holds(html, "\"role\":\"after\""));
+}
+
+TEST(Report, NoneSaysThatNothingIsMissing) {
+  const std::string html = ReportHtml(test::ExampleResult(Verdict::kNone));
+  EXPECT_TRUE(Holds(html, "Probability that nothing is missing: 98.7 %"));
+  EXPECT_FALSE(Holds(html, "tile after"));
+}
+
+TEST(Report, ListsNothingAndNotInTheCatalogueAmongTheExplanations) {
+  for (const Verdict verdict : {Verdict::kNone, Verdict::kNamed, Verdict::kAmbiguous, Verdict::kUnnamed}) {
+    const std::string html = ReportHtml(test::ExampleResult(verdict));
+    EXPECT_TRUE(Holds(html, "<i>Nothing is missing</i>"));
+    EXPECT_TRUE(Holds(html, "<i>Something that is not in the catalogue</i>"));
+  }
+}
+
+TEST(Report, KeepsTheListOfExplanationsShort) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  for (int i = 0; i < 200; ++i) result.candidates.push_back({{"effect_" + std::to_string(i)}, 0.0, 0.0, 1e-6, 0.0});
+  const std::string html = ReportHtml(result);
+  EXPECT_TRUE(Holds(html, "more were tried; together they have < 0.1 %"));
+  EXPECT_FALSE(Holds(html, "Effect 199"));
+  EXPECT_TRUE(Holds(html, "<i>Nothing is missing</i>"));
+}
+
+TEST(Report, ComposesASentenceWhereThereIsNone) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  result.sentence.clear();
+  EXPECT_TRUE(Holds(ReportHtml(result), "<h1>The model lacks Coulomb friction.</h1>"));
+}
+
+/// Puts the same text wherever the result has text.
+void FillText(Result* r, const std::string& text) {
+  for (std::string* s : {&r->version, &r->model, &r->data_file, &r->data_sha256, &r->sentence, &r->model_file,
+                         &r->gap.unit, &r->gap.control_effects, &r->separate_by.words, &r->separate_by.scenario_file,
+                         &r->figures.output_title, &r->figures.where.x_title, &r->figures.where.y_title,
+                         &r->figures.where.value_title, &r->figures.residual_before.label})
+    *s = text;
+  r->notes = r->aliases = {text};
+  r->ambiguous_set = {{text, text}};
+  r->candidates = {{{text}, 1.0, 1.0, 0.5, 0.5}};
+  r->where = {{text, text, 0.5, 1.0, 0.1}};
+  r->sparse = {{text, 1.0, 0.5}};
+  r->gap.modes = {{text, 1, 1.0, 1.0}};
+  r->parameters = {{{text, text, 1.0, 0.1}, {text, text, 1.0, 0.1}}};
+  r->effects = {{text, text, 0.5, {{text, text, 1.0, 0.1}}, {}, true, true}};
+  r->seconds = {{text, 1.0}};
+  for (FeatureFigure& figure : r->figures.features) figure.feature = figure.effect.label = text;
+}
+
+TEST(Report, EscapesEveryTextOfTheResult) {
+  for (const Verdict verdict : {Verdict::kNone, Verdict::kNamed, Verdict::kAmbiguous, Verdict::kUnnamed}) {
+    Result result = test::ExampleResult(verdict);
+    FillText(&result, "</script><img src=x onerror=\"alert('x')\">");
+    const std::string html = ReportHtml(result);
+    EXPECT_FALSE(Holds(html, "<img"));
+    EXPECT_FALSE(Holds(html, "</script><"));
+    result.effects.clear();
+    EXPECT_FALSE(Holds(ReportHtml(result), "<img"));
+  }
+}
+
+TEST(Report, ComesOutOfAnEmptyResult) { EXPECT_TRUE(Holds(ReportHtml(Result{}), "</html>")); }
+
+TEST(Report, ComesOutOfAResultWithoutANumber) {
+  Result r = test::ExampleResult(Verdict::kNamed);
+  const double nan = std::nan("");
+  r.probability_none = r.probability_unnamed = r.dt = nan;
+  r.gap.before = r.gap.after = {nan, nan, nan, nan, nan};
+  r.gap.noise_floor = r.gap.closed_fraction = r.gap.closed_low = r.gap.closed_high = r.gap.gap_ratio = nan;
+  r.effects[0].probability = r.effects[0].parameters[0].mean = r.effects[0].parameters[0].sd = nan;
+  for (CandidateScore& c : r.candidates) c.probability = c.log_evidence = c.heldout_score = c.closed_fraction = nan;
+  for (Where& w : r.where) w.share_of_excess = w.effect_size = w.p_value = nan;
+  for (ParameterChange& p : r.parameters) p.before.mean = p.before.sd = p.after.mean = nan;
+  for (double& y : r.figures.residual_before.y) y = std::numeric_limits<double>::infinity();
+  r.figures.diagnosis_end_s = nan;
+  const std::string html = ReportHtml(r);
+  for (const char* number : {">nan", " nan", "-nan", ":nan", ">inf", ">-inf", " inf ", ":inf"})
+    EXPECT_EQ(html.find(number), std::string::npos) << number;
+}
+
+}  // namespace
+}  // namespace armcmc::gap

@@ -1,0 +1,155 @@
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/equation.hpp"
+#include "armcmc/gap/report.hpp"
+#include "armcmc/gap/result_json.hpp"
+#include "armcmc/gap/workflow.hpp"
+#include "armcmc/support/model_file.hpp"
+#include "armcmc/support/program.hpp"
+#include "armcmc/support/progress.hpp"
+#include "armcmc/support/strict_toml.hpp"
+#include "budget.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+struct Arguments {
+  std::string model = "hunt_crossley", data, heldout, out, steps = "show";
+  std::vector<std::string> without;
+  std::uint64_t seed = 1;
+  double period_ms = 100.0;
+  bool skip_bad = false, no_pairs = false;
+};
+
+void Declare(CLI::App* app, Arguments* a) {
+  app->add_option("--model", a->model, "Built-in model, or a model file (.toml) whose effects are already known")
+      ->capture_default_str();
+  app->add_option("--data", a->data, "CSV of samples (hunt_crossley: t,x,v,f)")->required();
+  app->add_option("--heldout", a->heldout, "CSV of another run to show the gap on; without it the last 30 % of --data");
+  app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->required();
+  app->add_option("--seed", a->seed, "Seed of the bootstrap: the same seed gives the same result")
+      ->capture_default_str();
+  app->add_option("--steps", a->steps,
+                  "Steps to run, comma separated; the last one counts: compare, find, name, add, show")
+      ->capture_default_str();
+  app->add_option("--without", a->without, "Effects to leave out of the catalogue")->delimiter(',');
+  app->add_option("--period-ms", a->period_ms, "Length of a pack, for the cost of the new model in the estimator")
+      ->check(CLI::Range(1.0, 10'000.0))
+      ->capture_default_str();
+  app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows instead of stopping");
+  app->add_flag("--no-pairs", a->no_pairs, "Look for one effect only: quicker");
+  app->footer(
+      "Compares a model with measured data, finds where they disagree, names the missing effect, writes a model that "
+      "has\n"
+      "it, and shows on data kept apart how much of the gap is closed. It says so when it does not know.\n\n"
+      "Example:\n"
+      "  armcmc-plant --scenario contact_rich --hide-effect random --seed 5 --sealed truth.json --csv run.csv\n"
+      "  armcmc-gap --model hunt_crossley --data run.csv --out gap\n"
+      "  armcmc-estimator --config hunt_crossley --model gap/model.toml\n"
+      "Exit status: 0 whatever the verdict, 2 bad usage or input, 1 any other failure.");
+}
+
+Step LastStep(const std::string& steps) {
+  static const std::vector<std::pair<std::string, Step>> known = {{"compare", Step::kCompare},
+                                                                  {"find", Step::kFind},
+                                                                  {"name", Step::kName},
+                                                                  {"add", Step::kAdd},
+                                                                  {"show", Step::kShow}};
+  Step last = Step::kCompare;
+  std::stringstream words(steps);
+  for (std::string word; std::getline(words, word, ',');) {
+    const auto it = std::find_if(known.begin(), known.end(), [&](const auto& step) { return step.first == word; });
+    if (it == known.end())
+      throw support::InputError("--steps: '" + word + "' is no step; steps are compare, find, name, add, show");
+    last = std::max(last, it->second);
+  }
+  return last;
+}
+
+void Write(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path part = path.string() + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw support::InputError(path.string() + ": cannot be written");
+  file.close();
+  std::filesystem::rename(part, path);
+}
+
+std::string Summary(const Result& result) {
+  std::ostringstream out;
+  out << result.sentence << '\n';
+  for (const EffectFinding& effect : result.effects)
+    for (const ParameterEstimate& parameter : effect.parameters) {
+      char line[160];
+      std::snprintf(line, sizeof(line), "  %s %s = %.4g +- %.2g %s\n", effect.name.c_str(), parameter.name.c_str(),
+                    parameter.mean, parameter.sd, parameter.unit.c_str());
+      out << line;
+    }
+  if (result.gap.before.rmse > 0.0) {
+    char line[200];
+    std::snprintf(line, sizeof(line), "held-out rms error %.4g -> %.4g %s, noise floor %.4g, gap closed by %.1f %%\n",
+                  result.gap.before.rmse, result.gap.after.rmse, result.gap.unit.c_str(), result.gap.noise_floor,
+                  100.0 * result.gap.closed_fraction);
+    out << line;
+  }
+  if (!result.separate_by.words.empty()) out << result.separate_by.words << '\n';
+  for (const std::string& note : result.notes) out << "note: " << note << '\n';
+  return out.str();
+}
+
+int Run(const Arguments& a) {
+  WorkflowRequest request;
+  request.until = LastStep(a.steps);
+  request.model = support::BaseModel(a.model);
+  request.diagnose.seed = a.seed;
+  request.diagnose.without = a.without;
+  request.diagnose.pairs = !a.no_pairs;
+  const std::vector<std::string> columns = MakeEquation(request.model)->columns();
+  request.data = ReadRecording(a.data, columns, a.skip_bad);
+  if (!a.heldout.empty()) request.heldout = ReadRecording(a.heldout, columns, a.skip_bad);
+  support::Progress progress("gap");
+  request.progress = [&](const std::string&, double share) { progress.Update(share); };
+
+  WorkflowOutcome outcome = RunWorkflow(request);
+  Result& result = outcome.result;
+  result.version = support::Version();
+  const std::filesystem::path out = a.out;
+  std::filesystem::create_directories(out);
+  if (outcome.augmented) {
+    result.model_file = "model.toml";
+    Write(out / result.model_file, support::ModelFileText(*outcome.augmented));
+    result.budget =
+        MeasureBudget(BuiltinSettings(request.model), *outcome.augmented, a.data, 1e-3 * a.period_ms, a.skip_bad);
+  } else {
+    std::filesystem::remove(out / "model.toml");
+  }
+  if (!result.separate_by.scenario_text.empty()) {
+    result.separate_by.scenario_file = "experiment.toml";
+    Write(out / result.separate_by.scenario_file, result.separate_by.scenario_text);
+  }
+  Write(out / "result.json", ToJson(result).dump(2) + "\n");
+  if (request.until == Step::kShow) Write(out / "report.html", ReportHtml(result));
+  std::cout << Summary(result);
+  std::cout << "result: " << (out / "result.json").string() << '\n';
+  if (request.until == Step::kShow) std::cout << "report: " << (out / "report.html").string() << '\n';
+  if (outcome.augmented) std::cout << "model:  " << (out / "model.toml").string() << '\n';
+  return support::kExitOk;
+}
+
+}  // namespace
+}  // namespace armcmc::gap
+
+int main(int argc, char** argv) {
+  CLI::App app{"Finds the physics that a model is missing."};
+  armcmc::gap::Arguments arguments;
+  armcmc::gap::Declare(&app, &arguments);
+  return armcmc::support::RunProgram(app, "armcmc-gap", argc, argv, [&] { return armcmc::gap::Run(arguments); });
+}

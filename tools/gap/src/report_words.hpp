@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "armcmc/gap/result.hpp"
+
+// Words of the report. Everything returned is HTML unless it says plain text.
+namespace armcmc::gap {
+
+/// "coulomb_friction from 4.25 s" -> "Coulomb friction from 4.25 s". Plain text.
+[[nodiscard]] std::string EffectTitle(std::string_view name);
+
+/// "Coulomb friction + sensor lag"; "nothing" for no effect. Plain text.
+[[nodiscard]] std::string EffectTitles(const std::vector<std::string>& names);
+
+/// "coulomb_friction + sensor_lag" -> "Coulomb friction + sensor lag", "sensor_lag" -> "sensor lag": for the middle of
+/// a sentence. Plain text.
+[[nodiscard]] std::string InSentence(std::string_view names);
+
+/// What an effect of the catalogue does to the equations, and one sentence about what that is. Empty when it is not
+/// known here.
+struct EffectWords {
+  std::string_view formula;
+  std::string_view meaning;
+};
+[[nodiscard]] EffectWords WordsOf(std::string_view name);
+
+/// "in contact only", "from t = 4.250 s on".
+[[nodiscard]] std::string WhenText(const When& when);
+
+/// Mean with unit: as many digits as the sd justifies.
+[[nodiscard]] std::string MeanText(const ParameterEstimate& p);
+/// "0.392 to 0.432", the central 95 % of a normal distribution; "held fixed" for sd 0, "not known" without.
+[[nodiscard]] std::string IntervalText(const ParameterEstimate& p);
+
+/// Number and unit, escaped.
+[[nodiscard]] std::string WithUnit(double value, int digits, std::string_view unit);
+
+/// How to read a share of samples inside the 95 % band.
+[[nodiscard]] std::string CoverageReading(double coverage);
+/// How to read a Ljung-Box statistic over its degrees of freedom.
+[[nodiscard]] std::string WhitenessReading(double whiteness);
+
+}  // namespace armcmc::gap
