@@ -105,7 +105,9 @@ int main(int argc, char** argv) {
   HideOptions hide;
   app.add_option("--scenario", scenario_name, "Scenario file, or the name of one that came with the program")
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "Seed of the sensor noise: the same seed gives the same data")
+  app.add_option("--seed", options.seed,
+                 "Seed of the sensor noise, and of what a scenario leaves to it (motion, ranges): the same\n"
+                 "seed gives the same data")
       ->capture_default_str();
   app.add_option("--duration", duration_s, "Seconds to run, instead of the scenario's duration");
   CLI::Option* url =
@@ -137,8 +139,8 @@ int main(int argc, char** argv) {
         throw InputError("--duration " + std::to_string(duration_s) + ": expected seconds in (0, 1000000]");
       duration = duration_s;
     }
-    Scenario scenario =
-        armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name), duration);
+    Scenario scenario = armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name),
+                                                        duration, options.seed);
     if (scenario.num_packs() < 1)
       throw InputError("the duration of " + std::to_string(scenario.duration_s) + " s does not hold one pack of " +
                        std::to_string(scenario.pack_period_s()) + " s");

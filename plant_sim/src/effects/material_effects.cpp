@@ -162,7 +162,8 @@ std::vector<EffectSpec> MaterialEffects() {
        [](const Values& v, const EffectTiming&) {
          return MakeEffect([gap = v[0], y = 0.0, started = false](EffectSignal* s) mutable {
            const double x = s->law.inputs[0];
-           if (!started) y = x;
+           // The drive has come from somewhere: it starts engaged, on the side that the motion pushes.
+           if (!started) y = x - std::copysign(gap, s->law.inputs[1]);
            started = true;
            const bool engaged = std::abs(x - y) >= gap;
            y = std::clamp(y, x - gap, x + gap);
