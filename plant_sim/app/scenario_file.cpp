@@ -83,12 +83,6 @@ Options ReadOptions(StrictTable* root, const PlantFamily& family) {
   return options;
 }
 
-const EffectSpec* FindSpec(const PlantFamily& family, const std::string& name, const std::string& variant) {
-  for (const EffectSpec& spec : EffectRegistry(family))
-    if (spec.name == name && spec.variant == variant) return &spec;
-  return nullptr;
-}
-
 /// Keys of [hidden_effect.parameters], which only a chosen formula gives a meaning.
 void ReadEffectValues(StrictTable table, const EffectSpec* spec, EffectRequest* request) {
   if (table.Keys().empty()) return;
@@ -123,7 +117,7 @@ HiddenEffects ReadHiddenEffects(StrictTable* root, const PlantFamily& family) {
       hidden.seed = static_cast<std::uint64_t>(entry.Integer("seed", 1, 0, kMaxSeed));
     }
     const std::string variant = variants.size() == 1 ? variants.front() : request.variant;
-    const EffectSpec* spec = FindSpec(family, request.name, variant);
+    const EffectSpec* spec = FindEffectSpec(family, request.name, variant);
     ReadEffectValues(entry.Table("parameters"), spec, &request);
     if (entry.Has("strength"))
       for (const auto& value : request.values)

@@ -68,6 +68,41 @@ TEST(Hide, TheStrengthGivesTheGapRatioOfEveryEffect) {
   }
 }
 
+TEST(Hide, AnEffectOfKnownSizeNeedsNoContact) {
+  const Scenario scenario = BuiltinScenario("experiment_free_air_chirp");
+  EffectRequest request = Request("inertia", "rigid", 1.0);
+  EXPECT_THROW((void)DecideEffects(scenario, {request}, 1), std::invalid_argument);
+  request.values = {{"mass", 1e-3}};
+  EXPECT_GT(DecideEffects(scenario, {request}, 1)[0].gap_ratio, 1.0);
+}
+
+TEST(Hide, TheGapRatioCountsANoiseThatGrowsByItsRms) {
+  Scenario scenario = Short();
+  EffectRequest request = Request("viscous_friction", "linear", 1.0);
+  request.values = {{"damping", 0.5}};
+  const double plain = DecideEffects(scenario, {request}, 1)[0].gap_ratio;
+  Simulation simulation(scenario, 1);
+  double sum = 0.0;
+  for (int i = 0; i <= 8000; ++i) {
+    ASSERT_TRUE(simulation.Next());
+    const double factor = 1.0 + 2.0 * std::abs(simulation.truth().output) / 1.5;
+    sum += factor * factor / 8001;
+  }
+  scenario.noise.back().growth = 2.0;
+  scenario.noise.back().reference = 1.5;
+  EXPECT_NEAR(DecideEffects(scenario, {request}, 1)[0].gap_ratio, plain / std::sqrt(sum), 1e-9 * plain);
+}
+
+TEST(Hide, FindsStrengthsOnEveryContactScenario) {
+  for (const char* name : {"contact_rich", "contact_rich_mm", "contact_slow_triangle", "contact_sine"}) {
+    const Scenario scenario = BuiltinScenario(name);
+    for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
+      const HiddenEffect effect = DecideEffects(scenario, {Request(spec.name, spec.variant, 0.5)}, 3).front();
+      EXPECT_NEAR(effect.gap_ratio, 0.5, 0.0051) << name << " " << spec.name << ":" << spec.variant;
+    }
+  }
+}
+
 TEST(Hide, TheSimulationCarriesTheEffectAndOnlyInTheOutput) {
   Scenario scenario = Short();
   Simulation plain(scenario, 5);

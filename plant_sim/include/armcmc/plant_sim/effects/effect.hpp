@@ -110,6 +110,9 @@ struct EffectSpec {
 
 /// All effects of a family of plants, in a fixed order; none for a family that offers none.
 [[nodiscard]] const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family);
+/// The effect of that name and formula, or nullptr.
+[[nodiscard]] const EffectSpec* FindEffectSpec(const PlantFamily& family, const std::string& name,
+                                               const std::string& variant);
 /// Names of a family's effects, each once.
 [[nodiscard]] std::vector<std::string> EffectNames(const PlantFamily& family);
 
