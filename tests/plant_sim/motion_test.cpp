@@ -134,6 +134,31 @@ TEST(Motion, ASineIsASineDampedByTheBandLimitAlone) {
                 0.5 + 0.31 * gain(1.0) * std::sin(2.0 * std::numbers::pi * (kDt * i + lead)), 1e-6);
 }
 
+TEST(Motion, AChirpSweepsUpAndDownAgainWithoutAJump) {
+  const std::vector<Motion::State> states = Follow(MotionSettings("contact_chirp"), 1, kDt, 3 * kSamples);
+  const auto crossings = [&states](double from, double to) {
+    int count = 0;
+    for (auto i = static_cast<std::size_t>(from / kDt); i < static_cast<std::size_t>(to / kDt); ++i)
+      count += (states[i].x < 0.6) != (states[i + 1].x < 0.6);
+    return count;
+  };
+  const auto fastest = [&states](double from, double to) {
+    double speed = 0.0;
+    for (auto i = static_cast<std::size_t>(from / kDt); i < static_cast<std::size_t>(to / kDt); ++i)
+      speed = std::max(speed, std::abs(states[i].v));
+    return speed;
+  };
+  // Ten seconds from 0.3 to 8 Hz, equally long in every octave, are 7.7 10 / ln(8 / 0.3) cycles.
+  const double cycles = 7.7 * 10.0 / std::log(8.0 / 0.3);
+  for (const double begin : {0.0, 10.0, 20.0}) EXPECT_NEAR(crossings(begin, begin + 10.0), 2.0 * cycles, 2.0) << begin;
+  EXPECT_LT(crossings(0.0, 2.0), 4);
+  EXPECT_GT(crossings(8.0, 10.0), 20);
+  EXPECT_GT(crossings(10.0, 12.0), 20);
+  EXPECT_LT(crossings(18.0, 20.0), 4);
+  EXPECT_NEAR(fastest(9.9, 10.1), fastest(9.5, 9.9), 0.1 * fastest(9.5, 9.9));
+  EXPECT_LT(fastest(19.0, 21.0), 0.1 * fastest(9.9, 10.1));
+}
+
 TEST(Motion, RichIsAnotherMotionForEverySeedAndTheSameForOne) {
   const std::vector<Motion::State> a = Follow(MotionSettings("rich"), 1), again = Follow(MotionSettings("rich"), 1);
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].x, again[i].x);
