@@ -68,12 +68,14 @@ TEST(Hide, TheStrengthGivesTheGapRatioOfEveryEffect) {
   }
 }
 
-TEST(Hide, AnEffectOfKnownSizeNeedsNoContact) {
+TEST(Hide, InTheAirOnlyEffectsThatAreFeltThereCanBeHidden) {
   const Scenario scenario = BuiltinScenario("experiment_free_air_chirp");
-  EffectRequest request = Request("inertia", "rigid", 1.0);
-  EXPECT_THROW((void)DecideEffects(scenario, {request}, 1), std::invalid_argument);
-  request.values = {{"mass", 1e-3}};
-  EXPECT_GT(DecideEffects(scenario, {request}, 1)[0].gap_ratio, 1.0);
+  for (const char* name : {"inertia", "force_bias", "force_drift", "viscous_friction", "coulomb_friction",
+                           "presliding_friction", "periodic_disturbance"})
+    EXPECT_NEAR(DecideEffects(scenario, {Request(name, "", 3.0)}, 1)[0].gap_ratio, 3.0, 0.031) << name;
+  for (const char* name :
+       {"adhesion", "stress_relaxation", "stiffness_drift", "sensor_delay", "sensor_lag", "sensor_saturation"})
+    EXPECT_THROW((void)DecideEffects(scenario, {Request(name, "", 3.0)}, 1), std::invalid_argument) << name;
 }
 
 TEST(Hide, TheGapRatioCountsANoiseThatGrowsByItsRms) {

@@ -130,14 +130,16 @@ class ContactGapMeter final : public GapMeter {
       ++contact;
     }
     const auto n = static_cast<double>(samples_.size());
-    const double force = std::sqrt(force_sq / static_cast<double>(std::max<std::size_t>(contact, 1)));
+    double force = std::sqrt(force_sq / static_cast<double>(std::max<std::size_t>(contact, 1)));
+    if (!(force > 0.0)) {
+      // In the air there is no force but the noise, and no depth but the way.
+      force = peak = noise_sd_;
+      for (const PlantSample& sample : samples_) depth = std::max(depth, std::abs(sample.inputs[0]));
+    }
     const double speed = std::sqrt(speed_sq / n), accel = std::sqrt(accel_sq / n);
     if (!(speed > 0.0)) throw std::invalid_argument("effects can be hidden only in a run that moves");
-    scales_ = {1.0,           timing_.duration_s,
-               force,         peak,
-               depth,         speed,
-               force / speed, force / (speed * speed),
-               force / accel, depth > 0.0 ? force / depth : 0.0};
+    scales_ = {1.0,           timing_.duration_s,      force,         peak,         depth, speed,
+               force / speed, force / (speed * speed), force / accel, force / depth};
   }
 
   std::unique_ptr<Plant> plant_;
@@ -160,7 +162,6 @@ bool FindStrength(const GapMeter& meter, double gap_ratio, HiddenEffect* effect)
   const EffectParameter& strength = effect->spec->parameters.front();
   const double scale = meter.scales()[static_cast<std::size_t>(strength.scale)];
   const double sign = effect->values.front() < 0.0 ? -1.0 : 1.0;
-  if (!(scale > 0.0)) return false;  // Without contact there is no force to measure a strength by.
   const auto measure = [&](double share) {
     effect->values.front() = sign * scale * strength.lo * std::pow(strength.hi / strength.lo, share);
     return effect->gap_ratio = meter.GapRatio({*effect});

@@ -47,7 +47,8 @@ template <typename Function>
 /// constitutive law is evaluated on what the first two left.
 enum class EffectStage : std::uint8_t { kInput, kParameters, kForce, kSensorDynamics, kSensorStatics };
 
-/// Natural sizes of a run, by which one range fits every scenario.
+/// Natural sizes of a run, by which one range fits every scenario. A run without contact has no force but the sd of its
+/// noise, and its depth is its longest way from the surface.
 enum class EffectScale : std::uint8_t {
   kOne,
   kDuration,         ///< s, of the run.

@@ -32,7 +32,7 @@ inline constexpr long long kMaxGapSamples = 200'000;
 
 /// Sets the strength of an effect, its first parameter, such that its gap ratio is `gap_ratio` to 1 %: upwards from the
 /// weakest end of its range to a crossing, then secants, both in logarithms. At most 81 refits, usually 4 to 8.
-/// @return false when the run has no size to measure the strength by, or no strength in the range gives that ratio; the
+/// @return false when no strength in the range gives that ratio; the
 /// effect is then unusable.
 [[nodiscard]] bool FindStrength(const GapMeter& meter, double gap_ratio, HiddenEffect* effect);
 
