@@ -10,6 +10,7 @@
 
 #include "armcmc/plant_sim/effects/hide.hpp"
 #include "live_run.hpp"
+#include "model_file.hpp"
 #include "offline_run.hpp"
 #include "scenario_file.hpp"
 #include "sealed_file.hpp"
@@ -43,6 +44,21 @@ constexpr const char* kFooter =
     "the truth columns stay those of the base equations. A scenario hides effects by [[hidden_effect]] tables with "
     "name,\n"
     "variant, gate, strength, seed (of the first table) and a table of parameters that are not to be drawn.\n"
+    "Model files: --model FILE.toml, as armcmc-estimator and armcmc-replay read them, makes its parameters and "
+    "effects,\n"
+    "at their means, the truth of the plant; motion and noise stay the scenario's.\n"
+    "  armcmc-plant --scenario contact_rich --model found.toml --csv predicted.csv\n"
+    "Scenarios contact_* move another plant in another way for every seed; experiment_* are motions made to tell "
+    "effects\n"
+    "apart. [motion] of a contact: tracking = \"prescribed\" with program (rich, sine, slow_triangle, fast_taps, "
+    "step_hold,\n"
+    "taps_of_depths, contact_chirp, free_air_chirp or free_air), depth (m), pace (2: twice as fast) and band_hz (low "
+    "pass).\n"
+    "[parameters]: a number or a range { low, high, law, at_depth, times } that the seed draws from. [noise.CHANNEL]: "
+    "kind,\n"
+    "std or std_share (of the rms in contact), correlation (of a sample with the next; with correlation_to drawn from "
+    "a\n"
+    "range), growth (with the size of the signal).\n"
     "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.";
 
 /// The options about hidden effects, as given.
@@ -99,13 +115,17 @@ void CheckPrefix(const std::string& prefix) {
 int main(int argc, char** argv) {
   CLI::App app(kDescription);
   app.footer(kFooter);
-  std::string scenario_name = "hunt_crossley_paper", inject;
+  std::string scenario_name = "hunt_crossley_paper", model_path, inject;
   double duration_s = 0.0;
   PlantOptions options;
   HideOptions hide;
   app.add_option("--scenario", scenario_name, "Scenario file, or the name of one that came with the program")
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "Seed of the sensor noise: the same seed gives the same data")
+  app.add_option("--model", model_path,
+                 "Model file whose parameters and effects, at their means, become the truth of the scenario's plant");
+  app.add_option("--seed", options.seed,
+                 "Seed of the sensor noise, and of what a scenario leaves to it (motion, ranges): the same\n"
+                 "seed gives the same data")
       ->capture_default_str();
   app.add_option("--duration", duration_s, "Seconds to run, instead of the scenario's duration");
   CLI::Option* url =
@@ -137,8 +157,13 @@ int main(int argc, char** argv) {
         throw InputError("--duration " + std::to_string(duration_s) + ": expected seconds in (0, 1000000]");
       duration = duration_s;
     }
-    Scenario scenario =
-        armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name), duration);
+    Scenario scenario = armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name),
+                                                        duration, options.seed);
+    if (!model_path.empty()) {
+      for (const char* option : {"--hide-effect", "--sealed"})
+        if (app.count(option) > 0) throw InputError(std::string(option) + " contradicts --model, which hides nothing");
+      armcmc::plant_sim::ApplyModelFile(model_path, &scenario);
+    }
     if (scenario.num_packs() < 1)
       throw InputError("the duration of " + std::to_string(scenario.duration_s) + " s does not hold one pack of " +
                        std::to_string(scenario.pack_period_s()) + " s");

@@ -9,6 +9,8 @@
 
 #include "armcmc/data_pack_t.hpp"
 #include "armcmc/plant_sim/effects/hide.hpp"
+#include "drawn_parameters.hpp"
+#include "noise_table.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
@@ -41,14 +43,10 @@ int ParameterIndex(const PlantFamily& family, const std::string& name) {
   return static_cast<int>(it - family.parameters.begin());
 }
 
-Schedule ReadSchedule(StrictTable* root, const PlantFamily& family) {
-  StrictTable table = root->Table("parameters");
-  std::vector<double> initial;
+Schedule ReadSchedule(StrictTable* root, const PlantFamily& family, std::uint64_t seed) {
+  std::vector<double> initial = ReadParameters(root->Table("parameters"), family, seed);
   std::vector<std::string> names;
-  for (const ParameterSpec& spec : family.parameters) {
-    initial.push_back(table.RequiredNumber(spec.name, spec.lo, spec.hi));
-    names.push_back(spec.name);
-  }
+  for (const ParameterSpec& spec : family.parameters) names.push_back(spec.name);
   std::vector<Change> changes;
   for (StrictTable& entry : root->Tables("change")) {
     Change change;
@@ -85,41 +83,6 @@ Options ReadOptions(StrictTable* root, const PlantFamily& family) {
   return options;
 }
 
-NoiseLaw ReadNoise(StrictTable table) {
-  NoiseLaw law;
-  const std::string kind = table.RequiredChoice("kind", {"gaussian", "student_t", "laplace", "mixture"});
-  law.std = table.RequiredNumber("std", 0.0, 1e9);
-  if (kind == "gaussian") law.kind = NoiseKind::kGaussian;
-  if (kind == "laplace") law.kind = NoiseKind::kLaplace;
-  if (kind == "student_t") {
-    law.kind = NoiseKind::kStudentT;
-    law.dof = table.Number("dof", law.dof, 0.5, 1e6);
-  }
-  if (kind == "mixture") {
-    law.kind = NoiseKind::kMixture;
-    law.outlier_weight = table.Number("outlier_weight", law.outlier_weight, 1e-6, 0.5);
-    law.outlier_scale = table.Number("outlier_scale", law.outlier_scale, 1.0, 1e6);
-  }
-  return law;
-}
-
-std::vector<NoiseLaw> ReadSensors(StrictTable* root, const PlantFamily& family) {
-  StrictTable table = root->Table("noise");
-  std::vector<NoiseLaw> laws;
-  const auto read = [&](const std::string& channel) {
-    laws.push_back(table.Has(channel) ? ReadNoise(table.Table(channel)) : NoiseLaw{});
-  };
-  for (const ChannelSpec& channel : family.inputs) read(channel.name);
-  read(family.output.name);
-  return laws;
-}
-
-const EffectSpec* FindSpec(const PlantFamily& family, const std::string& name, const std::string& variant) {
-  for (const EffectSpec& spec : EffectRegistry(family))
-    if (spec.name == name && spec.variant == variant) return &spec;
-  return nullptr;
-}
-
 /// Keys of [hidden_effect.parameters], which only a chosen formula gives a meaning.
 void ReadEffectValues(StrictTable table, const EffectSpec* spec, EffectRequest* request) {
   if (table.Keys().empty()) return;
@@ -154,7 +117,7 @@ HiddenEffects ReadHiddenEffects(StrictTable* root, const PlantFamily& family) {
       hidden.seed = static_cast<std::uint64_t>(entry.Integer("seed", 1, 0, kMaxSeed));
     }
     const std::string variant = variants.size() == 1 ? variants.front() : request.variant;
-    const EffectSpec* spec = FindSpec(family, request.name, variant);
+    const EffectSpec* spec = FindEffectSpec(family, request.name, variant);
     ReadEffectValues(entry.Table("parameters"), spec, &request);
     if (entry.Has("strength"))
       for (const auto& value : request.values)
@@ -167,23 +130,25 @@ HiddenEffects ReadHiddenEffects(StrictTable* root, const PlantFamily& family) {
 
 }  // namespace
 
-Scenario LoadScenario(const std::filesystem::path& path, std::optional<double> duration_s) {
+Scenario LoadScenario(const std::filesystem::path& path, std::optional<double> duration_s, std::uint64_t seed) {
   StrictTable root = StrictTable::FromFile(path);
   static_cast<void>(root.RequiredInteger("schema", 1, 1));
   Scenario scenario;
   scenario.name = path.stem().string();
+  scenario.seed = seed;
   scenario.family = FindPlantFamily(root.RequiredChoice("plant", FamilyNames()));
   scenario.duration_s = root.Number("duration_s", scenario.duration_s, 1e-3, kMaxDuration);
   scenario.sample_interval_s = root.Number("sample_interval_s", scenario.sample_interval_s, 1e-5, 1.0);
   scenario.pack_samples = ReadPackSamples(&root, scenario.sample_interval_s);
-  scenario.schedule = ReadSchedule(&root, *scenario.family);
+  scenario.schedule = ReadSchedule(&root, *scenario.family, seed);
   scenario.options = ReadOptions(&root, *scenario.family);
-  scenario.noise = ReadSensors(&root, *scenario.family);
+  scenario.noise = ReadNoise(root.Table("noise"), *scenario.family, seed);
   const HiddenEffects hidden = ReadHiddenEffects(&root, *scenario.family);
   root.Finish();
   if (duration_s) scenario.duration_s = *duration_s;
   try {
-    static_cast<void>(scenario.family->make(scenario.schedule, scenario.options, scenario.sample_interval_s));
+    static_cast<void>(scenario.MakePlant());
+    ResolveNoise(&scenario);
     scenario.hidden = DecideEffects(scenario, hidden.requests, hidden.seed);
   } catch (const std::invalid_argument& error) {
     throw ConfigError(path.string() + ": " + error.what());

@@ -21,13 +21,57 @@ Json Describe(const HiddenEffect& effect) {
     const EffectParameter& parameter = effect.spec->parameters[i];
     parameters[parameter.name] = {{"value", effect.values[i]}, {"unit", parameter.unit}};
   }
+  const bool from = effect.gate.kind == Gate::Kind::kFrom, until = effect.gate.kind == Gate::Kind::kUntil;
   return {{"name", effect.spec->name},
           {"variant", effect.spec->variant},
           {"formula_kind", FormulaKindName(effect.spec->kind)},
           {"formula", effect.spec->formula},
           {"gate", effect.gate.Text()},
+          {"onset_s", from ? Json(effect.gate.at_s) : Json()},
+          {"end_s", until ? Json(effect.gate.at_s) : Json()},
           {"gap_ratio", effect.gap_ratio},
           {"parameters", parameters}};
+}
+
+Json Describe(const NoiseLaw& law, const std::string& unit) {
+  Json json = {{"kind", NoiseKindName(law.kind)}};
+  if (law.kind == NoiseKind::kNone) return json;
+  json["std"] = law.std;
+  json["sd"] = NoiseSd(law);
+  json["unit"] = unit;
+  json["correlation"] = law.correlation;
+  json["growth"] = law.growth;
+  if (law.reference > 0.0) json["reference"] = law.reference;
+  if (law.kind == NoiseKind::kStudentT) json["dof"] = law.dof;
+  if (law.kind == NoiseKind::kMixture) {
+    json["outlier_weight"] = law.outlier_weight;
+    json["outlier_scale"] = law.outlier_scale;
+  }
+  return json;
+}
+
+Json Noise(const Scenario& scenario) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < scenario.noise.size(); ++i) {
+    const bool input = i < scenario.family->inputs.size();
+    const ChannelSpec& channel = input ? scenario.family->inputs[i] : scenario.family->output;
+    json[channel.name] = Describe(scenario.noise[i], channel.unit);
+  }
+  return json;
+}
+
+/// Every option of the family by table.
+Json OptionValues(const Scenario& scenario) {
+  Json json = Json::object();
+  for (const OptionSpec& spec : scenario.family->options) {
+    Json& at = json[spec.table][spec.key];
+    switch (spec.kind) {
+      case OptionSpec::Kind::kNumber: at = scenario.options.Number(spec.key); break;
+      case OptionSpec::Kind::kList: at = scenario.options.List(spec.key); break;
+      case OptionSpec::Kind::kChoice: at = scenario.options.Choice(spec.key); break;
+    }
+  }
+  return json;
 }
 
 }  // namespace
@@ -37,16 +81,20 @@ std::string WriteSealedFile(const Scenario& scenario, std::uint64_t seed, const 
   for (const HiddenEffect& effect : scenario.hidden) effects.push_back(Describe(effect));
   for (std::size_t i = 0; i < scenario.family->parameters.size(); ++i)
     base[scenario.family->parameters[i].name] = scenario.schedule.Value(static_cast<int>(i), 0.0);
-  const double gap_ratio = scenario.hidden.empty() ? 0.0 : MakeGapMeter(scenario)->GapRatio(scenario.hidden);
-  const Json truth = {{"schema", 1},
-                      {"plant", scenario.family->name},
-                      {"scenario", scenario.name},
-                      {"seed", seed},
-                      {"duration_s", scenario.duration_s},
-                      {"kind", HiddenKindName(KindOf(scenario.hidden))},
-                      {"gap_ratio", gap_ratio},
-                      {"base_parameters", base},
-                      {"effects", effects}};
+  double gap_ratio = scenario.hidden.size() == 1 ? scenario.hidden.front().gap_ratio : 0.0;
+  if (scenario.hidden.size() > 1) gap_ratio = MakeGapMeter(scenario)->GapRatio(scenario.hidden);
+  Json truth = {{"schema", 1},
+                {"plant", scenario.family->name},
+                {"scenario", scenario.name},
+                {"seed", seed},
+                {"duration_s", scenario.duration_s},
+                {"sample_interval_s", scenario.sample_interval_s},
+                {"kind", HiddenKindName(KindOf(scenario.hidden))},
+                {"gap_ratio", gap_ratio},
+                {"base_parameters", base},
+                {"effects", effects},
+                {"noise", Noise(scenario)}};
+  truth.update(OptionValues(scenario));
   const std::string text = truth.dump(2) + "\n";
   std::ofstream file(path, std::ios::binary);
   file << text << std::flush;

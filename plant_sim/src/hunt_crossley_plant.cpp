@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "armcmc/data_pack_t.hpp"
 #include "armcmc/plant_sim/solver.hpp"
@@ -21,28 +22,27 @@ double ContactForce(double k, double b, double p, double x, double v) noexcept {
   return x >= 0.0 ? std::pow(x, p) * (k + b * v) : 0.0;
 }
 
-std::unique_ptr<Plant> Make(const Schedule& schedule, const Options& options, double sample_interval_s) {
-  return std::make_unique<HuntCrossleyPlant>(schedule, options, sample_interval_s);
-}
+std::unique_ptr<Plant> Make(const PlantSetup& setup) { return std::make_unique<HuntCrossleyPlant>(setup); }
 
 }  // namespace
 
-HuntCrossleyPlant::HuntCrossleyPlant(const Schedule& schedule, const Options& options, double sample_interval_s)
-    : schedule_(schedule),
-      offset_(options.Number("master_offset")),
-      damping_(options.Number("damping")),
-      stiffness_(options.Number("stiffness")),
-      start_force_(options.Number("start_force")),
-      dt_(sample_interval_s),
-      paper_tracking_(options.Choice("tracking") == "paper"),
-      substeps_(NumSubsteps(sample_interval_s, kMaxStep)) {
-  const std::vector<double>& amplitude = options.List("master_amplitude");
-  const std::vector<double>& omega = options.List("master_omega");
-  const std::vector<double>& phase = options.List("master_phase");
+HuntCrossleyPlant::HuntCrossleyPlant(const PlantSetup& setup)
+    : schedule_(setup.schedule),
+      offset_(setup.options.Number("master_offset")),
+      damping_(setup.options.Number("damping")),
+      stiffness_(setup.options.Number("stiffness")),
+      start_force_(setup.options.Number("start_force")),
+      dt_(setup.sample_interval_s),
+      paper_tracking_(setup.options.Choice("tracking") == "paper"),
+      substeps_(NumSubsteps(setup.sample_interval_s, kMaxStep)) {
+  const std::vector<double>& amplitude = setup.options.List("master_amplitude");
+  const std::vector<double>& omega = setup.options.List("master_omega");
+  const std::vector<double>& phase = setup.options.List("master_phase");
   if (omega.size() != amplitude.size() || (!phase.empty() && phase.size() != amplitude.size()))
     throw std::invalid_argument("motion.master_amplitude, master_omega and master_phase must have one entry per wave");
   for (std::size_t i = 0; i < amplitude.size(); ++i)
     waves_.push_back({amplitude[i], omega[i], phase.empty() ? 0.0 : phase[i]});
+  if (setup.options.Choice("tracking") == "prescribed") motion_.emplace(setup.options, setup.seed);
 }
 
 double HuntCrossleyPlant::MasterPosition(double t) const noexcept {
@@ -76,7 +76,10 @@ HuntCrossleyPlant::State HuntCrossleyPlant::PaperStep(double t, const State& sta
 }
 
 void HuntCrossleyPlant::Advance(PlantSample* sample) noexcept {
-  if (k_ >= 0) {
+  if (motion_) {
+    const Motion::State at = motion_->At(static_cast<double>(k_ + 1) * dt_);
+    state_ = State(at.x, at.v);
+  } else if (k_ >= 0) {
     const double t = static_cast<double>(k_) * dt_;
     if (paper_tracking_) {
       state_ = PaperStep(t, state_);
@@ -111,8 +114,8 @@ const PlantFamily& HuntCrossleyFamily() {
     f.kind = data_pack_t::PLANT_HUNT_CROSSLEY;
     f.inputs = {{"x", "m"}, {"v", "m/s"}};
     f.output = {"f", "N"};
-    f.parameters = {{"K", "N/m^p", 0.0, 1e6}, {"B", "N s/m^(p+1)", 0.0, 1e6}, {"p", "-", 0.1, 10.0}};
-    f.options = {OptionSpec::Choice("motion", "tracking", {"exact", "paper"}),
+    f.parameters = {{"K", "N/m^p", 0.0, 1e12, "p"}, {"B", "N s/m^(p+1)", 0.0, 1e12, "p"}, {"p", "-", 0.1, 10.0}};
+    f.options = {OptionSpec::Choice("motion", "tracking", {"exact", "paper", "prescribed"}),
                  OptionSpec::Number("motion", "master_offset", 0.6, -100.0, 100.0),
                  OptionSpec::List("motion", "master_amplitude", {1.0}, -100.0, 100.0),
                  OptionSpec::List("motion", "master_omega", {1.0}, 0.0, 1000.0),
@@ -120,6 +123,7 @@ const PlantFamily& HuntCrossleyFamily() {
                  OptionSpec::Number("motion", "damping", 3.0, 0.0, 1000.0),
                  OptionSpec::Number("motion", "stiffness", 2.0, 0.0, 1e5),
                  OptionSpec::Number("motion", "start_force", 0.0, -1e3, 1e3)};
+    for (OptionSpec& spec : MotionOptions()) f.options.push_back(std::move(spec));
     f.modes = {"contact"};
     f.truth_names = {"K", "B", "p"};
     f.target = {"f_true", "clean_force_mae_mN", 1e3, "noisy_force_l2_N"};

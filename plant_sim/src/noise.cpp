@@ -5,6 +5,17 @@
 
 namespace armcmc::plant_sim {
 
+const char* NoiseKindName(NoiseKind kind) noexcept {
+  switch (kind) {
+    case NoiseKind::kNone: return "none";
+    case NoiseKind::kGaussian: return "gaussian";
+    case NoiseKind::kStudentT: return "student_t";
+    case NoiseKind::kLaplace: return "laplace";
+    case NoiseKind::kMixture: return "mixture";
+  }
+  return "";
+}
+
 double Draw(const NoiseLaw& law, Rng* rng) noexcept {
   switch (law.kind) {
     case NoiseKind::kNone: return 0.0;
@@ -21,6 +32,18 @@ double Draw(const NoiseLaw& law, Rng* rng) noexcept {
       const bool outlier = rng->Uniform() < law.outlier_weight;
       return law.std * (outlier ? law.outlier_scale : 1.0) * rng->Normal();
     }
+  }
+  return 0.0;
+}
+
+double NoiseSd(const NoiseLaw& law) {
+  switch (law.kind) {
+    case NoiseKind::kNone: return 0.0;
+    case NoiseKind::kGaussian: return law.std;
+    case NoiseKind::kStudentT: return law.dof > 2.0 ? law.std * std::sqrt(law.dof / (law.dof - 2.0)) : law.std;
+    case NoiseKind::kLaplace: return std::sqrt(2.0) * law.std;
+    case NoiseKind::kMixture:
+      return law.std * std::sqrt(1.0 + law.outlier_weight * (law.outlier_scale * law.outlier_scale - 1.0));
   }
   return 0.0;
 }

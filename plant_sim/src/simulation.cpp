@@ -5,9 +5,7 @@
 namespace armcmc::plant_sim {
 
 Simulation::Simulation(const Scenario& scenario, std::uint64_t seed)
-    : plant_(scenario.family->make(scenario.schedule, scenario.options, scenario.sample_interval_s)),
-      sensors_(scenario.noise, seed),
-      num_inputs_(scenario.family->num_inputs()) {
+    : plant_(scenario.MakePlant()), sensors_(scenario.noise, seed), num_inputs_(scenario.family->num_inputs()) {
   if (scenario.hidden.empty()) return;
   const EffectTiming timing{scenario.sample_interval_s, scenario.duration_s};
   plant_->Hide(scenario.hidden, timing);

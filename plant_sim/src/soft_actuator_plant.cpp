@@ -14,22 +14,20 @@ enum Parameter { kTheta1Fill = 0, kTheta2Fill = 1, kTheta1Vent = 2, kTheta2Vent 
 
 double SignedRoot(double difference) noexcept { return std::copysign(std::sqrt(std::abs(difference)), difference); }
 
-std::unique_ptr<Plant> Make(const Schedule& schedule, const Options& options, double sample_interval_s) {
-  return std::make_unique<SoftActuatorPlant>(schedule, options, sample_interval_s);
-}
+std::unique_ptr<Plant> Make(const PlantSetup& setup) { return std::make_unique<SoftActuatorPlant>(setup); }
 
 }  // namespace
 
-SoftActuatorPlant::SoftActuatorPlant(const Schedule& schedule, const Options& options, double sample_interval_s)
-    : schedule_(schedule),
-      p_atm_(options.Number("p_atm")),
-      p_supply_(options.Number("p_supply")),
-      q1_(options.Number("q1")),
-      q2_(options.Number("q2")),
-      q3_(options.Number("q3")),
-      dt_(sample_interval_s),
-      substeps_(NumSubsteps(sample_interval_s, options.Number("max_step_s"))),
-      controller_(MakeValveController(options, p_atm_, sample_interval_s)) {
+SoftActuatorPlant::SoftActuatorPlant(const PlantSetup& setup)
+    : schedule_(setup.schedule),
+      p_atm_(setup.options.Number("p_atm")),
+      p_supply_(setup.options.Number("p_supply")),
+      q1_(setup.options.Number("q1")),
+      q2_(setup.options.Number("q2")),
+      q3_(setup.options.Number("q3")),
+      dt_(setup.sample_interval_s),
+      substeps_(NumSubsteps(setup.sample_interval_s, setup.options.Number("max_step_s"))),
+      controller_(MakeValveController(setup.options, p_atm_, setup.sample_interval_s)) {
   if (!(p_supply_ > p_atm_)) throw std::invalid_argument("constants.p_supply must be above constants.p_atm");
   if (!(Truth(kFill, 0.0)[0] > 0.0))
     throw std::invalid_argument("theta1_c + theta2_c p_atm must be positive: an open fill valve raises the pressure");

@@ -102,7 +102,7 @@ double Sign(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
 TEST(Effects, MemorylessOnesFollowTheirFormula) {
   using P = Bench::Point;
   ExpectSeen("force_bias", "constant", {-0.3}, [](const P& p) { return p.base - 0.3; });
-  ExpectSeen("force_drift", "linear", {0.5}, [](const P& p) { return p.base + 0.5 * p.t / kDuration; });
+  ExpectSeen("force_drift", "linear", {0.5, 1.5}, [](const P& p) { return p.base + 0.5 * (p.t - 1.5) / kDuration; });
   ExpectSeen("force_drift", "exponential", {0.5, 2.0},
              [](const P& p) { return p.base + 0.5 * (1.0 - std::exp(-p.t / 2.0)); });
   ExpectSeen("coulomb_friction", "sign", {0.2}, [](const P& p) { return p.base + 0.2 * Sign(p.v); });
@@ -122,8 +122,10 @@ TEST(Effects, MemorylessOnesFollowTheirFormula) {
   ExpectSeen("adhesion", "exponential", {0.3, 0.1},
              [](const P& p) { return p.base - (p.x >= 0.0 && p.v < 0.0 ? 0.3 * std::exp(-p.x / 0.1) : 0.0); });
   ExpectSeen("contact_offset", "shift", {0.05}, [](const P& p) { return Law(p.x - 0.05, p.v); });
-  ExpectSeen("stiffness_drift", "linear", {0.5},
-             [](const P& p) { return Law(p.x, p.v, kK * (1.0 + 0.5 * p.t / kDuration)); });
+  ExpectSeen("stiffness_drift", "linear", {0.5, 1.5},
+             [](const P& p) { return Law(p.x, p.v, kK * (1.0 + 0.5 * (p.t - 1.5) / kDuration)); });
+  ExpectSeen("stiffness_drift", "linear", {-2.0, 0.0},
+             [](const P& p) { return Law(p.x, p.v, kK * std::max(1.0 - 2.0 * p.t / kDuration, 0.0)); });
   ExpectSeen("stiffness_drift", "exponential", {-0.5, 2.0},
              [](const P& p) { return Law(p.x, p.v, kK * (1.0 - 0.5 * (1.0 - std::exp(-p.t / 2.0)))); });
   ExpectSeen("strain_stiffening", "exponential", {0.5, 0.1},
@@ -172,17 +174,25 @@ TEST(Effects, RelaxationDecaysInAHold) {
               0.25 * elastic * (std::exp(-since / 0.1) + std::exp(-since / 0.5)), 1e-5);
 }
 
+TEST(Effects, RelaxationStartsRelaxed) {
+  const Motion hold{[](double) { return 0.25; }, [](double) { return 0.0; }};
+  for (const char* variant : {"linear", "elastic"}) {
+    Bench bench("stress_relaxation", variant, {3.0, 0.3}, hold);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(bench.Next().seen, Law(0.25, 0.0)) << variant;
+  }
+}
+
 TEST(Effects, PreslidingFrictionBuildsUpOverADistance) {
   const Motion slide{[](double t) { return -5.0 + 0.1 * t; }, [](double) { return 0.1; }};
-  // z = x_s (1 - exp(-distance / x_s)).
+  // z = x_s (1 - exp(-distance / x_s)), from rest at the first sample.
   EXPECT_NEAR(Bench("presliding_friction", "dahl", {0.5, 0.02}, slide).At(0.2).seen,
-              0.5 * (1.0 - std::exp(-0.1 * 0.201 / 0.02)), 1e-12);
+              0.5 * (1.0 - std::exp(-0.1 * 0.2 / 0.02)), 1e-12);
   // Slid on, the bristles carry the Stribeck level.
   EXPECT_NEAR(Bench("presliding_friction", "lugre", {0.5, 0.02, 0.6, 0.1, 0.005}, slide).At(9.0).seen,
               0.5 * (1.0 + 0.6 * std::exp(-1.0)), 1e-9);
   // In the first moment the stiff bristles also damp: z' = v.
   EXPECT_NEAR(Bench("presliding_friction", "lugre", {0.5, 0.02, 0.6, 0.1, 0.005}, slide).Next().seen,
-              0.5 * (0.1 * kDt + 0.005 * 0.1) / 0.02, 1e-4);
+              0.5 * 0.005 * 0.1 / 0.02, 1e-12);
 }
 
 TEST(Effects, PullOffHoldsBeyondTheSurfaceUntilTheNeckBreaks) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -108,6 +109,82 @@ TEST(PlantProgramHides, ARandomDrawIsReproducedToTheByteAndNoneIsSealedToo) {
   EXPECT_EQ(nlohmann::json::parse(Text(folder / "none.json")).at("kind"), "none");
 }
 
+TEST(PlantProgramHides, TheSealedFileTellsAllThatAScorerNeeds) {
+  const test::ScratchDir folder;
+  const auto run = [&folder](const std::string& seed) {
+    const Ended ended = RunPlant({"--scenario", "contact_rich_mm", "--seed", seed, "--csv", seed + ".csv", "--sealed",
+                                  seed + ".json", "--hide-effect", "coulomb_friction:tanh", "--effect-gate", "from:4"},
+                                 folder);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return nlohmann::json::parse(Text(folder / (seed + ".json")));
+  };
+  const nlohmann::json truth = run("7"), other = run("8");
+  const nlohmann::json& effect = truth.at("effects").at(0);
+  EXPECT_EQ(effect.at("formula_kind"), "catalogue");
+  EXPECT_EQ(effect.at("onset_s"), 4.0);
+  EXPECT_TRUE(effect.at("end_s").is_null());
+  EXPECT_NEAR(truth.at("gap_ratio").get<double>(), 1.0, 0.05);
+  EXPECT_EQ(truth.at("motion").at("program"), "rich");
+  EXPECT_EQ(truth.at("motion").at("depth"), 8e-3);
+  const nlohmann::json& noise = truth.at("noise").at("f");
+  EXPECT_EQ(noise.at("kind"), "gaussian");
+  EXPECT_EQ(noise.at("unit"), "N");
+  EXPECT_NEAR(noise.at("sd").get<double>(), 0.01 * noise.at("reference").get<double>(), 1e-12);
+  EXPECT_LE(noise.at("correlation").get<double>(), 0.8);
+  EXPECT_EQ(truth.at("noise").at("v").at("std"), 1e-4);
+  for (const char* name : {"K", "B", "p"})
+    EXPECT_NE(truth.at("base_parameters").at(name), other.at("base_parameters").at(name));
+  EXPECT_NE(noise.at("correlation"), other.at("noise").at("f").at("correlation"));
+  // The truth columns of the data say the same.
+  std::ifstream csv(folder / "7.csv");
+  std::string header, row;
+  std::getline(csv, header);
+  std::getline(csv, row);
+  EXPECT_EQ(header, "t,x,v,f,f_true,K_true,B_true,p_true");
+  EXPECT_EQ(std::stod(Fields(row).at(5)), truth.at("base_parameters").at("K").get<double>());
+}
+
+TEST(PlantProgram, ASeedGivesTheSameMotionToTheByteAndAnotherSeedAnother) {
+  const test::ScratchDir folder;
+  const auto run = [&folder](const std::string& seed, const std::string& name) {
+    EXPECT_EQ(RunPlant({"--scenario", "contact_rich", "--seed", seed, "--csv", name}, folder).code, 0);
+    return Text(folder / name);
+  };
+  const std::string a = run("1", "a.csv");
+  EXPECT_EQ(a, run("1", "b.csv"));
+  const std::string c = run("2", "c.csv");
+  std::stringstream one(a), two(c);
+  std::string x, y;
+  double distance = 0.0;
+  std::getline(one, x);
+  std::getline(two, y);
+  while (std::getline(one, x) && std::getline(two, y))
+    distance += std::abs(std::stod(Fields(x).at(1)) - std::stod(Fields(y).at(1))) / 10'000;
+  EXPECT_GT(distance, 0.02);
+}
+
+TEST(PlantProgram, AModelFileBecomesThePlant) {
+  const test::ScratchDir folder;
+  const auto run = [&folder](const std::string& text, const std::string& name) {
+    std::ofstream(folder / "model.toml") << "schema = 1\nbase = \"hunt_crossley\"\n" << text;
+    const Ended ended = RunPlant({"--scenario", "contact_rich", "--model", "model.toml", "--csv", name}, folder);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return Text(folder / name);
+  };
+  const std::string base = "[parameters.K]\nmean = 3.0\n";
+  std::stringstream plain(run(base, "plain.csv")),
+      biased(run(base + "[[effect]]\nname = \"force_bias\"\nforce = { mean = 0.5, sd = 0.1 }\n", "biased.csv"));
+  std::string x, y;
+  std::getline(plain, x);
+  std::getline(biased, y);
+  while (std::getline(plain, x) && std::getline(biased, y)) {
+    const std::vector<std::string> a = Fields(x), b = Fields(y);
+    ASSERT_EQ(std::stod(a.at(5)), 3.0);
+    ASSERT_NEAR(std::stod(b.at(3)) - std::stod(a.at(3)), 0.5, 1e-12);
+    ASSERT_EQ(a.at(4), b.at(4));  // f_true stays the base equation's
+  }
+}
+
 TEST(PlantProgramHides, AScenarioFileMayNameTheEffect) {
   const test::ScratchDir folder;
   const std::string paper = Text(test::SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml");
@@ -150,6 +227,8 @@ TEST(PlantProgramHides, BadUsageEndsWithTwoAndOneClearLine) {
   expect({"--hide-effect", "inertia", "--sealed", "t.json", "--effect-strength", "0"}, "--effect-strength");
   expect({"--scenario", "soft_actuator_excited", "--hide-effect", "leak", "--effect-gate", "contact", "--sealed", "t"},
          "makes no contact");
+  expect({"--model", "none.toml"}, "none.toml");
+  expect({"--model", "none.toml", "--hide-effect", "inertia", "--sealed", "t"}, "contradicts --model");
   expect({"--scenario", "soft_actuator_paper", "--hide-effect", "leak", "--sealed", "t"}, "no noise");
 }
 

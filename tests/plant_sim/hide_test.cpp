@@ -68,6 +68,43 @@ TEST(Hide, TheStrengthGivesTheGapRatioOfEveryEffect) {
   }
 }
 
+TEST(Hide, InTheAirOnlyEffectsThatAreFeltThereCanBeHidden) {
+  const Scenario scenario = BuiltinScenario("experiment_free_air_chirp");
+  for (const char* name : {"inertia", "force_bias", "force_drift", "viscous_friction", "coulomb_friction",
+                           "presliding_friction", "periodic_disturbance"})
+    EXPECT_NEAR(DecideEffects(scenario, {Request(name, "", 3.0)}, 1)[0].gap_ratio, 3.0, 0.031) << name;
+  for (const char* name :
+       {"adhesion", "stress_relaxation", "stiffness_drift", "sensor_delay", "sensor_lag", "sensor_saturation"})
+    EXPECT_THROW((void)DecideEffects(scenario, {Request(name, "", 3.0)}, 1), std::invalid_argument) << name;
+}
+
+TEST(Hide, TheGapRatioCountsANoiseThatGrowsByItsRms) {
+  Scenario scenario = Short();
+  EffectRequest request = Request("viscous_friction", "linear", 1.0);
+  request.values = {{"damping", 0.5}};
+  const double plain = DecideEffects(scenario, {request}, 1)[0].gap_ratio;
+  Simulation simulation(scenario, 1);
+  double sum = 0.0;
+  for (int i = 0; i <= 8000; ++i) {
+    ASSERT_TRUE(simulation.Next());
+    const double factor = 1.0 + 2.0 * std::abs(simulation.truth().output) / 1.5;
+    sum += factor * factor / 8001;
+  }
+  scenario.noise.back().growth = 2.0;
+  scenario.noise.back().reference = 1.5;
+  EXPECT_NEAR(DecideEffects(scenario, {request}, 1)[0].gap_ratio, plain / std::sqrt(sum), 1e-9 * plain);
+}
+
+TEST(Hide, FindsStrengthsOnEveryContactScenario) {
+  for (const char* name : {"contact_rich", "contact_rich_mm", "contact_slow_triangle", "contact_sine"}) {
+    const Scenario scenario = BuiltinScenario(name);
+    for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
+      const HiddenEffect effect = DecideEffects(scenario, {Request(spec.name, spec.variant, 0.5)}, 3).front();
+      EXPECT_NEAR(effect.gap_ratio, 0.5, 0.0051) << name << " " << spec.name << ":" << spec.variant;
+    }
+  }
+}
+
 TEST(Hide, TheSimulationCarriesTheEffectAndOnlyInTheOutput) {
   Scenario scenario = Short();
   Simulation plain(scenario, 5);

@@ -59,7 +59,9 @@ TEST(HiddenEffects, DoNotAllocateOnThePublishingPath) {
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, PublishingPath,
                          testing::Values("hunt_crossley_paper", "hunt_crossley_drift", "soft_actuator_paper",
-                                         "soft_actuator_excited"));
+                                         "soft_actuator_excited", "contact_rich", "experiment_step_hold",
+                                         "experiment_closed_valve_hold", "experiment_u_triangle",
+                                         "experiment_fast_and_slow_fills"));
 
 }  // namespace
 }  // namespace armcmc::plant_sim

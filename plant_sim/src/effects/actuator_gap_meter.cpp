@@ -29,7 +29,7 @@ class ActuatorGapMeter final : public GapMeter {
 
   [[nodiscard]] double GapRatio(const std::vector<HiddenEffect>& effects) const override {
     const EffectTiming timing{scenario_.sample_interval_s, scenario_.duration_s};
-    const auto plant = scenario_.family->make(scenario_.schedule, scenario_.options, timing.dt_s);
+    const auto plant = scenario_.MakePlant();
     plant->Hide(effects, timing);
     EffectChain chain(effects, timing, plant.get());
     const long long last = std::min(scenario_.num_packs() * scenario_.pack_samples, kMaxGapSamples);

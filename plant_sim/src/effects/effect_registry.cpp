@@ -26,6 +26,12 @@ const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family) {
   return family.name == "soft_actuator" ? actuator : none;
 }
 
+const EffectSpec* FindEffectSpec(const PlantFamily& family, const std::string& name, const std::string& variant) {
+  for (const EffectSpec& spec : EffectRegistry(family))
+    if (spec.name == name && spec.variant == variant) return &spec;
+  return nullptr;
+}
+
 std::vector<std::string> EffectNames(const PlantFamily& family) {
   std::vector<std::string> names;
   for (const EffectSpec& spec : EffectRegistry(family))

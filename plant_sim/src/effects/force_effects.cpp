@@ -20,6 +20,7 @@ std::vector<EffectSpec> ForceEffects() {
   const EffectParameter amplitude{"amplitude", "N", kForce, 1e-5, 10.0};
   const EffectParameter frequency{"frequency", "Hz", kOne, 3.0, 60.0};
   const EffectParameter phase{"phase", "rad", kOne, 0.0, kTwoPi};
+  const EffectParameter origin{"origin", "s", kOne, 0.0, 0.0};  // Never drawn: what it does, a bias does, too.
   return {
       {"force_bias",
        "constant",
@@ -34,13 +35,14 @@ std::vector<EffectSpec> ForceEffects() {
       {"force_drift",
        "linear",
        kCatalogue,
-       "f + force t / T",
+       "f + force (t - origin) / T",
        EffectStage::kSensorStatics,
        false,
-       {force},
+       {force, origin},
        [](const Values& v, const EffectTiming& timing) {
-         return MakeEffect(
-             [slope = v[0] / timing.duration_s](EffectSignal* s) { s->seen.output += slope * s->truth.t_s; });
+         return MakeEffect([slope = v[0] / timing.duration_s, origin = v[1]](EffectSignal* s) {
+           s->seen.output += slope * (s->truth.t_s - origin);
+         });
        }},
       {"force_drift",
        "exponential",

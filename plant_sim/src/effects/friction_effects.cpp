@@ -18,10 +18,15 @@ double Stribeck(double level, double excess, double v, double v_stribeck) noexce
 }
 
 /// Mean deflection of the bristles that carry the friction (Dahl 1968; Canudas de Wit et al. 1995):
-///   z' = v - |v| z / reach, solved exactly for v held over a step.
+///   z' = v - |v| z / reach, solved exactly for v held over the step before a sample; z = 0 at the first.
 class Bristle {
  public:
   void Step(double v, double reach, double dt) noexcept {
+    if (!started_) {
+      started_ = true;
+      rate_ = v;
+      return;
+    }
     const double end = reach * Sign(v);
     const double decay = std::exp(-std::abs(v) / reach * dt);
     const double next = end + (z_ - end) * decay;
@@ -33,6 +38,7 @@ class Bristle {
 
  private:
   double z_ = 0.0, rate_ = 0.0;
+  bool started_ = false;
 };
 
 }  // namespace
@@ -48,7 +54,7 @@ std::vector<EffectSpec> FrictionEffects() {
   return {
       {"coulomb_friction",
        "sign",
-       kCatalogue,
+       kVariant,
        "f + force sign(v)",
        EffectStage::kForce,
        true,
@@ -58,7 +64,7 @@ std::vector<EffectSpec> FrictionEffects() {
        }},
       {"coulomb_friction",
        "tanh",
-       kVariant,
+       kCatalogue,
        "f + force tanh(v / v_s)",
        EffectStage::kForce,
        true,

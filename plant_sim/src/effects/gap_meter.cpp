@@ -16,7 +16,7 @@ namespace {
 class ContactGapMeter final : public GapMeter {
  public:
   explicit ContactGapMeter(const Scenario& scenario)
-      : plant_(scenario.family->make(scenario.schedule, scenario.options, scenario.sample_interval_s)),
+      : plant_(scenario.MakePlant()),
         timing_{scenario.sample_interval_s, scenario.duration_s},
         noise_sd_(NoiseSd(scenario.noise.back())) {
     if (!(noise_sd_ > 0.0))
@@ -28,6 +28,7 @@ class ContactGapMeter final : public GapMeter {
       plant_->Advance(&sample);
       if (!std::isfinite(sample.output)) throw std::invalid_argument("the plant leaves the finite range");
     }
+    MeasureNoise(scenario.noise.back());
     MeasureScales();
   }
 
@@ -35,6 +36,7 @@ class ContactGapMeter final : public GapMeter {
     EffectChain chain(effects, timing_, plant_.get());
     double free_sq = 0.0;
     std::vector<Row> rows;
+    rows.reserve(samples_.size());
     for (const PlantSample& sample : samples_) {
       const double seen = chain.Apply(sample).output;
       const double x = sample.inputs[0];
@@ -100,6 +102,17 @@ class ContactGapMeter final : public GapMeter {
     return now.sum_sq;
   }
 
+  /// A noise that grows with the force counts with its rms over the run.
+  void MeasureNoise(const NoiseLaw& law) {
+    if (!(law.growth > 0.0)) return;
+    double sum = 0.0;
+    for (const PlantSample& sample : samples_) {
+      const double factor = 1.0 + law.growth * std::abs(sample.output) / law.reference;
+      sum += factor * factor;
+    }
+    noise_sd_ *= std::sqrt(sum / static_cast<double>(samples_.size()));
+  }
+
   void MeasureScales() {
     double force_sq = 0.0, speed_sq = 0.0, accel_sq = 0.0, peak = 0.0, depth = 0.0;
     std::size_t contact = 0;
@@ -117,10 +130,14 @@ class ContactGapMeter final : public GapMeter {
       ++contact;
     }
     const auto n = static_cast<double>(samples_.size());
-    const double force = std::sqrt(force_sq / static_cast<double>(std::max<std::size_t>(contact, 1)));
+    double force = std::sqrt(force_sq / static_cast<double>(std::max<std::size_t>(contact, 1)));
+    if (!(force > 0.0)) {
+      // In the air there is no force but the noise, and no depth but the way.
+      force = peak = noise_sd_;
+      for (const PlantSample& sample : samples_) depth = std::max(depth, std::abs(sample.inputs[0]));
+    }
     const double speed = std::sqrt(speed_sq / n), accel = std::sqrt(accel_sq / n);
-    if (!(force > 0.0) || !(speed > 0.0) || !(depth > 0.0))
-      throw std::invalid_argument("effects can be hidden only in a run that moves and makes contact");
+    if (!(speed > 0.0)) throw std::invalid_argument("effects can be hidden only in a run that moves");
     scales_ = {1.0,           timing_.duration_s,      force,         peak,         depth, speed,
                force / speed, force / (speed * speed), force / accel, force / depth};
   }
@@ -133,18 +150,6 @@ class ContactGapMeter final : public GapMeter {
 };
 
 }  // namespace
-
-double NoiseSd(const NoiseLaw& law) {
-  switch (law.kind) {
-    case NoiseKind::kNone: return 0.0;
-    case NoiseKind::kGaussian: return law.std;
-    case NoiseKind::kStudentT: return law.dof > 2.0 ? law.std * std::sqrt(law.dof / (law.dof - 2.0)) : law.std;
-    case NoiseKind::kLaplace: return std::sqrt(2.0) * law.std;
-    case NoiseKind::kMixture:
-      return law.std * std::sqrt(1.0 + law.outlier_weight * (law.outlier_scale * law.outlier_scale - 1.0));
-  }
-  return 0.0;
-}
 
 std::unique_ptr<GapMeter> MakeGapMeter(const Scenario& scenario) {
   if (EffectRegistry(*scenario.family).empty())
@@ -163,16 +168,29 @@ bool FindStrength(const GapMeter& meter, double gap_ratio, HiddenEffect* effect)
   };
   const auto hit = [&] { return std::abs(effect->gap_ratio - gap_ratio) <= 0.01 * gap_ratio; };
 
-  constexpr int kScan = 30, kBisections = 50;
-  double below = 0.0, above = -1.0;
   if (measure(0.0) > gap_ratio) return hit();
-  for (int i = 1; i <= kScan && above < 0.0; ++i) {
-    const double share = static_cast<double>(i) / kScan;
-    (measure(share) < gap_ratio ? below : above) = share;
+  const double span = std::log(strength.hi / strength.lo);
+  double below = 0.0, above = -1.0, log_below = std::log(effect->gap_ratio / gap_ratio), log_above = 0.0;
+  // Upwards: a gap is nearly proportional to its strength, so that the ratio that is missing is the step to take; never
+  // more than a third of the range, because a gap may also come down again.
+  constexpr int kMaxUp = 30, kMaxIn = 50;
+  constexpr double kLongest = 1.0 / 3.0, kShortest = 1.0 / 30.0;
+  for (int i = 0; i < kMaxUp && above < 0.0 && below < 1.0; ++i) {
+    const double step = std::clamp(1.05 * std::abs(log_below / span), kShortest, kLongest);
+    const double share = std::min(below + (std::isfinite(step) ? step : kShortest), 1.0);
+    const double log_ratio = std::log(measure(share) / gap_ratio);
+    if (hit()) return true;
+    (log_ratio < 0.0 ? below : above) = share;
+    (log_ratio < 0.0 ? log_below : log_above) = log_ratio;
   }
-  for (int i = 0; i < kBisections && above >= 0.0 && !hit(); ++i) {
-    const double middle = 0.5 * (below + above);
-    (measure(middle) < gap_ratio ? below : above) = middle;
+  // Inwards: the secant in logarithms, every third time the middle, which an S-shaped curve needs.
+  for (int i = 0; i < kMaxIn && above >= 0.0 && !hit(); ++i) {
+    const double secant = below + (above - below) * log_below / (log_below - log_above);
+    const bool usable = std::isfinite(secant) && i % 3 != 2;
+    const double share = usable ? secant : 0.5 * (below + above);
+    const double log_ratio = std::log(measure(share) / gap_ratio);
+    (log_ratio < 0.0 ? below : above) = share;
+    (log_ratio < 0.0 ? log_below : log_above) = log_ratio;
   }
   return hit();
 }

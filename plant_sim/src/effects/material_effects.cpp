@@ -15,11 +15,13 @@ double Indentation(const EffectSignal& s) noexcept { return std::max(s.law.input
 double ElasticForce(const EffectSignal& s) noexcept { return s.theta[0] * std::pow(Indentation(s), s.theta[2]); }
 
 /// Maxwell branch, a spring in series with a damper: passes what changes, forgets what holds.
-///   q' = u' - q / tau, solved for u linear over a step.
+///   q' = u' - q / tau, solved for u linear over a step; starts relaxed.
 class Maxwell {
  public:
   Maxwell(double tau, double dt) noexcept : decay_(std::exp(-dt / tau)), gain_(-tau / dt * std::expm1(-dt / tau)) {}
   double Step(double u) noexcept {
+    if (!started_) last_ = u;
+    started_ = true;
     q_ = decay_ * q_ + gain_ * (u - last_);
     last_ = u;
     return q_;
@@ -28,6 +30,7 @@ class Maxwell {
  private:
   double decay_, gain_;
   double q_ = 0.0, last_ = 0.0;
+  bool started_ = false;
 };
 
 }  // namespace
@@ -120,13 +123,14 @@ std::vector<EffectSpec> MaterialEffects() {
       {"stiffness_drift",
        "linear",
        kCatalogue,
-       "K (1 + share t / T)",
+       "K max(1 + share (t - origin) / T, 0)",
        EffectStage::kParameters,
        false,
-       {{"share", "-", kOne, 1e-5, 0.95, true}},
+       {{"share", "-", kOne, 1e-5, 0.95, true}, {"origin", "s", kOne, 0.0, 0.0}},
        [](const Values& v, const EffectTiming& timing) {
-         return MakeEffect(
-             [rate = v[0] / timing.duration_s](EffectSignal* s) { s->theta[0] *= 1.0 + rate * s->truth.t_s; });
+         return MakeEffect([rate = v[0] / timing.duration_s, origin = v[1]](EffectSignal* s) {
+           s->theta[0] *= std::max(1.0 + rate * (s->truth.t_s - origin), 0.0);
+         });
        }},
       {"stiffness_drift",
        "exponential",
@@ -162,7 +166,8 @@ std::vector<EffectSpec> MaterialEffects() {
        [](const Values& v, const EffectTiming&) {
          return MakeEffect([gap = v[0], y = 0.0, started = false](EffectSignal* s) mutable {
            const double x = s->law.inputs[0];
-           if (!started) y = x;
+           // The drive has come from somewhere: it starts engaged, on the side that the motion pushes.
+           if (!started) y = x - std::copysign(gap, s->law.inputs[1]);
            started = true;
            const bool engaged = std::abs(x - y) >= gap;
            y = std::clamp(y, x - gap, x + gap);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "armcmc/plant_sim/motion.hpp"
 #include "armcmc/plant_sim/plant.hpp"
 
 namespace armcmc::plant_sim {
@@ -13,6 +15,8 @@ namespace armcmc::plant_sim {
 ///   x'' = -d (x' - x_m') - s (x - x_m)                slave behind the master x_m, contact force cancelled
 ///   x_m = offset + sum_i amplitude_i sin(omega_i t + phase_i)
 ///
+/// or, with tracking = "prescribed", x and x' of a motion program (see Motion) in place of slave and master.
+///
 /// Motion does not depend on the force, so K, B, p may change at any time.
 ///
 /// With tracking = "paper" the loop is sampled as in the simulation behind the paper's traces: one solver step
@@ -20,7 +24,7 @@ namespace armcmc::plant_sim {
 /// at the second sample, where `start_force` (the force measured there) pushes the slave uncancelled.
 class HuntCrossleyPlant final : public Plant {
  public:
-  HuntCrossleyPlant(const Schedule& schedule, const Options& options, double sample_interval_s);
+  explicit HuntCrossleyPlant(const PlantSetup& setup);
 
   void Advance(PlantSample* sample) noexcept override;
   [[nodiscard]] Theta Truth(int mode, double t_s) const noexcept override;
@@ -45,6 +49,7 @@ class HuntCrossleyPlant final : public Plant {
   double offset_, damping_, stiffness_, start_force_, dt_;
   bool paper_tracking_;
   int substeps_;
+  std::optional<Motion> motion_;  ///< None: a slave follows a master.
   State state_ = State::Zero();
   long long k_ = -1;  ///< Index of the last sample.
 };

@@ -7,23 +7,36 @@
 namespace armcmc::plant_sim {
 
 enum class NoiseKind : std::uint8_t { kNone, kGaussian, kStudentT, kLaplace, kMixture };
+/// As scenario files call it; "none" for kNone.
+[[nodiscard]] const char* NoiseKindName(NoiseKind kind) noexcept;
 
-/// White noise of one sensor channel, zero mean.
+/// Noise of one sensor channel, zero mean.
 ///
-/// `std` is the scale of the law in the unit of the channel: the standard deviation (Gaussian), the scale of
-/// the t law, the mean absolute deviation b (Laplace), the standard deviation of the narrow part (mixture).
+///   e_k = correlation e_(k-1) + sqrt(1 - correlation^2) w_k,  e_0 = w_0,  w white by the law
+///   measured = true + (1 + growth |true| / reference) e
+///
+/// so that the colour leaves a standard deviation what it is. `std` is the scale of the law in the unit of the channel:
+/// the standard deviation (Gaussian), the scale of the t law, the mean absolute deviation b (Laplace), the standard
+/// deviation of the narrow part (mixture).
 struct NoiseLaw {
   NoiseKind kind = NoiseKind::kNone;
   double std = 0.0;
   double dof = 4.0;              ///< Student-t: degrees of freedom, > 0.
   double outlier_weight = 0.05;  ///< Mixture: probability of the wide part, in (0, 0.5].
   double outlier_scale = 10.0;   ///< Mixture: standard deviation of the wide part over `std`, > 1.
+  double correlation = 0.0;      ///< Of one sample with the next, in [0, 1).
+  double growth = 0.0;           ///< Of the noise with the size of the signal, >= 0.
+  double share = 0.0;            ///< `std` over `reference`, where it was given so; 0: it was not.
+  double reference = 0.0;        ///< Rms of the true channel while a mode acts, > 0 with growth or share.
 };
 
-/// One draw. kNone takes nothing from the generator and returns 0.
+/// One draw of w. kNone takes nothing from the generator and returns 0.
 ///
 ///   Student-t  t = sqrt(dof (u^(-2/dof) - 1)) cos(2 pi v)      (Bailey 1994, exact for any dof)
 ///   Laplace    by inverse CDF
 [[nodiscard]] double Draw(const NoiseLaw& law, Rng* rng) noexcept;
+
+/// Standard deviation of a noise law where the signal is zero; its scale where it has none.
+[[nodiscard]] double NoiseSd(const NoiseLaw& law);
 
 }  // namespace armcmc::plant_sim

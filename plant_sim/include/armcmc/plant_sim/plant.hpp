@@ -58,6 +58,7 @@ struct ParameterSpec {
   std::string name;
   std::string unit;
   double lo = 0.0, hi = 0.0;  ///< What a scenario may ask for.
+  std::string power = {};     ///< The exponent parameter whose power of the depth the unit holds; empty: none.
 };
 
 /// How the prediction of the regression target is reported.
@@ -66,6 +67,14 @@ struct TargetSpec {
   std::string clean_key;  ///< Report key of the mean absolute error against the true target.
   double clean_scale = 1.0;
   std::string noisy_key;  ///< Report key of the L2 norm of the error against the measured target.
+};
+
+/// What a plant is made from.
+struct PlantSetup {
+  const Schedule& schedule;
+  const Options& options;
+  double sample_interval_s;
+  std::uint64_t seed = 1;  ///< Of a motion that is drawn.
 };
 
 /// Everything the rest of the simulation needs to know about a family of plants. A new family is one
@@ -81,7 +90,7 @@ struct PlantFamily {
   std::vector<std::string> truth_names;  ///< Parameters of a mode as estimators report them.
   TargetSpec target;
   /// @throws std::invalid_argument when options contradict each other.
-  std::unique_ptr<Plant> (*make)(const Schedule& schedule, const Options& options, double sample_interval_s) = nullptr;
+  std::unique_ptr<Plant> (*make)(const PlantSetup& setup) = nullptr;
 
   [[nodiscard]] int num_inputs() const noexcept { return static_cast<int>(inputs.size()); }
   [[nodiscard]] int num_modes() const noexcept { return static_cast<int>(modes.size()); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,7 @@ struct Scenario {
   int pack_samples = 100;           ///< N_s = T_s / T, in [1, 256].
   Schedule schedule{{}, {}};
   Options options{{}};
+  std::uint64_t seed = 1;            ///< Of what was drawn: ranges, and the motion of a program that draws.
   std::vector<NoiseLaw> noise;       ///< One per input channel, then one of the output.
   std::vector<HiddenEffect> hidden;  ///< What the base equations lack. Empty: plant and sensors alone.
 
@@ -28,6 +31,10 @@ struct Scenario {
   /// Whole packs in the duration.
   [[nodiscard]] long long num_packs() const noexcept {
     return static_cast<long long>(duration_s / pack_period_s() + 1e-9);
+  }
+  /// The plant at rest before its first sample. @throws std::invalid_argument when options contradict each other.
+  [[nodiscard]] std::unique_ptr<Plant> MakePlant() const {
+    return family->make({schedule, options, sample_interval_s, seed});
   }
 };
 

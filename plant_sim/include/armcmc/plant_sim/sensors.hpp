@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,8 +19,12 @@ class Sensors {
   void Measure(const PlantSample& truth, PlantSample* measured) noexcept;
 
  private:
+  [[nodiscard]] double Noise(std::size_t channel, double truth) noexcept;
+
   std::vector<NoiseLaw> laws_;
   std::vector<Rng> streams_;
+  std::vector<double> coloured_;  ///< e of the last sample.
+  bool started_ = false;
 };
 
 }  // namespace armcmc::plant_sim

@@ -21,7 +21,7 @@ namespace armcmc::plant_sim {
 /// flow = p' (g + theta2 (p - p_atm)).
 class SoftActuatorPlant final : public Plant {
  public:
-  SoftActuatorPlant(const Schedule& schedule, const Options& options, double sample_interval_s);
+  explicit SoftActuatorPlant(const PlantSetup& setup);
 
   void Hide(const std::vector<HiddenEffect>& effects, const EffectTiming& timing) override;
   void Advance(PlantSample* sample) noexcept override;

@@ -65,6 +65,40 @@ class PressureStepController final : public ValveController {
   double dwell_s_, opening_per_pa_, max_opening_;
 };
 
+/// The same steps, each followed by `hold_s` with both valves shut: whatever the pressure then does, no valve did it.
+class ClosedValveHoldController final : public ValveController {
+ public:
+  ClosedValveHoldController(const Options& options, double p_atm);
+  [[nodiscard]] ValveOpening Step(const ActuatorView& view) noexcept override;
+
+ private:
+  PressureStepController steps_;
+  double dwell_s_, hold_s_;
+};
+
+/// Openings that follow a triangle around zero, without feedback: fill while it is positive, vent while it is negative.
+/// Its period is `dwell_s`, its height `max_opening` and, every second period, 0.4 of that. The fill valve opens
+/// `fill_share` as far as the vent valve, which has the smaller pressure behind it.
+class TriangleController final : public ValveController {
+ public:
+  explicit TriangleController(const Options& options);
+  [[nodiscard]] ValveOpening Step(const ActuatorView& view) noexcept override;
+
+ private:
+  double period_s_, max_opening_, fill_share_;
+};
+
+/// The same steps, every second pair of them with valves that open an eighth as far.
+class FastAndSlowFillsController final : public ValveController {
+ public:
+  FastAndSlowFillsController(const Options& options, double p_atm);
+  [[nodiscard]] ValveOpening Step(const ActuatorView& view) noexcept override;
+
+ private:
+  PressureStepController steps_;
+  double dwell_s_;
+};
+
 [[nodiscard]] std::vector<OptionSpec> ValveControllerOptions();
 /// @throws std::invalid_argument when the options contradict each other.
 [[nodiscard]] std::unique_ptr<ValveController> MakeValveController(const Options& options, double p_atm,

@@ -47,7 +47,8 @@ template <typename Function>
 /// constitutive law is evaluated on what the first two left.
 enum class EffectStage : std::uint8_t { kInput, kParameters, kForce, kSensorDynamics, kSensorStatics };
 
-/// Natural sizes of a run, by which one range fits every scenario.
+/// Natural sizes of a run, by which one range fits every scenario. A run without contact has no force but the sd of its
+/// noise, and its depth is its longest way from the surface.
 enum class EffectScale : std::uint8_t {
   kOne,
   kDuration,         ///< s, of the run.
@@ -110,6 +111,9 @@ struct EffectSpec {
 
 /// All effects of a family of plants, in a fixed order; none for a family that offers none.
 [[nodiscard]] const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family);
+/// The effect of that name and formula, or nullptr.
+[[nodiscard]] const EffectSpec* FindEffectSpec(const PlantFamily& family, const std::string& name,
+                                               const std::string& variant);
 /// Names of a family's effects, each once.
 [[nodiscard]] std::vector<std::string> EffectNames(const PlantFamily& family);
 

@@ -24,17 +24,16 @@ class GapMeter {
 inline constexpr long long kMaxGapSamples = 200'000;
 
 /// @throws std::invalid_argument when the family offers no effects, its output has no noise to compare with, or the
-///         run leaves the finite range.
+///         run stands still or leaves the finite range.
 [[nodiscard]] std::unique_ptr<GapMeter> MakeGapMeter(const Scenario& scenario);
 
 /// What MakeGapMeter gives for the soft actuator: R of the flow equation or of the bend equation, whichever is larger.
 [[nodiscard]] std::unique_ptr<GapMeter> MakeActuatorGapMeter(const Scenario& scenario);
-/// Standard deviation of a noise law; its scale where it has none.
-[[nodiscard]] double NoiseSd(const NoiseLaw& law);
 
-/// Sets the strength of an effect, its first parameter, such that its gap ratio is `gap_ratio` to 1 %: a scan over its
-/// range from the weakest end to the first crossing, then bisection, both geometric. At most 80 refits.
-/// @return false when no strength in the range gives that ratio; the effect is then unusable.
+/// Sets the strength of an effect, its first parameter, such that its gap ratio is `gap_ratio` to 1 %: upwards from the
+/// weakest end of its range to a crossing, then secants, both in logarithms. At most 81 refits, usually 4 to 8.
+/// @return false when no strength in the range gives that ratio; the
+/// effect is then unusable.
 [[nodiscard]] bool FindStrength(const GapMeter& meter, double gap_ratio, HiddenEffect* effect);
 
 }  // namespace armcmc::plant_sim

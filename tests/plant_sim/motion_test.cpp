@@ -1,0 +1,195 @@
+#include "armcmc/plant_sim/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "armcmc/plant_sim/hunt_crossley_plant.hpp"
+
+namespace armcmc::plant_sim {
+namespace {
+
+constexpr double kDt = 1e-3;
+constexpr int kSamples = 10'000;
+
+Options MotionSettings(const std::string& program, double depth = 1.0, double pace = 1.0, double band_hz = 14.0) {
+  Options options(HuntCrossleyFamily().options);
+  options.Set("tracking", std::string("prescribed"));
+  options.Set("program", program);
+  options.Set("depth", depth);
+  options.Set("pace", pace);
+  options.Set("band_hz", band_hz);
+  return options;
+}
+
+std::vector<Motion::State> Follow(const Options& options, std::uint64_t seed, double dt = kDt, int samples = kSamples) {
+  Motion motion(options, seed);
+  std::vector<Motion::State> states;
+  for (int i = 0; i <= samples; ++i) states.push_back(motion.At(i * dt));
+  return states;
+}
+
+double Deepest(const std::vector<Motion::State>& states) {
+  double deepest = -1e9;
+  for (const Motion::State& state : states) deepest = std::max(deepest, state.x);
+  return deepest;
+}
+
+double ContactShare(const std::vector<Motion::State>& states) {
+  const auto contact = std::count_if(states.begin(), states.end(), [](const auto& state) { return state.x >= 0.0; });
+  return static_cast<double>(contact) / static_cast<double>(states.size());
+}
+
+/// Amplitude of a frequency in the position, by a Hann window.
+double Line(const std::vector<Motion::State>& states, double hz) {
+  std::complex<double> sum;
+  double weights = 0.0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(states.size());
+    const double weight = 1.0 - std::cos(2.0 * std::numbers::pi * share);
+    sum += weight * states[i].x * std::polar(1.0, -2.0 * std::numbers::pi * hz * kDt * static_cast<double>(i));
+    weights += weight;
+  }
+  return 2.0 * std::abs(sum) / weights;
+}
+
+class EveryProgram : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryProgram, HasTheVelocityThatIsTheDerivativeOfThePosition) {
+  // Fourth-order differences of a four times differentiable path over 0.1 ms: (2 pi 40 Hz 1e-4)^4 / 30 = 1e-8.
+  constexpr double kFine = 1e-4;
+  const std::vector<Motion::State> states = Follow(MotionSettings(GetParam()), 5, kFine, 30'000);
+  double fastest = 0.0, worst = 0.0;
+  for (std::size_t i = 2; i + 2 < states.size(); ++i) {
+    const double slope =
+        (8.0 * (states[i + 1].x - states[i - 1].x) - (states[i + 2].x - states[i - 2].x)) / (12.0 * kFine);
+    fastest = std::max(fastest, std::abs(states[i].v));
+    worst = std::max(worst, std::abs(slope - states[i].v));
+  }
+  EXPECT_GT(fastest, 0.1);
+  EXPECT_LT(worst, 1e-6 * fastest);
+}
+
+TEST_P(EveryProgram, ScalesWithDepthAndPace) {
+  const std::vector<Motion::State> metre = Follow(MotionSettings(GetParam()), 5);
+  const std::vector<Motion::State> millimetre = Follow(MotionSettings(GetParam(), 1e-3), 5);
+  // Twice as fast through twice the band is the same motion in half the time.
+  const std::vector<Motion::State> fast = Follow(MotionSettings(GetParam(), 1.0, 2.0, 28.0), 5, kDt / 2);
+  for (std::size_t i = 0; i < metre.size(); ++i) {
+    ASSERT_NEAR(millimetre[i].x, 1e-3 * metre[i].x, 1e-15) << i;
+    ASSERT_NEAR(millimetre[i].v, 1e-3 * metre[i].v, 1e-12) << i;
+    ASSERT_NEAR(fast[i].x, metre[i].x, 1e-9) << i;
+    ASSERT_NEAR(fast[i].v, 2.0 * metre[i].v, 1e-6) << i;
+  }
+}
+
+TEST_P(EveryProgram, DoesNotDependOnTheSampling) {
+  const std::vector<Motion::State> fine = Follow(MotionSettings(GetParam()), 5);
+  const std::vector<Motion::State> coarse = Follow(MotionSettings(GetParam()), 5, 50 * kDt, kSamples / 50);
+  for (std::size_t i = 0; i < coarse.size(); ++i) ASSERT_NEAR(coarse[i].x, fine[50 * i].x, 1e-10) << i;
+}
+
+TEST_P(EveryProgram, HasNothingFarAboveTheBandLimit) {
+  const std::vector<Motion::State> states = Follow(MotionSettings(GetParam()), 5);
+  double below = 0.0, above = 0.0;
+  for (double hz = 0.1; hz < 10.0; hz += 0.1) below = std::max(below, Line(states, hz));
+  for (double hz = 60.0; hz < 120.0; hz += 1.0) above = std::max(above, Line(states, hz));
+  EXPECT_LT(above, 1e-3 * below);
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram,
+                         testing::Values("rich", "sine", "slow_triangle", "fast_taps", "step_hold", "taps_of_depths",
+                                         "contact_chirp", "free_air_chirp", "free_air"));
+
+TEST(Motion, PressesAsDeepAsAskedForAndMakesTheContactThatItsNamePromises) {
+  const auto share = [](const char* program) { return ContactShare(Follow(MotionSettings(program), 1)); };
+  for (const char* program : {"slow_triangle", "fast_taps", "step_hold", "taps_of_depths"}) {
+    EXPECT_NEAR(Deepest(Follow(MotionSettings(program), 1)), 1.0, 0.05) << program;
+    EXPECT_GT(share(program), 0.5) << program;
+    EXPECT_LT(share(program), 0.95) << program;
+  }
+  for (const char* program : {"sine", "contact_chirp"}) EXPECT_EQ(share(program), 1.0) << program;
+  for (const char* program : {"free_air", "free_air_chirp"}) EXPECT_EQ(share(program), 0.0) << program;
+}
+
+TEST(Motion, ASineIsASineDampedByTheBandLimitAlone) {
+  // One cycle a second through sinc(f h)^6 with sinc(14 Hz h)^6 = 1/sqrt(2), half a unit above the surface.
+  const auto gain = [](double hz) {
+    const double u = std::numbers::pi * 0.18634 / 14.0 * hz;
+    return std::pow(std::sin(u) / u, 6);
+  };
+  EXPECT_NEAR(gain(14.0), std::sqrt(0.5), 1e-4);
+  const std::vector<Motion::State> states = Follow(MotionSettings("sine"), 1);
+  EXPECT_NEAR(Line(states, 1.0), 0.31 * gain(1.0), 1e-6);
+  EXPECT_LT(Line(states, 3.0), 1e-6);
+  // Zero phase: the path starts two knots before t = 0.
+  const double lead = 2.0 * 0.18634 / 14.0;
+  for (int i = 0; i < 1000; i += 10)
+    ASSERT_NEAR(states[static_cast<std::size_t>(i)].x,
+                0.5 + 0.31 * gain(1.0) * std::sin(2.0 * std::numbers::pi * (kDt * i + lead)), 1e-6);
+}
+
+TEST(Motion, AChirpSweepsUpAndDownAgainWithoutAJump) {
+  const std::vector<Motion::State> states = Follow(MotionSettings("contact_chirp"), 1, kDt, 3 * kSamples);
+  const auto crossings = [&states](double from, double to) {
+    int count = 0;
+    for (auto i = static_cast<std::size_t>(from / kDt); i < static_cast<std::size_t>(to / kDt); ++i)
+      count += (states[i].x < 0.6) != (states[i + 1].x < 0.6);
+    return count;
+  };
+  const auto fastest = [&states](double from, double to) {
+    double speed = 0.0;
+    for (auto i = static_cast<std::size_t>(from / kDt); i < static_cast<std::size_t>(to / kDt); ++i)
+      speed = std::max(speed, std::abs(states[i].v));
+    return speed;
+  };
+  // Ten seconds from 0.3 to 8 Hz, equally long in every octave, are 7.7 10 / ln(8 / 0.3) cycles.
+  const double cycles = 7.7 * 10.0 / std::log(8.0 / 0.3);
+  for (const double begin : {0.0, 10.0, 20.0}) EXPECT_NEAR(crossings(begin, begin + 10.0), 2.0 * cycles, 2.0) << begin;
+  EXPECT_LT(crossings(0.0, 2.0), 4);
+  EXPECT_GT(crossings(8.0, 10.0), 20);
+  EXPECT_GT(crossings(10.0, 12.0), 20);
+  EXPECT_LT(crossings(18.0, 20.0), 4);
+  EXPECT_NEAR(fastest(9.9, 10.1), fastest(9.5, 9.9), 0.1 * fastest(9.5, 9.9));
+  EXPECT_LT(fastest(19.0, 21.0), 0.1 * fastest(9.9, 10.1));
+}
+
+TEST(Motion, RichIsAnotherMotionForEverySeedAndTheSameForOne) {
+  const std::vector<Motion::State> a = Follow(MotionSettings("rich"), 1), again = Follow(MotionSettings("rich"), 1);
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].x, again[i].x);
+  for (std::uint64_t seed = 2; seed <= 40; ++seed) {
+    const std::vector<Motion::State> b = Follow(MotionSettings("rich"), seed);
+    double distance = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) distance += std::abs(a[i].x - b[i].x) / kSamples;
+    EXPECT_GT(distance, 0.1) << seed;
+    EXPECT_GT(ContactShare(b), 0.5) << seed;
+    EXPECT_LT(ContactShare(b), 0.99) << seed;
+    EXPECT_GT(Deepest(b), 0.6) << seed;
+    EXPECT_LT(Deepest(b), 1.3) << seed;
+  }
+}
+
+TEST(Motion, ThePlantFollowsItExactly) {
+  const Schedule schedule({4.0, 0.8, 1.5}, {});
+  const Options options = MotionSettings("rich", 0.3);
+  HuntCrossleyPlant plant({schedule, options, kDt, 9});
+  Motion motion(options, 9);
+  for (int i = 0; i <= kSamples; ++i) {
+    PlantSample sample;
+    plant.Advance(&sample);
+    const Motion::State state = motion.At(i * kDt);
+    ASSERT_EQ(sample.inputs[0], state.x);
+    ASSERT_EQ(sample.inputs[1], state.v);
+    ASSERT_EQ(sample.mode, state.x >= 0.0 ? HuntCrossleyPlant::kContact : HuntCrossleyPlant::kFree);
+    const double force = state.x >= 0.0 ? std::pow(state.x, 1.5) * (4.0 + 0.8 * state.v) : 0.0;
+    ASSERT_NEAR(sample.output, force, 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::plant_sim
