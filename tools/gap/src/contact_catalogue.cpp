@@ -245,9 +245,9 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   two.filter = [two](const Signals& in, const Vector& series, int amplitude, const double* shape) -> Vector {
     const double fast = Value(two, 0, shape);
     const double tau_s = amplitude == 0 ? fast : fast * Value(two, 1, shape);
-    return series - Leaky(series, tau_s / in.dt, shape[2]);
+    return series - Leaky(series, tau_s / in.dt);
   };
-  AddStarts(&two, {4, 1, 2});
+  AddStarts(&two, {4, 1});
   out->push_back(two);
 
   const Coordinate tension = Amplitude("force", "N", force, true, 0.3);

@@ -80,7 +80,8 @@ double Search::Closure(const CandidatePtr& candidate) const {
 
 bool Search::Adequate(const CandidatePtr& candidate) const {
   const Remainder& left = Judge(candidate);
-  const double floor = std::max(limits_.min_gain, limits_.remainder_share * gap_);
+  if (Closure(candidate) < limits_.adequate_closure) return false;
+  const double floor = std::max(limits_.min_remainder, limits_.remainder_share * gap_);
   return 2.0 * left.total() / rows_ < floor ||
          bootstrap_->ProbabilityAbove(left.gain, 0.1 * limits_.min_gain * rows_) < limits_.p_remainder;
 }
@@ -108,29 +109,81 @@ Search::Candidates Search::Near(const Candidates& sorted, std::size_t count) con
 
 Search::Candidates Search::Extend(const CandidatePtr& parent, bool variants) const {
   Candidates extended;
+  for (const EffectForm& form : *catalogue_)
+    if (!Holds(parent->fit, form.effect) && (form.exact() || variants))
+      extended.push_back(Make(fitter_->Add(parent->fit, {&form, {}})));
+  const auto better = [&](const CandidatePtr& gated) {
+    const EffectForm* form = gated->fit.hypothesis.terms.back().form;
+    return std::all_of(extended.begin(), extended.end(), [&](const CandidatePtr& other) {
+      return other->fit.hypothesis.terms.back().form != form || Better(gated->fit, other->fit);
+    });
+  };
+  Candidates gated = ExtendGated(parent, extended, limits_.min_active_blocks);
+  std::erase_if(gated, [&](const CandidatePtr& candidate) { return !better(candidate); });
+  extended.insert(extended.end(), gated.begin(), gated.end());
+  SortByScore(&extended);
+  return extended;
+}
+
+Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const {
   std::vector<GateCandidate> gates;
-  std::map<const EffectForm*, CandidatePtr> always;
-  for (const EffectForm& form : *catalogue_) {
-    if (Holds(parent->fit, form.effect) || (!form.exact() && !variants)) continue;
-    const CandidatePtr single = Make(fitter_->Add(parent->fit, {&form, {}}));
-    extended.push_back(single);
-    always[&form] = single;
+  for (const CandidatePtr& single : always) {
+    const EffectForm& form = *single->fit.hypothesis.terms.back().form;
     if (!form.exact()) continue;
-    for (GateCandidate& gate :
-         ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &single->fit),
-                   limits_.min_active_blocks)) {
-      // Beyond the parameters of the ungated fit, and of the look at every onset.
-      const double floor = std::max(parent->fit.squares - single->fit.squares, gate.always_gain);
-      if (gate.gain - floor > limits_.min_gain * rows_ * fitter_->whitener().s2) gates.push_back(gate);
+    for (const GateCandidate& gate :
+         ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &single->fit), min_active)) {
+      const double ungated = std::max(parent->fit.squares - single->fit.squares, gate.always_gain);
+      if (gate.gain - ungated > limits_.min_gain * rows_ * fitter_->whitener().s2) gates.push_back(gate);
     }
   }
   std::sort(gates.begin(), gates.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
-  for (std::size_t i = 0; i < std::min(gates.size(), kMaxGated); ++i) {
-    const CandidatePtr gated = Make(fitter_->Add(parent->fit, gates[i].term));
-    if (Better(gated->fit, always[gates[i].term.form]->fit)) extended.push_back(gated);
+  if (gates.size() > kMaxGated) gates.resize(kMaxGated);
+  Candidates gated;
+  for (const GateCandidate& gate : gates) gated.push_back(Make(fitter_->Add(parent->fit, gate.term)));
+  return gated;
+}
+
+void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
+  const Vector energy = BlockSquares(base_->fit.whitened_residual);
+  const auto median_of = [](Vector values) {
+    std::nth_element(values.data(), values.data() + kNumBlocks / 2, values.data() + kNumBlocks);
+    return values[kNumBlocks / 2];
+  };
+  const double median = median_of(energy);
+  const double spread = 1.4826 * median_of((energy.array() - median).abs().matrix()) + 1e-300;
+  const auto edges = BlockEdges(base_->fit.whitened_residual.size());
+  std::vector<Eigen::Index> events;
+  for (Eigen::Index b = 0; b < kNumBlocks; ++b)
+    if (energy[b] > median + limits_.event_excess * spread) events.push_back(b);
+  if (events.empty()) return;
+
+  Candidates pool = singles;
+  for (const CandidatePtr& gated : ExtendGated(base_, singles, 1)) pool.push_back(gated);
+  const auto evidence = [&](const CandidatePtr& c) { return c->fit.log_evidence - base_->fit.log_evidence; };
+  std::stable_sort(pool.begin(), pool.end(), [&](const auto& a, const auto& b) { return evidence(a) > evidence(b); });
+  const auto quiet = [&](const CandidatePtr& c) {
+    const Vector left = BlockSquares(c->fit.whitened_residual);
+    return std::all_of(events.begin(), events.end(),
+                       [&](Eigen::Index b) { return left[b] < median + limits_.event_rest * spread; });
+  };
+  const double margin = std::max(limits_.tie_nats, limits_.tie_share * evidence(pool.front()));
+  Candidates good;
+  if (evidence(pool.front()) > limits_.event_nats && pool.front()->fit.hypothesis.terms.front().form->listed)
+    for (const CandidatePtr& c : pool)
+      if (c->exact() && evidence(pool.front()) - evidence(c) < margin && quiet(c)) good.push_back(c);
+  if (good.empty()) {
+    for (const Eigen::Index b : events)
+      finding->events_s.push_back(fitter_->signals().t[edges[static_cast<std::size_t>(b)]]);
+    return;
   }
-  SortByScore(&extended);
-  return extended;
+  finding->set = OnePerName(good);
+  finding->verdict = finding->set.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;
+  finding->best = finding->set.front();
+  finding->gap = 2.0 * evidence(finding->best) / rows_;
+  finding->p_missing = 1.0;
+  double total = 0.0;
+  for (const CandidatePtr& c : finding->set) total += std::exp(evidence(c) - evidence(finding->best));
+  for (const CandidatePtr& c : finding->set) c->probability = std::exp(evidence(c) - evidence(finding->best)) / total;
 }
 
 Search::Candidates Search::OnePerName(const Candidates& candidates) const {
@@ -217,7 +270,7 @@ Search::Candidates Search::Listed(const Candidates& candidates, bool listed) con
 bool Search::Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const {
   if (named->fit.hypothesis.terms.size() > 1) return !Better(named->fit, unlisted->fit);
   const Vector lead = unlisted->fit.heldout - named->fit.heldout;
-  return lead.sum() > limits_.tie_nats && bootstrap_->ProbabilityAbove(lead, 0.0) > limits_.p_remainder;
+  return lead.sum() > limits_.tie_nats && bootstrap_->ProbabilityAbove(lead, 0.0) > limits_.p_outdone;
 }
 
 bool Search::FamilyHolds(const CandidatePtr& best, const Candidates& singles) const {
@@ -236,11 +289,17 @@ Finding Search::Run(bool pairs) {
   const Vector flexible = Judge(base_).gain;
   const Candidates singles = Extend(base_, true);
   const Vector named = singles.front()->fit.heldout - base_->fit.heldout;
-  const Vector& gain = flexible.sum() > named.sum() ? flexible : named;
-  gap_ = finding.gap = std::max(2.0 * gain.sum() / rows_, 0.0);
-  finding.p_missing = bootstrap_->ProbabilityAbove(gain, 0.1 * limits_.min_gain * rows_);
+  // A flexible model sees what has no name, a name what no flexible model has the shape for.
+  gap_ = finding.gap = std::max(2.0 * std::max(flexible.sum(), named.sum()) / rows_, 0.0);
+  for (const Vector& gain : {flexible, named})
+    if (2.0 * gain.sum() / rows_ > limits_.min_gain)
+      finding.p_missing =
+          std::max(finding.p_missing, bootstrap_->ProbabilityAbove(gain, 0.1 * limits_.min_gain * rows_));
   finding.tried = singles;
-  if (!(gap_ > limits_.min_gain) || finding.p_missing < limits_.p_missing) return finding;
+  if (!(gap_ > limits_.min_gain) || finding.p_missing < limits_.p_missing) {
+    JudgeEvents(singles, &finding);
+    return finding;
+  }
 
   const Candidates listed = Listed(singles, true), unlisted = Listed(singles, false);
   Candidates good;

@@ -92,7 +92,7 @@ std::vector<EffectForm> SaturationForms(const Signals& signals) {
   clip.num_amplitudes = 0;
   clip.linear = false;
   clip.coordinates = {{"limit", "N", 0.05, 1.05, 0.8, 0.3, signals.output_peak, false}};
-  clip.starts = {{0.3}, {0.45}, {0.6}, {0.75}, {0.85}, {0.93}, {0.98}};
+  for (double start = 0.985; start > 0.2; start *= 0.91) clip.starts.push_back({start});
   clip.own_groups = {"force"};
   const double peak = signals.output_peak;
   clip.sense = [peak](const Signals&, const double* c, int own, Prediction* out) {

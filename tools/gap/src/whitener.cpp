@@ -3,12 +3,35 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+
+#include "armcmc/gap/blocks.hpp"
 
 namespace armcmc::gap {
 namespace {
 
 constexpr int kMaxOrder = 8;
 constexpr double kMinImprovement = 6.0;  // nats of the criterion that a further lag must bring
+
+/// Autocovariances of the quieter half of the blocks. An effect that acts in a few events (a clipped peak) must not
+/// pass for coloured noise: it would be whitened away.
+Vector QuietCovariance(const Vector& series) {
+  const auto edges = BlockEdges(series.size());
+  const Vector energy = BlockSquares(series);
+  Vector sorted = energy;
+  std::nth_element(sorted.data(), sorted.data() + kNumBlocks / 2, sorted.data() + kNumBlocks);
+  const double median = sorted[kNumBlocks / 2];
+  Vector covariance = Vector::Zero(kMaxOrder + 1);
+  double count = 0.0;
+  for (std::size_t b = 0; b < kNumBlocks; ++b) {
+    if (energy[static_cast<Eigen::Index>(b)] > median) continue;
+    const auto block = series.segment(edges[b], edges[b + 1] - edges[b]);
+    for (int k = 0; k <= kMaxOrder; ++k)
+      covariance[k] += block.head(block.size() - k).dot(block.tail(block.size() - k));
+    count += static_cast<double>(block.size());
+  }
+  return covariance / count;
+}
 
 }  // namespace
 
@@ -45,11 +68,8 @@ double Whitener::Gain() const {
 }
 
 Whitener FitNoise(const Vector& residual) {
-  const Vector centred = residual.array() - residual.mean();
-  const Eigen::Index n = centred.size();
-  Vector covariance(kMaxOrder + 1);
-  for (int k = 0; k <= kMaxOrder; ++k)
-    covariance[k] = centred.head(n - k).dot(centred.tail(n - k)) / static_cast<double>(n);
+  const Eigen::Index n = residual.size();
+  const Vector covariance = QuietCovariance(residual.array() - residual.mean());
   Whitener best{Vector(), std::max(covariance[0], 1e-300)};
   double best_criterion = static_cast<double>(n) * std::log(best.s2);
   for (int order = 1; order <= kMaxOrder; ++order) {
@@ -65,6 +85,7 @@ Whitener FitNoise(const Vector& residual) {
       best = {phi, s2};
     }
   }
+  best.s2 = std::max(best.Apply(residual).squaredNorm() / static_cast<double>(n), 1e-300);
   return best;
 }
 

@@ -35,6 +35,7 @@ struct Finding {
   CandidatePtr best;                ///< Of the set; of all candidates where nothing is named; base for none.
   std::vector<CandidatePtr> set;    ///< Hypotheses that are equally good. Empty unless named or ambiguous.
   CandidatePtr unlisted;            ///< Physics outside the catalogue that explains the gap; null: none does.
+  std::vector<double> events_s;     ///< Times of blocks that stand out and that nothing explains.
   std::vector<CandidatePtr> tried;  ///< Singles and pairs, best held-out score first.
   double gap = 0.0;                 ///< Explainable share of the noise variance beyond the base model.
   double p_missing = 0.0;           ///< That anything is missing.
@@ -56,6 +57,10 @@ class Search {
   using Candidates = std::vector<CandidatePtr>;
 
   [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
+  /// Gated hypotheses whose gates leave at least so many blocks active and promise most over the ungated ones.
+  [[nodiscard]] Candidates ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const;
+  /// The verdict on what shows in one to three events, by evidence: nothing can be left out.
+  void JudgeEvents(const Candidates& singles, Finding* finding) const;
   [[nodiscard]] Candidates Pairs(const Candidates& order) const;
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
   [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;

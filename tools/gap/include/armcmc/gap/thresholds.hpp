@@ -5,17 +5,23 @@ namespace armcmc::gap {
 /// Every number that a verdict hangs on. Gains are shares of the noise variance: 2 nats / rows.
 struct Thresholds {
   double min_gain = 0.005;        ///< What is predictable beyond the model below this is never named.
+  double min_remainder = 0.0015;  ///< What stays predictable below this is nothing.
   double remainder_share = 0.03;  ///< An adequate hypothesis leaves less than this share of the gap.
   double p_missing = 0.99;        ///< Bootstrap probability that anything is missing, to say so.
   double p_reject = 0.98;         ///< Bootstrap probability that a rival is worse, to reject it.
-  double p_remainder = 0.90;      ///< Bootstrap probability that something is left, to call a hypothesis inadequate.
-  double tie_nats = 3.0;          ///< Differences below the largest of these three are ties:
-  double tie_effect = 0.03;       ///< predictions that differ by this share of the noise sd,
-  double tie_share = 0.015;       ///< and this share of the gap, where formula errors decide.
-  double family_closure = 0.92;   ///< Closure that names a family whose formula is not adequate.
-  double family_lead = 0.90;      ///< Share of the best gain that every other family must stay below.
-  double relaxed_share = 0.70;    ///< Of what its free shape gains, that the formula itself must gain.
-  int min_active_blocks = 4;      ///< Blocks in which an effect must act.
+  double adequate_closure = 0.8;  ///< An adequate hypothesis closes this share of the gap, whatever is significant.
+  double p_remainder = 0.70;      ///< Bootstrap probability that something is left, to call a hypothesis inadequate.
+  double p_outdone = 0.90;       ///< Bootstrap probability that physics without a name is better, to withhold the name.
+  double tie_nats = 3.0;         ///< Differences below the largest of these three are ties:
+  double tie_effect = 0.03;      ///< predictions that differ by this share of the noise sd,
+  double tie_share = 0.015;      ///< and this share of the gap, where formula errors decide.
+  double family_closure = 0.92;  ///< Closure that names a family whose formula is not adequate.
+  double family_lead = 0.90;     ///< Share of the best gain that every other family must stay below.
+  double relaxed_share = 0.70;   ///< Of what its free shape gains, that the formula itself must gain.
+  double event_nats = 30.0;      ///< Evidence that names an effect seen in too few blocks to leave any out.
+  double event_excess = 10.0;    ///< Robust standard deviations of a block's energy that make it an event,
+  double event_rest = 5.0;       ///< and up to which it may stay one once it is explained.
+  int min_active_blocks = 4;     ///< Blocks in which an effect must act.
 };
 
 }  // namespace armcmc::gap

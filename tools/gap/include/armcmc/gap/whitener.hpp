@@ -20,7 +20,8 @@ struct Whitener {
   [[nodiscard]] double Gain() const;
 };
 
-/// Order (at most 8) by the Bayesian information criterion, coefficients by Yule-Walker.
+/// Order (at most 8) by the Bayesian information criterion, coefficients by Yule-Walker from the quieter half of the
+/// blocks, variance from all of them.
 [[nodiscard]] Whitener FitNoise(const Vector& residual);
 
 }  // namespace armcmc::gap
