@@ -305,6 +305,13 @@ void GapBlock::Score(double tolerance, std::array<CheckScore, kMaxGapChecks>* sc
   (*scores)[At(serial)] = ScoreEcho(1, tolerance, &explained_[At(serial)]);
   (*scores)[At(serial + 1)] = ScoreEcho(2, tolerance, &explained_[At(serial + 1)]);
   (*scores)[At(serial + 2)] = ScoreWander(fit, tolerance, &explained_[At(serial + 2)]);
+  if (!std::isfinite(excess_)) excess_ = 0.0;
+  for (int c = 0; c < family_.num_checks(); ++c) {
+    // Data without any noise: what is left is rounding, and its squares may underflow.
+    CheckScore& score = (*scores)[At(c)];
+    if (!std::isfinite(score.z) || !std::isfinite(score.margin)) score = CheckScore{};
+    if (!std::isfinite(explained_[At(c)])) explained_[At(c)] = 0.0;
+  }
 }
 
 }  // namespace armcmc

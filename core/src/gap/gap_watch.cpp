@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kFirstChange = 3;    // an earlier one just shortens the block
 constexpr int kPacksOfChange = 3;  // that the estimator may need to settle
-constexpr double kFade = 0.9;      // of the shares, from block to block
+constexpr double kLeastEvidence = 1e-12;
+constexpr double kFade = 0.9;  // of the shares, from block to block
 
 std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
 
@@ -175,7 +176,7 @@ void GapWatch::Judge() noexcept {
   state_.num_blocks += 1;
   state_.check = best;
   state_.where = family_.check(best);
-  state_.log_evidence = std::log(evidence_.total() / evidence_.stakes());
+  state_.log_evidence = std::log(std::max(evidence_.total() / evidence_.stakes(), kLeastEvidence));
   state_.log_threshold = -std::log(evidence_.stakes());
   const double all = std::max(excess_, explained_[At(best)]);
   state_.share = all > 0.0 ? explained_[At(best)] / all : 0.0;

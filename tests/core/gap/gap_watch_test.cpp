@@ -186,6 +186,22 @@ TEST(GapWatch, AMadEstimateAlarmsNobody) {
   EXPECT_EQ(unknown.Run(kMinute, TruthAlone, MakeNoise("white", 11)), 0.0);
 }
 
+TEST(GapWatch, StaysFiniteWithoutNoise) {
+  for (const double scale : {1.0, 1e-30, 1e-160}) {
+    GapRig rig;
+    rig.Run(
+        kMinute, [scale](const ContactSample& s) { return scale * TruthAlone(s); },
+        [](const ContactSample&) { return 0.0; });
+    EXPECT_TRUE(std::isfinite(rig.watch().state().log_evidence)) << scale;
+    EXPECT_TRUE(std::isfinite(rig.watch().state().share)) << scale;
+  }
+  GapRig rig;
+  rig.told.noise_std[0] = 1e-12;
+  rig.Run(
+      kMinute, [](const ContactSample&) { return 0.0; }, [](const ContactSample&) { return 0.0; });
+  EXPECT_TRUE(std::isfinite(rig.watch().state().log_evidence));
+}
+
 TEST(GapWatch, CanBeSwitchedOff) {
   EstimatorSettings settings = BuiltinSettings("hunt_crossley");
   settings.gap_watch.enabled = false;
