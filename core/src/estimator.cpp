@@ -7,7 +7,7 @@
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/effects/composition.hpp"
-#include "armcmc/gap/gap_watch.hpp"
+#include "armcmc/gap_watch/gap_watch.hpp"
 #include "armcmc/mode_sampler.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/output_predictor.hpp"

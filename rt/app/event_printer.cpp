@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "armcmc/gap/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/pack_codec.hpp"

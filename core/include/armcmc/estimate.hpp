@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "armcmc/gap/gap_state.hpp"
+#include "armcmc/gap_watch/gap_state.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "armcmc/effects/effect.hpp"
-#include "armcmc/gap/gap_settings.hpp"
+#include "armcmc/gap_watch/gap_settings.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {

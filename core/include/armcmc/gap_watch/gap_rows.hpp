@@ -4,8 +4,8 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/effects/composition.hpp"
-#include "armcmc/gap/gap_block.hpp"
-#include "armcmc/gap/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_block.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/model.hpp"
 #include "armcmc/settings.hpp"

@@ -1,4 +1,4 @@
-#include "armcmc/gap/gap_evidence.hpp"
+#include "armcmc/gap_watch/gap_evidence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "armcmc/gap/gap_watch.hpp"
+#include "armcmc/gap_watch/gap_watch.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/settings.hpp"
 #include "simd/kernels.hpp"

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "armcmc/gap/gap_checks.hpp"
-#include "armcmc/gap/gap_evidence.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_evidence.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {

@@ -1,4 +1,4 @@
-#include "armcmc/gap/gap_rows.hpp"
+#include "armcmc/gap_watch/gap_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

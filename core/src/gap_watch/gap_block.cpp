@@ -1,4 +1,4 @@
-#include "armcmc/gap/gap_block.hpp"
+#include "armcmc/gap_watch/gap_block.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "armcmc/gap/gap_watch.hpp"
+#include "armcmc/gap_watch/gap_watch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "armcmc/gap/gap_watch.hpp"
+#include "armcmc/gap_watch/gap_watch.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "gap/gap_rig.hpp"
+#include "gap_watch/gap_rig.hpp"
 #include "support/alloc_counter.hpp"
 
 namespace armcmc {

@@ -1,4 +1,4 @@
-#include "armcmc/gap/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "armcmc/gap/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
 
 namespace armcmc {
 

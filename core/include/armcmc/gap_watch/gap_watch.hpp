@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "armcmc/data_pack.hpp"
-#include "armcmc/gap/gap_block.hpp"
-#include "armcmc/gap/gap_checks.hpp"
-#include "armcmc/gap/gap_evidence.hpp"
-#include "armcmc/gap/gap_rows.hpp"
-#include "armcmc/gap/gap_settings.hpp"
-#include "armcmc/gap/gap_state.hpp"
+#include "armcmc/gap_watch/gap_block.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_evidence.hpp"
+#include "armcmc/gap_watch/gap_rows.hpp"
+#include "armcmc/gap_watch/gap_settings.hpp"
+#include "armcmc/gap_watch/gap_state.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
