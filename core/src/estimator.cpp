@@ -7,6 +7,7 @@
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/effects/composition.hpp"
+#include "armcmc/gap_watch/gap_watch.hpp"
 #include "armcmc/mode_sampler.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/output_predictor.hpp"
@@ -40,7 +41,8 @@ struct Estimator::Impl {
         info(composition.info()),
         kernels(simd::Best()),
         predictor(info, s.constants),
-        summary(s.sampler.max_draws) {
+        summary(s.sampler.max_draws),
+        gap_watch(settings, model, kernels) {
     dim = info.num_parameters;
     samplers.reserve(static_cast<std::size_t>(info.num_modes));
     for (int m = 0; m < info.num_modes; ++m) {
@@ -90,7 +92,9 @@ struct Estimator::Impl {
   std::array<ModeEstimate, kMaxModes> last_estimates;
   std::array<ShownEstimates, 2> shown;  ///< After the previous pack, and after the one before it.
   int report_mode = 0;
+  GapWatch gap_watch;
 
+  void WatchGap(const DataPack& pack, Estimate* e) noexcept;
   /// Output at every sample of the pack with the estimates on display, for a model with effects.
   void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
   void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
@@ -246,6 +250,22 @@ void Estimator::Impl::PredictLastSample(const DataPack& pack, int mode, Estimate
   e->y_hi = mean + 1.96 * std::sqrt(spread);
 }
 
+void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
+  GapReference estimate;
+  bool changed = false;
+  for (int m = 0; m < info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const ModeEstimate& mode = e->modes[i];
+    estimate.known[i] = mode.known && mode.noise_std > 0.0;
+    estimate.noise_std[i] = mode.noise_std;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
+      estimate.theta[i][d] = mode.marginal[d].ar_ap;
+    changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
+  }
+  gap_watch.Step(pack, estimate, changed);
+  e->gap = gap_watch.state();
+}
+
 void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   Impl& s = *impl_;
   const DataPack& pack = result.pack;
@@ -283,8 +303,10 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   if (result.status == Status::kBadPack) {
     e->y_pred = e->y_lo = e->y_hi = e->y_free_run = kUnknown;
     e->y_rmse = 0.0;
+    e->gap = s.gap_watch.state();
     return;
   }
+  s.WatchGap(pack, e);
   s.PredictOutput(result, e);
   s.shown[1] = s.shown[0];
   for (int m = 0; m < s.info.num_modes; ++m) {
@@ -302,6 +324,7 @@ void Estimator::Reset() noexcept {
   for (auto& shown : s.shown) shown = ShownEstimates{};
   s.predictor.Reset();
   s.composition.Reset();
+  s.gap_watch.Reset();
   s.report_mode = 0;
 }
 

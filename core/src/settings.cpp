@@ -153,6 +153,8 @@ void EstimatorSettings::Validate() const {
   Open("sampler.lambda_q_max", sampler.lambda_q_max, 0.0, 1.0);
   if (sampler.lambda_q_min > sampler.lambda_q_max)
     throw std::invalid_argument("sampler.lambda_q_min is above sampler.lambda_q_max");
+  Open("gap_watch.false_alarm_rate", gap_watch.false_alarm_rate, 0.0, 1.0);
+  Closed("gap_watch.tolerance", gap_watch.tolerance, 0.0, 1.0);
   Open("constants.p_atm", constants.p_atm, 0.0, HUGE_VAL);
   Open("constants.p_supply", constants.p_supply, constants.p_atm, HUGE_VAL);
   Open("constants.q1", constants.q1, -HUGE_VAL, HUGE_VAL);
@@ -180,7 +182,8 @@ EstimatorSettings BuiltinSettings(const std::string& model) {
   }
   for (auto& noise : s.noise) noise.std = info.default_noise_std;
   if (excited) {
-    s.constants.q1 = 0.0704;  // rad/s^2 per Pa, so that tens of kPa bend it by a radian
+    s.gap_watch.tolerance = 0.1;  // the noise of the measured inputs bends the flow a little
+    s.constants.q1 = 0.0704;      // rad/s^2 per Pa, so that tens of kPa bend it by a radian
     for (auto& noise : s.noise) {
       noise.std = 0.25;  // sqrt(Pa): sensor noise of 500 Pa/s on pdot times a gain of 5e-4
       noise.estimate_std = true;

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/pack_codec.hpp"
@@ -29,6 +30,7 @@ const char* KindName(std::size_t kind) {
     case EventKind::kNumericTrouble: return "numeric troubles";
     case EventKind::kPublishFailed: return "failed publications";
     case EventKind::kPlantRestarted: return "restarts of the plant";
+    case EventKind::kGapSuspected: return "suspected gaps";
     default: return "events";
   }
 }
@@ -57,6 +59,9 @@ std::string EventText(const rt::Event& event) {
     case EventKind::kNumericTrouble:
       return "pack " + a + ": " + std::string(ToString(static_cast<Status>(event.detail))) + ", what was known is kept";
     case EventKind::kPublishFailed: return "publishing failed, " + a + " times so far";
+    case EventKind::kGapSuspected:
+      return "GAP SUSPECTED: the model misses something since pack " + a + ", seen in " +
+             std::string(FamilyOf(static_cast<PlantKind>(event.b)).check(event.detail));
   }
   return "unknown event";
 }

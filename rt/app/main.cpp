@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <string>
 
 #include "armcmc/estimator.hpp"
@@ -18,6 +19,7 @@
 #include "armcmc/support/shared_files.hpp"
 #include "armcmc/support/strict_toml.hpp"
 #include "event_printer.hpp"
+#include "gap_log.hpp"
 #include "report.hpp"
 #include "rt_config.hpp"
 #include "summary.hpp"
@@ -43,6 +45,7 @@ struct Options {
   std::string lcm_url;
   std::string prefix;
   std::string report;
+  std::string gap_log;
   std::int64_t steps = 0;
   bool verbose = false;
 };
@@ -50,6 +53,7 @@ struct Options {
 struct Configuration {
   EstimatorSettings estimator;
   rt::RtSettings rt;
+  GapLogSettings gap_log;
 };
 
 Configuration Load(const Options& options) {
@@ -62,9 +66,11 @@ Configuration Load(const Options& options) {
   Configuration configuration;
   configuration.estimator = support::ReadEstimatorSettings(root, decides ? options.model : "");
   configuration.rt = ReadRtSettings(root);
+  configuration.gap_log = ReadGapLogSettings(root);
   root.Finish();
   if (!options.lcm_url.empty()) configuration.rt.lcm_url = options.lcm_url;
   if (!options.prefix.empty()) configuration.rt.prefix = options.prefix;
+  if (!options.gap_log.empty()) configuration.gap_log.directory = options.gap_log;
   configuration.rt.Validate();
   return configuration;
 }
@@ -120,6 +126,7 @@ int Run(const Options& options) {
   rt::PipelineOptions pipeline_options;
   pipeline_options.max_steps = options.steps;
   if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
+  pipeline_options.record_packs = configuration.estimator.gap_watch.enabled;
   rt::Pipeline pipeline(configuration.rt, &engine, pipeline_options);
   const Nanos start_ns = rt::MonotonicNow();
   try {
@@ -134,12 +141,20 @@ int Run(const Options& options) {
               << ", scoring with " << InstructionSet() << '\n';
   }
   EventPrinter printer(std::cerr, start_ns, options.verbose);
+  std::unique_ptr<GapLog> gap_log;
+  if (pipeline.record() != nullptr) {
+    gap_log = std::make_unique<GapLog>(configuration.gap_log, engine.plant(), pipeline.record(), &pipeline.gap_alarm(),
+                                       [](const std::string& line) { std::cerr << line + "\n"; });
+    gap_log->Start();
+  }
   Attend(&pipeline, signals, &printer);
+  if (gap_log) gap_log->Stop();
+  const std::string window = gap_log ? gap_log->path() : "";
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second Ctrl-C may end a program whose disk hangs
 
-  std::cout << SummaryText(pipeline, engine.estimator());
+  std::cout << SummaryText(pipeline, engine.estimator(), window);
   if (!options.report.empty()) {
-    rt::WriteReport(pipeline, options.report);
+    rt::WriteReport(pipeline, options.report, window);
     std::cout << "\nreport: " << options.report << '\n';
   }
   return support::kExitOk;
@@ -168,6 +183,9 @@ int main(int argc, char** argv) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62));
   cli.add_option("--report", options.report, "Write a JSON report of the run")->type_name("FILE");
+  cli.add_option("--gap-log", options.gap_log,
+                 "Folder for the data around a suspected gap. Default: the configuration's (gap_logs)")
+      ->type_name("DIR");
   cli.add_flag("--verbose", options.verbose, "Also print lost and dropped packs");
   return support::RunProgram(cli, app::kName, argc, argv, [&options] { return app::Run(options); });
 }

@@ -109,9 +109,22 @@ Json Parameters(const Pipeline& p) {
   return modes;
 }
 
+Json Gap(const GapState& gap, const std::string& window) {
+  return {{"watched", gap.watched},
+          {"suspected", gap.suspected},
+          {"where", gap.check >= 0 ? Json(gap.where) : Json(nullptr)},
+          {"log_evidence", gap.log_evidence},
+          {"log_threshold", gap.log_threshold},
+          {"share_of_excess_error", gap.share},
+          {"since_pack", gap.since_seq > 0 ? Json(gap.since_seq) : Json(nullptr)},
+          {"alarm_pack", gap.suspected ? Json(gap.alarm_seq) : Json(nullptr)},
+          {"blocks", gap.num_blocks},
+          {"window", window.empty() ? Json(nullptr) : Json(window)}};
+}
+
 }  // namespace
 
-std::string ReportJson(const Pipeline& p) {
+std::string ReportJson(const Pipeline& p, const std::string& gap_window) {
   const RtSettings& s = p.settings();
   const Counters& c = p.counters();
   const DeadlineMonitor& m = p.monitor();
@@ -149,12 +162,13 @@ std::string ReportJson(const Pipeline& p) {
         {"truncated_steps", c.adjust.truncated.Get()}}},
       {"ess", {{"median", ess.Quantile(0.5)}, {"min", ess.min()}}},
       {"numeric_troubles", c.adjust.numeric.Get()},
+      {"gap", Gap(p.last_estimate().gap, gap_window)},
       {"parameters", Parameters(p)}};
   return report.dump(2) + "\n";
 }
 
-void WriteReport(const Pipeline& pipeline, const std::string& path) {
-  const std::string text = ReportJson(pipeline);
+void WriteReport(const Pipeline& pipeline, const std::string& path, const std::string& gap_window) {
+  const std::string text = ReportJson(pipeline, gap_window);
   const std::string temporary = path + ".tmp";
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);

@@ -76,4 +76,14 @@ rt::RtSettings ReadRtSettings(StrictTable& root) {
   return settings;
 }
 
+GapLogSettings ReadGapLogSettings(StrictTable& root) {
+  GapLogSettings settings;
+  StrictTable table = root.Table("gap_log");
+  settings.directory = table.Text("directory", settings.directory);
+  settings.window_s = table.Number("window_s", settings.window_s, 1.0, 3600.0);
+  settings.after_s = table.Number("after_s", settings.after_s, 0.0, 3600.0);
+  settings.max_files = static_cast<int>(table.Integer("max_files", settings.max_files, 1, 10'000));
+  return settings;
+}
+
 }  // namespace armcmc::app

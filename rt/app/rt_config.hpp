@@ -2,6 +2,7 @@
 
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/support/strict_toml.hpp"
+#include "gap_log.hpp"
 
 namespace armcmc::app {
 
@@ -9,5 +10,9 @@ namespace armcmc::app {
 /// absent deadline_ms is the period, absent adjust_budget_ms four fifths of the smaller of period and deadline.
 /// @throws support::ConfigError naming file, line, key and range.
 [[nodiscard]] rt::RtSettings ReadRtSettings(support::StrictTable& root);
+
+/// Reads [gap_log]: where the data around a suspected gap go.
+/// @throws support::ConfigError naming file, line, key and range.
+[[nodiscard]] GapLogSettings ReadGapLogSettings(support::StrictTable& root);
 
 }  // namespace armcmc::app

@@ -49,9 +49,24 @@ std::string Parameters(const rt::Pipeline& pipeline, const Estimator& estimator)
   return any ? table.ToString() : "no parameter was learnt: no pack with information came\n";
 }
 
+std::string Gap(const GapState& gap, const std::string& window) {
+  if (!gap.watched || gap.num_blocks == 0) return {};
+  std::ostringstream out;
+  if (!gap.suspected) {
+    out << "gap between model and plant: none suspected (log evidence " << Significant(gap.log_evidence, 3)
+        << ", threshold " << Significant(gap.log_threshold, 3) << ")\n";
+    return out.str();
+  }
+  out << "GAP SUSPECTED since pack " << gap.since_seq << ": the model misses something, seen in " << gap.where
+      << " (log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
+      << ")\n";
+  if (!window.empty()) out << "data: " << window << "; armcmc-gap --data finds out what\n";
+  return out.str();
+}
+
 }  // namespace
 
-std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator) {
+std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator, const std::string& gap_window) {
   const rt::Counters& c = pipeline.counters();
   const rt::DeadlineMonitor& m = pipeline.monitor();
   std::ostringstream out;
@@ -67,6 +82,7 @@ std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator
     out << "draws a posterior: median " << draws.Quantile(0.5) << ", least " << draws.min() << "; effective: median "
         << pipeline.execute().ess().Quantile(0.5) << '\n';
   }
+  out << Gap(pipeline.last_estimate().gap, gap_window);
   const auto degraded = rt::DegradedNames(pipeline.degraded_flags());
   if (!degraded.empty()) {
     out << "degraded:";

@@ -95,6 +95,10 @@ bool CollectStage::Step(const Datagram& datagram) noexcept {
   next_tick_ns_ = std::max(grid_.next_due_ns(), datagram.arrival_ns) + SilenceMargin(period_ns_);
   count.received.Add();
 
+  if (DataPack* copy = record_ != nullptr ? record_->Claim() : nullptr; copy != nullptr) {
+    codec_.CopyTo(copy);
+    record_->Commit();
+  }
   PackSlot* slot = ring_->Claim();
   if (slot == nullptr) {
     count.ring_full.Add();

@@ -21,11 +21,10 @@ static_assert(estimate_t::DECISION_MODIFICATION == static_cast<int>(Decision::kM
 
 namespace {
 
-constexpr std::size_t kTextSize = std::extent_v<decltype(estimate_t::param_name), 1>;
-
-void FillText(std::string_view text, std::uint8_t (&field)[kTextSize]) noexcept {
+template <std::size_t kSize>
+void FillText(std::string_view text, std::uint8_t (&field)[kSize]) noexcept {
   // One byte stays zero, so that a reader may take it as a C string.
-  const std::size_t n = std::min(text.size(), kTextSize - 1);
+  const std::size_t n = std::min(text.size(), kSize - 1);
   std::transform(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(n), field,
                  [](char c) { return static_cast<std::uint8_t>(c); });
 }
@@ -159,6 +158,16 @@ void FillStatus(const StatusContext& context, const RtSettings& settings, const 
   message->truncated_steps = counters.adjust.truncated.Get();
   message->fault_flags = context.fault_flags;
   message->degraded_flags = context.degraded_flags;
+  const GapState& gap = context.gap;
+  message->gap_watched = gap.watched ? 1 : 0;
+  message->gap_suspected = gap.suspected ? 1 : 0;
+  message->gap_check = gap.check;
+  FillText(gap.where, message->gap_where);
+  message->gap_log_evidence = gap.log_evidence;
+  message->gap_log_threshold = gap.log_threshold;
+  message->gap_share = gap.share;
+  message->gap_since_seq = gap.since_seq;
+  message->gap_alarm_seq = gap.alarm_seq;
 }
 
 }  // namespace armcmc::rt

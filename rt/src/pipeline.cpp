@@ -29,7 +29,11 @@ Pipeline::Pipeline(const RtSettings& settings, StepEngine* engine, const Pipelin
       collect_(settings_, engine->plant(), engine->num_inputs(), &packs_, &counters_, &events_[0]),
       adjust_(settings_, engine, &packs_, &results_, &monitor_, &counters_, &events_[1]),
       execute_(engine, &results_, &outputs_, &monitor_, &counters_, &events_[2]),
-      publish_(settings_, engine, &outputs_, &publisher_, &monitor_, &counters_, &events_[3]) {}
+      publish_(settings_, engine, &outputs_, &publisher_, &monitor_, &counters_, &events_[3]) {
+  if (!options_.record_packs) return;
+  record_ = std::make_unique<RecordRing>();
+  collect_.SetRecord(record_.get());
+}
 
 Pipeline::~Pipeline() {
   RequestStop();

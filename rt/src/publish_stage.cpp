@@ -27,11 +27,19 @@ int PublishStage::PublishSteps() noexcept {
     Note(publisher_->Publish(estimate_));
     FillPosterior(*output, *engine_, utime, &posterior_);
     Note(publisher_->Publish(posterior_));
-    PublishStatus(output);
     last_ = output->estimate;
+    NoteGap(last_.gap);
+    PublishStatus(output);
     outputs_->Pop();
   }
   return published;
+}
+
+void PublishStage::NoteGap(const GapState& gap) noexcept {
+  if (!gap.suspected || gap_alarm_.load(std::memory_order_relaxed) == gap.alarm_seq) return;
+  gap_alarm_.store(gap.alarm_seq, std::memory_order_release);
+  events_->Add({MonotonicNow(), EventKind::kGapSuspected, static_cast<std::uint8_t>(gap.check), gap.since_seq,
+                static_cast<std::int64_t>(engine_->plant())});
 }
 
 void PublishStage::PublishIdleStatus() noexcept { PublishStatus(nullptr); }
@@ -41,6 +49,7 @@ void PublishStage::PublishStatus(const StepOutput* output) noexcept {
   context.utime = RealtimeMicros();
   context.now_ns = MonotonicNow();
   context.output = output;
+  context.gap = last_.gap;
   for (Witness* witness : witnesses_) context.witness_max_ns = std::max(context.witness_max_ns, witness->TakeWorst());
   context.fault_flags = counters_->faults.Take();
   if (counters_->collect.silent.load(std::memory_order_relaxed)) {

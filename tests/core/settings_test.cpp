@@ -88,6 +88,8 @@ const std::vector<Wrong> kWrong{
     {"sampler.lambda_q_min", "= 0", [](EstimatorSettings& s) { s.sampler.lambda_q_min = 0.0; }},
     {"sampler.lambda_q_max", "= 1", [](EstimatorSettings& s) { s.sampler.lambda_q_max = 1.0; }},
     {"sampler.lambda_q_min", "lambda_q_max", [](EstimatorSettings& s) { s.sampler.lambda_q_min = 0.9; }},
+    {"gap_watch.false_alarm_rate", "= 0", [](EstimatorSettings& s) { s.gap_watch.false_alarm_rate = 0.0; }},
+    {"gap_watch.tolerance", "= 2", [](EstimatorSettings& s) { s.gap_watch.tolerance = 2.0; }},
     {"constants.p_atm", "= -1", [](EstimatorSettings& s) { s.constants.p_atm = -1.0; }},
     {"constants.p_supply", "= 1000", [](EstimatorSettings& s) { s.constants.p_supply = 1000.0; }},
     {"constants.q1", "nan", [](EstimatorSettings& s) { s.constants.q1 = kNan; }},

@@ -107,6 +107,7 @@ TEST(FillStatus, CarriesTimesCountersAndFlags) {
   context.output = output.get();
   context.fault_flags = estimator_status_t::FAULT_BAD_DATA;
   context.degraded_flags = estimator_status_t::DEGRADED_NO_FIFO;
+  context.gap = {true, true, 3, "free_direction", 9.5, 5.25, 0.75, 21, 160, 4};
   estimator_status_t message;
   std::memset(static_cast<void*>(&message), 0xff, sizeof message);
   FillStatus(context, settings, *counters, *monitor, &message);
@@ -124,6 +125,15 @@ TEST(FillStatus, CarriesTimesCountersAndFlags) {
   EXPECT_EQ(message.fault_flags, estimator_status_t::FAULT_BAD_DATA);
   EXPECT_EQ(message.degraded_flags, estimator_status_t::DEGRADED_NO_FIFO);
   EXPECT_EQ(message.missed_own, 0);
+  EXPECT_EQ(message.gap_watched, 1);
+  EXPECT_EQ(message.gap_suspected, 1);
+  EXPECT_EQ(message.gap_check, 3);
+  EXPECT_EQ(Text(message.gap_where), "free_direction");
+  EXPECT_EQ(message.gap_log_evidence, 9.5);
+  EXPECT_EQ(message.gap_log_threshold, 5.25);
+  EXPECT_EQ(message.gap_share, 0.75);
+  EXPECT_EQ(message.gap_since_seq, 21);
+  EXPECT_EQ(message.gap_alarm_seq, 160);
 }
 
 template <typename Message>

@@ -247,6 +247,9 @@ TEST_F(PipelineTest, ReportsWithTheAgreedKeys) {
   }
   EXPECT_EQ(report.at("packs").at("received"), 3);
   for (const char* key : {"lost", "rejected", "duplicate", "reordered"}) EXPECT_EQ(report.at("packs").at(key), 0);
+  for (const char* key : {"watched", "suspected", "where", "log_evidence", "log_threshold", "share_of_excess_error",
+                          "since_pack", "alarm_pack", "blocks", "window"})
+    EXPECT_TRUE(report.at("gap").contains(key)) << key;
   EXPECT_TRUE(report.at("witness_ms").at("p999").is_number());
   EXPECT_EQ(report.at("rt").at("mode"), "best_effort");
   EXPECT_EQ(report.at("rt").at("mlockall"), false);

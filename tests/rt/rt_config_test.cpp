@@ -75,6 +75,22 @@ TEST(ReadRtSettings, NamesLineKeyAndRangeOfAMistake) {
             std::string::npos);
 }
 
+TEST(ReadGapLogSettings, ReadsEveryKeyAndRefusesOthers) {
+  const auto read = [](const std::string& text) {
+    StrictTable root = StrictTable::FromText(text, "test.toml");
+    const GapLogSettings settings = ReadGapLogSettings(root);
+    root.Finish();
+    return settings;
+  };
+  const GapLogSettings s = read("[gap_log]\ndirectory = \"there\"\nwindow_s = 12.5\nafter_s = 0\nmax_files = 3\n");
+  EXPECT_EQ(s.directory, "there");
+  EXPECT_EQ(s.window_s, 12.5);
+  EXPECT_EQ(s.after_s, 0.0);
+  EXPECT_EQ(s.max_files, 3);
+  for (const char* wrong : {"window_s = 0", "after_s = -1", "max_files = 0", "window = 3", "directory = 3"})
+    EXPECT_THROW((void)read(std::string("[gap_log]\n") + wrong + "\n"), ConfigError) << wrong;
+}
+
 class ShippedConfig : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedConfig, IsReadCompletelyAndNamesItsModel) {
@@ -82,7 +98,14 @@ TEST_P(ShippedConfig, IsReadCompletelyAndNamesItsModel) {
   StrictTable root = StrictTable::FromFile(path);
   const EstimatorSettings estimator = support::ReadEstimatorSettings(root, "");
   const rt::RtSettings settings = ReadRtSettings(root);
+  const GapLogSettings gap_log = ReadGapLogSettings(root);
   EXPECT_NO_THROW(root.Finish());
+  EXPECT_EQ(gap_log.directory, GapLogSettings{}.directory);
+  EXPECT_EQ(gap_log.window_s, GapLogSettings{}.window_s);
+  EXPECT_EQ(gap_log.after_s, GapLogSettings{}.after_s);
+  EXPECT_EQ(gap_log.max_files, GapLogSettings{}.max_files);
+  EXPECT_EQ(estimator.gap_watch.tolerance, BuiltinSettings(GetParam()).gap_watch.tolerance);
+  EXPECT_TRUE(estimator.gap_watch.enabled);
   EXPECT_NO_THROW(estimator.Validate());
   EXPECT_EQ(settings.period_ns, 100'000'000);
   EXPECT_EQ(settings.deadline_ns, 100'000'000);

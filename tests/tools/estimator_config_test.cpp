@@ -69,6 +69,10 @@ std_log_sd = 0.5
 dof = 5
 outlier_weight = 0.1
 outlier_scale = 8
+[gap_watch]
+enabled = false
+false_alarm_rate = 0.2
+tolerance = 0.5
 [forgetting]
 index = "signed_mean"
 threshold = 2.5
@@ -98,6 +102,9 @@ seed = 42
   EXPECT_EQ(s.noise[0].dof, 5.0);
   EXPECT_EQ(s.noise[0].outlier_weight, 0.1);
   EXPECT_EQ(s.noise[0].outlier_scale, 8.0);
+  EXPECT_FALSE(s.gap_watch.enabled);
+  EXPECT_EQ(s.gap_watch.false_alarm_rate, 0.2);
+  EXPECT_EQ(s.gap_watch.tolerance, 0.5);
   EXPECT_EQ(s.forgetting.index, MismatchIndex::kSignedMean);
   EXPECT_EQ(s.forgetting.threshold, 2.5);
   EXPECT_EQ(s.forgetting.mu, 0.1);
@@ -155,13 +162,26 @@ TEST(EstimatorConfig, TyposAndForeignNamesAreErrorsWithTheirLine) {
 
 TEST(EstimatorConfig, ValuesOutOfRangeAreErrors) {
   EXPECT_THAT(ErrorOf("schema = 2\n[model]\nname = \"hunt_crossley\"\n"), HasSubstr("f.toml:1: schema = 2"));
-  for (const char* line :
-       {"[noise]\nstd = 0", "[noise]\nstd = -1", "[noise]\nkind = \"normal\"", "[noise]\noutlier_weight = 0.7",
-        "[noise]\noutlier_scale = 1", "[forgetting]\nthreshold = 0", "[forgetting]\nlambda_max = 1.5",
-        "[forgetting]\nrho = -1", "[forgetting]\nmin_samples = 0", "[sampler]\nepsilon = 0", "[sampler]\ndelta = 1",
-        "[sampler]\ndraws = 10", "[sampler]\ndraws = \"many\"", "[sampler]\nseed = -1",
-        "[sampler]\nlambda_q_min = 0.7\nlambda_q_max = 0.6", "[model.parameters.K]\nlower = 3\nupper = 2",
-        "[model.parameters.K]\nsd = 0", "[model.parameters.K]\nprior = \"uniform\"\nmean = 2"}) {
+  for (const char* line : {"[noise]\nstd = 0",
+                           "[noise]\nstd = -1",
+                           "[noise]\nkind = \"normal\"",
+                           "[noise]\noutlier_weight = 0.7",
+                           "[noise]\noutlier_scale = 1",
+                           "[gap_watch]\nfalse_alarm_rate = 0",
+                           "[gap_watch]\ntolerance = 2",
+                           "[forgetting]\nthreshold = 0",
+                           "[forgetting]\nlambda_max = 1.5",
+                           "[forgetting]\nrho = -1",
+                           "[forgetting]\nmin_samples = 0",
+                           "[sampler]\nepsilon = 0",
+                           "[sampler]\ndelta = 1",
+                           "[sampler]\ndraws = 10",
+                           "[sampler]\ndraws = \"many\"",
+                           "[sampler]\nseed = -1",
+                           "[sampler]\nlambda_q_min = 0.7\nlambda_q_max = 0.6",
+                           "[model.parameters.K]\nlower = 3\nupper = 2",
+                           "[model.parameters.K]\nsd = 0",
+                           "[model.parameters.K]\nprior = \"uniform\"\nmean = 2"}) {
     EXPECT_THAT(ErrorOf(kHunt + line + "\n"), HasSubstr("f.toml")) << line;
   }
 }

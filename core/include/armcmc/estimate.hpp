@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "armcmc/gap_watch/gap_state.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
@@ -55,6 +56,7 @@ struct Estimate {
   /// display then, those of the pack before the previous one (the paper's timeline). NaN while nothing was known.
   std::array<double, kMaxPackSamples> y_shown{};
   std::array<double, kMaxPackSamples> y_shown_free_run{};  ///< The same from the inputs alone since the start.
+  GapState gap;                                            ///< Whether the model misses something.
 };
 
 }  // namespace armcmc

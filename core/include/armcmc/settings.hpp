@@ -5,6 +5,7 @@
 #include <string>
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/gap_watch/gap_settings.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
@@ -111,6 +112,7 @@ struct EstimatorSettings {
   PlantConstants constants;
   std::array<EffectSettings, kMaxEffects> effects;  ///< Contact plant only, each at most once.
   int num_effects = 0;
+  GapWatchSettings gap_watch;  ///< Changes no estimate.
 
   /// @throws std::invalid_argument naming the key, its value and the allowed range.
   void Validate() const;

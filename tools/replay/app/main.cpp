@@ -73,7 +73,7 @@ int Run(const Arguments& a) {
   request.period = 1e-3 * timing.Number("period_ms", 100.0, 1.0, 10'000.0);
   // When a live run computes is not the matter of a replay.
   for (const char* key : {"deadline_ms", "adjust_budget_ms"}) timing.LeaveToOthers(key);
-  for (const char* key : {"rt", "lcm"}) root.LeaveToOthers(key);
+  for (const char* key : {"rt", "lcm", "gap_log"}) root.LeaveToOthers(key);
   root.Finish();
   if (a.seed) settings.sampler.seed = *a.seed;
 

@@ -32,6 +32,14 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
                     std::string(estimator.reported(i).unit)});
     }
   }
+  const GapState& gap = summary.last.gap;
+  if (gap.num_blocks > 0) {
+    out << (gap.suspected ? "GAP SUSPECTED since pack " + std::to_string(gap.since_seq) + " (alarm at pack " +
+                                std::to_string(gap.alarm_seq) + "), seen in " + std::string(gap.where)
+                          : std::string("gap between model and plant: none suspected"))
+        << "; log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
+        << '\n';
+  }
   out << (any_known ? table.ToString() : std::string("nothing is known: no pack said anything about a parameter\n"));
   if (summary.packs > 0 && summary.compute_s > 0.0)
     out << "computed in " << Significant(summary.compute_s, 3) << " s, "
@@ -72,6 +80,11 @@ void WriteReport(const std::filesystem::path& path, const Estimator& estimator, 
     }
   }
   report["estimates"] = modes;
+  const GapState& gap = summary.last.gap;
+  report["gap"] = {
+      {"watched", gap.watched},           {"suspected", gap.suspected},         {"where", gap.where},
+      {"log_evidence", gap.log_evidence}, {"log_threshold", gap.log_threshold}, {"share_of_excess_error", gap.share},
+      {"since_pack", gap.since_seq},      {"alarm_pack", gap.alarm_seq},        {"blocks", gap.num_blocks}};
   report["data_s"] = summary.data_s;
   report["compute_s"] = summary.compute_s;
   report["instruction_set"] = InstructionSet();

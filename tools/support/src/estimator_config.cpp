@@ -58,6 +58,12 @@ void ReadSampler(StrictTable table, SamplerSettings* sampler) {
   if (table.Has("seed")) sampler->seed = static_cast<std::uint64_t>(seed);
 }
 
+void ReadGapWatch(StrictTable table, GapWatchSettings* watch) {
+  watch->enabled = table.Boolean("enabled", watch->enabled);
+  watch->false_alarm_rate = table.Number("false_alarm_rate", watch->false_alarm_rate, kTiny, 1.0 - 1e-9);
+  watch->tolerance = table.Number("tolerance", watch->tolerance, 0.0, 1.0);
+}
+
 }  // namespace
 
 EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& model_override) {
@@ -71,6 +77,7 @@ EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& mo
   ReadEffects(root, &settings);
   ReadForgetting(root.Table("forgetting"), &settings.forgetting);
   ReadSampler(root.Table("sampler"), &settings.sampler);
+  ReadGapWatch(root.Table("gap_watch"), &settings.gap_watch);
   if (IsModelFile(model_override)) ApplyModelFile(model_override, &settings);
   try {
     settings.Validate();

@@ -19,6 +19,9 @@ class CollectStage {
   CollectStage(const RtSettings& settings, PlantKind plant, int num_inputs, PackRing* ring, Counters* counters,
                EventLog* events) noexcept;
 
+  /// Every usable pack goes there, too, also one that adjust will not come to. Set before the thread starts.
+  void SetRecord(RecordRing* record) noexcept { record_ = record; }
+
   /// @return true when a pack was handed on. @rt No heap, no lock, no throw, no system call. O(pack).
   [[nodiscard]] bool Step(const Datagram& datagram) noexcept;
 
@@ -39,6 +42,7 @@ class CollectStage {
   SequenceTracker tracker_;
   ReleaseGrid grid_;
   PackRing* ring_;
+  RecordRing* record_ = nullptr;
   Counters* counters_;
   EventLog* events_;
   Nanos next_tick_ns_ = 0;

@@ -21,8 +21,9 @@ enum class EventKind : std::uint8_t {
   kPackDropped,      ///< a: pack number; `detail` is the MissCause.
   kNumericTrouble,   ///< a: pack number; `detail` is the Status of core.
   kPublishFailed,    ///< a: failures so far.
+  kGapSuspected,     ///< a: pack since when, b: PlantKind; `detail` is the check of its GapFamily.
 };
-inline constexpr int kNumEventKinds = 11;
+inline constexpr int kNumEventKinds = 12;
 
 struct Event {
   Nanos t_ns = 0;  ///< CLOCK_MONOTONIC.

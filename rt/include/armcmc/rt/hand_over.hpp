@@ -41,6 +41,9 @@ struct StepOutput {
   MissCause miss = MissCause::kNone;
   Estimate estimate;
 };
+/// collect -> whoever keeps the data, outside the real-time threads. Full: the newest pack is not kept.
+inline constexpr std::size_t kRecordRingCapacity = 256;
+using RecordRing = SpscRing<DataPack, kRecordRingCapacity>;
 inline constexpr std::size_t kOutputRingCapacity = 16;
 using OutputRing = SpscRing<StepOutput, kOutputRingCapacity>;
 

@@ -29,6 +29,7 @@ struct StatusContext {
   Nanos witness_max_ns = 0;
   std::int32_t fault_flags = 0;
   std::int32_t degraded_flags = 0;
+  GapState gap;
 };
 
 /// Fills estimator_status_t. Sets every field; the times of the stages are zero without a step.

@@ -32,6 +32,7 @@ using HeapProbe = std::uint64_t (*)() noexcept;
 struct PipelineOptions {
   std::int64_t max_steps = 0;      ///< Stop after so many steps; 0: never.
   HeapProbe heap_probe = nullptr;  ///< nullptr: heap calls of the stages are not counted.
+  bool record_packs = false;       ///< Keep copies of the packs for record().
 };
 
 /// The real-time estimator: three stages on three pinned threads, pack t collected while t-1 is adjusted and t-2
@@ -64,6 +65,11 @@ class Pipeline {
   /// Takes one event of any thread; by one thread only. @return false when there is none.
   [[nodiscard]] bool TakeEvent(Event* event) noexcept;
   [[nodiscard]] std::int64_t events_dropped() const noexcept;
+
+  /// Usable packs for one reader; nullptr without record_packs.
+  [[nodiscard]] RecordRing* record() noexcept { return record_.get(); }
+  /// Number of the pack at which the gap watch raised its alarm, 0 while it has not. Any time.
+  [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return publish_.gap_alarm(); }
 
   // What a report needs. Counters may be read any time; the rest after Join().
   [[nodiscard]] const RtSettings& settings() const noexcept { return settings_; }
@@ -100,6 +106,7 @@ class Pipeline {
   PackRing packs_;
   ResultHandOver results_;
   OutputRing outputs_;
+  std::unique_ptr<RecordRing> record_;
   LcmReceiver receiver_;
   LcmPublisher publisher_;
   CollectStage collect_;

@@ -39,11 +39,14 @@ class PublishStage {
   /// Sends a status without a step: nothing came, or nothing was finished.
   void PublishIdleStatus() noexcept;
 
+  /// Number of the pack at which the gap watch raised its alarm; 0: it has not.
+  [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return gap_alarm_; }
   /// The newest estimate that was published. @pre the thread has ended.
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return last_; }
 
  private:
   void PublishStatus(const StepOutput* output) noexcept;
+  void NoteGap(const GapState& gap) noexcept;
   void Note(bool sent) noexcept;
 
   const RtSettings& settings_;
@@ -55,6 +58,7 @@ class PublishStage {
   EventLog* events_;
   std::vector<Witness*> witnesses_;
   std::atomic<std::int32_t> degraded_flags_{0};
+  std::atomic<std::int64_t> gap_alarm_{0};
   estimate_t estimate_{};
   posterior_t posterior_{};
   estimator_status_t status_{};

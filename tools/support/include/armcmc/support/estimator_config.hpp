@@ -7,7 +7,7 @@
 
 namespace armcmc::support {
 
-/// Reads what decides the estimates: schema, [model], [noise], [[effect]], [forgetting], [sampler].
+/// Reads what decides the estimates: schema, [model], [noise], [[effect]], [forgetting], [sampler], [gap_watch].
 ///
 /// Starts from BuiltinSettings(name) and replaces what the file sets, key by key; the keys are those of
 /// settings.hpp. [noise] holds for every mode, [noise.MODE] for one. The other tables of the file are the

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <array>
+
+#include "armcmc/gap_watch/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_evidence.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+inline constexpr int kGapBlockPacks = 120;  ///< Stretches of data in one block, each of a pack or of a few short ones.
+inline constexpr int kGapColumns = 8;       ///< Parameters of all modes together.
+inline constexpr int kGapDirections = 3;    ///< Each may be constant, change evenly over the block, and step once.
+inline constexpr int kGapNuisance = kGapColumns * kGapDirections;
+
+/// Errors and sensitivities of one pack, in units of the noise.
+struct GapRows {
+  int num_samples = 0;
+  std::array<bool, kMaxPackSamples> used{};      ///< Samples that the model says something about.
+  std::array<double, kMaxPackSamples> error{};   ///< Measured minus predicted; 0 where not used.
+  std::array<double, kMaxPackSamples> output{};  ///< Predicted.
+  std::array<std::array<double, kMaxPackSamples>, kGapColumns> slope{};  ///< d predicted / d parameter.
+};
+
+/// Change of the parameters of one pack from the point at which it was linearised.
+using GapShift = std::array<double, kGapColumns>;
+
+/// Least squares of a block and the scores of its checks.
+///
+/// In a block the model with any parameters near the reference, even with parameters that drift evenly or step once,
+/// predicts  e = J (a + b tau + c step) + noise.  M is the projection that removes these directions; what the
+/// parameters can explain never counts. A region with template phi scores
+///
+///   S = phi' M e = sum_k (M phi)_k' noise_k = sum_k psi_k       over the packs k of the block,
+///   z = S / sqrt(sum_k (psi_k / (1 - h_k))^2),   h_k the leverage of pack k,
+///
+/// which depends on the noise only. When the noise of a pack is symmetric given the packs before (of any law, any scale
+/// from pack to pack, coloured within a pack), z is conditionally sub-Gaussian with variance 1 (Efron 1969, de la Pena
+/// 1999); the leverage makes up for psi_k being computed from residuals. The two repeating checks score
+/// sum_k d_k' d_{k-1} and sum_k d_k' d_{k-2} the same way, with d_k the errors of a pack without their mean and slope;
+/// the wander scores products of neighbouring pack means. What coloured noise carries from one pack into the next is
+/// allowed for up to AR(1) noise with coefficient 0.8 from sample to sample: neighbouring means of n samples then
+/// correlate by 0.8 / (0.36 n).
+class GapBlock {
+ public:
+  GapBlock(const GapFamily& family, int num_columns) noexcept : family_(family), columns_(num_columns) {}
+
+  void Clear() noexcept;
+  /// First pass: errors and slopes of pack k alone. @param tau  Place in the block, [-1, 1].
+  /// @param changed  Whether the parameters may have stepped before this pack.
+  void AddFit(int k, const GapRows& rows, double tau, bool changed) noexcept;
+  /// Second pass: with regions, and d_k against those of the packs before when these are neighbours.
+  void AddRegions(int k, const GapRows& rows, double tau, bool changed, const RegionTemplates& regions,
+                  bool continues) noexcept;
+  /// Least squares with a weak prior (precision in units of the noise) on every direction: where to linearise next.
+  /// @param[out] shift  Of every pack.
+  void Fit(const std::array<double, kGapColumns>& precision, std::array<GapShift, kGapBlockPacks>* shift) noexcept;
+  /// Scores of all checks; zero where a block says too little.
+  /// @param tolerance  See GapWatchSettings.
+  void Score(double tolerance, std::array<CheckScore, kMaxGapChecks>* scores) noexcept;
+
+  /// After Score(): squared error that a check explains, and all of it beyond the noise; in units of the noise.
+  [[nodiscard]] double explained(int check) const noexcept { return explained_[static_cast<std::size_t>(check)]; }
+  [[nodiscard]] double excess() const noexcept { return excess_; }
+
+ private:
+  struct RegionSums {
+    double error = 0.0, square = 0.0;
+    int count = 0;
+    std::array<double, kGapColumns> slope{};
+  };
+  struct PackSums {
+    bool used = false;
+    std::array<double, kGapDirections> direction{};
+    int count = 0;
+    double error_square = 0.0;
+    std::array<double, kGapColumns> slope_error{};
+    std::array<std::array<double, kGapColumns>, kGapColumns> slope_slope{};
+    std::array<RegionSums, kMaxRegions> region{};
+    std::array<double, 2> echo{};  ///< Products with the last pack and the one before.
+  };
+  using Vector = std::array<double, kGapNuisance>;
+
+  void AddPrecision(const std::array<double, kGapColumns>& precision) noexcept;
+  void SumNormalMatrix() noexcept;
+  /// Cholesky factor; directions that the block cannot tell apart from the ones before are left out.
+  void Factor() noexcept;
+  void SolveLower(Vector* x) const noexcept;  ///< L x = b
+  void SolveUpper(Vector* x) const noexcept;  ///< L' x = b
+  [[nodiscard]] GapShift ShiftOf(const PackSums& pack, const Vector& solution) const noexcept;
+  void SolveErrors(Vector* solution) const noexcept;
+  /// Correlation of neighbouring packs' means that is allowed for.
+  [[nodiscard]] double CarryOver() const noexcept;
+  [[nodiscard]] CheckScore ScoreRegion(int region, const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
+                                       double* explained) const noexcept;
+  [[nodiscard]] CheckScore ScoreEcho(int lag, double tolerance, double* explained) const noexcept;
+  [[nodiscard]] CheckScore ScoreWander(const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
+                                       double* explained) const noexcept;
+  void Detrend(const GapRows& rows, std::array<double, kMaxPackSamples>* out) const noexcept;
+
+  const GapFamily& family_;
+  int columns_;
+  std::array<PackSums, kGapBlockPacks> packs_{};
+  std::array<std::array<double, kMaxPackSamples>, 3> detrended_{};  ///< Of this pack and the two before, in turns.
+  std::array<int, 3> detrended_count_{};
+  std::array<std::array<double, kGapNuisance>, kGapNuisance> matrix_{};  ///< Normal matrix, then its factor.
+  std::array<bool, kGapNuisance> kept_{};
+  std::array<double, kMaxGapChecks> explained_{};
+  double excess_ = 0.0;
+};
+
+}  // namespace armcmc

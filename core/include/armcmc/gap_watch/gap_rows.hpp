@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/effects/composition.hpp"
+#include "armcmc/gap_watch/gap_block.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/model.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc {
+
+namespace simd {
+struct Kernels;
+}
+
+/// Point estimates of all modes, and the noise to measure errors by.
+struct GapReference {
+  std::array<bool, kMaxModes> known{};
+  std::array<std::array<double, kMaxParams>, kMaxModes> theta{};
+  std::array<double, kMaxModes> noise_std{};
+};
+
+/// Errors and sensitivities of packs, for any model: the scoring kernel is asked once for the reference and two points
+/// beside it for each parameter, side by side in one tile.
+class GapLineariser {
+ public:
+  /// @param settings  Valid; of the estimator.
+  GapLineariser(const EstimatorSettings& settings, int model, const simd::Kernels& kernels);
+
+  /// Parameters of all modes together: columns of GapRows.
+  [[nodiscard]] int num_columns() const noexcept { return info().num_modes * info().num_parameters; }
+  [[nodiscard]] const ModelInfo& info() const noexcept { return composition_.info(); }
+  [[nodiscard]] const ParameterSettings& parameter(int column) const noexcept;
+  /// The parameters of `reference` moved by `shift`, kept inside their bounds.
+  [[nodiscard]] GapReference Moved(const GapReference& reference, const GapShift& shift) const noexcept;
+
+  /// @param modes  Mode of every sample.
+  /// @return false when a prediction is not finite. @rt No heap, no lock, no throw. O(samples).
+  [[nodiscard]] bool Linearise(const DataPack& pack, const GapReference& at, GapRows* rows,
+                               std::array<int, kMaxPackSamples>* modes) noexcept;
+  /// Forgets the packs before.
+  void Reset() noexcept { composition_.Reset(); }
+
+ private:
+  void FillTheta(const std::array<double, kMaxParams>& theta) noexcept;
+  [[nodiscard]] bool FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
+                              GapRows* rows) noexcept;
+
+  const EstimatorSettings& settings_;
+  int model_;
+  const simd::Kernels& kernels_;
+  bool passive_is_zero_;
+  Composition composition_;
+  EffectPack effects_;
+  ModeData data_;
+  ThetaTile theta_;
+  PredictionTile prediction_;
+};
+
+}  // namespace armcmc

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/gap_watch/gap_block.hpp"
+#include "armcmc/gap_watch/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_evidence.hpp"
+#include "armcmc/gap_watch/gap_rows.hpp"
+#include "armcmc/gap_watch/gap_settings.hpp"
+#include "armcmc/gap_watch/gap_state.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc {
+
+/// Watches for a persistent gap between a model and its plant, while the estimator runs.
+///
+/// Errors are looked at in blocks of kGapBlockPacks packs (shorter ones than kShortestPack are joined). A block is
+/// recorded, then, beside the recording of the next one, linearised twice: at the estimate, and along the trajectory of
+/// parameters that fits the block best (constant, plus even drift, plus one step where the estimator saw a change).
+/// What no such trajectory explains is scored by region (GapBlock) and turned into anytime-valid evidence
+/// (GapEvidence).
+///
+/// So a parameter that drifts or steps now and then is no gap, whether or not the estimator has followed it yet.
+/// Effects that a drifting parameter imitates (stiffness drift itself) are not seen, by construction. The rate of false
+/// alarms holds for noise of any law that is symmetric, of any scale, coloured over less than a pack; it does not need
+/// the noise level to be known.
+///
+/// The estimates decide only where to linearise, so the number of draws hardly matters here.
+class GapWatch {
+ public:
+  /// Allocates. @param settings  Valid; outlives the watch.
+  GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels);
+
+  /// One pack, in the order of the estimator. @param changed  The estimator dropped its past at this pack.
+  /// @pre pack.Validate() == kOk, and the pack is of the model's plant.
+  /// @rt No heap, no lock, no throw. O(samples).
+  void Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept;
+  void Reset() noexcept;
+  [[nodiscard]] const GapState& state() const noexcept { return state_; }
+  /// Of the last block.
+  [[nodiscard]] const std::array<CheckScore, kMaxGapChecks>& scores() const noexcept { return scores_; }
+
+ private:
+  /// Of the block that is being linearised, at one step: both passes end well before the next block is full.
+  static constexpr int kPacksPerStep = 6;
+  static constexpr double kShortestPack = 0.1;  ///< s: longer than coloured noise remembers.
+  static constexpr int kNoChange = kGapBlockPacks;
+
+  struct Recording {
+    std::vector<DataPack> packs;
+    std::array<bool, kGapBlockPacks> changed{};
+    int count = 0;  ///< Complete ones.
+  };
+
+  /// @return true when a pack of the block is complete.
+  [[nodiscard]] bool Record(const DataPack& pack, bool changed) noexcept;
+  void Analyse() noexcept;
+  void BeginAnalysis(const GapReference& estimate) noexcept;
+  /// The first change of the block, and which packs around it are left out.
+  void PlaceChange() noexcept;
+  void AnalysePack(int k, bool second_pass) noexcept;
+  void FitTrajectory() noexcept;
+  void Judge() noexcept;
+
+  const GapWatchSettings& settings_;
+  const GapFamily& family_;
+  GapLineariser first_, second_;  ///< One for each pass: each sees every pack once, in order.
+  bool enabled_;
+  GapBlock block_;
+  GapEvidence evidence_;
+  GapState state_;
+  std::array<CheckScore, kMaxGapChecks> scores_{};
+
+  std::array<Recording, 2> recordings_;
+  int recording_ = 0;
+  bool joining_ = false;                      ///< packs[count] holds the start of a pack.
+  std::int64_t last_seq_ = 0, last_run_ = 0;  ///< Of the estimator's packs.
+  std::int64_t number_ = 0;                   ///< Of the block's packs; a loss leaves out one.
+  std::int64_t first_seq_ = 0;                ///< Of the recorded block.
+  std::int64_t analysed_seq_ = 0;             ///< First pack of the analysed block.
+  Recording* analysed_ = nullptr;
+  int next_ = 0;  ///< Packs of both passes done.
+  GapReference reference_;
+  std::array<GapShift, kGapBlockPacks> shift_{};
+  int change_ = kNoChange;
+  std::array<bool, kGapBlockPacks> left_out_{};
+
+  GapRows rows_;
+  std::array<int, kMaxPackSamples> modes_{};
+  RegionTemplates regions_{};
+  RegionMemory memory_;
+  std::int64_t last_number_ = -1;                  ///< Of the packs that were scored.
+  std::array<double, kMaxGapChecks> explained_{};  ///< Of the last blocks.
+  double excess_ = 0.0;
+  std::array<std::int64_t, kMaxGapChecks> since_{};
+};
+
+}  // namespace armcmc

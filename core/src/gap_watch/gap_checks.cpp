@@ -1,0 +1,147 @@
+#include "armcmc/gap_watch/gap_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace armcmc {
+namespace {
+
+constexpr double kEarly = 0.25;    // s after a change of mode
+constexpr double kShallow = 0.25;  // of the largest magnitude
+constexpr double kDeep = 0.75;
+constexpr double kHigh = 0.9;  // of the largest output
+
+double Sign(double v) noexcept { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); }
+
+/// Time since the last change of mode, carried from pack to pack.
+double TimeInMode(int mode, double dt, RegionMemory* memory) noexcept {
+  memory->in_mode_s = mode == memory->mode || memory->mode < 0 ? memory->in_mode_s + dt : 0.0;
+  memory->mode = mode;
+  return memory->in_mode_s;
+}
+
+/// Mean slope of one input over the pack: acceleration from a velocity that may be noisy.
+double Slope(const DataPack& pack, std::size_t input) noexcept {
+  const int n = pack.num_samples;
+  double sum = 0.0, square = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const double s = i - 0.5 * (n - 1);
+    sum += s * pack.u[static_cast<std::size_t>(i)][input];
+    square += s * s;
+  }
+  return square > 0.0 ? sum / (square * pack.dt) : 0.0;
+}
+
+enum ContactRegion : std::uint8_t {
+  kEverywhere,
+  kFree,
+  kContactDirection,
+  kFreeDirection,
+  kContactSpeed,
+  kFreeSpeed,
+  kShallowContact,
+  kDeepContact,
+  kShallowRetracting,
+  kEarlyContact,
+  kContactAcceleration,
+  kFreeAcceleration,
+  kOutputRate,
+  kHighOutput,
+  kNumContactRegions
+};
+
+void FillContact(const DataPack& pack, const std::array<int, kMaxPackSamples>&, const double* prediction,
+                 RegionMemory* memory, RegionTemplates* out) noexcept {
+  RegionTemplates& t = *out;
+  const double acceleration = Slope(pack, 1);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
+    const double x = pack.u[n][0];
+    const double v = pack.u[n][1];
+    const bool contact = x >= 0.0;
+    const double c = contact ? 1.0 : 0.0;
+    const double f = 1.0 - c;
+    memory->largest = std::max(memory->largest, x);
+    const double elapsed = TimeInMode(contact ? 0 : 1, pack.dt, memory);
+    const bool shallow = contact && x < kShallow * memory->largest;
+    t[kEverywhere][n] = 1.0;
+    t[kFree][n] = f;
+    t[kContactDirection][n] = c * Sign(v);
+    t[kFreeDirection][n] = f * Sign(v);
+    t[kContactSpeed][n] = c * v;
+    t[kFreeSpeed][n] = f * v;
+    t[kShallowContact][n] = shallow ? 1.0 : 0.0;
+    t[kDeepContact][n] = contact && x > kDeep * memory->largest ? 1.0 : 0.0;
+    t[kShallowRetracting][n] = shallow && v < 0.0 ? 1.0 : 0.0;
+    t[kEarlyContact][n] = contact && elapsed < kEarly ? 1.0 : 0.0;
+    t[kContactAcceleration][n] = c * acceleration;
+    t[kFreeAcceleration][n] = f * acceleration;
+    memory->highest_prediction = std::max(memory->highest_prediction, std::fabs(prediction[n]));
+    t[kOutputRate][n] = prediction[n] - memory->last_prediction;
+    t[kHighOutput][n] = std::fabs(prediction[n]) > kHigh * memory->highest_prediction ? 1.0 : 0.0;
+    memory->last_prediction = prediction[n];
+  }
+}
+
+constexpr GapFamily kContactFamily{
+    .passive_is_zero = true,
+    .num_regions = kNumContactRegions,
+    .regions = {"everywhere", "free", "contact_direction", "free_direction", "contact_speed", "free_speed",
+                "shallow_contact", "deep_contact", "shallow_retracting", "early_contact", "contact_acceleration",
+                "free_acceleration", "output_rate", "high_output"},
+    .fill = &FillContact,
+};
+
+enum ActuatorRegion : std::uint8_t {
+  kAnyValve,
+  kVenting,
+  kHighPressureFilling,
+  kHighPressureVenting,
+  kSmallOpening,
+  kEarlyOpening,
+  kPressure,
+  kNumActuatorRegions
+};
+
+// pdot is measured with noise, which is also in the errors: no region may depend on it, nor on predictions made from
+// it.
+void FillActuator(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double*,
+                  RegionMemory* memory, RegionTemplates* out) noexcept {
+  RegionTemplates& t = *out;
+  constexpr double kAtmosphere = 101'325.0;  // only a size to compare with
+  for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
+    const int mode = modes[n];
+    const double pressure = pack.u[n][2] - kAtmosphere;
+    const double opening = std::fabs(pack.u[n][0]) + std::fabs(pack.u[n][1]);
+    memory->largest = std::max(memory->largest, opening);
+    const double elapsed = TimeInMode(mode, pack.dt, memory);
+    const bool open = mode < 2;
+    t[kAnyValve][n] = open ? 1.0 : 0.0;
+    t[kVenting][n] = mode == 1 ? 1.0 : 0.0;
+    t[kHighPressureFilling][n] = mode == 0 ? pressure / kAtmosphere : 0.0;
+    t[kHighPressureVenting][n] = mode == 1 ? pressure / kAtmosphere : 0.0;
+    t[kSmallOpening][n] = open && opening < kShallow * memory->largest ? Sign(pack.u[n][0] - pack.u[n][1]) : 0.0;
+    t[kEarlyOpening][n] = open && elapsed < 0.1 * kEarly ? 1.0 : 0.0;
+    t[kPressure][n] = open ? pressure * pressure / (kAtmosphere * kAtmosphere) : 0.0;
+  }
+}
+
+constexpr GapFamily kActuatorFamily{
+    .passive_is_zero = false,
+    .num_regions = kNumActuatorRegions,
+    .regions = {"any_valve", "venting", "high_pressure_filling", "high_pressure_venting", "small_opening",
+                "early_opening", "pressure"},
+    .fill = &FillActuator,
+};
+
+}  // namespace
+
+const GapFamily& FamilyOf(PlantKind plant) noexcept {
+  switch (plant) {
+    case PlantKind::kHuntCrossley: return kContactFamily;
+    case PlantKind::kSoftActuator: return kActuatorFamily;
+  }
+  return kContactFamily;
+}
+
+}  // namespace armcmc

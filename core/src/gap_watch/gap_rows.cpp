@@ -1,0 +1,106 @@
+#include "armcmc/gap_watch/gap_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/models/registry.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kStep = 1e-4;  // of a difference quotient, relative to the size of the parameter
+
+std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+GapLineariser::GapLineariser(const EstimatorSettings& settings, int model, const simd::Kernels& kernels)
+    : settings_(settings),
+      model_(model),
+      kernels_(kernels),
+      passive_is_zero_(FamilyOf(AllModels::kInfos[At(model)]->plant).passive_is_zero),
+      composition_(settings) {}
+
+const ParameterSettings& GapLineariser::parameter(int column) const noexcept {
+  return composition_.sampled().parameters[At(column % info().num_parameters)];
+}
+
+GapReference GapLineariser::Moved(const GapReference& reference, const GapShift& shift) const noexcept {
+  GapReference moved = reference;
+  const int count = info().num_parameters;
+  for (int c = 0; c < num_columns(); ++c) {
+    double& theta = moved.theta[At(c / count)][At(c % count)];
+    theta = std::clamp(theta + shift[At(c)], parameter(c).lower, parameter(c).upper);
+  }
+  return moved;
+}
+
+void GapLineariser::FillTheta(const std::array<double, kMaxParams>& theta) noexcept {
+  for (int d = 0; d < info().num_parameters; ++d) {
+    const ParameterSettings& p = parameter(d);
+    const double size = p.prior == PriorKind::kNormal ? p.sd : p.upper - p.lower;
+    const double step = kStep * std::max(std::fabs(theta[At(d)]), size);
+    auto& lanes = theta_.value[At(d)];
+    lanes.fill(theta[At(d)]);
+    lanes[At(1 + 2 * d)] = std::min(theta[At(d)] + step, p.upper);
+    lanes[At(2 + 2 * d)] = std::max(theta[At(d)] - step, p.lower);
+  }
+}
+
+bool GapLineariser::FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
+                             GapRows* rows) noexcept {
+  kernels_.predict(model_, data_, theta_, &prediction_);
+  const bool all = !composition_.empty();
+  bool finite = true;
+  int row = 0;
+  for (std::size_t n = 0; n < At(rows->num_samples); ++n) {
+    if (!all && modes[n] != mode) continue;
+    const auto& value = prediction_.value[At(row)];
+    rows->used[n] = true;
+    rows->output[n] = value[0] / noise_std;
+    rows->error[n] = (data_.target[At(row)] - value[0]) / noise_std;
+    finite = finite && std::isfinite(rows->error[n]);
+    for (int d = 0; d < info().num_parameters; ++d) {
+      const auto& lanes = theta_.value[At(d)];
+      const double width = lanes[At(1 + 2 * d)] - lanes[At(2 + 2 * d)];
+      const double slope = width > 0.0 ? (value[At(1 + 2 * d)] - value[At(2 + 2 * d)]) / (width * noise_std) : 0.0;
+      rows->slope[At(mode * info().num_parameters + d)][n] = slope;
+      finite = finite && std::isfinite(slope);
+    }
+    ++row;
+  }
+  return finite;
+}
+
+bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapRows* rows,
+                              std::array<int, kMaxPackSamples>* modes) noexcept {
+  const int n = rows->num_samples = pack.num_samples;
+  std::fill_n(rows->used.begin(), n, false);
+  std::fill_n(rows->error.begin(), n, 0.0);
+  std::fill_n(rows->output.begin(), n, 0.0);
+  for (int c = 0; c < num_columns(); ++c) std::fill_n(rows->slope[At(c)].begin(), n, 0.0);
+  for (int i = 0; i < n; ++i) (*modes)[At(i)] = info().mode_of(pack, i);
+  if (!composition_.empty() && !composition_.Prepare(pack, &effects_)) return false;
+  bool finite = true;
+  for (int m = 0; m < info().num_modes; ++m) {
+    if (!at.known[At(m)]) continue;
+    FillTheta(at.theta[At(m)]);
+    if (composition_.empty()) {
+      AllModels::kPrepare[At(model_)](pack, settings_.constants, m, &data_);
+    } else {
+      Composition::Fill(pack, effects_, &data_);
+    }
+    if (data_.num_samples > 0) finite = FillMode(m, at.noise_std[At(m)], *modes, rows) && finite;
+  }
+  if (passive_is_zero_ && composition_.empty() && at.known[0]) {
+    for (std::size_t i = 0; i < At(n); ++i) {
+      if ((*modes)[i] != info().num_modes) continue;
+      rows->used[i] = true;
+      rows->error[i] = pack.y[i] / at.noise_std[0];
+    }
+  }
+  return finite;
+}
+
+}  // namespace armcmc
