@@ -148,6 +148,14 @@ void LogLikelihood(const NoiseModel& noise, const ModeData& data, const Predicti
   }
 }
 
+}  // namespace
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
+
+#include "simd/score.inl"
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+namespace {
+
 /// Linear interpolation in a marginal table, 0 outside.
 V TableDensity(const MarginalTable& table, V x) noexcept {
   const V position = (x - Simd::Set(table.lower())) * Simd::Set(MarginalTable::kNodesPerUnit);

@@ -11,6 +11,7 @@ namespace armcmc::simd {
 const Kernels kSse2Kernels = {"sse2",
                               &sse2::Predict,
                               &sse2::LogLikelihood,
+                              &sse2::Score,
                               &sse2::AddDensity,
                               &sse2::InitialPrior,
                               &sse2::ToPhysical,
