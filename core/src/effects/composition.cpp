@@ -10,11 +10,6 @@ namespace {
 
 constexpr double kLagMemory = 8.0;  // time constants after which a low pass has forgotten its start
 
-void ReportAll(const double* theta, const PlantConstants&, double* reported) noexcept {
-  std::copy(theta, theta + kMaxReported, reported);
-}
-static_assert(kMaxReported == kMaxParams);
-
 double GateOf(EffectGate gate, double from_s, const EffectInput& in) noexcept {
   switch (gate) {
     case EffectGate::kContact: return in.x >= 0.0 ? 1.0 : 0.0;
@@ -30,7 +25,6 @@ double GateOf(EffectGate gate, double from_s, const EffectInput& in) noexcept {
 Composition::Composition(const EstimatorSettings& settings)
     : info_(*AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]), sampled_(settings) {
   if (settings.num_effects == 0) return;
-  info_.report = &ReportAll;
   for (int e = 0; e < settings.num_effects; ++e) {
     const EffectSettings& effect = settings.effects[static_cast<std::size_t>(e)];
     const auto index = static_cast<std::size_t>(FindEffect(effect.name));

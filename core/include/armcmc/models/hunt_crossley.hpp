@@ -17,10 +17,6 @@ struct HuntCrossley {
     return pack.u[static_cast<std::size_t>(n)][0] >= 0.0 ? 0 : 1;
   }
 
-  static void Report(const double* theta, const PlantConstants&, double* reported) noexcept {
-    for (int i = 0; i < 3; ++i) reported[i] = theta[i];
-  }
-
   static constexpr ModelInfo kInfo{
       .name = "hunt_crossley",
       .plant = PlantKind::kHuntCrossley,
@@ -36,7 +32,7 @@ struct HuntCrossley {
       .num_reported = 3,
       .reported = {{{"K", "N/m^p"}, {"B", "N s/m^(p+1)"}, {"p", "-"}}},
       .mode_of = &ModeOf,
-      .report = &Report,
+      .report = nullptr,
   };
 
   /// Features: 0 log2 x (x^p = 2^(p log2 x), so that one exp2 is all a candidate costs), 1 v.
