@@ -19,7 +19,7 @@ template <class Model>
 void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept {
   constexpr auto kDim = static_cast<unsigned>(Model::kInfo.num_parameters);
   for (int v = 0; v < kVectors; ++v) {
-    V parameters[kDim];
+    V parameters[static_cast<unsigned>(kDim)];
     for (unsigned d = 0; d < kDim; ++d)
       parameters[d] = Simd::Load(&theta.value[d][static_cast<unsigned>(v * Simd::kLanes)]);
     for (int n = 0; n < data.num_samples; ++n)
@@ -156,22 +156,20 @@ void LogLikelihood(const NoiseModel& noise, const ModeData& data, const Predicti
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-/// Linear interpolation in a marginal table, 0 outside.
-V TableDensity(const MarginalTable& table, V x) noexcept {
-  const V position = (x - Simd::Set(table.lower())) * Simd::Set(MarginalTable::kNodesPerUnit);
+/// Linear interpolation in a marginal table at a place counted in nodes from its lower end, 0 outside.
+V TableDensity(const MarginalTable& table, V place) noexcept {
   const V zero{};
-  const V end = Simd::Set(table.num_nodes() - 1);
-  const Simd::I inside = (position >= zero) & (position < end);
-  const V p = Simd::Select(inside, position, zero);
+  const double end = table.num_nodes() - 1;
+  const Simd::I inside = (place >= zero) & (place < Simd::Set(end));
+  const V p = Simd::Min(Simd::Max(place, zero), Simd::Set(end * (1.0 - 0x1p-53)));
   // floor(p) for 0 <= p < 2^31: the integer bits of p - 1/2 + 1.5 * 2^52 round to the node or, at a tie, to a neighbour
   // whose interpolation gives the same value.
   const V magic = Simd::Set(6755399441055744.0);
-  const V last = Simd::Set(table.num_nodes() - 2);
-  const V node = Simd::Min(Simd::Max((p - Simd::Set(0.5) + magic) - magic, zero), last);
-  const Simd::I index = Simd::Bits(node + magic) - Simd::Bits(magic);
+  const V shifted = p - Simd::Set(0.5) + magic;
+  const Simd::I index = Simd::Bits(shifted) - Simd::Bits(magic);
   const V low = Simd::Gather(table.pdf(), index);
   const V high = Simd::Gather(table.pdf() + 1, index);
-  return Simd::Select(inside, Simd::Fma(p - node, high - low, low), zero);
+  return Simd::Select(inside, Simd::Fma(p - (shifted - magic), high - low, low), zero);
 }
 
 /// What straightening subtracts from z_i; see DensityBlock.
@@ -187,20 +185,20 @@ V Bend(const DensityBlock& block, int i, V c, const V* e) noexcept {
 }
 
 /// Straightened coordinates of one vector of candidates; e[0] clamped goes to *c.
+template <int kDim>
 void StraightenVector(const DensityBlock& block, const double* const* u, int at, V* e, V* c) noexcept {
-  const int dim = block.dim;
-  V centered[kMaxParams];
-  for (int d = 0; d < dim; ++d) centered[d] = Simd::Load(u[d] + at) - Simd::Set(block.mean[static_cast<unsigned>(d)]);
-  for (int i = 0; i < dim; ++i) {
+  V centered[static_cast<unsigned>(kDim)];
+  for (int d = 0; d < kDim; ++d) centered[d] = Simd::Load(u[d] + at) - Simd::Set(block.mean[static_cast<unsigned>(d)]);
+  for (int i = 0; i < kDim; ++i) {
     V sum = V{};
-    for (int d = 0; d < dim; ++d)
+    for (int d = 0; d < kDim; ++d)
       sum = Simd::Fma(Simd::Set(block.whiten[static_cast<unsigned>(i)][static_cast<unsigned>(d)]), centered[d], sum);
     e[i] = sum;
   }
   const V reach = Simd::Set(DensityBlock::kBendReach);
   *c = Simd::Min(Simd::Max(e[0], -reach), reach);
   if (!block.bent) return;
-  for (int i = 1; i < dim; ++i) e[i] = e[i] - Bend(block, i, *c, e);
+  for (int i = 1; i < kDim; ++i) e[i] = e[i] - Bend(block, i, *c, e);
 }
 
 /// alpha_i c + beta_i c^2.
@@ -234,14 +232,31 @@ V TableDraw(const MarginalTable& table, V u) noexcept {
   return Simd::Set(table.lower()) + node * step + Simd::Min(Simd::Set(2.0) * rest / denominator, step);
 }
 
-void DrawBlock(const DensityBlock& block, int count, double* const* x) noexcept {
-  const int dim = block.dim;
+/// fn.template operator()<dim>(), the dimension known to the compiler.
+template <class Fn>
+void ForDimension(int dim, const Fn& fn) noexcept {
+  static_assert(kMaxParams == 8);
+  switch (dim) {
+    case 1: fn.template operator()<1>(); break;
+    case 2: fn.template operator()<2>(); break;
+    case 3: fn.template operator()<3>(); break;
+    case 4: fn.template operator()<4>(); break;
+    case 5: fn.template operator()<5>(); break;
+    case 6: fn.template operator()<6>(); break;
+    case 7: fn.template operator()<7>(); break;
+    case 8: fn.template operator()<8>(); break;
+    default: break;
+  }
+}
+
+template <int kDim>
+void DrawBlockOf(const DensityBlock& block, int count, double* const* x) noexcept {
   const V reach = Simd::Set(DensityBlock::kBendReach);
   for (int k = 0; k < count; k += Simd::kLanes) {
-    V e[kMaxParams];
-    V z[kMaxParams];
+    V e[static_cast<unsigned>(kDim)];
+    V z[static_cast<unsigned>(kDim)];
     V c{};
-    for (int i = 0; i < dim; ++i) {
+    for (int i = 0; i < kDim; ++i) {
       const auto ii = static_cast<unsigned>(i);
       e[i] = Simd::Fma(Simd::Set(block.scale[ii]), TableDraw(*block.marginal[ii], Simd::Load(x[i] + k)),
                        Simd::Set(block.center[ii]));
@@ -251,34 +266,49 @@ void DrawBlock(const DensityBlock& block, int count, double* const* x) noexcept 
       if (block.tapered && block.Tapers(i)) e[i] = e[i] * Simd::Exp2(LogThickness(block, i, c) * Simd::Set(kLog2E));
       z[i] = e[i] + Bend(block, i, c, e);
     }
-    for (int i = 0; i < dim; ++i) {
+    for (int i = 0; i < kDim; ++i) {
       const auto& row = block.unwhiten[static_cast<unsigned>(i)];
       V sum = Simd::Set(block.mean[static_cast<unsigned>(i)]);
-      for (int j = 0; j < dim; ++j) sum = Simd::Fma(Simd::Set(row[static_cast<unsigned>(j)]), z[j], sum);
+      for (int j = 0; j < kDim; ++j) sum = Simd::Fma(Simd::Set(row[static_cast<unsigned>(j)]), z[j], sum);
       Simd::Store(x[i] + k, sum);
     }
   }
 }
 
-void AddDensity(const DensityBlock& block, const double* const* u, int first, double factor, double* out) noexcept {
-  const int dim = block.dim;
+void DrawBlock(const DensityBlock& block, int count, double* const* x) noexcept {
+  ForDimension(block.dim, [&]<int kDim>() noexcept { DrawBlockOf<kDim>(block, count, x); });
+}
+
+template <int kDim>
+void AddDensityOf(const DensityBlock& block, const double* const* u, int first, double factor, double* out) noexcept {
+  // From a straightened coordinate to its place in the table: one multiplication and one addition.
+  double per_node[static_cast<unsigned>(kDim)];
+  double origin[static_cast<unsigned>(kDim)];
+  for (int i = 0; i < kDim; ++i) {
+    const auto ii = static_cast<unsigned>(i);
+    per_node[i] = MarginalTable::kNodesPerUnit / block.scale[ii];
+    origin[i] = -block.center[ii] * per_node[i] - block.marginal[ii]->lower() * MarginalTable::kNodesPerUnit;
+  }
   for (int v = 0; v < kVectors; ++v) {
-    V e[kMaxParams];
+    V e[static_cast<unsigned>(kDim)];
     V c;
-    StraightenVector(block, u, first + v * Simd::kLanes, e, &c);
+    StraightenVector<kDim>(block, u, first + v * Simd::kLanes, e, &c);
     V p = Simd::Set(block.norm * factor);
-    for (int i = 0; i < dim; ++i) {
+    for (int i = 0; i < kDim; ++i) {
       const auto ii = static_cast<unsigned>(i);
       if (block.tapered && block.Tapers(i)) {
         const V shrink = Simd::Exp2(LogThickness(block, i, c) * Simd::Set(-kLog2E));
         e[i] = e[i] * shrink;
         p = p * shrink;
       }
-      p = p *
-          TableDensity(*block.marginal[ii], (e[i] - Simd::Set(block.center[ii])) * Simd::Set(1.0 / block.scale[ii]));
+      p = p * TableDensity(*block.marginal[ii], Simd::Fma(e[i], Simd::Set(per_node[i]), Simd::Set(origin[i])));
     }
     Simd::Store(out + v * Simd::kLanes, Simd::Load(out + v * Simd::kLanes) + p);
   }
+}
+
+void AddDensity(const DensityBlock& block, const double* const* u, int first, double factor, double* out) noexcept {
+  ForDimension(block.dim, [&]<int kDim>() noexcept { AddDensityOf<kDim>(block, u, first, factor, out); });
 }
 
 void InitialPrior(const ParameterSpace& space, const double* const* u, int first, double* out) noexcept {
@@ -368,13 +398,18 @@ void SecondMoments(int dim, const double* const* u, const double* w, const doubl
   for (int i = 0; i < dim * (dim + 1) / 2; ++i) sums[i] = s.Total(i);
 }
 
-void Straighten(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept {
+template <int kDim>
+void StraightenOf(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept {
   for (int k = 0; k < count; k += Simd::kLanes) {
-    V straight[kMaxParams];
+    V straight[static_cast<unsigned>(kDim)];
     V c;
-    StraightenVector(block, u, k, straight, &c);
-    for (int i = 0; i < block.dim; ++i) Simd::Store(e[i] + k, straight[i]);
+    StraightenVector<kDim>(block, u, k, straight, &c);
+    for (int i = 0; i < kDim; ++i) Simd::Store(e[i] + k, straight[i]);
   }
+}
+
+void Straighten(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept {
+  ForDimension(block.dim, [&]<int kDim>() noexcept { StraightenOf<kDim>(block, u, count, e); });
 }
 
 void BendMoments(int dim, const double* const* z, const double* w, int count, double* sums) noexcept {

@@ -61,7 +61,7 @@ struct Simd {
   /// table[index[lane]].
   static V Gather(const double* table, I index) noexcept {
 #if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
-    return _mm512_i64gather_pd(reinterpret_cast<__m512i>(index), table, 8);
+    return _mm512_mask_i64gather_pd(V{}, 0xff, reinterpret_cast<__m512i>(index), table, 8);
 #elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
     return _mm256_i64gather_pd(table, reinterpret_cast<__m256i>(index), 8);
 #else
