@@ -367,35 +367,56 @@ void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, i
              0x1p-52;
 }
 
-void FirstMoments(int dim, const double* const* u, const double* w, int count, double* sums) noexcept {
-  Sums<2 + kMaxParams> s;
+template <int kDim>
+void FirstMomentsOf(const double* const* u, const double* w, int count, double* sums) noexcept {
+  Sums<static_cast<unsigned>(2 + kDim)> s;
   for (int k = 0; k < count; k += 8)
     for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
       const int at = k + static_cast<int>(p) * Simd::kLanes;
       const V weight = Simd::Load(w + at);
       s.Add(0, p, weight);
       s.Add(1, p, weight * weight);
-      for (int d = 0; d < dim; ++d) s.Add(2 + d, p, weight * Simd::Load(u[d] + at));
+      for (int d = 0; d < kDim; ++d) s.Add(2 + d, p, weight * Simd::Load(u[d] + at));
     }
-  for (int i = 0; i < 2 + dim; ++i) sums[i] = s.Total(i);
+  for (int i = 0; i < 2 + kDim; ++i) sums[i] = s.Total(i);
 }
 
-void SecondMoments(int dim, const double* const* u, const double* w, const double* mean, int count,
-                   double* sums) noexcept {
-  Sums<kMaxMomentRows*(kMaxMomentRows + 1) / 2> s;
+void FirstMoments(int dim, const double* const* u, const double* w, int count, double* sums) noexcept {
+  if (dim == 0) {
+    FirstMomentsOf<0>(u, w, count, sums);
+    return;
+  }
+  ForDimension(dim, [&]<int kDim>() noexcept { FirstMomentsOf<kDim>(u, w, count, sums); });
+}
+
+template <int kDim>
+void SecondMomentsOf(const double* const* u, const double* w, const double* mean, int count, double* sums) noexcept {
+  Sums<static_cast<unsigned>(kDim * (kDim + 1) / 2)> s;
   for (int k = 0; k < count; k += 8)
     for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
       const int at = k + static_cast<int>(p) * Simd::kLanes;
       const V weight = Simd::Load(w + at);
-      V c[kMaxMomentRows];
+      V c[static_cast<unsigned>(kDim)];
       int t = 0;
-      for (int i = 0; i < dim; ++i) {
+      for (int i = 0; i < kDim; ++i) {
         c[i] = Simd::Load(u[i] + at) - Simd::Set(mean[i]);
         const V wc = weight * c[i];
         for (int j = 0; j <= i; ++j) s.Add(t++, p, wc * c[j]);
       }
     }
-  for (int i = 0; i < dim * (dim + 1) / 2; ++i) sums[i] = s.Total(i);
+  for (int i = 0; i < kDim * (kDim + 1) / 2; ++i) sums[i] = s.Total(i);
+}
+
+void SecondMoments(int dim, const double* const* u, const double* w, const double* mean, int count,
+                   double* sums) noexcept {
+  static_assert(kMaxMomentRows == kMaxParams + 2);
+  if (dim == kMaxParams + 1) {
+    SecondMomentsOf<kMaxParams + 1>(u, w, mean, count, sums);
+  } else if (dim == kMaxParams + 2) {
+    SecondMomentsOf<kMaxParams + 2>(u, w, mean, count, sums);
+  } else {
+    ForDimension(dim, [&]<int kDim>() noexcept { SecondMomentsOf<kDim>(u, w, mean, count, sums); });
+  }
 }
 
 template <int kDim>
@@ -436,3 +457,5 @@ void BendMoments(int dim, const double* const* z, const double* w, int count, do
 
 }  // namespace
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
+
+#include "simd/weights.inl"

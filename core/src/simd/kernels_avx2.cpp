@@ -21,5 +21,9 @@ const Kernels kAvx2Kernels = {"avx2",
                               &avx2::SecondMoments,
                               &avx2::Straighten,
                               &avx2::BendMoments,
-                              &avx2::RelativeLikelihood};
+                              &avx2::RelativeLikelihood,
+                              &avx2::LargestInside,
+                              &avx2::Weigh,
+                              &avx2::SharePrior,
+                              &avx2::LargestProduct};
 }  // namespace armcmc::simd

@@ -21,5 +21,9 @@ const Kernels kAvx512Kernels = {"avx512",
                                 &avx512::SecondMoments,
                                 &avx512::Straighten,
                                 &avx512::BendMoments,
-                                &avx512::RelativeLikelihood};
+                                &avx512::RelativeLikelihood,
+                                &avx512::LargestInside,
+                                &avx512::Weigh,
+                                &avx512::SharePrior,
+                                &avx512::LargestProduct};
 }  // namespace armcmc::simd

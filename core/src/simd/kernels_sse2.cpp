@@ -21,5 +21,9 @@ const Kernels kSse2Kernels = {"sse2",
                               &sse2::SecondMoments,
                               &sse2::Straighten,
                               &sse2::BendMoments,
-                              &sse2::RelativeLikelihood};
+                              &sse2::RelativeLikelihood,
+                              &sse2::LargestInside,
+                              &sse2::Weigh,
+                              &sse2::SharePrior,
+                              &sse2::LargestProduct};
 }  // namespace armcmc::simd
