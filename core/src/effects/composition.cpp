@@ -92,12 +92,11 @@ void Composition::CopyRows(const EffectPack& from, int first, int count, EffectP
 }
 
 void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const noexcept {
-  constexpr double kLog2OfZero = -1000.0;
   const auto r = static_cast<std::size_t>(row);
   EffectPack& pack = memory->pack;
   pack.x[r] = in.x;
   pack.v[r] = in.v;
-  pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), kLog2OfZero) : kLog2OfZero;
+  pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), EffectPack::kNoDepth) : EffectPack::kNoDepth;
   std::size_t next = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(num_terms_); ++i) {
     const Term& term = terms_[i];

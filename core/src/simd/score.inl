@@ -50,6 +50,7 @@ struct AdditiveForward {
   Simd::V AddTo(Simd::V base, const Simd::V* theta, int n) const noexcept {
     const auto in = static_cast<unsigned>(n);
     for (unsigned a = 0; a < kAdditive; ++a) base = Simd::Fma(theta[3 + a], Simd::Set(pack.feature[a][in]), base);
+    if (pack.log2_x[in] <= EffectPack::kNoDepth) return base;
     return HuntCrossley::AddLaw<S>(base, theta[0], theta[1], theta[2], pack.log2_x[in], pack.v[in]);
   }
 };
@@ -72,7 +73,7 @@ void AddSquares(const Forward& forward, const ModeData& data, const V (*paramete
 template <bool kWeighted, class Forward>
 void SumSquares(const Forward& forward, const ModeData& data, const ThetaTile& theta, double noise_mean,
                 double* out) noexcept {
-  constexpr int kGroup = kVectors < 4 ? kVectors : 4;
+  constexpr int kGroup = 2;  // more would need more registers than there are
   for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
     V parameters[kGroup][Forward::kRows];
     V sum[kGroup];
