@@ -102,12 +102,12 @@ const double* ModeSampler::SpreadNoiseScale(int first, const RandomStream& strea
   }
   const double variance = std::fmax(square - mean * mean, 0.0);
   const double wanted = kNoiseMemory / space_.scale[d];
-  const double jitter = std::sqrt(std::fmax(wanted * wanted - variance, 0.0));
+  const double jitter = std::sqrt(std::fmax(wanted * wanted - variance, 0.0) / student_table_.Variance());
   const int end = first + RoundUpToTile(draws.draws - first);
   double* row = ws->noise_coordinate.data();
   kernels_.uniforms(stream.origin(), 0, 1, end - first, row + first);
   for (int k = first; k < end; ++k)
-    row[k] = std::clamp(u[k] + jitter * normal_table_.Draw(row[k]), space_.lower[d], space_.upper[d]);
+    row[k] = std::clamp(u[k] + jitter * student_table_.Draw(row[k]), space_.lower[d], space_.upper[d]);
   return row;
 }
 

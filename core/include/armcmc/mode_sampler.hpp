@@ -105,7 +105,9 @@ class ModeSampler {
   void Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
                 SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept;
   /// Spreads the noise scale's coordinate of the draws [first, draws) to a standard deviation of log s of at least
-  /// kNoiseMemory. @return the spread row.
+  /// kNoiseMemory, with the tails of a t law, so that a level six standard deviations away is not held to be
+  /// impossible.
+  /// @return the spread row.
   const double* SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
                                  const ModeDraws& draws) const noexcept;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept;

@@ -21,7 +21,7 @@ struct alignas(64) EffectPack {
   int num_samples = 0;  ///< Of the pack.
   double dt = 0.0;      ///< s
 
-  Row x{};       ///< m
+  Row x{};  ///< m
   /// log2_x without contact: hugely negative, so that every power underflows to zero.
   static constexpr double kNoDepth = -1000.0;
   Row log2_x{};  ///< Of the depth, at least kNoDepth.
