@@ -139,11 +139,9 @@ void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, i
 }
 
 /// True when straightening took more variance out of some whitened coordinate (variance 1) than its coefficients would
-/// take out of noise.
-bool BendPays(const simd::Kernels& kernels, const WeightedDraws& draws, const double* const* e,
+/// take out of noise. `sums` are the first moments of e.
+bool BendPays(const simd::Kernels& kernels, const WeightedDraws& draws, const double* sums, const double* const* e,
               const DensityBlock& block) noexcept {
-  std::array<double, 2 + kMaxParams> sums{};
-  kernels.first_moments(block.dim, e, draws.weight, draws.size, sums.data());
   const double ess = sums[0] * sums[0] / sums[1];
   const double pays = 0.004 + 2.5 * (DensityBlock::kDegree + 1) / ess;
   for (int i = 1; i < block.dim; ++i) {
@@ -156,12 +154,15 @@ bool BendPays(const simd::Kernels& kernels, const WeightedDraws& draws, const do
   return false;
 }
 
-/// Thickness of coordinate i along the ridge: log of the variance in bins of c, fitted by a parabola.
-void FitThickness(const WeightedDraws& draws, int i, double* const* e, DensityBlock* block) noexcept {
+/// Thickness of coordinate i along the ridge: log of the variance in bins of c, fitted by a parabola. `ess` is the
+/// effective number of the draws.
+void FitThickness(const WeightedDraws& draws, double ess, int i, double* const* e, DensityBlock* block) noexcept {
   constexpr int kBins = 10;
   constexpr double kEdge = 2.5;
+  constexpr int kEnough = 4096;  // draws: a parabola needs no more
+  const int stride = std::max(draws.size / kEnough, 1);
   std::array<double, kBins> mass{}, square{}, place{}, mean{};
-  for (int k = 0; k < draws.size; ++k) {
+  for (int k = 0; k < draws.size; k += stride) {
     const double c = DensityBlock::Clamped(e[0][k]);
     const auto bin = static_cast<std::size_t>(std::clamp((c + kEdge) * (kBins / (2.0 * kEdge)), 0.0, kBins - 1.0));
     const double w = draws.weight[k];
@@ -188,6 +189,11 @@ void FitThickness(const WeightedDraws& draws, int i, double* const* e, DensityBl
   if (used < 4) return;
   const Eigen::Vector3d fit = gram.ldlt().solve(cross);
   if (!fit.allFinite()) return;
+  // The log of a standard deviation from n draws has variance 1 / 2n, so that without any taper twice the explained sum
+  // of squares is a chi-square of two degrees of freedom, which exceeds this once in a thousand fits.
+  constexpr double kSignificant = 13.8;
+  const double explained = fit.dot(cross) - cross[0] * cross[0] / gram(0, 0);
+  if (2.0 * ess / stride * explained < kSignificant) return;
   // A thickness that would change by more than e^2 within the reach is held to that.
   constexpr double kMost = 2.0;
   const double reach = DensityBlock::kBendReach;
@@ -215,12 +221,15 @@ bool FitBends(const simd::Kernels& kernels, const WeightedDraws& draws, double* 
     FitInteractions(kernels, draws, i, scratch, scratch + kMaxParams, block);
     kernels.straighten(*block, draws.u.data(), draws.size, scratch);
   }
+  std::array<double, 2 + kMaxParams> sums{};
+  kernels.first_moments(dim, scratch, draws.weight, draws.size, sums.data());
+  const double ess = sums[0] * sums[0] / sums[1];
   for (int i = 1; i < dim; ++i) {
     block->thickness[static_cast<std::size_t>(i)] = {0.0, 0.0};
-    FitThickness(draws, i, scratch, block);
+    FitThickness(draws, ess, i, scratch, block);
     block->tapered = block->tapered || block->Tapers(i);
   }
-  block->bent = block->tapered || BendPays(kernels, draws, scratch, *block);
+  block->bent = block->tapered || BendPays(kernels, draws, sums.data(), scratch, *block);
   return block->bent;
 }
 
@@ -350,13 +359,21 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
     sd[ii] = std::sqrt(std::fmax(square / moments.sum / std::fmax(1.0 - freedom / ess, 0.5), 1e-12));
     const double per_node = MarginalTable::kNodesPerUnit / sd[ii];
     const double origin = kReach * MarginalTable::kNodesPerUnit - first[ii] * per_node;
-    double* bins = histogram[ii].data();
+    struct Bin {
+      double weight = 0.0,
+             upper = 0.0;  // of the draws in a cell, and the part of it that goes to the cell's upper node
+    };
+    std::array<Bin, kNodes> bins{};
     for (int k = 0; k < draws.size; ++k) {
       const double position = std::min(std::max(e[k] * per_node + origin, 0.0), kNodes - 1.001);
       const auto node = static_cast<int>(position);
-      const double upper = draws.weight[k] * (position - node);
-      bins[node] += draws.weight[k] - upper;
-      bins[node + 1] += upper;
+      Bin& bin = bins[static_cast<std::size_t>(node)];
+      bin.weight += draws.weight[k];
+      bin.upper += draws.weight[k] * (position - node);
+    }
+    for (std::size_t n = 0; n + 1 < kNodes; ++n) {
+      histogram[ii][n] += bins[n].weight - bins[n].upper;
+      histogram[ii][n + 1] += bins[n].upper;
     }
   }
   const double bandwidth = options.bandwidth_factor * 1.06 * std::pow(ess, -0.2);

@@ -64,6 +64,7 @@ struct Estimator::Impl {
     }
     data->pack_share = static_cast<double>(data->num_samples) / pack.num_samples;
     const double rho = settings.forgetting.rho;
+    data->weighted = rho > 0.0;
     // Weights by the distance from the end of the pack, within the samples of the mode.
     for (int n = 0; n < data->num_samples; ++n)
       data->weight[static_cast<std::size_t>(n)] = rho > 0.0 ? std::exp(-rho * (data->num_samples - 1 - n)) : 1.0;

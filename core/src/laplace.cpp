@@ -110,8 +110,7 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
         ++lane;
       }
     }
-    kernels.predict(model, data, scratch->theta, &scratch->prediction);
-    kernels.log_likelihood(noise, data, scratch->prediction, log_scale, log_likelihood);
+    kernels.score(model, noise, data, scratch->theta, log_scale, &scratch->prediction, log_likelihood);
     int chosen = -1;
     double chosen_value = best;
     for (int l = 0; l < kTileLanes; ++l) {

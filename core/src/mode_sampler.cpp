@@ -14,18 +14,6 @@ constexpr double kStudentDof = 5.0;  // tails of the Laplace components
 constexpr double kPilotEss = 250.0;  // effective draws of a pilot round that suffice
 constexpr double kRefitShare = 0.4;  // effective share of the draws below which the proposal is fitted once more
 
-/// Kish effective sample size of weight[first, last).
-double WeightEss(const std::vector<double>& weight, int first, int last) noexcept {
-  double sum = 0.0;
-  double square = 0.0;
-  for (int k = first; k < last; ++k) {
-    const double w = weight[static_cast<std::size_t>(k)];
-    sum += w;
-    square += w * w;
-  }
-  return square > 0.0 ? sum * sum / square : 0.0;
-}
-
 enum Purpose : std::uint64_t {
   kMismatchStream = 0,
   kDrawStream = 1,
@@ -38,8 +26,7 @@ enum Purpose : std::uint64_t {
 
 SamplerWorkspace::SamplerWorkspace(int dim, int capacity) {
   const auto cap = static_cast<std::size_t>(std::max(RoundUpToTile(capacity), Proposal::kMaxBatch) + kTileLanes);
-  for (auto* v : {&log_likelihood, &proposal, &initial_prior, &likelihood, &weight, &group_weight, &first_share,
-                  &noise_coordinate})
+  for (auto* v : {&log_likelihood, &proposal, &initial_prior, &weight, &group_weight, &first_share, &noise_coordinate})
     v->resize(cap);
   for (auto& m : memory) m.resize(cap);
   component.resize(cap);
@@ -209,7 +196,9 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& previous, s
       refitted = true;
       double ess = 0.0;
       if (std::isnan(Weigh(previous, lambda, pilot, made, ws))) continue;
-      if (WeightEss(ws->weight, pilot, made) > kRefitShare * (made - pilot)) continue;
+      std::array<double, 2> sums{};
+      kernels_.first_moments(0, nullptr, &ws->weight[static_cast<std::size_t>(pilot)], made - pilot, sums.data());
+      if (sums[0] * sums[0] > kRefitShare * (made - pilot) * sums[1]) continue;
       const int blocks = FitPilot(previous, lambda, pilot, made, ws, *out, &ess);
       if (blocks == 0) continue;
       BuildProposal(previous, lambda_q, use_previous, blocks, &proposal);
@@ -234,24 +223,19 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& previous, s
   const double reference = Weigh(previous, lambda, 0, made, ws);
   if (std::isnan(reference)) return Status::kNonFinite;
 
-  double sum = 0.0;
-  double square = 0.0;
-  double best = -1.0;
-  for (int k = 0; k < made; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double w = ws->weight[i];
-    if (k >= pilot) {
-      sum += w;
-      square += w * w;
-    }
-    const double density = sampler_.use_proposal_ratio ? w * ws->proposal[i] : w;
-    if (density > best) {
-      best = density;
-      out->mode_index = k;
-    }
-  }
+  // The pilot's draws belong to the chain, which forgets them, and not to the importance estimate.
+  std::array<double, 2> sums{};
+  kernels_.first_moments(0, nullptr, &ws->weight[static_cast<std::size_t>(pilot)], made - pilot, sums.data());
+  const double sum = sums[0];
+  const double square = sums[1];
   if (!(sum > 0.0)) return Status::kNonFinite;
-  for (int k = 0; k < made; ++k) out->weight[k] = k < pilot ? 0.0 : ws->weight[static_cast<std::size_t>(k)] / sum;
+  out->mode_index = kernels_.largest_product(
+      ws->weight.data(), sampler_.use_proposal_ratio ? ws->proposal.data() : nullptr, RoundUpToTile(made));
+  const int padded = pilot + RoundUpToTile(made - pilot);
+  const double* weight = ws->weight.data();
+  std::fill(out->weight, out->weight + pilot, 0.0);
+  for (int k = pilot; k < made; ++k) out->weight[k] = weight[k] / sum;
+  std::fill(out->weight + made, out->weight + padded, 0.0);
   out->kish_ess = sum * sum / square;
   out->log_evidence = reference + std::log(sum / (made - pilot));
   out->decision = mismatch.decision;

@@ -19,29 +19,33 @@ constexpr FitOptions kMemoryFit{.bandwidth_factor = 0.7, .tail_weight = 0.02, .t
 
 }  // namespace
 
+simd::PriorTerms ModeSampler::Prior(const PosteriorMemory& previous, double lambda, int first,
+                                    const SamplerWorkspace& ws) const noexcept {
+  const auto i = static_cast<std::size_t>(first);
+  simd::PriorTerms prior;
+  prior.initial = &ws.initial_prior[i];
+  prior.initial_share = 1.0 - lambda;
+  for (std::size_t b = 0; b < PosteriorMemory::kMaxBlocks; ++b) {
+    prior.memory[b] = &ws.memory[b][i];
+    if (lambda > 0.0 && static_cast<int>(b) < previous.num_blocks)
+      prior.memory_share[b] = lambda * previous.weight[b] / memory_inside_;
+  }
+  return prior;
+}
+
 double ModeSampler::Weigh(const PosteriorMemory& previous, double lambda, int first, int last,
                           SamplerWorkspace* ws) const noexcept {
-  double reference = -HUGE_VAL;
-  for (int k = first; k < last; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double value = ws->log_likelihood[i];
-    if (ws->initial_prior[i] > 0.0 && value > reference && std::isfinite(value)) reference = value;
-  }
+  // Whole vectors: first is a multiple of the lanes, and the lanes past last repeat a candidate.
+  const auto i = static_cast<std::size_t>(first);
+  const int count = RoundUpToTile(last - first);
+  const double* log_likelihood = &ws->log_likelihood[i];
+  const double reference = kernels_.largest_inside(log_likelihood, &ws->initial_prior[i], count);
   if (!std::isfinite(reference)) return std::nan("");
-  // Whole vectors: first is a multiple of the lanes, and the arrays are padded past last.
-  kernels_.relative_likelihood(&ws->log_likelihood[static_cast<std::size_t>(first)], reference,
-                               RoundUpToTile(last - first), &ws->likelihood[static_cast<std::size_t>(first)]);
-  const bool use_previous = lambda > 0.0;
-  const double w0 = use_previous ? lambda * previous.weight[0] / memory_inside_ : 0.0;
-  const double w1 = use_previous && previous.num_blocks > 1 ? lambda * previous.weight[1] / memory_inside_ : 0.0;
-  for (int k = first; k < last; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    double prior = (1.0 - lambda) * ws->initial_prior[i];
-    if (use_previous) prior += w0 * ws->memory[0][i] + (w1 > 0.0 ? w1 * ws->memory[1][i] : 0.0);
-    const double q = sampler_.use_proposal_ratio ? ws->proposal[i] : 1.0;
-    const double w = ws->initial_prior[i] > 0.0 ? ws->likelihood[i] * prior / q : 0.0;
-    ws->weight[i] = std::isfinite(w) ? w : 0.0;
-  }
+  double* weight = &ws->weight[i];
+  kernels_.relative_likelihood(log_likelihood, reference, count, weight);
+  kernels_.weigh(Prior(previous, lambda, first, *ws), sampler_.use_proposal_ratio ? &ws->proposal[i] : nullptr, count,
+                 weight);
+  std::fill_n(weight + (last - first), kTileLanes, 0.0);
   return reference;
 }
 
@@ -67,18 +71,21 @@ void ModeSampler::RunChain(const RandomStream& stream, SamplerWorkspace* ws, Mod
   kernels_.uniforms(stream.origin(), 0, 1, RoundUpToTile(draws), gamma);
   int state = 0;
   double state_weight = ws->weight[0];
-  int accepted = 0;
-  for (int k = 0; k < draws; ++k) {
-    const double w = ws->weight[static_cast<std::size_t>(k)];
+  const double* weight = ws->weight.data();
+  const auto step = [&](int k) noexcept {
+    const double w = weight[k];
     // gamma <= w / w_state without a division; a state of weight zero accepts everything.
-    const bool accept = gamma[k] * state_weight <= w && (w > 0.0 || state_weight <= 0.0);
+    const bool accept = (gamma[k] * state_weight <= w) & ((w > 0.0) | (state_weight <= 0.0));
     state = accept ? k : state;
     state_weight = accept ? w : state_weight;
     out->chain[k] = state;
-    if (k >= out->burn_in) {
-      ++out->visits[state];
-      accepted += accept ? 1 : 0;
-    }
+    return accept ? 1 : 0;
+  };
+  for (int k = 0; k < out->burn_in; ++k) (void)step(k);
+  int accepted = 0;
+  for (int k = out->burn_in; k < draws; ++k) {
+    accepted += step(k);
+    ++out->visits[state];
   }
   out->acceptance = static_cast<double>(accepted) / (draws - out->burn_in);
 }
@@ -95,12 +102,12 @@ const double* ModeSampler::SpreadNoiseScale(int first, const RandomStream& strea
   }
   const double variance = std::fmax(square - mean * mean, 0.0);
   const double wanted = kNoiseMemory / space_.scale[d];
-  const double jitter = std::sqrt(std::fmax(wanted * wanted - variance, 0.0));
+  const double jitter = std::sqrt(std::fmax(wanted * wanted - variance, 0.0) / student_table_.Variance());
   const int end = first + RoundUpToTile(draws.draws - first);
   double* row = ws->noise_coordinate.data();
   kernels_.uniforms(stream.origin(), 0, 1, end - first, row + first);
   for (int k = first; k < end; ++k)
-    row[k] = std::clamp(u[k] + jitter * normal_table_.Draw(row[k]), space_.lower[d], space_.upper[d]);
+    row[k] = std::clamp(u[k] + jitter * student_table_.Draw(row[k]), space_.lower[d], space_.upper[d]);
   return row;
 }
 
@@ -118,22 +125,12 @@ void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int f
 
   // Where a draw's prior came from: the first block of the memory, the second, or drawn anew.
   const bool use_previous = lambda > 0.0;
-  const double w0 = use_previous ? lambda * previous.weight[0] / memory_inside_ : 0.0;
-  const double w1 = use_previous && previous.num_blocks > 1 ? lambda * previous.weight[1] / memory_inside_ : 0.0;
-  double mass_first = 0.0;
-  double mass_new = 0.0;
-  if (use_previous) {
-    for (int k = first; k < out->draws; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      const double a = w0 * ws->memory[0][i];
-      const double b = w1 > 0.0 ? w1 * ws->memory[1][i] : 0.0;
-      const double c = (1.0 - lambda) * ws->initial_prior[i];
-      const double total = a + b + c + 1e-300;
-      ws->first_share[i] = a / total;
-      mass_first += out->weight[k] * a / total;
-      mass_new += out->weight[k] * c / total;
-    }
-  }
+  std::array<double, 2> masses{};
+  if (use_previous)
+    kernels_.share_prior(Prior(previous, lambda, first, *ws), out->weight + first, RoundUpToTile(count),
+                         ws->first_share.data() + offset, masses.data());
+  const double mass_first = masses[0];
+  const double mass_new = masses[1];
   out->p_changed = use_previous ? std::clamp(mass_new, 0.0, 1.0) : 1.0;
 
   next->num_blocks = 0;
@@ -141,9 +138,12 @@ void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int f
   // A group's weights are (constant + slope x share of the first block) of the draws' weights.
   const auto fit_group = [&](double mass, double constant, double slope) noexcept {
     if (mass < kMinimumGroup) return;
-    for (int k = first; k < out->draws; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      ws->group_weight[i] = out->weight[k] * (slope == 0.0 ? constant : constant + slope * ws->first_share[i]);
+    const double* share = ws->first_share.data();
+    double* group_weight = ws->group_weight.data();
+    if (slope == 0.0) {
+      for (int k = first; k < out->draws; ++k) group_weight[k] = out->weight[k] * constant;
+    } else {
+      for (int k = first; k < out->draws; ++k) group_weight[k] = out->weight[k] * (constant + slope * share[k]);
     }
     const auto b = static_cast<std::size_t>(next->num_blocks);
     const double ess =

@@ -148,8 +148,7 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
   for (int k = first; k < end; k += kTileLanes) {
     const auto at = static_cast<std::size_t>(k);
     kernels_.to_physical(space_, u, k, &ws->theta, log_scale.data());
-    kernels_.predict(model_, data, ws->theta, &ws->prediction);
-    kernels_.log_likelihood(noise_, data, ws->prediction, log_scale.data(), &ws->log_likelihood[at]);
+    kernels_.score(model_, noise_, data, ws->theta, log_scale.data(), &ws->prediction, &ws->log_likelihood[at]);
     kernels_.initial_prior(space_, u, k, &ws->initial_prior[at]);
     double* q = &ws->proposal[at];
     std::fill(q, q + kTileLanes, 0.0);

@@ -1,5 +1,7 @@
 #include "armcmc/proposal.hpp"
 
+#include <algorithm>
+
 #include "simd/kernels.hpp"
 
 namespace armcmc {
@@ -17,7 +19,7 @@ void Proposal::Draw(const simd::Kernels& kernels, const RandomStream& stream, in
   double sum = 0.0;
   for (int c = 0; c < size_; ++c) {
     sum += components_[static_cast<std::size_t>(c)].share;
-    cumulative[static_cast<std::size_t>(c)] = c + 1 < size_ ? sum : 2.0;
+    cumulative[static_cast<std::size_t>(c)] = sum;
   }
   alignas(64) std::array<double, kMaxBatch> pick;
   const int padded = (count + 7) / 8 * 8;
@@ -27,12 +29,20 @@ void Proposal::Draw(const simd::Kernels& kernels, const RandomStream& stream, in
     kernels.uniforms(stream.origin(), origin + static_cast<std::uint64_t>(d) + 1, kNumbersPerDraw, padded,
                      u[d] + first);
   // Candidates of one component together: its axes and tables stay where they are needed.
+  std::array<std::int32_t, kMaxBatch> component;
+  std::fill_n(component.begin(), count, 0);
+  for (int c = 0; c + 1 < size_; ++c) {
+    const double bound = cumulative[static_cast<std::size_t>(c)];
+    for (int i = 0; i < count; ++i) {
+      const auto ii = static_cast<std::size_t>(i);
+      component[ii] += pick[ii] >= bound ? 1 : 0;
+    }
+  }
   std::array<int, kMaxComponents + 1> start{};
   for (int i = 0; i < count; ++i) {
-    std::size_t c = 0;
-    while (pick[static_cast<std::size_t>(i)] >= cumulative[c]) ++c;  // ends at the last component, whose bound is 2
+    const std::int32_t c = component[static_cast<std::size_t>(i)];
     component_of[i] = static_cast<std::int8_t>(c);
-    ++start[c + 1];
+    ++start[static_cast<std::size_t>(c) + 1];
   }
   for (std::size_t c = 0; c < kMaxComponents; ++c) start[c + 1] += start[c];
   std::array<std::int16_t, kMaxBatch> order;

@@ -3,25 +3,56 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simd/kernels.hpp"
+
 namespace armcmc {
 namespace {
 
-/// Physical parameters of candidate k.
-std::array<double, kMaxParams> ThetaOf(const ParameterSpace& space, const ModeDraws& draws, int k) noexcept {
-  std::array<double, kMaxParams> theta{};
-  for (int d = 0; d < space.num_parameters; ++d)
-    theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
-  return theta;
+/// Reported quantity r of every candidate.
+void Reported(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+              const ModeDraws& draws, int r, double* value) noexcept {
+  const auto ir = static_cast<std::size_t>(r);
+  if (info.report == nullptr) {
+    const double* u = draws.u[ir];
+    for (int k = 0; k < draws.draws; ++k) value[k] = space.Theta(r, u[k]);
+    return;
+  }
+  for (int k = 0; k < draws.draws; ++k) {
+    std::array<double, kMaxParams> theta{};
+    std::array<double, kMaxReported> reported{};
+    for (int d = 0; d < space.num_parameters; ++d)
+      theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
+    info.report(theta.data(), constants, reported.data());
+    value[k] = reported[ir];
+  }
 }
 
-/// Quantiles and published histogram of visited values.
-void Distribution(const ModeDraws& draws, const std::vector<double>& value, double total, MarginalSummary* m) noexcept {
+struct MeanAndSd {
+  double mean, sd;
+};
+
+/// Of values with weights that sum to `total`.
+MeanAndSd Moments(const double* value, const double* weight, int count, double total) noexcept {
+  const simd::Kernels& kernels = simd::Best();
+  const int whole = count / 8 * 8;  // the kernels take whole vectors
+  std::array<double, 3> sums{};
+  kernels.first_moments(1, &value, weight, whole, sums.data());
+  double sum = sums[2];
+  for (int k = whole; k < count; ++k) sum += weight[k] * value[k];
+  const double mean = sum / total;
+  double square = 0.0;
+  kernels.second_moments(1, &value, weight, &mean, whole, &square);
+  for (int k = whole; k < count; ++k) square += weight[k] * (value[k] - mean) * (value[k] - mean);
+  return {mean, std::sqrt(square / total)};
+}
+
+/// Quantiles and published histogram of `count` visited values.
+void Distribution(const double* value, const double* visits, int count, double total, MarginalSummary* m) noexcept {
   double lo = HUGE_VAL;
   double hi = -HUGE_VAL;
-  for (int k = 0; k < draws.draws; ++k) {
-    if (draws.visits[k] == 0) continue;
-    lo = std::fmin(lo, value[static_cast<std::size_t>(k)]);
-    hi = std::fmax(hi, value[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < count; ++k) {
+    lo = std::min(lo, value[k]);
+    hi = std::max(hi, value[k]);
   }
   std::array<double, kQuantileBins> fine{};
   const double width = (hi - lo) / kQuantileBins;
@@ -30,16 +61,16 @@ void Distribution(const ModeDraws& draws, const std::vector<double>& value, doub
   m->histogram_lo = std::fmax(lo, m->ar_ap - reach);
   m->histogram_hi = std::fmin(hi, m->ar_ap + reach);
   const double coarse_width = (m->histogram_hi - m->histogram_lo) / kHistogramBins;
+  const double per_coarse = coarse_width > 0.0 ? 1.0 / coarse_width : 0.0;
   m->density.fill(0.0);
   double inside = 0.0;
-  for (int k = 0; k < draws.draws; ++k) {
-    if (draws.visits[k] == 0) continue;
-    const double v = value[static_cast<std::size_t>(k)];
-    const double w = draws.visits[k];
-    fine[static_cast<std::size_t>(std::min((v - lo) * per_unit, kQuantileBins - 1.0))] += w;
+  for (int k = 0; k < count; ++k) {
+    const double v = value[k];
+    fine[static_cast<std::size_t>(std::min((v - lo) * per_unit, kQuantileBins - 1.0))] += visits[k];
     if (coarse_width > 0.0 && v >= m->histogram_lo && v <= m->histogram_hi) {
-      m->density[static_cast<std::size_t>(std::min((v - m->histogram_lo) / coarse_width, kHistogramBins - 1.0))] += w;
-      inside += w;
+      m->density[static_cast<std::size_t>(std::min((v - m->histogram_lo) * per_coarse, kHistogramBins - 1.0))] +=
+          visits[k];
+      inside += visits[k];
     }
   }
   if (inside > 0.0)
@@ -58,7 +89,11 @@ void Distribution(const ModeDraws& draws, const std::vector<double>& value, doub
 
 }  // namespace
 
-SummaryWorkspace::SummaryWorkspace(int capacity) : value(static_cast<std::size_t>(capacity)) {}
+SummaryWorkspace::SummaryWorkspace(int capacity)
+    : value(static_cast<std::size_t>(capacity)),
+      visited_value(static_cast<std::size_t>(capacity)),
+      visits(static_cast<std::size_t>(capacity)),
+      visited(static_cast<std::size_t>(capacity)) {}
 
 double ChainEss(const ModeDraws& draws) noexcept {
   const int first = draws.burn_in;
@@ -114,33 +149,34 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
   for (int d = 0; d < space.num_parameters; ++d)
     mode_theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.mode_u[static_cast<std::size_t>(d)]);
   std::array<double, kMaxReported> mode{};
-  info.report(mode_theta.data(), constants, mode.data());
+  static_assert(kMaxReported == kMaxParams);
+  if (info.report == nullptr) {
+    mode = mode_theta;
+  } else {
+    info.report(mode_theta.data(), constants, mode.data());
+  }
+  // The chain stays at some candidates and never comes to others: what describes the chain looks at the visited ones.
+  int visited = 0;
+  for (int k = 0; k < draws.draws; ++k) {
+    workspace->visited[static_cast<std::size_t>(visited)] = k;
+    workspace->visits[static_cast<std::size_t>(visited)] = draws.visits[k];
+    visited += draws.visits[k] != 0 ? 1 : 0;
+  }
+  const double* visits = workspace->visits.data();
+  double* value = workspace->value.data();
+  double* visited_value = workspace->visited_value.data();
   for (int r = 0; r < info.num_reported; ++r) {
     MarginalSummary& m = estimate->marginal[static_cast<std::size_t>(r)];
-    std::vector<double>& value = workspace->value;
-    double sum = 0.0;
-    double is_sum = 0.0;
-    for (int k = 0; k < draws.draws; ++k) {
-      std::array<double, kMaxReported> reported{};
-      info.report(ThetaOf(space, draws, k).data(), constants, reported.data());
-      const double v = reported[static_cast<std::size_t>(r)];
-      value[static_cast<std::size_t>(k)] = v;
-      sum += draws.visits[k] * v;
-      is_sum += draws.weight[k] * v;
-    }
-    m.ar_ap = sum / total;
-    m.is_mean = is_sum;
-    double square = 0.0;
-    double is_square = 0.0;
-    for (int k = 0; k < draws.draws; ++k) {
-      const double v = value[static_cast<std::size_t>(k)];
-      square += draws.visits[k] * (v - m.ar_ap) * (v - m.ar_ap);
-      is_square += draws.weight[k] * (v - m.is_mean) * (v - m.is_mean);
-    }
-    m.sd = std::sqrt(square / total);
-    m.is_sd = std::sqrt(is_square);
+    Reported(info, constants, space, draws, r, value);
+    for (int j = 0; j < visited; ++j) visited_value[j] = value[workspace->visited[static_cast<std::size_t>(j)]];
+    const MeanAndSd weighted = Moments(value, draws.weight, draws.draws, 1.0);
+    m.is_mean = weighted.mean;
+    m.is_sd = weighted.sd;
+    const MeanAndSd chain = Moments(visited_value, visits, visited, total);
+    m.ar_ap = chain.mean;
+    m.sd = chain.sd;
     m.ar_map = draws.decision == Decision::kModification ? mode[static_cast<std::size_t>(r)] : m.ar_ap;
-    Distribution(draws, value, total, &m);
+    Distribution(visited_value, visits, visited, total, &m);
   }
   estimate->noise_std = std::exp(space.log_noise_scale);
   if (space.samples_noise_scale()) {

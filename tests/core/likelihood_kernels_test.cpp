@@ -218,6 +218,52 @@ TEST(LogLikelihoodKernel, LogarithmIsAccurateToAFewUnits) {
     }
 }
 
+TEST(ScoreKernel, EqualsPredictionAndLogLikelihood) {
+  // Depths down to 0 and 1e-310: the scoring power and the exact one both have their turn.
+  for (const simd::Kernels* kernels : test::RunnableKernels())
+    for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture})
+      for (const bool weighted : {false, true}) {
+        const auto b = ContactBatch(8);
+        b->pack.u[12][0] = 1e-310;
+        HuntCrossley::Prepare(b->pack, {}, 0, &b->data);
+        for (std::size_t n = 0; n < kMaxPackSamples; ++n)
+          b->data.weight[n] = weighted ? std::exp(-0.01 * static_cast<double>(n)) : 1.0;
+        b->data.weighted = weighted;
+        alignas(64) double log_scale[kTileLanes], expected[kTileLanes], out[kTileLanes];
+        for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -3.0 + 0.1 * l;
+        const NoiseModel noise(Noise(kind));
+        kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+        kernels->log_likelihood(noise, b->data, b->tile, log_scale, expected);
+        kernels->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, out);
+        for (std::size_t l = 0; l < kTileLanes; ++l)
+          ASSERT_NEAR(out[l], expected[l], 2e-10 * std::fabs(expected[l]))
+              << kernels->name << " law " << static_cast<int>(kind) << " weighted " << weighted;
+      }
+}
+
+TEST(ScoreKernel, MovesALogLikelihoodByLessThanAMillionth) {
+  // Forces a hundred times the noise, residuals of its size: what a pack of the contact looks like near the mode.
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const auto b = ContactBatch(9);
+    for (std::size_t n = 0; n < 100; ++n) b->data.feature[0][n] = 0.008 * static_cast<double>(n);
+    b->data.num_samples = 100;
+    b->data.weight.fill(1.0);
+    std::mt19937_64 g(10);
+    for (auto& row : b->theta.value) row.fill(row[0]);
+    for (std::size_t l = 0; l < kTileLanes; ++l) b->theta.value[2][l] += 1e-4 * Uniform(g, -1.0, 1.0);
+    kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+    for (std::size_t n = 0; n < 100; ++n) b->data.target[n] = b->tile.value[n][0] + Uniform(g, -0.1, 0.1);
+    alignas(64) double log_scale[kTileLanes], expected[kTileLanes], out[kTileLanes];
+    for (double& s : log_scale) s = std::log(0.1);
+    NoiseSettings settings;
+    settings.std = 0.1;
+    const NoiseModel noise(settings);
+    kernels->log_likelihood(noise, b->data, b->tile, log_scale, expected);
+    kernels->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, out);
+    for (std::size_t l = 0; l < kTileLanes; ++l) ASSERT_NEAR(out[l], expected[l], 1e-6) << kernels->name;
+  }
+}
+
 TEST(LikelihoodKernels, FusedInstructionSetsGiveTheSameBits) {
   const auto sets = test::FusedKernels();
   if (sets.size() < 2) GTEST_SKIP() << "this CPU runs one fused instruction set only";
@@ -235,6 +281,9 @@ TEST(LikelihoodKernels, FusedInstructionSetsGiveTheSameBits) {
     sets[0]->log_likelihood(noise, a->data, a->tile, log_scale, out_a);
     sets[1]->log_likelihood(noise, b->data, b->tile, log_scale, out_b);
     EXPECT_EQ(std::memcmp(out_a, out_b, sizeof out_a), 0) << static_cast<int>(kind);
+    sets[0]->score(kHuntCrossley, noise, a->data, a->theta, log_scale, &a->tile, out_a);
+    sets[1]->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, out_b);
+    EXPECT_EQ(std::memcmp(out_a, out_b, sizeof out_a), 0) << "score " << static_cast<int>(kind);
   }
 }
 

@@ -21,6 +21,7 @@ struct alignas(64) ModeData {
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
+  bool weighted = true;                 ///< false: every weight is 1, and is not read for scoring.
   const EffectPack* effects = nullptr;  ///< Not null: the prediction comes from there, features are not read.
 };
 

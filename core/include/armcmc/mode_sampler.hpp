@@ -20,14 +20,15 @@ namespace armcmc {
 
 namespace simd {
 struct Kernels;
-}
+struct PriorTerms;
+}  // namespace simd
 
 /// Scratch of one adjust step, sized once and shared by the modes, which are adjusted one after the other.
 class SamplerWorkspace {
  public:
   SamplerWorkspace(int dim, int capacity);
 
-  std::vector<double> log_likelihood, proposal, initial_prior, likelihood;
+  std::vector<double> log_likelihood, proposal, initial_prior;
   std::array<std::vector<double>, PosteriorMemory::kMaxBlocks> memory;  ///< Density of each block of the memory.
   std::vector<double> weight, group_weight;
   std::vector<double> first_share;       ///< Posterior share of the memory's first block at a candidate.
@@ -89,6 +90,9 @@ class ModeSampler {
   /// finite.
   double Weigh(const PosteriorMemory& previous, double lambda, int first, int last,
                SamplerWorkspace* ws) const noexcept;
+  /// prior_t at the candidates from `first` on.
+  [[nodiscard]] simd::PriorTerms Prior(const PosteriorMemory& previous, double lambda, int first,
+                                       const SamplerWorkspace& ws) const noexcept;
   /// Fits the pilot's weighted draws [first, last). @return number of blocks; *ess their effective number.
   int FitPilot(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
                const ModeDraws& draws, double* ess) noexcept;
@@ -101,7 +105,9 @@ class ModeSampler {
   void Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
                 SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept;
   /// Spreads the noise scale's coordinate of the draws [first, draws) to a standard deviation of log s of at least
-  /// kNoiseMemory. @return the spread row.
+  /// kNoiseMemory, with the tails of a t law, so that a level six standard deviations away is not held to be
+  /// impossible.
+  /// @return the spread row.
   const double* SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
                                  const ModeDraws& draws) const noexcept;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept;

@@ -43,6 +43,7 @@ struct ModelInfo {
   int num_reported;
   std::array<ReportedInfo, kMaxReported> reported;
   int (*mode_of)(const DataPack& pack, int n) noexcept;  ///< Mode that acts at sample n; num_modes if none does.
+  /// Null: what is reported are the parameters themselves.
   void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept;
 };
 

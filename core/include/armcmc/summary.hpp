@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
@@ -12,7 +13,10 @@ namespace armcmc {
 /// Scratch of Summarise, sized once.
 struct SummaryWorkspace {
   explicit SummaryWorkspace(int capacity);
-  std::vector<double> value;
+  std::vector<double> value;          ///< Of every candidate.
+  std::vector<double> visited_value;  ///< Of the candidates that the chain visited, one after the other.
+  std::vector<double> visits;         ///< Theirs.
+  std::vector<std::int32_t> visited;  ///< Which ones they are.
 };
 
 /// Mean, sd, quantiles, histogram of every reported quantity, point estimates and chain diagnostics.

@@ -10,11 +10,6 @@ namespace {
 
 constexpr double kLagMemory = 8.0;  // time constants after which a low pass has forgotten its start
 
-void ReportAll(const double* theta, const PlantConstants&, double* reported) noexcept {
-  std::copy(theta, theta + kMaxReported, reported);
-}
-static_assert(kMaxReported == kMaxParams);
-
 double GateOf(EffectGate gate, double from_s, double until_s, const EffectInput& in) noexcept {
   switch (gate) {
     case EffectGate::kContact: return in.x >= 0.0 ? 1.0 : 0.0;
@@ -31,7 +26,6 @@ double GateOf(EffectGate gate, double from_s, double until_s, const EffectInput&
 Composition::Composition(const EstimatorSettings& settings)
     : info_(*AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]), sampled_(settings) {
   if (settings.num_effects == 0) return;
-  info_.report = &ReportAll;
   for (int e = 0; e < settings.num_effects; ++e) {
     const EffectSettings& effect = settings.effects[static_cast<std::size_t>(e)];
     const auto index = static_cast<std::size_t>(FindEffect(effect.name));
@@ -100,12 +94,11 @@ void Composition::CopyRows(const EffectPack& from, int first, int count, EffectP
 }
 
 void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const noexcept {
-  constexpr double kLog2OfZero = -1000.0;
   const auto r = static_cast<std::size_t>(row);
   EffectPack& pack = memory->pack;
   pack.x[r] = in.x;
   pack.v[r] = in.v;
-  pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), kLog2OfZero) : kLog2OfZero;
+  pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), EffectPack::kNoDepth) : EffectPack::kNoDepth;
   std::size_t next = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(num_terms_); ++i) {
     const Term& term = terms_[i];

@@ -11,6 +11,14 @@ namespace armcmc::simd {
 
 inline constexpr int kMaxMomentRows = 10;
 
+/// prior_t at scored candidates: initial_share P_0 + sum_b memory_share[b] (density of block b of the memory).
+struct PriorTerms {
+  const double* initial = nullptr;
+  const double* memory[2] = {};  ///< Readable also where the share is 0.
+  double initial_share = 1.0;
+  double memory_share[2] = {};
+};
+
 /// The hot loops, once per instruction set. All work on kTileLanes candidates side by side, one candidate a lane:
 /// sums run in data order whatever the lane count, so AVX2 and AVX-512 give the same bits.
 struct Kernels {
@@ -23,6 +31,11 @@ struct Kernels {
   /// out[lane] = sum_n log p((target_n - tile[n][lane] - noise mean) weight_n), in nats, at scale exp(log_scale[lane]).
   void (*log_likelihood)(const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,
                          const double* log_scale, double* out) noexcept;
+
+  /// predict, then log_likelihood, in one; under Gaussian noise, without delays, lags and limits, the predictions never
+  /// reach memory and their powers carry a relative error of 4e-11. `scratch` holds nothing of use afterwards.
+  void (*score)(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta,
+                const double* log_scale, PredictionTile* scratch, double* out) noexcept;
 
   /// out[lane] += factor * p(u[., first + lane]).
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,
@@ -60,6 +73,21 @@ struct Kernels {
 
   /// out[k] = exp(log_likelihood[k] - reference), k in [0, count), count a multiple of the lanes of any set (8).
   void (*relative_likelihood)(const double* log_likelihood, double reference, int count, double* out) noexcept;
+
+  /// Largest finite value[k] where inside[k] > 0, -infinity if there is none. `count` as above, also below.
+  double (*largest_inside)(const double* value, const double* inside, int count) noexcept;
+
+  /// weight[k], a relative likelihood, becomes weight[k] prior_t / proposal[k]; 0 outside the bounds and where that is
+  /// not finite. proposal may be null: no division then.
+  void (*weigh)(const PriorTerms& prior, const double* proposal, int count, double* weight) noexcept;
+
+  /// first_share[k] = part of prior_t that is the memory's first block; sums = {sum w first_share, sum w (part that is
+  /// P_0)} with weights padded by 0.
+  void (*share_prior)(const PriorTerms& prior, const double* weight, int count, double* first_share,
+                      double* sums) noexcept;
+
+  /// First k with the largest a[k] b[k], all of them >= 0; b may be null, which is 1.
+  int (*largest_product)(const double* a, const double* b, int count) noexcept;
 };
 
 /// The best set that this CPU runs, chosen once.

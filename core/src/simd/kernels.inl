@@ -19,7 +19,7 @@ template <class Model>
 void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept {
   constexpr auto kDim = static_cast<unsigned>(Model::kInfo.num_parameters);
   for (int v = 0; v < kVectors; ++v) {
-    V parameters[kDim];
+    V parameters[static_cast<unsigned>(kDim)];
     for (unsigned d = 0; d < kDim; ++d)
       parameters[d] = Simd::Load(&theta.value[d][static_cast<unsigned>(v * Simd::kLanes)]);
     for (int n = 0; n < data.num_samples; ++n)
@@ -148,131 +148,6 @@ void LogLikelihood(const NoiseModel& noise, const ModeData& data, const Predicti
   }
 }
 
-/// Linear interpolation in a marginal table, 0 outside.
-V TableDensity(const MarginalTable& table, V x) noexcept {
-  const V position = (x - Simd::Set(table.lower())) * Simd::Set(MarginalTable::kNodesPerUnit);
-  const V zero{};
-  const V end = Simd::Set(table.num_nodes() - 1);
-  const Simd::I inside = (position >= zero) & (position < end);
-  const V p = Simd::Select(inside, position, zero);
-  // floor(p) for 0 <= p < 2^31: the integer bits of p - 1/2 + 1.5 * 2^52 round to the node or, at a tie, to a neighbour
-  // whose interpolation gives the same value.
-  const V magic = Simd::Set(6755399441055744.0);
-  const V last = Simd::Set(table.num_nodes() - 2);
-  const V node = Simd::Min(Simd::Max((p - Simd::Set(0.5) + magic) - magic, zero), last);
-  const Simd::I index = Simd::Bits(node + magic) - Simd::Bits(magic);
-  const V low = Simd::Gather(table.pdf(), index);
-  const V high = Simd::Gather(table.pdf() + 1, index);
-  return Simd::Select(inside, Simd::Fma(p - node, high - low, low), zero);
-}
-
-/// What straightening subtracts from z_i; see DensityBlock.
-V Bend(const DensityBlock& block, int i, V c, const V* e) noexcept {
-  const auto ii = static_cast<unsigned>(i);
-  V bend = Simd::Set(block.poly[ii][DensityBlock::kDegree]);
-  for (int k = DensityBlock::kDegree - 1; k >= 0; --k)
-    bend = Simd::Fma(bend, c, Simd::Set(block.poly[ii][static_cast<unsigned>(k)]));
-  if (i < 2) return bend;
-  bend = Simd::Fma(e[1], Simd::Fma(Simd::Set(block.square[ii]), e[1], Simd::Set(block.cross[ii]) * c), bend);
-  for (int j = 1; j < i; ++j) bend = Simd::Fma(Simd::Set(block.linear[ii][static_cast<unsigned>(j)]), e[j], bend);
-  return bend;
-}
-
-/// Straightened coordinates of one vector of candidates; e[0] clamped goes to *c.
-void StraightenVector(const DensityBlock& block, const double* const* u, int at, V* e, V* c) noexcept {
-  const int dim = block.dim;
-  V centered[kMaxParams];
-  for (int d = 0; d < dim; ++d) centered[d] = Simd::Load(u[d] + at) - Simd::Set(block.mean[static_cast<unsigned>(d)]);
-  for (int i = 0; i < dim; ++i) {
-    V sum = V{};
-    for (int d = 0; d < dim; ++d)
-      sum = Simd::Fma(Simd::Set(block.whiten[static_cast<unsigned>(i)][static_cast<unsigned>(d)]), centered[d], sum);
-    e[i] = sum;
-  }
-  const V reach = Simd::Set(DensityBlock::kBendReach);
-  *c = Simd::Min(Simd::Max(e[0], -reach), reach);
-  if (!block.bent) return;
-  for (int i = 1; i < dim; ++i) e[i] = e[i] - Bend(block, i, *c, e);
-}
-
-/// alpha_i c + beta_i c^2.
-V LogThickness(const DensityBlock& block, int i, V c) noexcept {
-  const auto& t = block.thickness[static_cast<unsigned>(i)];
-  return c * Simd::Fma(Simd::Set(t[1]), c, Simd::Set(t[0]));
-}
-
-/// Inverse CDF of a marginal table; the vector form of MarginalTable::Draw.
-V TableDraw(const MarginalTable& table, V u) noexcept {
-  const V magic = Simd::Set(6755399441055744.0);
-  const V last = Simd::Set(table.num_nodes() - 2);
-  const V one = Simd::Set(1.0);
-  const auto index_of = [&](V node) noexcept { return Simd::Bits(node + magic) - Simd::Bits(magic); };
-  // Down to the guide cell at or below u: half a cell is taken off before rounding to nearest.
-  const V cell = Simd::Max((u * Simd::Set(MarginalTable::kGuideSize) - Simd::Set(0.5) + magic) - magic, V{});
-  V node = Simd::Gather(table.guide(), index_of(cell));
-  for (int step = 0; step < MarginalTable::kMaxNodes; ++step) {
-    const V next = Simd::Gather(table.cdf() + 1, index_of(node));
-    const Simd::I behind = (next < u) & (node < last);
-    if (!Simd::Any(behind)) break;
-    node = Simd::Select(behind, node + one, node);
-  }
-  const Simd::I index = index_of(node);
-  const V f0 = Simd::Gather(table.pdf(), index);
-  const V slope = (Simd::Gather(table.pdf() + 1, index) - f0) * Simd::Set(MarginalTable::kNodesPerUnit);
-  const V rest = Simd::Max(u - Simd::Gather(table.cdf(), index), V{});
-  const V root = Simd::Sqrt(Simd::Max(Simd::Fma(f0, f0, Simd::Set(2.0) * slope * rest), V{}));
-  const V step = Simd::Set(1.0 / MarginalTable::kNodesPerUnit);
-  const V denominator = Simd::Max(f0 + root, Simd::Set(1e-300));
-  return Simd::Set(table.lower()) + node * step + Simd::Min(Simd::Set(2.0) * rest / denominator, step);
-}
-
-void DrawBlock(const DensityBlock& block, int count, double* const* x) noexcept {
-  const int dim = block.dim;
-  const V reach = Simd::Set(DensityBlock::kBendReach);
-  for (int k = 0; k < count; k += Simd::kLanes) {
-    V e[kMaxParams];
-    V z[kMaxParams];
-    V c{};
-    for (int i = 0; i < dim; ++i) {
-      const auto ii = static_cast<unsigned>(i);
-      e[i] = Simd::Fma(Simd::Set(block.scale[ii]), TableDraw(*block.marginal[ii], Simd::Load(x[i] + k)),
-                       Simd::Set(block.center[ii]));
-      z[i] = e[i];
-      if (i == 0) c = Simd::Min(Simd::Max(e[0], -reach), reach);
-      if (!block.bent || i == 0) continue;
-      if (block.tapered && block.Tapers(i)) e[i] = e[i] * Simd::Exp2(LogThickness(block, i, c) * Simd::Set(kLog2E));
-      z[i] = e[i] + Bend(block, i, c, e);
-    }
-    for (int i = 0; i < dim; ++i) {
-      const auto& row = block.unwhiten[static_cast<unsigned>(i)];
-      V sum = Simd::Set(block.mean[static_cast<unsigned>(i)]);
-      for (int j = 0; j < dim; ++j) sum = Simd::Fma(Simd::Set(row[static_cast<unsigned>(j)]), z[j], sum);
-      Simd::Store(x[i] + k, sum);
-    }
-  }
-}
-
-void AddDensity(const DensityBlock& block, const double* const* u, int first, double factor, double* out) noexcept {
-  const int dim = block.dim;
-  for (int v = 0; v < kVectors; ++v) {
-    V e[kMaxParams];
-    V c;
-    StraightenVector(block, u, first + v * Simd::kLanes, e, &c);
-    V p = Simd::Set(block.norm * factor);
-    for (int i = 0; i < dim; ++i) {
-      const auto ii = static_cast<unsigned>(i);
-      if (block.tapered && block.Tapers(i)) {
-        const V shrink = Simd::Exp2(LogThickness(block, i, c) * Simd::Set(-kLog2E));
-        e[i] = e[i] * shrink;
-        p = p * shrink;
-      }
-      p = p *
-          TableDensity(*block.marginal[ii], (e[i] - Simd::Set(block.center[ii])) * Simd::Set(1.0 / block.scale[ii]));
-    }
-    Simd::Store(out + v * Simd::kLanes, Simd::Load(out + v * Simd::kLanes) + p);
-  }
-}
-
 void InitialPrior(const ParameterSpace& space, const double* const* u, int first, double* out) noexcept {
   for (int v = 0; v < kVectors; ++v) {
     V square = V{};
@@ -306,21 +181,6 @@ void RelativeLikelihood(const double* log_likelihood, double reference, int coun
     Simd::Store(out + k, Simd::Exp2((Simd::Load(log_likelihood + k) - Simd::Set(reference)) * Simd::Set(kLog2E)));
 }
 
-/// N running sums of eight lanes each, whatever the vector length, added up in lane order: the same bits everywhere.
-template <unsigned N>
-struct Sums {
-  static constexpr unsigned kParts = 8 / Simd::kLanes;
-  V part[N][kParts] = {};
-  void Add(int i, unsigned p, V value) noexcept { part[i][p] = part[i][p] + value; }
-  double Total(int i) const noexcept {
-    alignas(64) double lanes[8];
-    for (unsigned p = 0; p < kParts; ++p) Simd::Store(lanes + p * Simd::kLanes, part[i][p]);
-    double total = 0.0;
-    for (const double lane : lanes) total += lane;
-    return total;
-  }
-};
-
 void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count, double* out) noexcept {
   for (int k = 0; k < count; ++k)
     out[k] = (static_cast<double>(static_cast<std::int64_t>(
@@ -329,67 +189,10 @@ void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, i
              0x1p-52;
 }
 
-void FirstMoments(int dim, const double* const* u, const double* w, int count, double* sums) noexcept {
-  Sums<2 + kMaxParams> s;
-  for (int k = 0; k < count; k += 8)
-    for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
-      const int at = k + static_cast<int>(p) * Simd::kLanes;
-      const V weight = Simd::Load(w + at);
-      s.Add(0, p, weight);
-      s.Add(1, p, weight * weight);
-      for (int d = 0; d < dim; ++d) s.Add(2 + d, p, weight * Simd::Load(u[d] + at));
-    }
-  for (int i = 0; i < 2 + dim; ++i) sums[i] = s.Total(i);
-}
-
-void SecondMoments(int dim, const double* const* u, const double* w, const double* mean, int count,
-                   double* sums) noexcept {
-  Sums<kMaxMomentRows*(kMaxMomentRows + 1) / 2> s;
-  for (int k = 0; k < count; k += 8)
-    for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
-      const int at = k + static_cast<int>(p) * Simd::kLanes;
-      const V weight = Simd::Load(w + at);
-      V c[kMaxMomentRows];
-      int t = 0;
-      for (int i = 0; i < dim; ++i) {
-        c[i] = Simd::Load(u[i] + at) - Simd::Set(mean[i]);
-        const V wc = weight * c[i];
-        for (int j = 0; j <= i; ++j) s.Add(t++, p, wc * c[j]);
-      }
-    }
-  for (int i = 0; i < dim * (dim + 1) / 2; ++i) sums[i] = s.Total(i);
-}
-
-void Straighten(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept {
-  for (int k = 0; k < count; k += Simd::kLanes) {
-    V straight[kMaxParams];
-    V c;
-    StraightenVector(block, u, k, straight, &c);
-    for (int i = 0; i < block.dim; ++i) Simd::Store(e[i] + k, straight[i]);
-  }
-}
-
-void BendMoments(int dim, const double* const* z, const double* w, int count, double* sums) noexcept {
-  constexpr int kPowers = DensityBlock::kDegree + 1;
-  constexpr int kGram = 2 * DensityBlock::kDegree + 1;
-  Sums<kGram + kPowers * kMaxParams> s;
-  const V reach = Simd::Set(DensityBlock::kBendReach);
-  for (int k = 0; k < count; k += 8)
-    for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
-      const int at = k + static_cast<int>(p) * Simd::kLanes;
-      const V c = Simd::Min(Simd::Max(Simd::Load(z[0] + at), -reach), reach);
-      V power[kGram];
-      power[0] = Simd::Load(w + at);
-      for (int q = 1; q < kGram; ++q) power[q] = power[q - 1] * c;
-      int t = 0;
-      for (int q = 0; q < kGram; ++q) s.Add(t++, p, power[q]);
-      for (int d = 1; d < dim; ++d) {
-        const V zd = Simd::Load(z[d] + at);
-        for (int q = 0; q < kPowers; ++q) s.Add(t++, p, power[q] * zd);
-      }
-    }
-  for (int i = 0; i < kGram + kPowers * (dim - 1); ++i) sums[i] = s.Total(i);
-}
-
 }  // namespace
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
+
+#include "simd/density.inl"
+#include "simd/moments.inl"
+#include "simd/score.inl"
+#include "simd/weights.inl"

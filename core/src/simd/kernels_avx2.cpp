@@ -11,6 +11,7 @@ namespace armcmc::simd {
 const Kernels kAvx2Kernels = {"avx2",
                               &avx2::Predict,
                               &avx2::LogLikelihood,
+                              &avx2::Score,
                               &avx2::AddDensity,
                               &avx2::InitialPrior,
                               &avx2::ToPhysical,
@@ -20,5 +21,9 @@ const Kernels kAvx2Kernels = {"avx2",
                               &avx2::SecondMoments,
                               &avx2::Straighten,
                               &avx2::BendMoments,
-                              &avx2::RelativeLikelihood};
+                              &avx2::RelativeLikelihood,
+                              &avx2::LargestInside,
+                              &avx2::Weigh,
+                              &avx2::SharePrior,
+                              &avx2::LargestProduct};
 }  // namespace armcmc::simd

@@ -11,6 +11,7 @@ namespace armcmc::simd {
 const Kernels kAvx512Kernels = {"avx512",
                                 &avx512::Predict,
                                 &avx512::LogLikelihood,
+                                &avx512::Score,
                                 &avx512::AddDensity,
                                 &avx512::InitialPrior,
                                 &avx512::ToPhysical,
@@ -20,5 +21,9 @@ const Kernels kAvx512Kernels = {"avx512",
                                 &avx512::SecondMoments,
                                 &avx512::Straighten,
                                 &avx512::BendMoments,
-                                &avx512::RelativeLikelihood};
+                                &avx512::RelativeLikelihood,
+                                &avx512::LargestInside,
+                                &avx512::Weigh,
+                                &avx512::SharePrior,
+                                &avx512::LargestProduct};
 }  // namespace armcmc::simd

@@ -11,6 +11,7 @@ namespace armcmc::simd {
 const Kernels kSse2Kernels = {"sse2",
                               &sse2::Predict,
                               &sse2::LogLikelihood,
+                              &sse2::Score,
                               &sse2::AddDensity,
                               &sse2::InitialPrior,
                               &sse2::ToPhysical,
@@ -20,5 +21,9 @@ const Kernels kSse2Kernels = {"sse2",
                               &sse2::SecondMoments,
                               &sse2::Straighten,
                               &sse2::BendMoments,
-                              &sse2::RelativeLikelihood};
+                              &sse2::RelativeLikelihood,
+                              &sse2::LargestInside,
+                              &sse2::Weigh,
+                              &sse2::SharePrior,
+                              &sse2::LargestProduct};
 }  // namespace armcmc::simd

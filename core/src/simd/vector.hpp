@@ -16,7 +16,17 @@ struct Simd {
   typedef double V __attribute__((vector_size(8 * ARMCMC_SIMD_LANES)));
   typedef std::int64_t I __attribute__((vector_size(8 * ARMCMC_SIMD_LANES)));
 
-  static V Set(double a) noexcept { return V{} + a; }
+  static V Set(double a) noexcept {
+#if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
+    return _mm512_set1_pd(a);
+#elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
+    return _mm256_set1_pd(a);
+#else
+    V v;
+    for (int i = 0; i < kLanes; ++i) v[i] = a;
+    return v;
+#endif
+  }
   static V Load(const double* p) noexcept {
     V v;
     std::memcpy(&v, p, sizeof v);
@@ -51,7 +61,7 @@ struct Simd {
   /// table[index[lane]].
   static V Gather(const double* table, I index) noexcept {
 #if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
-    return _mm512_i64gather_pd(reinterpret_cast<__m512i>(index), table, 8);
+    return _mm512_mask_i64gather_pd(V{}, 0xff, reinterpret_cast<__m512i>(index), table, 8);
 #elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
     return _mm256_i64gather_pd(table, reinterpret_cast<__m256i>(index), 8);
 #else
@@ -110,6 +120,9 @@ struct Simd {
     p = Fma(p, f, Set(1.00000000000000000e+00));
     return FromBits(Bits(p) + (Bits(shifted) << 52));
   }
+
+  /// 2^(exponent log2_x).
+  static V Power(V exponent, double log2_x) noexcept { return Exp2(exponent * Set(log2_x)); }
 
   /// log2 x for normal positive x; absolute error below 1e-15 (1 + |log2 x|). atanh series of the mantissa in
   /// [sqrt(1/2), sqrt(2)).

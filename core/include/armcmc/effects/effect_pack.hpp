@@ -21,8 +21,10 @@ struct alignas(64) EffectPack {
   int num_samples = 0;  ///< Of the pack.
   double dt = 0.0;      ///< s
 
-  Row x{};       ///< m
-  Row log2_x{};  ///< Of the depth; hugely negative in free motion, so that every power underflows to zero.
+  Row x{};  ///< m
+  /// log2_x without contact: hugely negative, so that every power underflows to zero.
+  static constexpr double kNoDepth = -1000.0;
+  Row log2_x{};  ///< Of the depth, at least kNoDepth.
   Row v{};       ///< m/s
 
   int num_additive = 0;

@@ -17,10 +17,6 @@ struct HuntCrossley {
     return pack.u[static_cast<std::size_t>(n)][0] >= 0.0 ? 0 : 1;
   }
 
-  static void Report(const double* theta, const PlantConstants&, double* reported) noexcept {
-    for (int i = 0; i < 3; ++i) reported[i] = theta[i];
-  }
-
   static constexpr ModelInfo kInfo{
       .name = "hunt_crossley",
       .plant = PlantKind::kHuntCrossley,
@@ -36,7 +32,7 @@ struct HuntCrossley {
       .num_reported = 3,
       .reported = {{{"K", "N/m^p"}, {"B", "N s/m^(p+1)"}, {"p", "-"}}},
       .mode_of = &ModeOf,
-      .report = &Report,
+      .report = nullptr,
   };
 
   /// Features: 0 log2 x (x^p = 2^(p log2 x), so that one exp2 is all a candidate costs), 1 v.
@@ -67,6 +63,24 @@ struct HuntCrossley {
                            typename S::V v) noexcept {
     const auto power = S::Exp2(exponent * log2_x);
     return power * S::Fma(damping, v, stiffness);
+  }
+
+  /// Largest |log2| of a base that S::Power is asked for at sample n.
+  static double LargestLog2(const ModeData& data, int n) noexcept {
+    return std::fabs(data.feature[0][static_cast<std::size_t>(n)]);
+  }
+
+  /// base + Predict, as the scoring loop asks for it: S::Power need not be exact to the last bits.
+  template <class S>
+  static typename S::V AddTo(typename S::V base, const typename S::V* theta, const ModeData& data, int n) noexcept {
+    const auto in = static_cast<std::size_t>(n);
+    return AddLaw<S>(base, theta[0], theta[1], theta[2], data.feature[0][in], data.feature[1][in]);
+  }
+
+  template <class S>
+  static typename S::V AddLaw(typename S::V base, typename S::V stiffness, typename S::V damping,
+                              typename S::V exponent, double log2_x, double v) noexcept {
+    return S::Fma(S::Power(exponent, log2_x), S::Fma(damping, S::Set(v), stiffness), base);
   }
 };
 

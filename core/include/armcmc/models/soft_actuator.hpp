@@ -68,6 +68,15 @@ struct SoftActuator {
     const auto in = static_cast<std::size_t>(n);
     return S::Fma(theta[1], S::Set(data.feature[1][in]), theta[0] * S::Set(data.feature[0][in]));
   }
+
+  static double LargestLog2(const ModeData&, int) noexcept { return 0.0; }
+
+  /// base + Predict: what the scoring loop asks for.
+  template <class S>
+  static typename S::V AddTo(typename S::V base, const typename S::V* theta, const ModeData& data, int n) noexcept {
+    const auto in = static_cast<std::size_t>(n);
+    return S::Fma(theta[1], S::Set(data.feature[1][in]), S::Fma(theta[0], S::Set(data.feature[0][in]), base));
+  }
 };
 
 }  // namespace armcmc

@@ -1,0 +1,72 @@
+// Weights of scored candidates; included by kernels.inl, once per instruction set.
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+namespace {
+
+double LargestInside(const double* value, const double* inside, int count) noexcept {
+  const V none = Simd::Set(-HUGE_VAL);
+  V largest = none;
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    const V v = Simd::Load(value + k);
+    // v - v is NaN for an infinity and for NaN.
+    const Simd::I usable = (Simd::Load(inside + k) > V{}) & (v - v == V{});
+    largest = Simd::Max(largest, Simd::Select(usable, v, none));
+  }
+  double result = -HUGE_VAL;
+  for (int l = 0; l < Simd::kLanes; ++l) result = largest[l] > result ? largest[l] : result;
+  return result;
+}
+
+V PriorFromMemory(const PriorTerms& prior, int k) noexcept {
+  return Simd::Fma(Simd::Set(prior.memory_share[1]), Simd::Load(prior.memory[1] + k),
+                   Simd::Set(prior.memory_share[0]) * Simd::Load(prior.memory[0] + k));
+}
+
+void Weigh(const PriorTerms& prior, const double* proposal, int count, double* weight) noexcept {
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    const V initial = Simd::Load(prior.initial + k);
+    const V p = Simd::Fma(Simd::Set(prior.initial_share), initial, PriorFromMemory(prior, k));
+    const V q = proposal != nullptr ? Simd::Load(proposal + k) : Simd::Set(1.0);
+    const V w = Simd::Load(weight + k) * p / q;
+    const Simd::I usable = (initial > V{}) & (w - w == V{});
+    Simd::Store(weight + k, Simd::Select(usable, w, V{}));
+  }
+}
+
+void SharePrior(const PriorTerms& prior, const double* weight, int count, double* first_share, double* sums) noexcept {
+  Sums<2> s;
+  for (int k = 0; k < count; k += 8)
+    for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
+      const int at = k + static_cast<int>(p) * Simd::kLanes;
+      const V fresh = Simd::Set(prior.initial_share) * Simd::Load(prior.initial + at);
+      const V total = PriorFromMemory(prior, at) + fresh + Simd::Set(1e-300);
+      const V inverse = Simd::Set(1.0) / total;
+      const V first = Simd::Set(prior.memory_share[0]) * Simd::Load(prior.memory[0] + at) * inverse;
+      const V w = Simd::Load(weight + at);
+      Simd::Store(first_share + at, first);
+      s.Add(0, p, w * first);
+      s.Add(1, p, w * (fresh * inverse));
+    }
+  for (int i = 0; i < 2; ++i) sums[i] = s.Total(i);
+}
+
+int LargestProduct(const double* a, const double* b, int count) noexcept {
+  V largest = Simd::Set(-1.0);
+  V where = V{};
+  V index = V{};
+  for (int l = 0; l < Simd::kLanes; ++l) index[l] = l;
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    const V v = Simd::Load(a + k) * (b != nullptr ? Simd::Load(b + k) : Simd::Set(1.0));
+    const Simd::I better = v > largest;
+    largest = Simd::Select(better, v, largest);
+    where = Simd::Select(better, index, where);
+    index = index + Simd::Set(Simd::kLanes);
+  }
+  int best = 0;
+  for (int l = 1; l < Simd::kLanes; ++l)  // the first of equals, as a scan in order finds it
+    if (largest[l] > largest[best] || (largest[l] == largest[best] && where[l] < where[best])) best = l;
+  return static_cast<int>(where[best]);
+}
+
+}  // namespace
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
