@@ -76,8 +76,8 @@ Diagnosis Diagnose(const Equation& equation, const Recording& recording, const D
   diagnosis.look = LookAt(equation, recording, kWideWindow, options, *diagnosis.bootstrap);
   diagnosis.finding = diagnosis.look->finding;
   if (Names(diagnosis.finding)) {
-    const auto narrow = LookAt(equation, recording, kNarrowWindow, options, *diagnosis.bootstrap);
-    Vote(narrow->finding, &diagnosis.finding);
+    diagnosis.narrow = LookAt(equation, recording, kNarrowWindow, options, *diagnosis.bootstrap);
+    Vote(diagnosis.narrow->finding, &diagnosis.finding);
   }
   return diagnosis;
 }

@@ -30,7 +30,9 @@ struct Look {
 /// What the data say, whichever smoother looks.
 struct Diagnosis {
   std::unique_ptr<BlockBootstrap> bootstrap;
-  std::unique_ptr<Look> look;  ///< With the wider smoother.
+  std::unique_ptr<Look> look;      ///< With the wider smoother.
+  std::unique_ptr<Look> narrow;    ///< With the narrower one; null when there was nothing to vote on. Candidates of
+                                   ///< `finding` may refer to it.
   Finding finding;             ///< Of that look, with the vote of the other applied.
   std::vector<std::string> notes;
 };
