@@ -105,6 +105,24 @@ std::string Summary(const Result& result) {
   return out.str();
 }
 
+/// The effects of a model file, which are not to be found again.
+std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& settings) {
+  std::vector<std::pair<std::string, When>> known;
+  for (int e = 0; e < settings.num_effects; ++e) {
+    const EffectSettings& effect = settings.effects[static_cast<std::size_t>(e)];
+    When when;
+    switch (effect.gate) {
+      case EffectGate::kContact: when.kind = When::Kind::kContact; break;
+      case EffectGate::kFree: when.kind = When::Kind::kFree; break;
+      case EffectGate::kFrom: when = {When::Kind::kFrom, effect.from_s}; break;
+      case EffectGate::kUntil: when = {When::Kind::kUntil, effect.until_s}; break;
+      case EffectGate::kAlways: break;
+    }
+    known.emplace_back(effect.name, when);
+  }
+  return known;
+}
+
 int Run(const Arguments& a) {
   WorkflowRequest request;
   request.until = LastStep(a.steps);
@@ -113,6 +131,7 @@ int Run(const Arguments& a) {
   request.diagnose.without = a.without;
   request.diagnose.pairs = !a.no_pairs;
   const std::vector<std::string> columns = MakeEquation(request.model)->columns();
+  request.diagnose.known = KnownEffects(support::ReadModel(a.model));
   request.data = ReadRecording(a.data, columns, a.skip_bad);
   if (!a.heldout.empty()) request.heldout = ReadRecording(a.heldout, columns, a.skip_bad);
   support::Progress progress("gap");
@@ -127,7 +146,7 @@ int Run(const Arguments& a) {
     result.model_file = "model.toml";
     Write(out / result.model_file, support::ModelFileText(*outcome.augmented));
     result.budget =
-        MeasureBudget(BuiltinSettings(request.model), *outcome.augmented, a.data, 1e-3 * a.period_ms, a.skip_bad);
+        MeasureBudget(support::ReadModel(a.model), *outcome.augmented, a.data, 1e-3 * a.period_ms, a.skip_bad);
   } else {
     std::filesystem::remove(out / "model.toml");
   }

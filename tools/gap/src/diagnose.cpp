@@ -2,17 +2,31 @@
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 
 namespace armcmc::gap {
 namespace {
 
 constexpr int kWideWindow = 15, kNarrowWindow = 7;
 constexpr int kNoisePasses = 2;
+constexpr int kBaseSteps = 30;
 constexpr double kCleaner = 0.97;  // of the innovation variance, below which the first noise model hid an effect
 
 /// Noise model from what a hypothesis and the flexible model leave together.
 Whitener NoiseLeftBy(const Fitter& fitter, const Remainder& remainder) {
   return FitNoise(fitter.whitener().Colour(remainder.unexplained));
+}
+
+/// The model as it is, with the effects that it has.
+Fitted FitModel(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const DiagnoseOptions& options) {
+  Fitted fit = fitter.Fit({}, fitter.equation().Start(fitter.signals()), kBaseSteps);
+  for (const auto& [effect, when] : options.known) {
+    const auto form = std::find_if(catalogue.begin(), catalogue.end(),
+                                   [&, name = effect](const EffectForm& f) { return f.exact() && f.effect == name; });
+    if (form == catalogue.end()) throw std::invalid_argument("the workflow knows no effect called " + effect);
+    fit = fitter.Add(fit, {&*form, when});
+  }
+  return fit;
 }
 
 std::unique_ptr<Look> LookAt(const Equation& equation, const Recording& recording, int window,
@@ -26,13 +40,14 @@ std::unique_ptr<Look> LookAt(const Equation& equation, const Recording& recordin
   Whitener whitener;
   for (int pass = 0; pass < kNoisePasses; ++pass) {
     const Fitter fitter(equation, look->signals, whitener);
-    const Fitted base = fitter.Fit({}, equation.Start(look->signals), 30);
+    const Fitted base = FitModel(fitter, look->catalogue, options);
     whitener = NoiseLeftBy(fitter, Referee(fitter, base.predicted).Judge(base));
   }
   // What no additive basis expresses (an onset, a clipped force) hides in the first noise model.
   for (int pass = 0; pass < 2; ++pass) {
     look->fitter = std::make_unique<Fitter>(equation, look->signals, whitener);
-    look->search = std::make_unique<Search>(*look->fitter, look->catalogue, bootstrap, options.thresholds);
+    look->search = std::make_unique<Search>(*look->fitter, look->catalogue, bootstrap, options.thresholds,
+                                            FitModel(*look->fitter, look->catalogue, options));
     look->finding = look->search->Run(options.pairs);
     if (look->finding.verdict == Verdict::kNone || !look->finding.best->remainder) break;
     const Whitener cleaner = NoiseLeftBy(*look->fitter, *look->finding.best->remainder);
@@ -61,7 +76,7 @@ void Vote(const Finding& other, Finding* finding) {
     for (const CandidatePtr& candidate : other.set)
       if (!mine.contains(candidate->names())) finding->set.push_back(candidate);
     finding->verdict = Verdict::kAmbiguous;
-  } else if (finding->approximate || finding->best->fit.hypothesis.terms.size() > 1) {
+  } else if (finding->approximate || finding->best->added().size() > 1) {
     finding->verdict = Verdict::kUnnamed;
     finding->approximate = false;
     finding->set.clear();

@@ -11,7 +11,6 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr int kBaseSteps = 30;
 constexpr std::size_t kMaxGated = 4;      // gated hypotheses that are fitted, by what the scan promises
 constexpr std::size_t kPairBeam = 4;      // singles that get partners
 constexpr std::size_t kRefinedPairs = 3;  // pairs whose formulas and gates are tried anew
@@ -20,12 +19,6 @@ constexpr std::size_t kJudged = 6;
 void SortByScore(std::vector<CandidatePtr>* candidates) {
   std::stable_sort(candidates->begin(), candidates->end(),
                    [](const auto& a, const auto& b) { return a->fit.score() > b->fit.score(); });
-}
-
-CandidatePtr Make(Fitted fit) {
-  auto candidate = std::make_shared<Candidate>();
-  candidate->fit = std::move(fit);
-  return candidate;
 }
 
 bool Holds(const Fitted& fit, const std::string& effect) {
@@ -37,16 +30,20 @@ bool GatedBy(const Term& term) { return term.when.kind != When::Kind::kAlways; }
 
 }  // namespace
 
+std::vector<Term> Candidate::added() const {
+  return {fit.hypothesis.terms.begin() + static_cast<std::ptrdiff_t>(num_known), fit.hypothesis.terms.end()};
+}
+
 std::vector<std::string> Candidate::names() const {
   std::vector<std::string> names;
-  for (const Term& term : fit.hypothesis.terms) names.push_back(term.form->effect);
+  for (const Term& term : added()) names.push_back(term.form->effect);
   std::sort(names.begin(), names.end());
   return names;
 }
 
 std::vector<std::string> Candidate::families() const {
   std::vector<std::string> families;
-  for (const Term& term : fit.hypothesis.terms) families.push_back(term.form->family);
+  for (const Term& term : added()) families.push_back(term.form->family);
   std::sort(families.begin(), families.end());
   return families;
 }
@@ -57,12 +54,24 @@ bool Candidate::exact() const {
 }
 
 Search::Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const BlockBootstrap& bootstrap,
-               const Thresholds& thresholds)
+               const Thresholds& thresholds, Fitted base)
     : fitter_(&fitter),
       catalogue_(&catalogue),
       bootstrap_(&bootstrap),
       limits_(thresholds),
-      rows_(static_cast<double>(fitter.signals().rows())) {}
+      referee_(std::make_unique<Referee>(fitter, base.predicted)),
+      base_(std::make_shared<Candidate>()),
+      rows_(static_cast<double>(fitter.signals().rows())) {
+  base_->num_known = base.hypothesis.terms.size();
+  base_->fit = std::move(base);
+}
+
+CandidatePtr Search::Make(Fitted fit) const {
+  auto candidate = std::make_shared<Candidate>();
+  candidate->fit = std::move(fit);
+  candidate->num_known = base_->num_known;
+  return candidate;
+}
 
 const Remainder& Search::Judge(const CandidatePtr& candidate) const {
   if (!candidate->remainder) candidate->remainder = referee_->Judge(candidate->fit);
@@ -78,10 +87,10 @@ double Search::Closure(const CandidatePtr& candidate) const {
   return Gain(candidate) / (Gain(candidate) + left + 1e-12);
 }
 
-bool Search::Adequate(const CandidatePtr& candidate) const {
+bool Search::Adequate(const CandidatePtr& candidate, double gap) const {
   const Remainder& left = Judge(candidate);
   if (Closure(candidate) < limits_.adequate_closure) return false;
-  const double floor = std::max(limits_.min_remainder, limits_.remainder_share * gap_);
+  const double floor = std::max(limits_.min_remainder, limits_.remainder_share * gap);
   return 2.0 * left.total() / rows_ < floor ||
          bootstrap_->ProbabilityAbove(left.gain, 0.1 * limits_.min_gain * rows_) < limits_.p_remainder;
 }
@@ -92,16 +101,17 @@ bool Search::Better(const Fitted& a, const Fitted& b) const {
          bootstrap_->ProbabilityAbove(difference, 0.1 * limits_.min_gain * rows_) > limits_.p_reject;
 }
 
-double Search::Margin() const {
-  return std::max({limits_.tie_nats, 0.5 * rows_ * limits_.tie_effect * limits_.tie_effect,
-                   limits_.tie_share * rows_ * gap_ / 2.0});
+double Search::Margin(double gap) const {
+  return std::max(
+      {limits_.tie_nats, 0.5 * rows_ * limits_.tie_effect * limits_.tie_effect, limits_.tie_share * rows_ * gap / 2.0});
 }
 
-Search::Candidates Search::Near(const Candidates& sorted, std::size_t count) const {
+Search::Candidates Search::Near(const Candidates& sorted, double gap) const {
+  const double margin = Margin(gap);
   Candidates near;
-  for (std::size_t i = 0; i < std::min(count, sorted.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kJudged, sorted.size()); ++i) {
     const Vector difference = sorted.front()->fit.heldout - sorted[i]->fit.heldout;
-    if (difference.sum() < Margin() || bootstrap_->ProbabilityAbove(difference, Margin()) < limits_.p_reject)
+    if (difference.sum() < margin || bootstrap_->ProbabilityAbove(difference, margin) < limits_.p_reject)
       near.push_back(sorted[i]);
   }
   return near;
@@ -168,7 +178,7 @@ void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
   };
   const double margin = std::max(limits_.tie_nats, limits_.tie_share * evidence(pool.front()));
   Candidates good;
-  if (evidence(pool.front()) > limits_.event_nats && pool.front()->fit.hypothesis.terms.front().form->listed)
+  if (evidence(pool.front()) > limits_.event_nats && pool.front()->fit.hypothesis.terms.back().form->listed)
     for (const CandidatePtr& c : pool)
       if (c->exact() && evidence(pool.front()) - evidence(c) < margin && quiet(c)) good.push_back(c);
   if (good.empty()) {
@@ -207,9 +217,9 @@ Search::Candidates Search::OnePerName(const Candidates& candidates) const {
 CandidatePtr Search::Refined(const CandidatePtr& pair) const {
   // Each member anew, given the other: any formula of the same effect, any gate.
   CandidatePtr best = pair;
-  for (std::size_t member = 0; member < pair->fit.hypothesis.terms.size(); ++member) {
+  for (std::size_t member = pair->num_known; member < pair->fit.hypothesis.terms.size(); ++member) {
     Hypothesis others;
-    std::vector<double> theta(best->fit.theta.data(), best->fit.theta.data() + 0);
+    std::vector<double> theta;
     const std::vector<Term> terms = best->fit.hypothesis.terms;
     int num_terms = 0;
     for (const Term& term : terms) num_terms += term.form->size();
@@ -263,12 +273,12 @@ Search::Candidates Search::Pairs(const Candidates& order) const {
 Search::Candidates Search::Listed(const Candidates& candidates, bool listed) const {
   Candidates some;
   std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(some),
-               [&](const CandidatePtr& c) { return c->fit.hypothesis.terms.front().form->listed == listed; });
+               [&](const CandidatePtr& c) { return c->fit.hypothesis.terms.back().form->listed == listed; });
   return some;
 }
 
 bool Search::Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const {
-  if (named->fit.hypothesis.terms.size() > 1) return !Better(named->fit, unlisted->fit);
+  if (named->added().size() > 1) return !Better(named->fit, unlisted->fit);
   const Vector lead = unlisted->fit.heldout - named->fit.heldout;
   return lead.sum() > limits_.tie_nats && bootstrap_->ProbabilityAbove(lead, 0.0) > limits_.p_outdone;
 }
@@ -280,31 +290,28 @@ bool Search::FamilyHolds(const CandidatePtr& best, const Candidates& singles) co
   });
 }
 
-Finding Search::Run(bool pairs) {
+Finding Search::Run(bool pairs) const {
   Finding finding;
-  const Equation& equation = fitter_->equation();
-  base_ = Make(fitter_->Fit({}, equation.Start(fitter_->signals()), kBaseSteps));
   finding.base = finding.best = base_;
-  if (!referee_) referee_ = std::make_unique<Referee>(*fitter_, base_->fit.predicted);
   const Vector flexible = Judge(base_).gain;
   const Candidates singles = Extend(base_, true);
   const Vector named = singles.front()->fit.heldout - base_->fit.heldout;
   // A flexible model sees what has no name, a name what no flexible model has the shape for.
-  gap_ = finding.gap = std::max(2.0 * std::max(flexible.sum(), named.sum()) / rows_, 0.0);
+  const double gap = finding.gap = std::max(2.0 * std::max(flexible.sum(), named.sum()) / rows_, 0.0);
   for (const Vector& gain : {flexible, named})
     if (2.0 * gain.sum() / rows_ > limits_.min_gain)
       finding.p_missing =
           std::max(finding.p_missing, bootstrap_->ProbabilityAbove(gain, 0.1 * limits_.min_gain * rows_));
   finding.tried = singles;
-  if (!(gap_ > limits_.min_gain) || finding.p_missing < limits_.p_missing) {
+  if (!(gap > limits_.min_gain) || finding.p_missing < limits_.p_missing) {
     JudgeEvents(singles, &finding);
     return finding;
   }
 
   const Candidates listed = Listed(singles, true), unlisted = Listed(singles, false);
   Candidates good;
-  for (const CandidatePtr& candidate : Near(listed, kJudged))
-    if (Adequate(candidate)) good.push_back(candidate);
+  for (const CandidatePtr& candidate : Near(listed, gap))
+    if (Adequate(candidate, gap)) good.push_back(candidate);
   CandidatePtr top = listed.front();
   Candidates all_pairs;
   if (!good.empty()) {
@@ -316,17 +323,17 @@ Finding Search::Run(bool pairs) {
   }
   if (good.empty() && pairs) {
     all_pairs = Pairs(listed);
-    for (const CandidatePtr& pair : Near(all_pairs, kJudged)) {
+    for (const CandidatePtr& pair : Near(all_pairs, gap)) {
       const bool earned = std::all_of(listed.begin(), listed.end(), [&](const CandidatePtr& single) {
-        return !Holds(pair->fit, single->fit.hypothesis.terms[0].form->effect) || Better(pair->fit, single->fit);
+        return !Holds(pair->fit, single->fit.hypothesis.terms.back().form->effect) || Better(pair->fit, single->fit);
       });
-      if (earned && Adequate(pair)) good.push_back(pair);
+      if (earned && Adequate(pair, gap)) good.push_back(pair);
     }
     if (!all_pairs.empty()) top = good.empty() ? all_pairs.front() : good.front();
   }
   // A name is not given to what physics outside the catalogue explains better, or as well with one effect less.
   if (!unlisted.empty() && Gain(unlisted.front()) > limits_.min_gain &&
-      (good.empty() || Outdone(good.front(), unlisted.front())) && Adequate(unlisted.front())) {
+      (good.empty() || Outdone(good.front(), unlisted.front())) && Adequate(unlisted.front(), gap)) {
     good.clear();
     finding.unlisted = top = unlisted.front();
   }
@@ -352,7 +359,7 @@ Finding Search::Run(bool pairs) {
   }
   finding.remainder = std::max(2.0 * Judge(finding.best).total() / rows_, 0.0);
   finding.p_unnamed = bootstrap_->ProbabilityAbove(
-      Judge(finding.best).gain, 0.5 * rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap_));
+      Judge(finding.best).gain, 0.5 * rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap));
   if (finding.approximate) finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
   if (finding.verdict == Verdict::kUnnamed) finding.p_unnamed = std::max(finding.p_unnamed, 0.5);
   AssignProbabilities(&finding);
@@ -372,7 +379,7 @@ void Search::AssignProbabilities(Finding* finding) const {
   Matrix scores(kNumBlocks, static_cast<Eigen::Index>(compared.size()));
   for (std::size_t i = 0; i < compared.size(); ++i)
     scores.col(static_cast<Eigen::Index>(i)) = compared[i]->fit.heldout - base_->fit.heldout;
-  const Vector share = bootstrap_->SoftShare(scores, std::max(Margin() / kMarginOdds, 1.0));
+  const Vector share = bootstrap_->SoftShare(scores, std::max(Margin(finding->gap) / kMarginOdds, 1.0));
   for (std::size_t i = 0; i < compared.size(); ++i)
     compared[i]->probability = finding->p_missing * (1.0 - finding->p_unnamed) * share[static_cast<Eigen::Index>(i)];
 }

@@ -51,9 +51,9 @@ std::string Joined(const std::vector<std::string>& words, const char* between) {
   return text;
 }
 
-std::vector<std::string> Texts(const Fitted& fit) {
+std::vector<std::string> Texts(const CandidatePtr& candidate) {
   std::vector<std::string> texts;
-  for (const Term& term : fit.hypothesis.terms) texts.push_back(TermText(term));
+  for (const Term& term : candidate->added()) texts.push_back(TermText(term));
   return texts;
 }
 
@@ -61,10 +61,10 @@ std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePt
   const Fitter& fitter = *diagnosis.look->fitter;
   const Matrix covariance = candidate->fit.Covariance(fitter.whitener().s2);
   std::vector<EffectFinding> effects;
-  int num_terms = 0;
-  for (const Term& term : candidate->fit.hypothesis.terms) num_terms += term.form->size();
-  Eigen::Index at = candidate->fit.theta.size() - num_terms;
-  for (const Term& term : candidate->fit.hypothesis.terms) {
+  int num_added = 0;
+  for (const Term& term : candidate->added()) num_added += term.form->size();
+  Eigen::Index at = candidate->fit.theta.size() - num_added;
+  for (const Term& term : candidate->added()) {
     EffectFinding effect;
     effect.name = term.form->effect;
     effect.family = term.form->family;
@@ -96,19 +96,19 @@ std::string Sentence(const Result& result, const Finding& finding) {
   switch (result.verdict) {
     case Verdict::kNone: return "Nothing beyond the noise: the model explains these data.";
     case Verdict::kNamed:
-      return "Missing: " + Joined(Texts(finding.best->fit), " and ") +
+      return "Missing: " + Joined(Texts(finding.best), " and ") +
              (finding.approximate || !finding.best->exact() ? " (the family is right, the formula is approximate)"
                                                             : "") +
              ", with a probability of " + percent(finding.best->probability) + ".";
     case Verdict::kAmbiguous: {
       std::vector<std::string> sets;
-      for (const CandidatePtr& candidate : finding.set) sets.push_back(Joined(Texts(candidate->fit), " and "));
+      for (const CandidatePtr& candidate : finding.set) sets.push_back(Joined(Texts(candidate), " and "));
       return "Missing: one of " + Joined(sets, ", or ") + "; these data cannot tell which.";
     }
     case Verdict::kUnnamed: break;
   }
   return finding.unlisted ? "Something is missing that is not in the catalogue; it looks like " +
-                                Joined(Texts(finding.unlisted->fit), " and ") + "."
+                                Joined(Texts(finding.unlisted), " and ") + "."
                           : "Something is missing that no effect of the catalogue explains.";
 }
 
@@ -127,10 +127,10 @@ void Describe(const Diagnosis& diagnosis, int min_active, Result* result) {
   for (std::size_t i = 0; i < std::min(kListed, finding.tried.size()); ++i) {
     const CandidatePtr& c = finding.tried[i];
     const double score = c->fit.score() - finding.base->fit.score();
-    std::vector<std::string> texts = Texts(c->fit);
+    std::vector<std::string> texts = Texts(c);
+    const std::vector<Term> added = c->added();
     for (std::size_t k = 0; k < texts.size(); ++k)
-      if (!c->fit.hypothesis.terms[k].form->variant.empty())
-        texts[k] += " (" + c->fit.hypothesis.terms[k].form->variant + ")";
+      if (!added[k].form->variant.empty()) texts[k] += " (" + added[k].form->variant + ")";
     result->candidates.push_back({texts, c->fit.log_evidence - finding.base->fit.log_evidence, score, c->probability,
                                   std::clamp(2.0 * score / rows / full, 0.0, 1.0)});
   }
@@ -143,7 +143,7 @@ Fitted Runnable(const Diagnosis& diagnosis) {
   const Fitted& best = diagnosis.finding.best->fit;
   if (diagnosis.finding.best->exact()) return best;
   Fitted fit = diagnosis.finding.base->fit;
-  for (const Term& term : best.hypothesis.terms)
+  for (const Term& term : diagnosis.finding.best->added())
     for (const EffectForm& form : diagnosis.look->catalogue)
       if (form.exact() && form.effect == term.form->effect) fit = fitter.Add(fit, {&form, term.when});
   return fit;
@@ -154,7 +154,7 @@ const Fitted* Control(const Finding& finding) {
     const auto same = [&](const CandidatePtr& other) { return other->names() == candidate->names(); };
     const bool listed = std::all_of(candidate->fit.hypothesis.terms.begin(), candidate->fit.hypothesis.terms.end(),
                                     [](const Term& term) { return term.form->listed; });
-    if (listed && candidate->fit.hypothesis.terms.size() == finding.best->fit.hypothesis.terms.size() &&
+    if (listed && candidate->added().size() == finding.best->added().size() &&
         std::none_of(finding.set.begin(), finding.set.end(), same))
       return &candidate->fit;
   }

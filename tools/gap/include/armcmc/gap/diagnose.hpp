@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "armcmc/gap/equation.hpp"
@@ -15,6 +16,8 @@ struct DiagnoseOptions {
   unsigned long long seed = 1;       ///< Of the bootstrap.
   bool pairs = true;                 ///< Whether two effects at once are tried.
   std::vector<std::string> without;  ///< Effects to leave out of the catalogue.
+  /// Effects that the model has already.
+  std::vector<std::pair<std::string, When>> known;
   Thresholds thresholds;
 };
 
@@ -30,10 +33,10 @@ struct Look {
 /// What the data say, whichever smoother looks.
 struct Diagnosis {
   std::unique_ptr<BlockBootstrap> bootstrap;
-  std::unique_ptr<Look> look;      ///< With the wider smoother.
-  std::unique_ptr<Look> narrow;    ///< With the narrower one; null when there was nothing to vote on. Candidates of
-                                   ///< `finding` may refer to it.
-  Finding finding;             ///< Of that look, with the vote of the other applied.
+  std::unique_ptr<Look> look;    ///< With the wider smoother.
+  std::unique_ptr<Look> narrow;  ///< With the narrower one; null when there was nothing to vote on. Candidates of
+                                 ///< `finding` may refer to it.
+  Finding finding;               ///< Of that look, with the vote of the other applied.
   std::vector<std::string> notes;
 };
 

@@ -31,14 +31,14 @@ struct ParameterEstimate {
 
 /// An effect that the verdict holds. In an ambiguous verdict: the most probable set.
 struct EffectFinding {
-  std::string name;          ///< In the catalogue.
-  std::string family;        ///< "dry friction"
-  std::string formula_text;  ///< "f + force tanh(v / speed)"
+  std::string name;    ///< In the catalogue.
+  std::string family;  ///< "dry friction"
   double probability = 0.0;
   std::vector<ParameterEstimate> parameters;
   When when;
-  bool approximate = false;  ///< The family is right, the formula is not: a shape of its own fits better.
-  bool provisional = false;  ///< Seen in too few separate events to be validated on others.
+  bool approximate = false;    ///< The family is right, the formula is not: a shape of its own fits better.
+  bool provisional = false;    ///< Seen in too few separate events to be validated on others.
+  std::string formula_text{};  ///< "f + force tanh(v / speed)"
 };
 
 /// One hypothesis of the search: the base model with a set of effects (none: the base model alone).
@@ -111,11 +111,11 @@ struct Budget {
 /// What separates an ambiguous set.
 struct Experiment {
   std::string words;
-  std::string program;        ///< Motion of the plant's library.
-  double depth = 0.0;         ///< Of its deepest press, unit of the position.
-  std::string scenario_text;  ///< For the plant.
-  std::string scenario_file;  ///< Relative to the output folder; empty when nothing needs to be separated.
-  double nats = 0.0;          ///< Expected evidence between the closest pair.
+  std::string scenario_file;    ///< Relative to the output folder; empty when nothing needs to be separated.
+  double nats = 0.0;            ///< Expected evidence between the closest pair.
+  std::string program{};        ///< Motion of the plant's library.
+  double depth = 0.0;           ///< Of its deepest press, unit of the position.
+  std::string scenario_text{};  ///< For the plant.
 };
 
 /// One curve of a figure. `low` and `high` may be empty.

@@ -18,10 +18,13 @@ struct Candidate {
   Fitted fit;
   std::optional<Remainder> remainder;
   double probability = 0.0;
+  std::size_t num_known = 0;  ///< Leading terms that the model had before.
 
-  /// Effects by name, sorted: what a verdict calls it.
+  /// Terms beyond those of the model.
+  [[nodiscard]] std::vector<Term> added() const;
+  /// Added effects by name, sorted: what a verdict calls it.
   [[nodiscard]] std::vector<std::string> names() const;
-  /// Families of the effects, sorted.
+  /// Families of the added effects, sorted.
   [[nodiscard]] std::vector<std::string> families() const;
   [[nodiscard]] bool exact() const;  ///< Every effect by the catalogue's own formula.
 };
@@ -46,16 +49,18 @@ struct Finding {
 /// The third step: names what is missing.
 class Search {
  public:
+  /// @param base  The model as it is, fitted.
   Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const BlockBootstrap& bootstrap,
-         const Thresholds& thresholds);
+         const Thresholds& thresholds, Fitted base);
 
   /// @param pairs  Whether two effects at once are tried.
-  [[nodiscard]] Finding Run(bool pairs);
+  [[nodiscard]] Finding Run(bool pairs) const;
   [[nodiscard]] const Referee& referee() const { return *referee_; }
 
  private:
   using Candidates = std::vector<CandidatePtr>;
 
+  [[nodiscard]] CandidatePtr Make(Fitted fit) const;
   [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
   /// Gated hypotheses whose gates leave at least so many blocks active and promise most over the ungated ones.
   [[nodiscard]] Candidates ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const;
@@ -66,10 +71,10 @@ class Search {
   [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
   [[nodiscard]] const Remainder& Judge(const CandidatePtr& candidate) const;
-  [[nodiscard]] bool Adequate(const CandidatePtr& candidate) const;
+  [[nodiscard]] bool Adequate(const CandidatePtr& candidate, double gap) const;
   [[nodiscard]] bool Better(const Fitted& a, const Fitted& b) const;
-  [[nodiscard]] double Margin() const;
-  [[nodiscard]] Candidates Near(const Candidates& sorted, std::size_t count) const;
+  [[nodiscard]] double Margin(double gap) const;
+  [[nodiscard]] Candidates Near(const Candidates& sorted, double gap) const;
   [[nodiscard]] double Gain(const CandidatePtr& candidate) const;
   [[nodiscard]] double Closure(const CandidatePtr& candidate) const;
   void AssignProbabilities(Finding* finding) const;
@@ -83,7 +88,6 @@ class Search {
   std::unique_ptr<Referee> referee_;
   CandidatePtr base_;
   double rows_ = 0.0;
-  double gap_ = 0.0;
 };
 
 }  // namespace armcmc::gap
