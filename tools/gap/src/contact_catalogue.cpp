@@ -87,6 +87,12 @@ EffectForm FromCore(const char* name, std::vector<Coordinate> coordinates) {
   return form;
 }
 
+/// Probability that the true speed is negative, given the smoothed one.
+Vector Retracting(const Signals& s) {
+  const double spread = std::max(s.smoothed_velocity_noise, 1e-9 * s.scale_of(Role::kVelocity));
+  return s.at(Role::kVelocity).unaryExpr([spread](double v) { return 0.5 * std::erfc(v / (std::sqrt(2.0) * spread)); });
+}
+
 /// A further formula of an effect.
 EffectForm Variant(const EffectForm& base, const char* variant, const char* formula,
                    std::vector<Coordinate> coordinates, int num_amplitudes) {
@@ -238,8 +244,7 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
                            {Amplitude("share_fast", "-", 1.0, true, 0.5, 20.0),
                             Amplitude("share_slow", "-", 1.0, true, 0.5, 20.0),
                             tau,
-                            {"ratio", "-", std::log(2.0), std::log(20.0), std::log(6.0), 0.6, 1.0, true},
-                            start},
+                            {"ratio", "-", std::log(2.0), std::log(20.0), std::log(6.0), 0.6, 1.0, true}},
                            2);
   two.slot = Slot::kMemory;
   two.filter = [two](const Signals& in, const Vector& series, int amplitude, const double* shape) -> Vector {
@@ -253,6 +258,11 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   const Coordinate tension = Amplitude("force", "N", force, true, 0.3);
   const Coordinate reach = Shape("distance", "m", length, 0.015, 1.2);
   EffectForm adhesion = FromCore("adhesion", {tension, reach});
+  adhesion.features = [adhesion](const Signals& in, const double* shape) -> Matrix {
+    const Eigen::ArrayXd x = in.at(Role::kPosition).array();
+    const Eigen::ArrayXd pull = in.output_scale * (-x.max(0.0) / Value(adhesion, 0, shape)).exp();
+    return (-pull * Retracting(in).array() * (x >= 0.0).cast<double>()).matrix();
+  };
   adhesion.own_groups = {"direction of motion"};
   AddStarts(&adhesion, {4});
   out->push_back(adhesion);
@@ -278,13 +288,9 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   EffectForm tail =
       Variant(adhesion, "power_law", "f - force / (1 + x / distance)^2 for v < 0, x >= 0", {tension, reach}, 1);
   tail.features = [tail](const Signals& in, const double* shape) -> Matrix {
-    const Vector& x = in.at(Role::kPosition);
-    const Vector& v = in.at(Role::kVelocity);
-    const double d = Value(tail, 0, shape);
-    Vector column = Vector::Zero(in.rows());
-    for (Eigen::Index i = 0; i < in.rows(); ++i)
-      if (x[i] >= 0.0 && v[i] < 0.0) column[i] = -in.output_scale / ((1.0 + x[i] / d) * (1.0 + x[i] / d));
-    return column;
+    const Eigen::ArrayXd x = in.at(Role::kPosition).array();
+    const Eigen::ArrayXd pull = in.output_scale / (1.0 + x.max(0.0) / Value(tail, 0, shape)).square();
+    return (-pull * Retracting(in).array() * (x >= 0.0).cast<double>()).matrix();
   };
   AddStarts(&tail, {3});
   out->push_back(tail);

@@ -42,21 +42,20 @@ class ContactEquation final : public Equation {
     if (s.rows() < kMinRows)
       throw std::invalid_argument(recording.source + ": holds " + std::to_string(s.rows()) + " samples; at least " +
                                   std::to_string(kMinRows) + " are needed to judge a model");
-    const double share = s.active.mean();
-    if (share < kMinContactShare)
-      throw std::invalid_argument(recording.source +
-                                  ": x is hardly ever above 0: without contact nothing can be said on a contact law");
-    const Vector depth = s.at(Role::kPosition).cwiseMax(0.0);
+    // Without contact the law says nothing, but what acts in free motion can still be told apart.
+    s.law_seen = s.active.mean() >= kMinContactShare;
     const Vector all = Vector::Ones(s.rows());
-    s.scale[static_cast<std::size_t>(Role::kPosition)] = Rms(depth, s.active);
+    const Vector& weight = s.law_seen ? s.active : all;
+    s.scale[static_cast<std::size_t>(Role::kPosition)] = Rms(s.at(Role::kPosition), weight);
     s.scale[static_cast<std::size_t>(Role::kVelocity)] = Rms(s.at(Role::kVelocity), all);
     s.scale[static_cast<std::size_t>(Role::kAcceleration)] = Rms(s.at(Role::kAcceleration), all);
-    s.output_scale = Rms(s.output, s.active);
-    s.output_peak = Quantile(s.output, kPeakQuantile);
+    s.output_scale = Rms(s.output, weight);
+    s.output_peak = Quantile(s.law_seen ? s.output : Vector(s.output.cwiseAbs()), kPeakQuantile);
     for (const double scale : s.scale)
       if (!(scale > 0.0)) throw std::invalid_argument(recording.source + ": x or v does not move");
     if (!(s.output_scale > 0.0) || !(s.output_peak > 0.0))
-      throw std::invalid_argument(recording.source + ": f is not positive anywhere in contact");
+      throw std::invalid_argument(recording.source + ": f is not positive anywhere" +
+                                  (s.law_seen ? " in contact: push must count as positive" : ": it does not change"));
     return s;
   }
 
@@ -162,6 +161,8 @@ class ContactEquation final : public Equation {
     s.at(Role::kPosition) = SavitzkyGolay(recording.Column("x"), window, 0);
     s.at(Role::kVelocity) = SavitzkyGolay(v, window, 0);
     s.velocity_noise = Rms(v - s.at(Role::kVelocity), Vector::Ones(s.rows()));
+    // The cubic of a window passes 9 / (4 window) of the variance of white noise.
+    s.smoothed_velocity_noise = s.velocity_noise * std::sqrt(2.25 / std::max(window, 3));
     const int wide = window < 5 ? window : window + kAccelerationExtra;
     s.at(Role::kAcceleration) = SavitzkyGolay(v, wide, 1) / s.dt;
     s.active = (s.at(Role::kPosition).array() > 0.0).cast<double>();

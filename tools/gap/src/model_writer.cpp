@@ -47,7 +47,7 @@ EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitt
   EstimatorSettings settings = BuiltinSettings(model);
   const Matrix covariance = fitted.Covariance(fitter.whitener().s2);
   const std::vector<ParameterEstimate> base = fitter.equation().Report(signals, fitted.theta, covariance);
-  for (std::size_t i = 0; i < base.size(); ++i) {
+  for (std::size_t i = 0; signals.law_seen && i < base.size(); ++i) {
     ParameterSettings& prior = settings.parameters[i];
     const double lower = prior.lower;
     prior = Prior(prior.name, base[i].mean, base[i].sd, std::min(lower, base[i].mean - base[i].sd));

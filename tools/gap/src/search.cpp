@@ -101,16 +101,16 @@ bool Search::Better(const Fitted& a, const Fitted& b) const {
          bootstrap_->ProbabilityAbove(difference, 0.1 * limits_.min_gain * rows_) > limits_.p_reject;
 }
 
-double Search::Margin(double gap) const {
-  return std::max(
-      {limits_.tie_nats, 0.5 * rows_ * limits_.tie_effect * limits_.tie_effect, limits_.tie_share * rows_ * gap / 2.0});
+double Search::Margin(double gap, bool kin) const {
+  return std::max({limits_.tie_nats, 0.5 * rows_ * limits_.tie_effect * limits_.tie_effect,
+                   (kin ? limits_.tie_share_kin : limits_.tie_share) * rows_ * gap / 2.0});
 }
 
 Search::Candidates Search::Near(const Candidates& sorted, double gap) const {
-  const double margin = Margin(gap);
   Candidates near;
   for (std::size_t i = 0; i < std::min(kJudged, sorted.size()); ++i) {
     const Vector difference = sorted.front()->fit.heldout - sorted[i]->fit.heldout;
+    const double margin = Margin(gap, sorted[i]->families() == sorted.front()->families());
     if (difference.sum() < margin || bootstrap_->ProbabilityAbove(difference, margin) < limits_.p_reject)
       near.push_back(sorted[i]);
   }
@@ -122,8 +122,11 @@ Search::Candidates Search::Extend(const CandidatePtr& parent, bool variants) con
   for (const EffectForm& form : *catalogue_)
     if (!Holds(parent->fit, form.effect) && (form.exact() || variants))
       extended.push_back(Make(fitter_->Add(parent->fit, {&form, {}})));
+  // A second effect that acts at times only could repair the formula of the first.
+  const double floor = parent == base_ ? 0.0 : limits_.tie_share * Gain(parent) * rows_ / 2.0;
   const auto better = [&](const CandidatePtr& gated) {
     const EffectForm* form = gated->fit.hypothesis.terms.back().form;
+    if (gated->fit.score() - parent->fit.score() < floor) return false;
     return std::all_of(extended.begin(), extended.end(), [&](const CandidatePtr& other) {
       return other->fit.hypothesis.terms.back().form != form || Better(gated->fit, other->fit);
     });
@@ -363,7 +366,29 @@ Finding Search::Run(bool pairs) const {
   if (finding.approximate) finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
   if (finding.verdict == Verdict::kUnnamed) finding.p_unnamed = std::max(finding.p_unnamed, 0.5);
   AssignProbabilities(&finding);
+  if (finding.verdict == Verdict::kNamed && !finding.approximate) Hedge(&finding);
   return finding;
+}
+
+void Search::Hedge(Finding* finding) const {
+  double sum = finding->best->probability;
+  if (sum >= limits_.sure) return;
+  Candidates others = OnePerName(finding->tried);
+  std::stable_sort(others.begin(), others.end(),
+                   [](const auto& a, const auto& b) { return a->probability > b->probability; });
+  for (const CandidatePtr& other : others) {
+    if (sum >= limits_.sure_set || finding->set.size() >= 3) break;
+    const bool mine = other->names() == finding->best->names();
+    if (mine || !other->exact() || other->probability < 0.05 || !Adequate(other, finding->gap)) continue;
+    finding->set.push_back(other);
+    sum += other->probability;
+  }
+  if (sum < limits_.doubt) {
+    finding->verdict = Verdict::kUnnamed;
+    finding->set.clear();
+  } else if (finding->set.size() > 1) {
+    finding->verdict = Verdict::kAmbiguous;
+  }
 }
 
 void Search::AssignProbabilities(Finding* finding) const {
@@ -376,10 +401,14 @@ void Search::AssignProbabilities(Finding* finding) const {
     const auto same = [&](const CandidatePtr& other) { return other->names() == candidate->names(); };
     if (std::none_of(compared.begin(), compared.end(), same)) compared.push_back(candidate);
   }
+  if (finding->approximate) {
+    finding->best->probability = finding->p_missing * (1.0 - finding->p_unnamed);
+    return;
+  }
   Matrix scores(kNumBlocks, static_cast<Eigen::Index>(compared.size()));
   for (std::size_t i = 0; i < compared.size(); ++i)
     scores.col(static_cast<Eigen::Index>(i)) = compared[i]->fit.heldout - base_->fit.heldout;
-  const Vector share = bootstrap_->SoftShare(scores, std::max(Margin(finding->gap) / kMarginOdds, 1.0));
+  const Vector share = bootstrap_->SoftShare(scores, std::max(Margin(finding->gap, true) / kMarginOdds, 1.0));
   for (std::size_t i = 0; i < compared.size(); ++i)
     compared[i]->probability = finding->p_missing * (1.0 - finding->p_unnamed) * share[static_cast<Eigen::Index>(i)];
 }

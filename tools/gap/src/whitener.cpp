@@ -27,7 +27,8 @@ Vector QuietCovariance(const Vector& series) {
     if (energy[static_cast<Eigen::Index>(b)] > median) continue;
     const auto block = series.segment(edges[b], edges[b + 1] - edges[b]);
     for (int k = 0; k <= kMaxOrder; ++k)
-      covariance[k] += block.head(block.size() - k).dot(block.tail(block.size() - k));
+      covariance[k] += block.head(block.size() - k).dot(block.tail(block.size() - k)) *
+                       static_cast<double>(block.size()) / static_cast<double>(block.size() - k);
     count += static_cast<double>(block.size());
   }
   return covariance / count;
@@ -68,7 +69,7 @@ double Whitener::Gain() const {
 }
 
 Whitener FitNoise(const Vector& residual) {
-  const Eigen::Index n = residual.size();
+  const Eigen::Index n = residual.size() / 2;  // rows that the covariances are from
   const Vector covariance = QuietCovariance(residual.array() - residual.mean());
   Whitener best{Vector(), std::max(covariance[0], 1e-300)};
   double best_criterion = static_cast<double>(n) * std::log(best.s2);
@@ -85,7 +86,7 @@ Whitener FitNoise(const Vector& residual) {
       best = {phi, s2};
     }
   }
-  best.s2 = std::max(best.Apply(residual).squaredNorm() / static_cast<double>(n), 1e-300);
+  best.s2 = std::max(best.Apply(residual).squaredNorm() / static_cast<double>(residual.size()), 1e-300);
   return best;
 }
 

@@ -20,6 +20,10 @@ namespace {
 constexpr double kDiagnosisShare = 0.7;  // of the recording; the rest stays sealed to the end
 constexpr int kWindow = 15;
 constexpr std::size_t kListed = 20;
+constexpr double kUnseenRatio = 0.15;  // gap over noise on the sealed data, below which they can confirm nothing
+constexpr double kWorse = 1.005;       // times the error of the model before, that a named effect must not exceed
+constexpr double kVisibleGap = 0.001;  // share of the noise variance, from which a gap that is not certain raises doubt
+constexpr double kSmallestDoubt = 0.03;  // an effect of a tenth of the noise would not be seen
 
 /// Time of each step, and what is told of it.
 class Clock {
@@ -115,9 +119,10 @@ std::string Sentence(const Result& result, const Finding& finding) {
 void Describe(const Diagnosis& diagnosis, int min_active, Result* result) {
   const Finding& finding = diagnosis.finding;
   result->verdict = finding.verdict;
-  result->probability_none = finding.verdict == Verdict::kNone
-                                 ? 1.0 - finding.p_missing * (finding.gap > 0.0 ? 0.5 : 0.0)
-                                 : 1.0 - finding.p_missing;
+  result->probability_none =
+      finding.verdict == Verdict::kNone
+          ? 1.0 - std::max(kSmallestDoubt, finding.gap > kVisibleGap ? 0.5 * finding.p_missing : 0.0)
+          : 1.0 - finding.p_missing;
   result->probability_unnamed = finding.p_unnamed;
   if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active);
   if (finding.verdict == Verdict::kAmbiguous)
@@ -133,6 +138,11 @@ void Describe(const Diagnosis& diagnosis, int min_active, Result* result) {
       if (!added[k].form->variant.empty()) texts[k] += " (" + added[k].form->variant + ")";
     result->candidates.push_back({texts, c->fit.log_evidence - finding.base->fit.log_evidence, score, c->probability,
                                   std::clamp(2.0 * score / rows / full, 0.0, 1.0)});
+  }
+  for (const double t : finding.events_s) {
+    char note[96];
+    std::snprintf(note, sizeof(note), "a single event at t = %.4g s that nothing of the catalogue explains", t);
+    result->notes.emplace_back(note);
   }
   result->sentence = Sentence(*result, finding);
 }
@@ -159,6 +169,36 @@ const Fitted* Control(const Finding& finding) {
       return &candidate->fit;
   }
   return nullptr;
+}
+
+/// Sealed data may take a name back, never give one: a hypothesis that does not hold on them is another formula of the
+/// same effects, or no name at all.
+void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds& limits, Diagnosis* diagnosis,
+             Result* result) {
+  Finding& finding = diagnosis->finding;
+  const auto closed = [&](const Fitted& fit) {
+    return ShowGap(equation, heldout, *diagnosis->bootstrap, finding.base->fit, fit, nullptr);
+  };
+  const auto holds = [&](const GapSummary& gap) {
+    if (gap.gap_ratio < kUnseenRatio) return gap.after.rmse < kWorse * gap.before.rmse;
+    return gap.closed_high > limits.confirmed;
+  };
+  if (holds(closed(finding.best->fit))) return;
+  for (const CandidatePtr& other : finding.tried) {
+    if (other->names() != finding.best->names() || !holds(closed(other->fit))) continue;
+    result->notes.push_back("on the data kept apart " + Joined(Texts(finding.best), " and ") +
+                            " holds only with another formula: " + other->added().back().form->formula);
+    other->probability = finding.best->probability;
+    finding.best = other;
+    finding.set = {other};
+    finding.verdict = Verdict::kNamed;
+    finding.approximate = true;
+    return;
+  }
+  result->notes.push_back(Joined(Texts(finding.best), " and ") +
+                          " explains the first part of the data but not the part kept apart: no name is given");
+  finding.verdict = Verdict::kUnnamed;
+  finding.set.clear();
 }
 
 /// Rows that are diagnosed, and the recording whose rest shows the gap.
@@ -189,37 +229,60 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   result.notes = request.data.notes;
 
   clock.Begin("compare and name", 0.0);
-  const Diagnosis diagnosis = Diagnose(*equation, parts.diagnosis, request.diagnose);
+  Diagnosis diagnosis = Diagnose(*equation, parts.diagnosis, request.diagnose);
   const Look& look = *diagnosis.look;
   const double noise_sd = std::sqrt(look.fitter->whitener().s2 * look.fitter->whitener().Gain());
   result.notes.insert(result.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
+  if (!look.signals.law_seen)
+    result.notes.push_back("hardly any " + equation->active_name() +
+                           " in these data: they say nothing on the law and its parameters");
   if (request.until >= Step::kFind) {
     clock.Begin("find where", 0.6);
     result.where = FindWhere(*equation, look, *diagnosis.bootstrap, request.diagnose.seed);
   }
-  if (request.until >= Step::kName) Describe(diagnosis, request.diagnose.thresholds.min_active_blocks, &result);
-  if (request.until >= Step::kName && result.verdict == Verdict::kAmbiguous) {
+  if (request.until >= Step::kName && diagnosis.finding.verdict == Verdict::kAmbiguous) {
     clock.Begin("choose an experiment", 0.7);
     result.separate_by = SeparatingExperiment(*equation, look, diagnosis.finding.set);
     result.separate_by.scenario_text = ScenarioText(*equation, look, result.separate_by);
   }
+  const HeldOut heldout(*equation, look, parts.shown, parts.first_shown);
+  if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
+    clock.Begin("confirm", 0.72);
+    Confirm(*equation, heldout, request.diagnose.thresholds, &diagnosis, &result);
+  }
+  if (request.until < Step::kName) {
+    result.sentence = "The search for a name was not asked for.";
+    result.probability_none = result.probability_unnamed = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (request.until >= Step::kName) Describe(diagnosis, request.diagnose.thresholds.min_active_blocks, &result);
   const bool adds = !diagnosis.finding.set.empty();
-  const Fitted after = adds ? Runnable(diagnosis) : diagnosis.finding.base->fit;
+  const Fitted after = adds ? diagnosis.finding.best->fit : diagnosis.finding.base->fit;
   if (request.until >= Step::kAdd && adds) {
     clock.Begin("add", 0.75);
-    outcome.augmented = AugmentedSettings(request.model, *look.fitter, after, noise_sd);
+    const Fitted runnable = Runnable(diagnosis);
+    outcome.augmented = AugmentedSettings(request.model, *look.fitter, runnable, noise_sd);
+    if (!diagnosis.finding.best->exact()) {
+      char note[160];
+      std::snprintf(
+          note, sizeof(note),
+          "the estimator runs the catalogue's formula, which by itself closes %.0f %% of the gap and is refitted "
+          "at every pack",
+          100.0 * ShowGap(*equation, heldout, *diagnosis.bootstrap, diagnosis.finding.base->fit, runnable, nullptr)
+                      .closed_fraction);
+      result.notes.emplace_back(note);
+    }
   }
   if (request.until >= Step::kShow) {
     clock.Begin("show", 0.8);
     const Fitted& before = diagnosis.finding.base->fit;
-    const HeldOut heldout(*equation, look, parts.shown, parts.first_shown);
     result.gap =
         ShowGap(*equation, heldout, *diagnosis.bootstrap, before, after, adds ? Control(diagnosis.finding) : nullptr);
     const auto report = [&](const Fitted& fit) {
       return equation->Report(look.signals, fit.theta, fit.Covariance(look.fitter->whitener().s2));
     };
     const auto first = report(before), second = report(after);
-    for (std::size_t i = 0; i < first.size(); ++i) result.parameters.push_back({first[i], second[i]});
+    for (std::size_t i = 0; look.signals.law_seen && i < first.size(); ++i)
+      result.parameters.push_back({first[i], second[i]});
     const Signals all = equation->PrepareLike(parts.shown, kWindow, look.signals);
     result.figures = MakeFigures(*equation, all, look, before, after);
     result.figures.diagnosis_end_s =

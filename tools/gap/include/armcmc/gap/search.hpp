@@ -73,7 +73,9 @@ class Search {
   [[nodiscard]] const Remainder& Judge(const CandidatePtr& candidate) const;
   [[nodiscard]] bool Adequate(const CandidatePtr& candidate, double gap) const;
   [[nodiscard]] bool Better(const Fitted& a, const Fitted& b) const;
-  [[nodiscard]] double Margin(double gap) const;
+  [[nodiscard]] double Margin(double gap, bool kin) const;
+  /// A name that is not sure becomes a set, or none.
+  void Hedge(Finding* finding) const;
   [[nodiscard]] Candidates Near(const Candidates& sorted, double gap) const;
   [[nodiscard]] double Gain(const CandidatePtr& candidate) const;
   [[nodiscard]] double Closure(const CandidatePtr& candidate) const;

@@ -33,6 +33,8 @@ struct Signals {
   double output_peak = 1.0;               ///< Largest output, outliers aside.
   double origin = 0.0;                    ///< Time from which effects that drift count; s.
   double duration = 1.0;                  ///< Time over which they reach their amplitude; s.
+  bool law_seen = true;                   ///< The law acts often enough for its parameters to be fitted.
+  double smoothed_velocity_noise = 0.0;   ///< Standard deviation of what noise is left in the velocity.
   double velocity_noise = 0.0;            ///< Standard deviation of what smoothing took off the velocity.
   Vector active;                          ///< 1 where the law acts (contact), 0 where it does not.
 

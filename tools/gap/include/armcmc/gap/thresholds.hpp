@@ -14,7 +14,12 @@ struct Thresholds {
   double p_outdone = 0.90;       ///< Bootstrap probability that physics without a name is better, to withhold the name.
   double tie_nats = 3.0;         ///< Differences below the largest of these three are ties:
   double tie_effect = 0.03;      ///< predictions that differ by this share of the noise sd,
-  double tie_share = 0.015;      ///< and this share of the gap, where formula errors decide.
+  double tie_share = 0.015;      ///< and this share of the gap, where formula errors decide,
+  double tie_share_kin = 0.003;  ///< or this share between effects of the same family.
+  double sure = 0.80;            ///< Probability that a single name must have,
+  double sure_set = 0.90;        ///< or the set that it is widened to,
+  double doubt = 0.50;           ///< and below which no name is given.
+  double confirmed = 0.80;       ///< Closed fraction on sealed data that must be within the interval, to keep a name.
   double family_closure = 0.92;  ///< Closure that names a family whose formula is not adequate.
   double family_lead = 0.90;     ///< Share of the best gain that every other family must stay below.
   double relaxed_share = 0.70;   ///< Of what its free shape gains, that the formula itself must gain.
