@@ -43,6 +43,7 @@ Vector EvenKnots(int count) { return Vector::LinSpaced(count, 0.0, 1.0); }
 
 Matrix Hats(const Vector& series, const Vector& knots) {
   Matrix hats = Matrix::Zero(series.size(), knots.size());
+  if (knots.size() == 0) return hats;
   for (Eigen::Index i = 0; i < series.size(); ++i) {
     const double u = series[i];
     const auto above = std::upper_bound(knots.data(), knots.data() + knots.size(), u) - knots.data();
