@@ -31,12 +31,12 @@ EffectGate GateOf(const When& when) {
   return EffectGate::kAlways;
 }
 
-/// Time constant that keeps the noise of a differentiated velocity below that of the force.
+/// Time constant that keeps the noise of a differentiated velocity below that of the force, or the longest allowed.
 double InertiaSmoothing(const Signals& s, double mass, double noise_sd) {
   const double added = mass * s.velocity_noise * std::sqrt(2.0) / s.dt;
   const double ratio = added / (kUsefulNoiseShare * noise_sd);
   // A first-order low pass of n samples divides the noise of a difference by about sqrt(2) n.
-  return ratio > 1.0 ? ratio * s.dt / std::sqrt(2.0) : 0.0;
+  return ratio > 1.0 ? std::min(ratio * s.dt / std::sqrt(2.0), Inertia::kInfo.shapes[0].upper) : 0.0;
 }
 
 }  // namespace
