@@ -29,9 +29,7 @@ double Quantile(const Vector& series, double q) {
   return sorted[static_cast<std::size_t>(at)];
 }
 
-bool Moves(const Vector& series) {
-  return series.maxCoeff() - series.minCoeff() > 1e-9 * series.cwiseAbs().maxCoeff();
-}
+bool Moves(const Vector& series) { return series.maxCoeff() - series.minCoeff() > 1e-9 * series.cwiseAbs().maxCoeff(); }
 
 class ContactEquation final : public Equation {
  public:

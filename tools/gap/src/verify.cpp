@@ -62,8 +62,8 @@ HeldOut::HeldOut(const Equation& equation, const Look& look, const Recording& re
       tail_(Tail(all_, first)),
       first_(first) {
   if (tail_.rows() < kNumBlocks)
-    throw std::invalid_argument(recording.source + ": holds " + std::to_string(tail_.rows()) +
-                                " samples; at least " + std::to_string(kNumBlocks) + " are needed to show a gap on");
+    throw std::invalid_argument(recording.source + ": holds " + std::to_string(tail_.rows()) + " samples; at least " +
+                                std::to_string(kNumBlocks) + " are needed to show a gap on");
 }
 
 Trial HeldOut::Try(const Fitted& fitted) const {
