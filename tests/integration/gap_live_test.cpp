@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,26 @@ TEST_F(LiveModel, TheEstimatorRunsItAndFindsTheHiddenEffect) {
   ASSERT_EQ(last.n_params, 4);
   EXPECT_THAT(reinterpret_cast<const char*>(last.param_name[3]), ::testing::StartsWith("force_bias"));
   EXPECT_NEAR(last.ar_map[3], truth, 0.2 * std::abs(truth));
+
+  // The same model on the recorded run, by the replay: the same numbers to the bit.
+  const Outcome replay = RunProgram(
+      Program("armcmc-replay"), {"--config", (SourceDir() / "rt/config/hunt_crossley.toml").string(), "--data", Log(),
+                                 "--model", dir_ / "gap/model.toml", "--out", dir_ / "replay.csv"});
+  ASSERT_EQ(replay.code, 0) << replay.err;
+  std::ifstream csv(dir_ / "replay.csv");
+  std::string line, final_line;
+  std::getline(csv, line);
+  const auto column = [](const std::string& text, const std::string& wanted, const std::string& header) {
+    std::istringstream names(header), cells(text);
+    for (std::string name, cell; std::getline(names, name, ',') && std::getline(cells, cell, ',');)
+      if (name == wanted) return cell;
+    return std::string("no column ") + wanted;
+  };
+  const std::string header = line;
+  while (std::getline(csv, line)) final_line = line;
+  EXPECT_EQ(column(final_line, "pack", header), std::to_string(last.seq));
+  EXPECT_EQ(std::strtod(column(final_line, "K", header).c_str(), nullptr), last.ar_map[0]);
+  EXPECT_EQ(std::strtod(column(final_line, "force_bias_force", header).c_str(), nullptr), last.ar_map[3]);
 }
 
 }  // namespace
