@@ -94,6 +94,17 @@ TEST_F(EvaluateTest, EveryFormGated) {
       ExpectExact(bench_, {{{&form, {kind, 0.7505}}}});
 }
 
+TEST_F(EvaluateTest, GatesOpenAndShutAtTheirSample) {
+  const Signals& s = bench_.signals;
+  const Vector from = GateOf({When::Kind::kFrom, s.t[700]}, s), until = GateOf({When::Kind::kUntil, s.t[700]}, s);
+  EXPECT_EQ(from[699], 0.0);
+  EXPECT_EQ(from[700], 1.0);
+  EXPECT_EQ(until[699], 1.0);
+  EXPECT_EQ(until[700], 0.0);
+  const Vector modes = GateOf({When::Kind::kContact, 0.0}, s) + GateOf({When::Kind::kFree, 0.0}, s);
+  EXPECT_EQ(modes, Vector::Ones(s.rows()));
+}
+
 TEST_F(EvaluateTest, AShutGateIsTheBaseLaw) {
   const Vector base = Evaluate(*bench_.equation, bench_.signals, {}, PointFor(bench_, {})).y;
   for (const EffectForm& form : bench_.catalogue) {
