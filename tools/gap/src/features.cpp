@@ -88,6 +88,8 @@ Vector Bristle(const Vector& velocity, double distance, double dt) {
 }
 
 Line StrongestLine(const Vector& series, double dt) {
+  // Too short for any line to have cycles enough.
+  if (kHighestShare * static_cast<double>(series.size()) <= kLowestCycles) return {};
   const Eigen::Index n = SmoothLength(series.size());
   const double mean = series.head(n).mean();
   std::vector<double> windowed(static_cast<std::size_t>(n));
