@@ -74,6 +74,21 @@ Step LastStep(const std::string& steps) {
   return last;
 }
 
+/// Makes the folder for the results. Those of an older run must not be taken for this one's, whatever becomes of it.
+void Claim(const std::filesystem::path& out) {
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (!std::filesystem::is_directory(out))
+    throw support::InputError("--out " + out.string() + ": no folder can be made there");
+  for (const char* name : {"result.json", "report.html", "model.toml", "experiment.toml"}) {
+    std::filesystem::remove(out / name, error);
+    if (error) throw support::InputError((out / name).string() + ": cannot be replaced: " + error.message());
+  }
+  const std::filesystem::path probe = out / "result.json.part";
+  if (!std::ofstream(probe)) throw support::InputError("--out " + out.string() + ": cannot be written to");
+  std::filesystem::remove(probe, error);
+}
+
 void Write(const std::filesystem::path& path, const std::string& text) {
   const std::filesystem::path part = path.string() + ".part";
   std::ofstream file(part, std::ios::binary);
@@ -134,21 +149,24 @@ int Run(const Arguments& a) {
   request.diagnose.known = KnownEffects(support::ReadModel(a.model));
   request.data = ReadRecording(a.data, columns, a.skip_bad);
   if (!a.heldout.empty()) request.heldout = ReadRecording(a.heldout, columns, a.skip_bad);
+  const std::filesystem::path out = a.out;
+  Claim(out);
   support::Progress progress("gap");
   request.progress = [&](const std::string&, double share) { progress.Update(share); };
 
   WorkflowOutcome outcome = RunWorkflow(request);
   Result& result = outcome.result;
   result.version = support::Version();
-  const std::filesystem::path out = a.out;
-  std::filesystem::create_directories(out);
   if (outcome.augmented) {
     result.model_file = "model.toml";
     Write(out / result.model_file, support::ModelFileText(*outcome.augmented));
-    result.budget =
-        MeasureBudget(support::ReadModel(a.model), *outcome.augmented, a.data, 1e-3 * a.period_ms, a.skip_bad);
-  } else {
-    std::filesystem::remove(out / "model.toml");
+    try {
+      result.budget =
+          MeasureBudget(support::ReadModel(a.model), *outcome.augmented, a.data, 1e-3 * a.period_ms, a.skip_bad);
+    } catch (const support::InputError& error) {
+      // The diagnosis stands, whether or not these samples make packs.
+      result.notes.push_back(std::string("step time of the estimator not measured (--period-ms): ") + error.what());
+    }
   }
   if (!result.separate_by.scenario_text.empty()) {
     result.separate_by.scenario_file = "experiment.toml";

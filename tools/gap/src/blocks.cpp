@@ -67,6 +67,11 @@ BlockGrams MakeGrams(const Matrix& columns, const Vector& residual) {
   const auto edges = BlockEdges(residual.size());
   BlockGrams grams;
   grams.squares = BlockSquares(residual);
+  if (columns.cols() == 0) {
+    grams.gram.assign(kNumBlocks, Matrix(0, 0));
+    grams.cross.assign(kNumBlocks, Vector(0));
+    return grams;
+  }
   for (std::size_t b = 0; b < kNumBlocks; ++b) {
     const auto block = columns.middleRows(edges[b], edges[b + 1] - edges[b]);
     Matrix gram = Matrix::Zero(columns.cols(), columns.cols());

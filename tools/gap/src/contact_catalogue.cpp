@@ -200,7 +200,7 @@ void AddDryFriction(const Signals& s, std::vector<EffectForm>* out) {
 void AddMechanism(const Signals& s, std::vector<EffectForm>* out) {
   const double force = s.output_scale;
   EffectForm viscous =
-      FromCore("viscous_friction", {Amplitude("damping", "N s/m", force / s.scale_of(Role::kVelocity), true)});
+      FromCore("viscous_friction", {Amplitude("coefficient", "N s/m", force / s.scale_of(Role::kVelocity), true)});
   viscous.gates_by_mode = true;
   viscous.own_groups = {"speed", "speed in contact"};
   AddStarts(&viscous, {});

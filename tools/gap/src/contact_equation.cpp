@@ -29,6 +29,8 @@ double Quantile(const Vector& series, double q) {
   return sorted[static_cast<std::size_t>(at)];
 }
 
+bool Moves(const Vector& series) { return series.maxCoeff() - series.minCoeff() > 1e-9 * series.cwiseAbs().maxCoeff(); }
+
 class ContactEquation final : public Equation {
  public:
   std::string output_name() const override { return "force"; }
@@ -51,11 +53,12 @@ class ContactEquation final : public Equation {
     s.scale[static_cast<std::size_t>(Role::kAcceleration)] = Rms(s.at(Role::kAcceleration), all);
     s.output_scale = Rms(s.output, weight);
     s.output_peak = Quantile(s.law_seen ? s.output : Vector(s.output.cwiseAbs()), kPeakQuantile);
-    for (const double scale : s.scale)
-      if (!(scale > 0.0)) throw std::invalid_argument(recording.source + ": x or v does not move");
+    if (!Moves(recording.Column("x")) || !Moves(recording.Column("v")))
+      throw std::invalid_argument(recording.source + ": x or v does not move: a law of both cannot be told");
     if (!(s.output_scale > 0.0) || !(s.output_peak > 0.0))
       throw std::invalid_argument(recording.source + ": f is not positive anywhere" +
                                   (s.law_seen ? " in contact: push must count as positive" : ": it does not change"));
+    if (!Moves(s.output)) throw std::invalid_argument(recording.source + ": f does not change: nothing was measured");
     return s;
   }
 

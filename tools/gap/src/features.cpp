@@ -43,6 +43,7 @@ Vector EvenKnots(int count) { return Vector::LinSpaced(count, 0.0, 1.0); }
 
 Matrix Hats(const Vector& series, const Vector& knots) {
   Matrix hats = Matrix::Zero(series.size(), knots.size());
+  if (knots.size() == 0) return hats;
   for (Eigen::Index i = 0; i < series.size(); ++i) {
     const double u = series[i];
     const auto above = std::upper_bound(knots.data(), knots.data() + knots.size(), u) - knots.data();
@@ -87,6 +88,8 @@ Vector Bristle(const Vector& velocity, double distance, double dt) {
 }
 
 Line StrongestLine(const Vector& series, double dt) {
+  // Too short for any line to have cycles enough.
+  if (kHighestShare * static_cast<double>(series.size()) <= kLowestCycles) return {};
   const Eigen::Index n = SmoothLength(series.size());
   const double mean = series.head(n).mean();
   std::vector<double> windowed(static_cast<std::size_t>(n));

@@ -39,6 +39,35 @@ std::vector<Eigen::Index> FreeOf(const std::vector<bool>& blocked) {
   return free;
 }
 
+/// Damped Gauss-Newton step of the free coordinates. One that would leave its bounds goes to its bound and the others
+/// answer to that: were the whole step cut, what they gained on the promise of the part cut off would be lost.
+Vector BoundedStep(const Matrix& gram, const Vector& ascent, double damping, const std::vector<Coordinate>& coordinates,
+                   const Vector& theta, std::vector<Eigen::Index> free) {
+  Vector step = Vector::Zero(theta.size());
+  while (!free.empty()) {
+    Matrix damped = gram(free, free);
+    damped.diagonal() *= 1.0 + damping;
+    damped.diagonal().array() += 1e-300;
+    const Vector inner = damped.ldlt().solve(ascent(free) - gram(free, Eigen::all) * step);
+    std::vector<Eigen::Index> inside;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const Eigen::Index k = free[i];
+      const Coordinate& c = coordinates[static_cast<std::size_t>(k)];
+      const double target = theta[k] + inner[static_cast<Eigen::Index>(i)];
+      if (target < c.lower || target > c.upper)
+        step[k] = std::clamp(target, c.lower, c.upper) - theta[k];
+      else
+        inside.push_back(k);
+    }
+    if (inside.size() == free.size()) {
+      step(free) = inner;
+      break;
+    }
+    free = std::move(inside);
+  }
+  return step;
+}
+
 /// Orthonormal basis of the columns, for projecting them out.
 Matrix Basis(const Matrix& columns) {
   Matrix scaled = columns;
@@ -77,16 +106,11 @@ Fitted Fitter::Fit(const Hypothesis& hypothesis, const Vector& start, int max_st
     const Vector ascent = columns.transpose() * residual;
     const std::vector<Eigen::Index> free = FreeOf(Blocked(coordinates, theta, ascent));
     if (free.empty()) break;
-    const Matrix free_columns = columns(Eigen::all, free);
-    const Matrix gram = free_columns.transpose() * free_columns;
+    const Matrix gram = columns.transpose() * columns;
     bool improved = false;
     double decrease = 0.0;
     for (int i = 0; i < kMaxDampings && !improved; ++i) {
-      Matrix damped = gram;
-      damped.diagonal() *= 1.0 + damping;
-      damped.diagonal().array() += 1e-300;
-      Vector tried = theta;
-      tried(free) += damped.ldlt().solve(ascent(free));
+      Vector tried = theta + BoundedStep(gram, ascent, damping, coordinates, theta, free);
       Clamp(coordinates, &tried);
       Prediction next = Evaluate(*equation_, *signals_, hypothesis, tried);
       Vector next_residual = whitener_.Apply(Vector(signals_->output - next.y));

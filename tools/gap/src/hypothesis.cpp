@@ -17,7 +17,8 @@ struct Placed {
   [[nodiscard]] const double* shapes() const { return theta + form->num_amplitudes; }
 };
 
-constexpr double kShapeStep = 1e-4;  // of a coordinate of order one: error 1e-4 of a derivative
+// Of a coordinate of order one. Small enough for a frequency, whose phase turns by 2 pi f t times the step.
+constexpr double kShapeStep = 1e-7;
 
 std::vector<Placed> Place(const Signals& signals, const Hypothesis& hypothesis, int num_base, const Vector& theta) {
   std::vector<Placed> placed;

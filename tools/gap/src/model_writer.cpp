@@ -31,12 +31,12 @@ EffectGate GateOf(const When& when) {
   return EffectGate::kAlways;
 }
 
-/// Time constant that keeps the noise of a differentiated velocity below that of the force.
+/// Time constant that keeps the noise of a differentiated velocity below that of the force, or the longest allowed.
 double InertiaSmoothing(const Signals& s, double mass, double noise_sd) {
   const double added = mass * s.velocity_noise * std::sqrt(2.0) / s.dt;
   const double ratio = added / (kUsefulNoiseShare * noise_sd);
   // A first-order low pass of n samples divides the noise of a difference by about sqrt(2) n.
-  return ratio > 1.0 ? ratio * s.dt / std::sqrt(2.0) : 0.0;
+  return ratio > 1.0 ? std::min(ratio * s.dt / std::sqrt(2.0), Inertia::kInfo.shapes[0].upper) : 0.0;
 }
 
 }  // namespace
@@ -68,18 +68,23 @@ EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitt
     effect.from_s = effect.until_s = 0.0;
     if (effect.gate == EffectGate::kFrom) effect.from_s = term.when.time_s;
     if (effect.gate == EffectGate::kUntil) effect.until_s = term.when.time_s;
+    const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(FindEffect(form.effect))];
+    int written = 0;
     for (std::size_t c = 0; c < form.coordinates.size(); ++c) {
       const Coordinate& coordinate = form.coordinates[c];
       const Eigen::Index k = at + static_cast<Eigen::Index>(c);
       const double value = coordinate.Value(fitted.theta[k]);
       const double sd = std::abs(coordinate.Slope(fitted.theta[k])) * std::sqrt(std::max(covariance(k, k), 0.0));
-      for (ParameterSettings& amplitude : effect.amplitudes)
-        if (amplitude.name == coordinate.name)
-          amplitude = Prior(coordinate.name, value, sd, amplitude.lower >= 0.0 ? 0.0 : -HUGE_VAL);
-      const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(FindEffect(form.effect))];
+      for (ParameterSettings& amplitude : effect.amplitudes) {
+        if (amplitude.name != coordinate.name) continue;
+        amplitude = Prior(coordinate.name, value, sd, amplitude.lower >= 0.0 ? 0.0 : -HUGE_VAL);
+        ++written;
+      }
       for (std::size_t s = 0; s < static_cast<std::size_t>(info.num_shapes); ++s)
         if (info.shapes[s].name == coordinate.name) effect.shapes[s] = value;
     }
+    if (written != info.num_amplitudes)
+      throw std::logic_error(form.effect + ": workflow and estimator name its amplitudes differently");
     if (form.effect == "force_drift" || form.effect == "stiffness_drift") effect.shapes[0] = signals.origin;
     if (form.effect == "inertia") effect.shapes[0] = InertiaSmoothing(signals, effect.amplitudes[0].mean, noise_sd);
     settings.effects[static_cast<std::size_t>(settings.num_effects++)] = effect;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace armcmc::gap {
@@ -58,7 +60,11 @@ HeldOut::HeldOut(const Equation& equation, const Look& look, const Recording& re
       look_(&look),
       all_(equation.PrepareLike(recording, kWindow, look.signals)),
       tail_(Tail(all_, first)),
-      first_(first) {}
+      first_(first) {
+  if (tail_.rows() < kNumBlocks)
+    throw std::invalid_argument(recording.source + ": holds " + std::to_string(tail_.rows()) + " samples; at least " +
+                                std::to_string(kNumBlocks) + " are needed to show a gap on");
+}
 
 Trial HeldOut::Try(const Fitted& fitted) const {
   const Whitener& whitener = look_->fitter->whitener();

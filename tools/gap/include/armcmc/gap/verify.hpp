@@ -18,6 +18,7 @@ struct Trial {
 class HeldOut {
  public:
   /// @param recording  Rows [first, end) are held out; those before only start the memory of effects.
+  /// @throws std::invalid_argument when too few rows are held out.
   HeldOut(const Equation& equation, const Look& look, const Recording& recording, Eigen::Index first);
 
   [[nodiscard]] Trial Try(const Fitted& fitted) const;

@@ -1,0 +1,81 @@
+// armcmc-plant hides, armcmc-gap finds: every effect of the catalogue, and logs in which nothing is hidden.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/paths.hpp"
+#include "support/process.hpp"
+
+namespace armcmc::test {
+namespace {
+
+using nlohmann::json;
+
+json ReadJson(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return json::parse(file);
+}
+
+/// Sets of effect names that the verdict holds possible.
+std::vector<std::vector<std::string>> Reported(const json& result) {
+  if (result.at("verdict") == "ambiguous") return result.at("ambiguous_set");
+  std::vector<std::string> names;
+  for (const json& effect : result.at("effects")) names.push_back(effect.at("name"));
+  if (names.empty()) return {};
+  return {names};
+}
+
+class Names : public ::testing::Test {
+ protected:
+  json Diagnose(const std::string& seed, const std::vector<std::string>& more) {
+    std::vector<std::string> plant = {"--scenario", (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string(),
+                                      "--seed",     seed,
+                                      "--csv",      dir_ / "run.csv"};
+    plant.insert(plant.end(), more.begin(), more.end());
+    const Outcome made = RunProgram(Program("armcmc-plant"), plant);
+    EXPECT_EQ(made.code, 0) << made.err;
+    const Outcome found =
+        RunProgram(Program("armcmc-gap"), {"--data", dir_ / "run.csv", "--out", dir_ / "gap"}, std::chrono::minutes(3));
+    EXPECT_EQ(found.code, 0) << found.err;
+    return ReadJson(dir_ / "gap/result.json");
+  }
+  ScratchDir dir_;
+};
+
+class NullData : public Names, public ::testing::WithParamInterface<int> {};
+
+TEST_P(NullData, NothingIsNamed) {
+  const json result = Diagnose(std::to_string(GetParam()), {});
+  EXPECT_TRUE(result["effects"].empty()) << result["sentence"];
+  EXPECT_NE(result["verdict"], "named");
+  EXPECT_NE(result["verdict"], "ambiguous");
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "gap/model.toml"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, NullData, ::testing::Range(1001, 1021));
+
+class Catalogue : public Names, public ::testing::WithParamInterface<std::string> {};
+
+// At the size of the noise (gap ratio 1) the truth is named, or among what cannot be told apart.
+TEST_P(Catalogue, TruthIsInTheReportedSet) {
+  const json result = Diagnose("2001", {"--hide-effect", GetParam(), "--sealed", dir_ / "truth.json"});
+  const json truth = ReadJson(dir_ / "truth.json");
+  ASSERT_NEAR(truth["effects"][0]["gap_ratio"].get<double>(), 1.0, 0.05);
+  EXPECT_THAT(Reported(result), ::testing::Contains(std::vector<std::string>{GetParam()})) << result["sentence"];
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, Catalogue,
+                         ::testing::Values("force_bias", "force_drift", "coulomb_friction", "presliding_friction",
+                                           "viscous_friction", "inertia", "sensor_delay", "sensor_lag",
+                                           "stress_relaxation", "adhesion", "contact_offset", "sensor_saturation",
+                                           "periodic_disturbance", "stiffness_drift"),
+                         [](const auto& at) { return at.param; });
+
+}  // namespace
+}  // namespace armcmc::test

@@ -1,0 +1,187 @@
+// Smoothing, whitening and features: the arithmetic under the workflow.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "armcmc/gap/features.hpp"
+#include "armcmc/gap/smoothing.hpp"
+#include "armcmc/gap/whitener.hpp"
+#include "tools/gap/gap_rig.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+using test::Noise;
+
+TEST(SavitzkyGolay, IsExactOnCubicsAtBothEndsToo) {
+  for (const int rows : {9, 40, 201}) {
+    const Vector i = Vector::LinSpaced(rows, 0.0, rows - 1.0);
+    const Vector u = i / 10.0;
+    const Vector cubic = 0.3 + 1.7 * u.array() - 0.4 * u.array().square() + 0.05 * u.array().cube();
+    const Vector slope = 0.1 * (1.7 - 0.8 * u.array() + 0.15 * u.array().square());
+    // Wider than the series: the whole of it is the window.
+    for (const int window : {5, 7, 15, 41, 301}) {
+      const double size = cubic.cwiseAbs().maxCoeff();
+      EXPECT_LT((SavitzkyGolay(cubic, window, 0) - cubic).cwiseAbs().maxCoeff(), 1e-9 * size) << window;
+      EXPECT_LT((SavitzkyGolay(cubic, window, 1) - slope).cwiseAbs().maxCoeff(), 1e-9 * size) << window;
+    }
+  }
+}
+
+TEST(SavitzkyGolay, HasNoPhaseAndTakesNoiseOff) {
+  const Vector t = Vector::LinSpaced(4000, 0.0, 3.999);
+  const Vector sine = (2.0 * std::numbers::pi * 3.0 * t.array()).sin();
+  EXPECT_LT((SavitzkyGolay(sine, 15, 0) - sine).cwiseAbs().maxCoeff(), 1e-4);
+  const Vector noise = Noise(4000, 2);
+  EXPECT_LT(SavitzkyGolay(noise, 15, 0).norm(), 0.45 * noise.norm());
+}
+
+TEST(SavitzkyGolay, ANarrowWindowIsNone) {
+  const Vector series = Noise(50, 1);
+  for (const int window : {0, 1, 3}) EXPECT_EQ(SavitzkyGolay(series, window, 0), series);
+  const Vector slope = SavitzkyGolay(Vector::LinSpaced(50, 0.0, 98.0), 3, 1);
+  EXPECT_TRUE(slope.isApprox(Vector::Constant(50, 2.0), 1e-12));
+}
+
+TEST(Leaky, AnswersAStepExponentially) {
+  Vector step = Vector::Ones(100);
+  step[0] = 0.0;
+  const Vector out = Leaky(step, 12.0);
+  for (Eigen::Index n = 0; n < 100; ++n) EXPECT_NEAR(out[n], 1.0 - std::exp(-static_cast<double>(n) / 12.0), 1e-12);
+  EXPECT_TRUE(Leaky(Vector::Constant(20, 3.0), 5.0).isApprox(Vector::Constant(20, 3.0), 1e-14)) << "it had settled";
+  EXPECT_NEAR(Leaky(Vector::Constant(20, 3.0), 5.0, 0.0)[0], 3.0 * (1.0 - std::exp(-0.2)), 1e-12);
+}
+
+Vector Autoregressive(const Vector& phi, Eigen::Index rows, unsigned seed, double sd) {
+  return Whitener{phi, sd * sd}.Colour(sd * Noise(rows, seed));
+}
+
+TEST(Whitener, ColourInvertsApply) {
+  for (const Vector& phi : {Vector(), Vector{{0.95}}, Vector{{0.6, -0.3, 0.1}}}) {
+    const Whitener whitener{phi, 1.0};
+    const Vector series = Noise(500, 3);
+    EXPECT_TRUE(whitener.Colour(whitener.Apply(series)).isApprox(series, 1e-12));
+    EXPECT_TRUE(whitener.Apply(whitener.Colour(series)).isApprox(series, 1e-12));
+    Matrix columns(500, 2);
+    columns << series, Noise(500, 4);
+    EXPECT_TRUE(whitener.Apply(columns).col(1).isApprox(whitener.Apply(Vector(columns.col(1))), 1e-14));
+  }
+}
+
+TEST(Whitener, GainIsTheVarianceOfTheNoiseOverThatOfItsSource) {
+  EXPECT_DOUBLE_EQ((Whitener{Vector(), 2.0}).Gain(), 1.0);
+  EXPECT_NEAR((Whitener{Vector{{0.9}}, 2.0}).Gain(), 1.0 / (1.0 - 0.81), 1e-9);
+  const Vector phi{{0.6, -0.3}};
+  const Vector series = Autoregressive(phi, 200'000, 5, 1.0);
+  EXPECT_NEAR((Whitener{phi, 1.0}).Gain(), series.squaredNorm() / 200'000.0, 0.03);
+}
+
+TEST(FitNoise, RecoversTheCoefficients) {
+  constexpr Eigen::Index kRows = 20'000;
+  for (const Vector& phi : {Vector{{0.95}}, Vector{{0.6, -0.3}}, Vector{{0.0, 0.5, 0.3}}}) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Whitener fitted = FitNoise(Autoregressive(phi, kRows, seed, 0.02));
+      ASSERT_GE(fitted.phi.size(), phi.size());
+      for (Eigen::Index k = 0; k < fitted.phi.size(); ++k)
+        EXPECT_NEAR(fitted.phi[k], k < phi.size() ? phi[k] : 0.0, 4.0 / std::sqrt(kRows)) << "lag " << k + 1;
+      EXPECT_NEAR(fitted.s2 / 4e-4, 1.0, 4.0 * std::sqrt(2.0 / kRows));
+    }
+  }
+}
+
+TEST(FitNoise, WhiteNoiseIsWhiteAndNothingIsNothing) {
+  for (unsigned seed = 1; seed <= 20; ++seed) EXPECT_EQ(FitNoise(Noise(5000, seed)).phi.size(), 0) << seed;
+  const Whitener silent = FitNoise(Vector::Zero(1000));
+  EXPECT_GT(silent.s2, 0.0);
+  EXPECT_TRUE(silent.phi.allFinite());
+  EXPECT_TRUE(FitNoise(Vector::Constant(1000, 3.0)).phi.allFinite());
+}
+
+TEST(Hats, SumToOneAndAreOneAtTheirKnot) {
+  const Vector series = 3.0 * Noise(2000, 1);
+  const Vector knots = QuantileKnots(series, Vector::Ones(2000), 9);
+  ASSERT_EQ(knots.size(), 9);
+  const Matrix hats = Hats(series, knots);
+  EXPECT_TRUE(hats.rowwise().sum().isApprox(Vector::Ones(2000), 1e-14));
+  EXPECT_GE(hats.minCoeff(), 0.0);
+  EXPECT_TRUE(Hats(knots, knots).isApprox(Matrix::Identity(9, 9), 1e-14));
+  // Linear between the knots, constant beyond the ends.
+  const Vector clamped = series.cwiseMax(knots[0]).cwiseMin(knots[8]);
+  EXPECT_TRUE((hats * knots).isApprox(clamped, 1e-13));
+}
+
+TEST(Hats, WithoutDataThereAreNoColumns) {
+  const Vector series = Noise(100, 1);
+  const Vector knots = QuantileKnots(series, Vector::Zero(100), 8);
+  EXPECT_EQ(knots.size(), 0);
+  const Matrix hats = Hats(series, knots);
+  EXPECT_EQ(hats.rows(), 100);
+  EXPECT_EQ(hats.cols(), 0);
+}
+
+TEST(Hats, AConstantVariableHasOneKnot) {
+  const Vector series = Vector::Constant(100, 2.0);
+  const Vector knots = QuantileKnots(series, Vector::Ones(100), 8);
+  ASSERT_EQ(knots.size(), 1);
+  EXPECT_TRUE(Hats(series, knots).isApprox(Vector::Ones(100)));
+}
+
+TEST(Bristle, BendsToItsLimitTurnsOverADistanceAndRestsInAHold) {
+  constexpr double kDt = 1e-3, kDistance = 0.01;
+  Vector v(3000);
+  v.head(1000).setConstant(0.1);    // 10 distances
+  v.segment(1000, 1000).setZero();  // a hold
+  v.tail(1000).setConstant(-0.01);  // one distance back
+  const Vector z = Bristle(v, kDistance, kDt);
+  EXPECT_NEAR(z[0], 1.0 - std::exp(-0.1 * kDt / kDistance), 1e-12);
+  EXPECT_NEAR(z[999], 1.0 - std::exp(-10.0), 1e-12);
+  EXPECT_EQ(z[1999], z[999]);
+  EXPECT_NEAR(z[2999], -1.0 + (z[999] + 1.0) * std::exp(-1.0), 1e-12);
+  const Vector wild = Bristle(50.0 * Noise(5000, 3), kDistance, kDt);
+  EXPECT_LE(wild.cwiseAbs().maxCoeff(), 1.0);
+  EXPECT_TRUE(Bristle(Vector::Zero(10), kDistance, kDt).isZero(0.0));
+}
+
+TEST(StrongestLine, FindsASineOnAndBetweenTheBins) {
+  constexpr Eigen::Index kRows = 10'007;  // a prime
+  constexpr double kDt = 1e-3;
+  const Vector t = Vector::LinSpaced(kRows, 0.0, kDt * (kRows - 1));
+  for (const double frequency : {2.0, 9.9, 10.05, 37.123, 99.97, 180.0}) {
+    const Vector sine = 0.2 * Waves(t, frequency, 1, 1).col(1);
+    const Line line = StrongestLine(sine + Noise(kRows, 2), kDt);
+    EXPECT_NEAR(line.frequency, frequency, 0.02) << "a fifth of a bin";
+    EXPECT_GT(line.prominence, 40.0);
+    EXPECT_NEAR(StrongestLine(sine, kDt).frequency, frequency, 0.01) << "without noise";
+  }
+}
+
+TEST(StrongestLine, NoiseHasNone) {
+  for (unsigned seed = 1; seed <= 20; ++seed) EXPECT_LT(StrongestLine(Noise(10'000, seed), 1e-3).prominence, 30.0);
+  EXPECT_LT(StrongestLine(Vector::Zero(1000), 1e-3).prominence, 1.0);
+  // Slower than ten cycles in the recording is a drift, faster than a fifth of the sampling rate is the sensor's.
+  const Vector t = Vector::LinSpaced(10'000, 0.0, 9.999);
+  for (const double frequency : {0.45, 230.0}) {
+    const Line line = StrongestLine(Waves(t, frequency, 1, 1).col(0) + Noise(10'000, 1), 1e-3);
+    EXPECT_GT(std::abs(line.frequency - frequency), 0.2);
+  }
+}
+
+TEST(StrongestLine, AShortSeriesIsNoError) {
+  for (const Eigen::Index rows : {1, 2, 5, 21, 64})
+    EXPECT_TRUE(std::isfinite(StrongestLine(Noise(rows, 1), 1e-3).frequency)) << rows;
+}
+
+TEST(Waves, HoldTheHarmonicsInOrder) {
+  const Vector t = Vector::LinSpaced(50, 0.0, 0.98);
+  const Matrix waves = Waves(t, 1.5, 2, 3);
+  ASSERT_EQ(waves.cols(), 4);
+  for (Eigen::Index i = 0; i < t.size(); ++i) {
+    EXPECT_NEAR(waves(i, 0), std::cos(2.0 * std::numbers::pi * 3.0 * t[i]), 1e-12);
+    EXPECT_NEAR(waves(i, 3), std::sin(2.0 * std::numbers::pi * 4.5 * t[i]), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::gap
