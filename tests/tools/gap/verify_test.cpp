@@ -178,8 +178,19 @@ TEST(Degenerate, DataThatSayNothingAreRefusedInWords) {
   refused("does not move", [](Recording* r) { r->columns[2].setZero(); });
   refused("f does not change", [](Recording* r) { r->columns[3].setConstant(2.0); });
   refused("not positive", [](Recording* r) { r->columns[3].setZero(); });
-  refused("without contact", [](Recording* r) { r->columns[1].array() -= 50.0; });
   refused("samples", [](Recording* r) { *r = r->Slice(0, 300); });
+}
+
+TEST(Degenerate, WithoutContactTheLawIsNotJudged) {
+  // A surface that is nowhere near where x says: forces without contact, which no effect of free motion makes.
+  WorkflowRequest request;
+  request.data = Measure({}, 2000, kNoise, 5).recording;
+  request.data.columns[1].array() -= 50.0;
+  const Result result = RunWorkflow(request).result;
+  EXPECT_TRUE(result.effects.empty()) << result.sentence;
+  EXPECT_TRUE(result.parameters.empty());
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes[0].find("hardly any contact"), std::string::npos) << result.notes[0];
 }
 
 TEST(Degenerate, AModelWithoutAnyNoiseIsNotAccused) {
