@@ -115,7 +115,7 @@ Search::Candidates Search::Extend(const CandidatePtr& parent, bool variants) con
     const CandidatePtr single = Make(fitter_->Add(parent->fit, {&form, {}}));
     extended.push_back(single);
     always[&form] = single;
-    if (!form.exact()) continue;
+    if (!form.exact() || !(form.gates_by_time || form.gates_by_mode)) continue;
     for (GateCandidate& gate :
          ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &single->fit),
                    limits_.min_active_blocks)) {

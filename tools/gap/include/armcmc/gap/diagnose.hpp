@@ -30,8 +30,10 @@ struct Look {
 /// What the data say, whichever smoother looks.
 struct Diagnosis {
   std::unique_ptr<BlockBootstrap> bootstrap;
-  std::unique_ptr<Look> look;  ///< With the wider smoother.
-  Finding finding;             ///< Of that look, with the vote of the other applied.
+  std::unique_ptr<Look> look;    ///< With the wider smoother.
+  std::unique_ptr<Look> narrow;  ///< With the narrower one; null when there was nothing to vote on. Candidates of
+                                 ///< `finding` may refer to it.
+  Finding finding;               ///< Of that look, with the vote of the other applied.
   std::vector<std::string> notes;
 };
 
@@ -41,5 +43,10 @@ struct Diagnosis {
 /// votes, and where the two name different effects both are reported.
 [[nodiscard]] Diagnosis Diagnose(const Equation& equation, const Recording& recording,
                                  const DiagnoseOptions& options = {});
+
+/// Fits the base model and says nothing: for a recording on which the equation's Check allows no name. There is no
+/// search in its look.
+[[nodiscard]] Diagnosis CompareOnly(const Equation& equation, const Recording& recording,
+                                    const DiagnoseOptions& options = {});
 
 }  // namespace armcmc::gap
