@@ -53,8 +53,8 @@ class ContactEquation final : public Equation {
     s.scale[static_cast<std::size_t>(Role::kAcceleration)] = Rms(s.at(Role::kAcceleration), all);
     s.output_scale = Rms(s.output, s.active);
     s.output_peak = Quantile(s.output, kPeakQuantile);
-    for (const double scale : s.scale)
-      if (!(scale > 0.0)) throw std::invalid_argument(recording.source + ": x or v does not move");
+    for (const Role role : {Role::kPosition, Role::kVelocity, Role::kAcceleration})
+      if (!(s.scale_of(role) > 0.0)) throw std::invalid_argument(recording.source + ": x or v does not move");
     if (!(s.output_scale > 0.0) || !(s.output_peak > 0.0))
       throw std::invalid_argument(recording.source + ": f is not positive anywhere in contact");
     return s;
