@@ -52,7 +52,7 @@ armcmc::test::HiddenEffect Hidden(const std::string& name) {
 }
 
 Bench::Bench(Recording made, int window)
-    : equation(MakeEquation("hunt_crossley")),
+    : equation(std::move(MakeEquations("hunt_crossley").front())),
       recording(std::move(made)),
       signals(equation->Prepare(recording, window)),
       catalogue(equation->Catalogue(signals)) {}

@@ -22,7 +22,7 @@ constexpr int kRows = 6000, kDiagnosed = 4200;
 class HeldOutTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    equation_ = MakeEquation("hunt_crossley").release();
+    equation_ = std::move(MakeEquations("hunt_crossley").front()).release();
     recording_ = new Recording(Measure({Hidden("coulomb_friction")}, kRows, kNoise, 5).recording);
     DiagnoseOptions options;
     options.pairs = false;
@@ -112,7 +112,7 @@ TEST(Units, DoNotChangeTheVerdict) {
   const Recording si = Measure({Hidden("stress_relaxation")}, 2500, kNoise, 7).recording;
   DiagnoseOptions options;
   options.pairs = false;
-  const auto equation = MakeEquation("hunt_crossley");
+  const auto equation = std::move(MakeEquations("hunt_crossley").front());
   const Diagnosis reference = Diagnose(*equation, si, options);
   ASSERT_FALSE(reference.finding.set.empty());
   struct Case {

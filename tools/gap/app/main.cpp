@@ -32,7 +32,8 @@ struct Arguments {
 void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--model", a->model, "Built-in model, or a model file (.toml) whose effects are already known")
       ->capture_default_str();
-  app->add_option("--data", a->data, "CSV of samples (hunt_crossley: t,x,v,f)")->required();
+  app->add_option("--data", a->data, "CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha)")
+      ->required();
   app->add_option("--heldout", a->heldout, "CSV of another run to show the gap on; without it the last 30 % of --data");
   app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->required();
   app->add_option("--seed", a->seed, "Seed of the bootstrap: the same seed gives the same result")
@@ -145,8 +146,8 @@ int Run(const Arguments& a) {
   request.diagnose.seed = a.seed;
   request.diagnose.without = a.without;
   request.diagnose.pairs = !a.no_pairs;
-  const std::vector<std::string> columns = MakeEquation(request.model)->columns();
   request.diagnose.known = KnownEffects(support::ReadModel(a.model));
+  const std::vector<std::string> columns = ColumnsOf(request.model);
   request.data = ReadRecording(a.data, columns, a.skip_bad);
   if (!a.heldout.empty()) request.heldout = ReadRecording(a.heldout, columns, a.skip_bad);
   const std::filesystem::path out = a.out;

@@ -97,4 +97,24 @@ Diagnosis Diagnose(const Equation& equation, const Recording& recording, const D
   return diagnosis;
 }
 
+Diagnosis CompareOnly(const Equation& equation, const Recording& recording, const DiagnoseOptions& options) {
+  Diagnosis diagnosis;
+  diagnosis.bootstrap = std::make_unique<BlockBootstrap>(options.seed);
+  diagnosis.look = std::make_unique<Look>();
+  Look& look = *diagnosis.look;
+  look.signals = equation.Prepare(recording, kWideWindow);
+  Whitener whitener;
+  for (int pass = 0; pass < kNoisePasses; ++pass) {
+    look.fitter = std::make_unique<Fitter>(equation, look.signals, whitener);
+    look.finding.base = std::make_shared<Candidate>();
+    look.finding.base->fit = look.fitter->Fit({}, equation.Start(look.signals), 30);
+    whitener = FitNoise(whitener.Colour(look.finding.base->fit.whitened_residual));
+  }
+  look.fitter = std::make_unique<Fitter>(equation, look.signals, whitener);
+  look.finding.base->fit = look.fitter->Fit({}, look.finding.base->fit.theta, 30);
+  look.finding.best = look.finding.base;
+  diagnosis.finding = look.finding;
+  return diagnosis;
+}
+
 }  // namespace armcmc::gap

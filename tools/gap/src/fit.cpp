@@ -70,6 +70,7 @@ Vector BoundedStep(const Matrix& gram, const Vector& ascent, double damping, con
 
 /// Orthonormal basis of the columns, for projecting them out.
 Matrix Basis(const Matrix& columns) {
+  if (columns.cols() == 0) return columns;
   Matrix scaled = columns;
   for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
   Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
@@ -146,7 +147,8 @@ void Fitter::Score(Fitted* fitted) const {
   fitted->at_bound = Blocked(fitted->coordinates, fitted->theta, ascent);
   // A shape of an amplitude of zero has no column either.
   for (std::size_t i = 0; i < fitted->at_bound.size(); ++i)
-    if (fitted->whitened_jacobian.col(static_cast<Eigen::Index>(i)).isZero(0.0)) fitted->at_bound[i] = true;
+    if (fitted->whitened_jacobian.col(static_cast<Eigen::Index>(i)).isZero(0.0) || fitted->coordinates[i].event)
+      fitted->at_bound[i] = true;
   const std::vector<Eigen::Index> free = FreeOf(fitted->at_bound);
   const Matrix columns = fitted->whitened_jacobian(Eigen::all, free);
   const BlockGrams grams = MakeGrams(columns, fitted->whitened_residual);

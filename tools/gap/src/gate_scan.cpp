@@ -12,6 +12,7 @@ constexpr double kActiveShare = 0.02;     // of the busiest block's energy, from
 constexpr double kMinIndependent = 1e-6;  // of a template's energy that the parent's columns must leave
 
 Matrix OrthonormalBasis(const Matrix& columns) {
+  if (columns.cols() == 0) return columns;
   Matrix scaled = columns;
   for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
   Eigen::ColPivHouseholderQR<Matrix> qr(scaled);

@@ -39,9 +39,11 @@ struct Sum {
 Sum Evaluate(const Signals& signals, const Placed& term) {
   const EffectForm& form = *term.form;
   const Matrix columns = term.gate.asDiagonal() * form.features(signals, term.shapes());
-  const Eigen::Map<const Vector> amplitudes(term.theta, form.num_amplitudes);
+  const Vector amplitudes = form.num_amplitudes == 0
+                                ? Vector(Vector::Ones(1))
+                                : Vector(Eigen::Map<const Vector>(term.theta, form.num_amplitudes));
   Sum sum{columns * amplitudes, Matrix(signals.rows(), form.size())};
-  sum.slopes.leftCols(form.num_amplitudes) = columns;
+  sum.slopes.leftCols(form.num_amplitudes) = columns.leftCols(form.num_amplitudes);
   std::vector<double> shape(term.shapes(), term.theta + form.size());
   for (std::size_t s = 0; s < shape.size(); ++s) {
     const double at = shape[s];
@@ -138,6 +140,8 @@ Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypo
     if (term.form->slot == Slot::kInputMap)
       AddToInput(Evaluate(signals, term), term, &input.shift, &input.shift_slopes);
     if (term.form->slot == Slot::kParameter) AddToInput(Evaluate(signals, term), term, &input.gain, &input.gain_slopes);
+    if (term.form->slot == Slot::kDrive) AddToInput(Evaluate(signals, term), term, &input.drive, &input.drive_slopes);
+    if (term.form->slot == Slot::kForce) input.forces.push_back({term.form, term.theta, term.first, term.gate});
   }
   if (input.gain.size() > 0) input.gain.array() += 1.0;
   Prediction out;

@@ -12,7 +12,6 @@ namespace armcmc::gap {
 namespace {
 
 constexpr int kDepth = 3;
-constexpr int kThresholds = 9;
 constexpr double kMinLeaf = 0.05;         // of the rows
 constexpr double kMinImprovement = 0.01;  // of the spread of the excess that a split must take
 constexpr int kShifts = 400;
@@ -25,13 +24,6 @@ struct Split {
   double gain = 0.0;
 };
 
-/// A variable to split by, with the words for both sides.
-struct Variable {
-  Vector value;
-  std::string below, above;  ///< "in free motion"; for numbers with %s in place of the threshold.
-  std::vector<double> thresholds;
-};
-
 std::string Filled(const std::string& words, double threshold) {
   const std::size_t at = words.find("%s");
   if (at == std::string::npos) return words;
@@ -40,18 +32,10 @@ std::string Filled(const std::string& words, double threshold) {
   return words.substr(0, at) + number + words.substr(at + 2);
 }
 
-std::vector<double> Quantiles(const Vector& series) {
-  std::vector<double> sorted(series.data(), series.data() + series.size());
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<double> at;
-  for (int k = 1; k <= kThresholds; ++k)
-    at.push_back(sorted[static_cast<std::size_t>(static_cast<double>(sorted.size() - 1) * k / (kThresholds + 1))]);
-  return at;
-}
-
 class Tree {
  public:
-  Tree(std::vector<Variable> variables, Vector excess) : variables_(std::move(variables)), excess_(std::move(excess)) {
+  Tree(std::vector<SplitVariable> variables, Vector excess)
+      : variables_(std::move(variables)), excess_(std::move(excess)) {
     Grow(Mask(static_cast<std::size_t>(excess_.size()), 1), "", kDepth);
   }
   struct Leaf {
@@ -67,7 +51,7 @@ class Tree {
       if (!words.empty()) leaves_.push_back({rows, words});
       return;
     }
-    const Variable& variable = variables_[split.feature];
+    const SplitVariable& variable = variables_[split.feature];
     Mask below = rows, above = rows;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const bool is_below = variable.value[static_cast<Eigen::Index>(i)] <= split.threshold;
@@ -106,7 +90,7 @@ class Tree {
     return best;
   }
 
-  std::vector<Variable> variables_;
+  std::vector<SplitVariable> variables_;
   Vector excess_;
   std::vector<Leaf> leaves_;
 };
@@ -117,17 +101,6 @@ double ShareIn(const Mask& rows, const Vector& excess, std::size_t shift) {
   for (std::size_t i = 0; i < n; ++i)
     if (rows[i] != 0) inside += excess[static_cast<Eigen::Index>(i + shift < n ? i + shift : i + shift - n)];
   return inside / std::max(excess.sum(), 1e-300);
-}
-
-std::vector<Variable> VariablesOf(const Equation& equation, const Signals& s) {
-  std::vector<Variable> variables;
-  variables.push_back({s.active, "in " + equation.passive_name(), "in " + equation.active_name(), {0.5}});
-  variables.push_back({s.at(Role::kVelocity), "while retracting", "while advancing", {0.0}});
-  variables.push_back({s.at(Role::kPosition), "below x = %s", "above x = %s", Quantiles(s.at(Role::kPosition))});
-  const Vector speed = s.at(Role::kVelocity).cwiseAbs();
-  variables.push_back({speed, "slower than %s", "faster than %s", Quantiles(speed)});
-  variables.push_back({s.t, "before t = %s s", "after t = %s s", Quantiles(s.t)});
-  return variables;
 }
 
 }  // namespace
@@ -158,7 +131,7 @@ std::vector<Where> FindWhere(const Equation& equation, const Look& look, const B
 
   const Vector excess = base.whitened_residual.array().square() / s2 - 1.0;
   if (excess.sum() <= 0.0) return found;
-  const Tree tree(VariablesOf(equation, look.signals), excess);
+  const Tree tree(equation.SplitVariables(look.signals), excess);
   std::vector<Where> regions;
   std::mt19937_64 engine(seed);
   for (const Tree::Leaf& leaf : tree.leaves()) {

@@ -132,6 +132,7 @@ json ToJson(const Result& result) {
   out["schema"] = 1;
   out["program"] = Text("armcmc-gap " + result.version);
   out["verdict"] = Name(result.verdict);
+  out["equation"] = Text(result.equation);
   out["sentence"] = Text(result.sentence);
   out["probability"] = {{"none", Number(result.probability_none)}, {"unnamed", Number(result.probability_unnamed)}};
   out["effects"] = List(result.effects, EffectJson);

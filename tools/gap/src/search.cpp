@@ -142,7 +142,7 @@ Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candida
   std::vector<GateCandidate> gates;
   for (const CandidatePtr& single : always) {
     const EffectForm& form = *single->fit.hypothesis.terms.back().form;
-    if (!form.exact()) continue;
+    if (!form.exact() || !(form.gates_by_time || form.gates_by_mode)) continue;
     for (const GateCandidate& gate :
          ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &single->fit), min_active)) {
       const double ungated = std::max(parent->fit.squares - single->fit.squares, gate.always_gain);

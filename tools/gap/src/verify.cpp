@@ -20,7 +20,8 @@ Signals Tail(const Signals& all, Eigen::Index first) {
   tail.t = Rows(all.t, first);
   tail.output = Rows(all.output, first);
   tail.active = Rows(all.active, first);
-  for (std::size_t r = 0; r < kNumRoles; ++r) tail.input[r] = Rows(all.input[r], first);
+  for (std::size_t r = 0; r < kNumRoles; ++r)
+    if (all.input[r].size() > 0) tail.input[r] = Rows(all.input[r], first);
   return tail;
 }
 

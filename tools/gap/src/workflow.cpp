@@ -7,11 +7,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "armcmc/gap/contact_equation.hpp"
-#include "armcmc/gap/experiment.hpp"
 #include "armcmc/gap/figures.hpp"
 #include "armcmc/gap/localise.hpp"
 #include "armcmc/gap/model_writer.hpp"
+#include "armcmc/gap/plant_diagnosis.hpp"
 #include "armcmc/gap/verify.hpp"
 
 namespace armcmc::gap {
@@ -91,7 +90,8 @@ std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePt
   return effects;
 }
 
-std::string Sentence(const Result& result, const Finding& finding) {
+/// @param in  " in the flow law" where the plant has several equations.
+std::string Sentence(const Result& result, const Finding& finding, const std::string& in) {
   const auto percent = [](double p) {
     char text[16];
     std::snprintf(text, sizeof(text), "%.0f %%", 100.0 * p);
@@ -100,23 +100,23 @@ std::string Sentence(const Result& result, const Finding& finding) {
   switch (result.verdict) {
     case Verdict::kNone: return "Nothing beyond the noise: the model explains these data.";
     case Verdict::kNamed:
-      return "Missing: " + Joined(Texts(finding.best), " and ") +
+      return "Missing" + in + ": " + Joined(Texts(finding.best), " and ") +
              (finding.approximate || !finding.best->exact() ? " (the family is right, the formula is approximate)"
                                                             : "") +
              ", with a probability of " + percent(finding.best->probability) + ".";
     case Verdict::kAmbiguous: {
       std::vector<std::string> sets;
       for (const CandidatePtr& candidate : finding.set) sets.push_back(Joined(Texts(candidate), " and "));
-      return "Missing: one of " + Joined(sets, ", or ") + "; these data cannot tell which.";
+      return "Missing" + in + ": one of " + Joined(sets, ", or ") + "; these data cannot tell which.";
     }
     case Verdict::kUnnamed: break;
   }
-  return finding.unlisted ? "Something is missing that is not in the catalogue; it looks like " +
+  return finding.unlisted ? "Something is missing" + in + " that is not in the catalogue; it looks like " +
                                 Joined(Texts(finding.unlisted), " and ") + "."
-                          : "Something is missing that no effect of the catalogue explains.";
+                          : "Something is missing" + in + " that no effect of the catalogue explains.";
 }
 
-void Describe(const Diagnosis& diagnosis, int min_active, Result* result) {
+void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active, Result* result) {
   const Finding& finding = diagnosis.finding;
   result->verdict = finding.verdict;
   result->probability_none =
@@ -144,7 +144,7 @@ void Describe(const Diagnosis& diagnosis, int min_active, Result* result) {
     std::snprintf(note, sizeof(note), "a single event at t = %.4g s that nothing of the catalogue explains", t);
     result->notes.emplace_back(note);
   }
-  result->sentence = Sentence(*result, finding);
+  result->sentence = Sentence(*result, finding, in);
 }
 
 /// The best hypothesis of these names in the catalogue's own formulas: what the estimator can run.
@@ -201,6 +201,32 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
   finding.set.clear();
 }
 
+/// What the equations beside the carrier lack: named effects join the verdict, anything else is said.
+void DescribeOthers(const PlantDiagnosis& plant, int min_active, Result* result) {
+  for (const EquationDiagnosis* other : plant.Others()) {
+    const Finding& finding = other->diagnosis.finding;
+    const std::string in = " in the " + other->equation->name();
+    if (finding.verdict == Verdict::kNamed && result->verdict == Verdict::kNamed) {
+      for (EffectFinding& effect : Effects(other->diagnosis, finding.best, min_active))
+        result->effects.push_back(std::move(effect));
+      result->sentence += " Missing" + in + ": " + Joined(Texts(finding.best), " and ") + ".";
+      continue;
+    }
+    Result alone;
+    alone.verdict = finding.verdict;
+    result->notes.push_back(Sentence(alone, finding, in));
+  }
+}
+
+/// What keeps the estimator from running an effect; empty: nothing.
+std::string NotOnline(const Equation& equation, const Fitted& fit) {
+  if (equation.online()) return {};
+  std::string names;
+  for (const Term& term : fit.hypothesis.terms) names += (names.empty() ? "" : ", ") + term.form->effect;
+  return names + ": for offline fits only. The estimator adds no effects to the " + equation.name() +
+         ", so that no model file is written";
+}
+
 /// Rows that are diagnosed, and the recording whose rest shows the gap.
 struct Parts {
   Recording diagnosis, shown;
@@ -219,7 +245,6 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   WorkflowOutcome outcome;
   Result& result = outcome.result;
   Clock clock(request, &result);
-  const std::unique_ptr<Equation> equation = MakeEquation(request.model);
   const Parts parts = Divide(request);
   result.model = request.model;
   result.data_file = request.data.source;
@@ -229,21 +254,24 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   result.notes = request.data.notes;
 
   clock.Begin("compare and name", 0.0);
-  Diagnosis diagnosis = Diagnose(*equation, parts.diagnosis, request.diagnose);
+  PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
+  const Equation* equation = plant.carrying().equation.get();
+  Diagnosis& diagnosis = plant.carrying().diagnosis;
+  const std::string in = equation->name().empty() ? "" : " in the " + equation->name();
+  result.equation = equation->name();
+  result.notes.insert(result.notes.end(), plant.notes.begin(), plant.notes.end());
   const Look& look = *diagnosis.look;
   const double noise_sd = std::sqrt(look.fitter->whitener().s2 * look.fitter->whitener().Gain());
   result.notes.insert(result.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
   if (!look.signals.law_seen)
     result.notes.push_back("hardly any " + equation->active_name() +
                            " in these data: they say nothing on the law and its parameters");
-  if (request.until >= Step::kFind) {
+  const bool can_name = plant.carrying().suitability.can_name;
+  if (request.until >= Step::kFind && can_name) {
     clock.Begin("find where", 0.6);
     result.where = FindWhere(*equation, look, *diagnosis.bootstrap, request.diagnose.seed);
-  }
-  if (request.until >= Step::kName && diagnosis.finding.verdict == Verdict::kAmbiguous) {
-    clock.Begin("choose an experiment", 0.7);
-    result.separate_by = SeparatingExperiment(*equation, look, diagnosis.finding.set);
-    result.separate_by.scenario_text = ScenarioText(*equation, look, result.separate_by);
+    for (Where& where : result.where)
+      if (!equation->name().empty()) where.feature = equation->name() + ": " + where.feature;
   }
   const HeldOut heldout(*equation, look, parts.shown, parts.first_shown);
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
@@ -254,10 +282,27 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     result.sentence = "The search for a name was not asked for.";
     result.probability_none = result.probability_unnamed = std::numeric_limits<double>::quiet_NaN();
   }
-  if (request.until >= Step::kName) Describe(diagnosis, request.diagnose.thresholds.min_active_blocks, &result);
+  const int min_active = request.diagnose.thresholds.min_active_blocks;
+  if (request.until >= Step::kName && can_name) {
+    Describe(diagnosis, in, min_active, &result);
+    DescribeOthers(plant, min_active, &result);
+  }
+  const auto mute = std::find_if(plant.equations.begin(), plant.equations.end(),
+                                 [](const EquationDiagnosis& one) { return one.suitability.needs_excitation; });
+  if (request.until >= Step::kName && mute != plant.equations.end()) {
+    // Silence is not a verdict on the equation: the data could not have shown anything.
+    if (result.verdict == Verdict::kNone) result.sentence = "Nothing is named. " + mute->suitability.note + ".";
+    result.separate_by = mute->equation->Separate(*mute->diagnosis.look, {});
+  }
+  if (request.until >= Step::kName && diagnosis.finding.verdict == Verdict::kAmbiguous) {
+    clock.Begin("choose an experiment", 0.7);
+    result.separate_by = equation->Separate(look, diagnosis.finding.set);
+  }
   const bool adds = !diagnosis.finding.set.empty();
+  const std::string refusal = adds ? NotOnline(*equation, diagnosis.finding.best->fit) : "";
+  if (!refusal.empty()) result.notes.push_back(refusal);
   const Fitted after = adds ? diagnosis.finding.best->fit : diagnosis.finding.base->fit;
-  if (request.until >= Step::kAdd && adds) {
+  if (request.until >= Step::kAdd && adds && refusal.empty()) {
     clock.Begin("add", 0.75);
     const Fitted runnable = Runnable(diagnosis);
     outcome.augmented = AugmentedSettings(request.model, *look.fitter, runnable, noise_sd);

@@ -47,4 +47,9 @@ struct Diagnosis {
 [[nodiscard]] Diagnosis Diagnose(const Equation& equation, const Recording& recording,
                                  const DiagnoseOptions& options = {});
 
+/// Fits the base model and says nothing: for a recording on which the equation's Check allows no name. There is no
+/// search in its look.
+[[nodiscard]] Diagnosis CompareOnly(const Equation& equation, const Recording& recording,
+                                    const DiagnoseOptions& options = {});
+
 }  // namespace armcmc::gap

@@ -16,12 +16,24 @@ namespace armcmc::gap {
 enum class Slot : std::uint8_t {
   kInputMap,   ///< Shifts the position that the law is given.
   kParameter,  ///< Scales the law's first parameter.
+  kDrive,      ///< Adds to the input that drives the plant.
+  kForce,      ///< Adds an acceleration that depends on the state which the law simulates.
   kMemory,     ///< Adds a filtered copy of the law's elastic part.
   kAdditive,   ///< Adds amplitudes x features of the inputs.
   kDelay,      ///< Acts on the series of outputs: dead time first,
   kLag,        ///< then low passes,
   kStatics,    ///< then a map of each output.
 };
+
+/// State of a simulated joint at one sample.
+struct Motion {
+  double t = 0.0, dt = 0.0;  ///< s
+  double angle = 0.0;        ///< rad
+  double rate = 0.0;         ///< rad/s
+  double drive = 0.0;        ///< Acceleration by the pressure, rad/s^2.
+  double base = 0.0;         ///< Acceleration of the law without effects, rad/s^2.
+};
+inline constexpr int kForceMemory = 2;
 
 /// One formula of one effect of the catalogue, scaled to a recording.
 ///
@@ -45,8 +57,13 @@ struct EffectForm {
 
   /// Further starts that depend on what is left to explain; may be null.
   std::function<std::vector<std::vector<double>>(const Signals&, const Vector& whitened_residual)> find_starts;
-  /// kAdditive, kInputMap, kParameter: what the amplitudes multiply, [row][amplitude], from the shapes.
+  /// kAdditive, kInputMap, kParameter, kDrive: what the amplitudes multiply, [row][amplitude], from the shapes. Without
+  /// amplitudes: the one column that is added.
   std::function<Matrix(const Signals&, const double* shape)> features;
+  /// kForce: acceleration in a state, from the values of all coordinates.
+  std::function<double(const Motion&, const double* values, const double* memory)> force;
+  /// kForce: moves the memory on, once a sample and before `force` is asked; may be null.
+  std::function<void(const Motion&, const double* values, double* memory)> remember;
   /// kMemory: filters a series by the shapes; one filter an amplitude.
   std::function<Vector(const Signals&, const Vector& series, int amplitude, const double* shape)> filter;
   /// kDelay, kLag, kStatics: acts on a prediction; own columns from `first` on.

@@ -25,6 +25,26 @@ struct PlotFeature {
   Vector value;
 };
 
+/// A variable to split the recording by, with the words for both sides.
+struct SplitVariable {
+  Vector value;
+  std::string below, above;  ///< "in free motion"; for numbers with %s in place of the threshold.
+  std::vector<double> thresholds;
+};
+/// Nine quantiles, to split at.
+[[nodiscard]] std::vector<double> SplitQuantiles(const Vector& series);
+
+/// Whether a recording can say anything on an equation.
+struct Suitability {
+  bool can_name = true;
+  std::string note;               ///< Why not, with numbers.
+  bool needs_excitation = false;  ///< Another experiment would help: Equation::Separate proposes it.
+};
+
+struct Look;
+struct Candidate;
+using CandidatePtr = std::shared_ptr<Candidate>;
+
 /// One measured output of a plant family and the law that predicts it: everything that the engine knows about a plant.
 ///
 /// A new plant is one class that implements this; the engine does not change.
@@ -35,6 +55,8 @@ class Equation {
   Equation& operator=(const Equation&) = delete;
   virtual ~Equation() = default;
 
+  /// "flow law": where a plant has several equations. Empty: it has one.
+  [[nodiscard]] virtual std::string name() const { return {}; }
   [[nodiscard]] virtual std::string output_name() const = 0;           ///< "force"
   [[nodiscard]] virtual std::string output_unit() const = 0;           ///< "N"
   [[nodiscard]] virtual std::vector<std::string> columns() const = 0;  ///< Time first, output last.
@@ -46,6 +68,14 @@ class Equation {
   [[nodiscard]] virtual Signals Prepare(const Recording& recording, int window) const = 0;
   /// Inputs of another recording, scaled as those of `like`.
   [[nodiscard]] virtual Signals PrepareLike(const Recording& recording, int window, const Signals& like) const = 0;
+
+  /// Whether the estimator can run effects of this equation.
+  [[nodiscard]] virtual bool online() const { return true; }
+  /// The gate before any naming.
+  [[nodiscard]] virtual Suitability Check(const Signals& signals) const {
+    (void)signals;
+    return {};
+  }
 
   /// Coordinates of the law.
   [[nodiscard]] virtual std::vector<Coordinate> base(const Signals& signals) const = 0;
@@ -61,10 +91,17 @@ class Equation {
   /// Groups of the flexible residual model; `predicted` is what the base model says.
   [[nodiscard]] virtual std::vector<FeatureGroup> Groups(const Signals& signals, const Vector& predicted) const = 0;
   [[nodiscard]] virtual std::vector<PlotFeature> PlotFeatures(const Signals& signals) const = 0;
+  /// What regions of disagreement are described by.
+  [[nodiscard]] virtual std::vector<SplitVariable> SplitVariables(const Signals& signals) const;
+  /// The experiment that separates candidates best, with the plant's scenario; without candidates, one that makes the
+  /// equation identifiable.
+  [[nodiscard]] virtual Experiment Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const;
 };
 
-/// The equation of a built-in model.
+/// The equations of a built-in model: each is diagnosed on the same recording.
 /// @throws std::invalid_argument listing the models that there are.
-[[nodiscard]] std::unique_ptr<Equation> MakeEquation(const std::string& model);
+[[nodiscard]] std::vector<std::unique_ptr<Equation>> MakeEquations(const std::string& model);
+/// The columns that the equations of a model read, time first.
+[[nodiscard]] std::vector<std::string> ColumnsOf(const std::string& model);
 
 }  // namespace armcmc::gap

@@ -17,7 +17,8 @@ struct Fitted {
   Vector predicted;            ///< [row]
   Vector whitened_residual;    ///< [row]
   Matrix whitened_jacobian;    ///< [row][coordinate], raw units.
-  std::vector<bool> at_bound;  ///< Coordinates that rest on a bound: no columns of theirs are validated.
+  std::vector<bool> at_bound;  ///< Coordinates that rest on a bound, and times of events: their columns are not
+                               ///< validated.
   double squares = 0.0;        ///< Sum of the squared whitened residual.
   Vector heldout;              ///< Log score of each block with the fit to all others, nats.
   double log_evidence = 0.0;   ///< Laplace, with the catalogue's priors, nats.

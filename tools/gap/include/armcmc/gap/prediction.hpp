@@ -15,9 +15,11 @@ struct Prediction {
   Matrix elastic_jacobian;
 };
 
+struct EffectForm;
+
 /// What effects change before the law is evaluated.
 struct LawInput {
-  Vector shift;  ///< Subtracted from the position. Empty: nothing.
+  Vector shift;  ///< Subtracted from what the law acts on: position, pressure. Empty: nothing.
   Vector gain;   ///< Factor of the law's first parameter. Empty: one.
   /// Derivatives of the two: which coordinate, and by how much each row moves.
   struct Slope {
@@ -25,6 +27,17 @@ struct LawInput {
     Vector rows;
   };
   std::vector<Slope> shift_slopes, gain_slopes;
+  Vector drive;  ///< Added to the input that drives the plant (the opening of a valve). Empty: nothing.
+  std::vector<Slope> drive_slopes;
+
+  /// An effect that acts on the state of the law's own simulation; the law fills its columns.
+  struct Force {
+    const EffectForm* form;
+    const double* coordinates;
+    int first;    ///< Column of its first coordinate.
+    Vector gate;  ///< [row]
+  };
+  std::vector<Force> forces;
 };
 
 }  // namespace armcmc::gap

@@ -161,6 +161,8 @@ struct Result {
   double dt = 0.0;
   std::vector<std::string> notes;  ///< What a reader should know: columns derived, rows skipped, aliases, limits.
 
+  std::string equation;  ///< That carries the gap, where the plant has several. Empty: it has one.
+
   Verdict verdict = Verdict::kNone;
   std::string sentence;  ///< The verdict in one sentence.
   double probability_none = 1.0;

@@ -15,6 +15,8 @@ enum class Role : std::uint8_t {
   kPosition,      ///< Depth of a contact, angle of a joint: what a spring acts on.
   kVelocity,      ///< Its rate.
   kAcceleration,  ///< Its second derivative.
+  kPressure,      ///< Of a chamber above that of the atmosphere.
+  kOpening,       ///< Of a pair of valves: positive fills, negative vents.
   kCount,
 };
 inline constexpr std::size_t kNumRoles = static_cast<std::size_t>(Role::kCount);
@@ -27,7 +29,7 @@ struct Signals {
   double dt = 0.0;  ///< s
   Vector t;         ///< s
   Vector output;
-  std::array<Vector, kNumRoles> input;
+  std::array<Vector, kNumRoles> input;    ///< Empty for roles that the plant does not have.
   std::array<double, kNumRoles> scale{};  ///< Root mean square of each input while the law acts.
   double output_scale = 1.0;              ///< Root mean square of the output while the law acts.
   double output_peak = 1.0;               ///< Largest output, outliers aside.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "armcmc/gap/recording.hpp"
+#include "armcmc/gap/signals.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc::gap {
+
+/// Time, valves and pressure of an actuator recording; no output yet.
+///
+/// The pressure is smoothed without rounding the corners where a valve opens: the integral of p' is subtracted, which
+/// has the corners, what is left is smoothed widely, and the integral is added again.
+/// @param window  Samples of the smoother of the workflow; the wide one here is a multiple of it.
+[[nodiscard]] Signals ActuatorSignals(const Recording& recording, int window, const PlantConstants& constants);
+
+/// Root mean square of a series, over rows of weight one.
+[[nodiscard]] double RootMeanSquare(const Vector& series, const Vector& weight);
+
+/// sign(dp) sqrt|dp| of the valve that a signed opening opens; sqrt(Pa).
+[[nodiscard]] double ValveHead(double opening, double gauge_pressure, const PlantConstants& constants);
+
+}  // namespace armcmc::gap

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "armcmc/gap/effect_form.hpp"
+
+namespace armcmc::gap {
+
+/// An amplitude with a normal prior of a fifth of `unit_size`; not negative where the physics has a sign.
+[[nodiscard]] Coordinate AmplitudeOf(const char* name, const char* unit, double unit_size, bool has_sign,
+                                     double sd = 0.2, double upper = 3.0);
+/// A length, speed, time or opening: log-normal around the middle of its range, given in multiples of `unit_size`.
+[[nodiscard]] Coordinate ShapeOf(const char* name, const char* unit, double unit_size, double lower, double upper);
+/// Starts with amplitudes of zero, over a grid of all shapes: counts[i] values of the i-th shape.
+void SetStarts(EffectForm* form, const std::vector<int>& counts);
+/// Physical value of a form's shape.
+[[nodiscard]] double ShapeValue(const EffectForm& form, std::size_t shape_index, const double* shape);
+/// A further formula of an effect: functions and starts are left to the caller.
+[[nodiscard]] EffectForm VariantOf(const EffectForm& base, const char* variant, const char* formula);
+/// Physics that competes and is described, never named.
+[[nodiscard]] EffectForm UnlistedForm(const char* what, const char* family, const char* formula, Slot slot);
+
+}  // namespace armcmc::gap

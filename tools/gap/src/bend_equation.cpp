@@ -1,0 +1,226 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "armcmc/gap/actuator_equation.hpp"
+#include "armcmc/gap/actuator_signals.hpp"
+#include "armcmc/gap/bend_simulation.hpp"
+#include "armcmc/gap/diagnose.hpp"
+#include "armcmc/gap/features.hpp"
+#include "armcmc/gap/smoothing.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kStep = 1e-4;        // of a coordinate of order one
+constexpr double kSettling_s = 0.1;   // in which a state at the start is felt
+constexpr int kWiden = 4;             // the error of the angle has no corners
+constexpr double kNegligible = 1e-4;  // error over angle, below which it is rounding, not physics
+
+class BendEquation final : public Equation {
+ public:
+  explicit BendEquation(const std::string& model) : constants_(BuiltinSettings(model).constants) {}
+
+  std::string name() const override { return "bend equation"; }
+  std::string output_name() const override { return "angle"; }
+  std::string output_unit() const override { return "rad"; }
+  std::vector<std::string> columns() const override { return {"t", "u_c", "u_d", "p", "pdot", "alpha"}; }
+  std::string active_name() const override { return "bending"; }
+  std::string passive_name() const override { return "straightening"; }
+
+  Signals Prepare(const Recording& recording, int window) const override {
+    Signals s = WithMotion(recording, window);
+    const Vector all = Vector::Ones(s.rows());
+    for (const Role role : {Role::kPosition, Role::kVelocity, Role::kAcceleration}) {
+      s.scale[static_cast<std::size_t>(role)] = RootMeanSquare(s.at(role), all);
+      if (!(s.scale_of(role) > 0.0)) throw std::invalid_argument(recording.source + ": alpha does not move");
+    }
+    s.output_scale = s.scale_of(Role::kPosition);
+    s.output_peak = s.output.cwiseAbs().maxCoeff();
+    return s;
+  }
+
+  Signals PrepareLike(const Recording& recording, int window, const Signals& like) const override {
+    Signals s = WithMotion(recording, window);
+    s.origin = like.origin;
+    s.duration = like.duration;
+    s.scale = like.scale;
+    s.output_scale = like.output_scale;
+    s.output_peak = like.output_peak;
+    return s;
+  }
+
+  // The estimator adds effects to a contact law only.
+  bool online() const override { return false; }
+
+  Suitability Check(const Signals& s) const override {
+    Vector angle(s.rows());
+    const BendSimulation simulation(constants_, s.dt);
+    simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, nullptr);
+    const double error = RootMeanSquare(s.output - angle, Vector::Ones(s.rows()));
+    if (error > kNegligible * s.output_scale) return {};
+    char text[200];
+    std::snprintf(text, sizeof(text),
+                  "bend equation: predicts alpha to %.1e of its rms without any effect: nothing is missing in it",
+                  error / s.output_scale);
+    return {false, text, false};
+  }
+
+  std::vector<Coordinate> base(const Signals& s) const override {
+    (void)s;
+    return {};
+  }
+
+  Vector Start(const Signals& s) const override {
+    (void)s;
+    return {};
+  }
+
+  void Law(const Signals& s, const double* theta, const LawInput& input, Prediction* out) const override {
+    const BendSimulation simulation(constants_, s.dt);
+    const Vector& gauge = s.at(Role::kPressure);
+    std::vector<BendSimulation::Force> forces;
+    for (const LawInput::Force& force : input.forces) forces.push_back({force.form, Values(force), &force.gate});
+    (void)theta;
+    const BendSimulation::State first = StartOf(s, simulation);
+    out->y.resize(s.rows());
+    simulation.Run(s.t, gauge, first, forces, s.rows(), &out->y, nullptr);
+    out->elastic = Vector::Zero(s.rows());
+    Vector moved(s.rows());
+    for (std::size_t f = 0; f < forces.size(); ++f) {
+      const EffectForm& form = *forces[f].form;
+      for (std::size_t c = 0; c < form.coordinates.size(); ++c) {
+        const double at = forces[f].values[c];
+        forces[f].values[c] = form.coordinates[c].Value(input.forces[f].coordinates[c] + kStep);
+        simulation.Run(s.t, gauge, first, forces, s.rows(), &moved, nullptr);
+        forces[f].values[c] = at;
+        out->jacobian.col(input.forces[f].first + static_cast<int>(c)) = (moved - out->y) / kStep;
+      }
+    }
+  }
+
+  std::vector<ParameterEstimate> Report(const Signals& s, const Vector& theta,
+                                        const Matrix& covariance) const override {
+    (void)s;
+    (void)theta;
+    (void)covariance;
+    return {{"q1", "rad/(s^2 Pa)", constants_.q1, 0.0},
+            {"q2", "1/s", constants_.q2, 0.0},
+            {"q3", "1/s^2", constants_.q3, 0.0}};
+  }
+
+  std::vector<EffectForm> Catalogue(const Signals& s) const override { return BendCatalogue(s, constants_); }
+  std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
+
+  std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
+    return {{"angle alpha, rad", s.at(Role::kPosition)},
+            {"rate alpha', rad/s", s.at(Role::kVelocity)},
+            {"pressure p - p_atm, Pa", s.at(Role::kPressure)},
+            {"time, s", s.t}};
+  }
+
+  std::vector<SplitVariable> SplitVariables(const Signals& s) const override {
+    const Vector speed = s.at(Role::kVelocity).cwiseAbs();
+    return {
+        {s.active, "while straightening", "while bending", {0.5}},
+        {s.at(Role::kPosition), "below alpha = %s rad", "above alpha = %s rad", SplitQuantiles(s.at(Role::kPosition))},
+        {speed, "slower than %s rad/s", "faster than %s rad/s", SplitQuantiles(speed)},
+        {s.t, "before t = %s s", "after t = %s s", SplitQuantiles(s.t)}};
+  }
+
+  Experiment Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const override;
+
+ private:
+  static std::vector<double> Values(const LawInput::Force& force) {
+    std::vector<double> values;
+    for (std::size_t c = 0; c < force.form->coordinates.size(); ++c)
+      values.push_back(force.form->coordinates[c].Value(force.coordinates[c]));
+    return values;
+  }
+
+  /// The state at the first row, by least squares over the time in which it is felt.
+  BendSimulation::State StartOf(const Signals& s, const BendSimulation& simulation) const {
+    const auto rows = std::min<Eigen::Index>(s.rows(), static_cast<Eigen::Index>(kSettling_s / s.dt) + 2);
+    Vector from_rest(s.rows()), run(s.rows());
+    simulation.Run(s.t, s.at(Role::kPressure), {}, {}, rows, &from_rest, nullptr);
+    Matrix columns(rows, 2);
+    for (int c = 0; c < 2; ++c) {
+      simulation.Run(s.t, s.at(Role::kPressure), {c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0}, {}, rows, &run, nullptr);
+      columns.col(c) = run.head(rows) - from_rest.head(rows);
+    }
+    const Vector error = s.output.head(rows) - from_rest.head(rows);
+    const Vector state = columns.colPivHouseholderQr().solve(error);
+    return {state[0], state[1]};
+  }
+
+  Signals WithMotion(const Recording& recording, int window) const {
+    Signals s = ActuatorSignals(recording, window, constants_);
+    s.output = recording.Column("alpha");
+    // The simulation follows fast motion; its error, which is slow, is smoothed widely.
+    const BendSimulation simulation(constants_, s.dt);
+    Vector angle(s.rows()), rate(s.rows());
+    simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, &rate);
+    const int wide = kWiden * window + 1;
+    const Vector error = s.output - angle;
+    const Vector error_rate = SavitzkyGolay(error, wide, 1) / s.dt;
+    s.at(Role::kPosition) = angle + SavitzkyGolay(error, wide, 0);
+    s.at(Role::kVelocity) = rate + error_rate;
+    s.at(Role::kAcceleration) = constants_.q1 * s.at(Role::kPressure) - constants_.q2 * rate - constants_.q3 * angle +
+                                SavitzkyGolay(error_rate, wide, 1) / s.dt;
+    s.active = (s.at(Role::kVelocity).array() > 0.0).cast<double>();
+    return s;
+  }
+
+  PlantConstants constants_;
+};
+
+std::vector<FeatureGroup> BendEquation::Groups(const Signals& s, const Vector& predicted) const {
+  const BendSimulation simulation(constants_, s.dt);
+  // What acts as an acceleration shows as its response.
+  const auto felt = [&](Matrix columns) {
+    for (Eigen::Index c = 0; c < columns.cols(); ++c)
+      columns.col(c) = constants_.q3 * simulation.Response(columns.col(c));
+    return columns;
+  };
+  const Vector& angle = s.at(Role::kPosition);
+  const Vector& rate = s.at(Role::kVelocity);
+  const Vector& gauge = s.at(Role::kPressure);
+  const Vector all = Vector::Ones(s.rows());
+  const Vector time = s.Elapsed();
+  const Vector direction = (rate / (0.03 * s.scale_of(Role::kVelocity))).array().tanh();
+  std::vector<FeatureGroup> groups;
+  groups.push_back({"angle", felt(Hats(angle, QuantileKnots(angle, all, 8)))});
+  groups.push_back({"rate", felt(Hats(rate, QuantileKnots(rate, all, 9)))});
+  groups.push_back({"direction of motion", felt(Gated(Hats(angle, QuantileKnots(angle, all, 4)), direction))});
+  groups.push_back(
+      {"acceleration", felt(Hats(s.at(Role::kAcceleration), QuantileKnots(s.at(Role::kAcceleration), all, 6)))});
+  groups.push_back({"time", Hats(time, EvenKnots(9))});
+  groups.push_back({"time x angle", Gated(Hats(time, EvenKnots(4)), predicted)});
+  groups.push_back({"time x acceleration", felt(Gated(Hats(time, EvenKnots(6)), s.at(Role::kAcceleration)))});
+  groups.push_back({"angle x rate", felt(Products(Hats(angle, QuantileKnots(angle, all, 3)),
+                                                  Hats(rate, QuantileKnots(rate, all, 4))))});
+  Matrix memory(s.rows(), 3);
+  for (int i = 0; i < 3; ++i) memory.col(i) = gauge - Leaky(gauge, 30.0 * std::pow(6.0, i));
+  groups.push_back({"memory of the pressure", felt(memory)});
+  Matrix reversals(s.rows(), 3);
+  for (int i = 0; i < 3; ++i) reversals.col(i) = Bristle(rate, 0.02 * std::pow(4.0, i), s.dt);
+  groups.push_back({"angle since reversal", felt(reversals)});
+  Matrix change(s.rows(), 3);
+  change.col(0) = SavitzkyGolay(predicted, 3, 1);
+  change.col(1) = SavitzkyGolay(Vector(change.col(0)), 3, 1);
+  change.col(2) = predicted - Leaky(predicted, 20.0);
+  groups.push_back({"change of angle", change});
+  return groups;
+}
+
+Experiment BendEquation::Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const {
+  return ActuatorExperiment(look.signals, constants_, candidates);
+}
+
+}  // namespace
+
+std::unique_ptr<Equation> MakeBendEquation(const std::string& model) { return std::make_unique<BendEquation>(model); }
+
+}  // namespace armcmc::gap

@@ -1,0 +1,134 @@
+#include "armcmc/gap/plant_diagnosis.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kDecisive = 5.0;  // nats by which another equation strikes or confirms an effect
+
+bool HasGap(const EquationDiagnosis& one) { return one.diagnosis.finding.verdict != Verdict::kNone; }
+
+/// Log-likelihood ratio of an effect at a value that another equation found, over its absence.
+std::optional<double> Evidence(const EquationDiagnosis& asked, const std::string& effect,
+                               const std::vector<double>& values) {
+  const Look& look = *asked.diagnosis.look;
+  for (const EffectForm& listed : look.catalogue) {
+    if (!listed.exact() || listed.effect != effect || listed.coordinates.size() != values.size()) continue;
+    EffectForm form = listed;
+    std::vector<double> start;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      if (form.coordinates[c].logarithmic) return std::nullopt;
+      start.push_back(values[c] / form.coordinates[c].unit_size);
+      form.coordinates[c].lower = form.coordinates[c].upper = start.back();
+    }
+    const Fitted& base = look.finding.base->fit;
+    Vector theta(base.theta.size() + form.size());
+    theta << base.theta, Eigen::Map<const Vector>(start.data(), form.size());
+    const double squares = look.fitter->Fit({{{&form, {}}}}, theta).squares;
+    return 0.5 * (base.squares - squares) / look.fitter->whitener().s2;
+  }
+  return std::nullopt;
+}
+
+/// Asks the other equations, none of which has a gap, on the members of an ambiguous set.
+void Consult(PlantDiagnosis* plant) {
+  EquationDiagnosis& carrier = plant->equations[plant->carrier];
+  Finding& finding = carrier.diagnosis.finding;
+  if (finding.verdict != Verdict::kAmbiguous) return;
+  for (const EquationDiagnosis& asked : plant->equations) {
+    if (&asked == &carrier || HasGap(asked) || !asked.suitability.can_name) continue;
+    for (const CandidatePtr& candidate : std::vector<CandidatePtr>(finding.set)) {
+      const Fitted& fit = candidate->fit;
+      if (fit.hypothesis.terms.size() != 1 || fit.hypothesis.terms[0].when.kind != When::Kind::kAlways) continue;
+      const EffectForm& form = *fit.hypothesis.terms[0].form;
+      std::vector<double> values;
+      for (int c = 0; c < form.size(); ++c)
+        values.push_back(
+            form.coordinates[static_cast<std::size_t>(c)].Value(fit.theta[fit.theta.size() - form.size() + c]));
+      const std::optional<double> evidence = Evidence(asked, form.effect, values);
+      if (!evidence || std::abs(*evidence) < kDecisive) continue;
+      if (*evidence > 0.0)
+        finding.set = {candidate};
+      else
+        std::erase(finding.set, candidate);
+      char note[200];
+      std::snprintf(note, sizeof(note), "%s: %s %s by %.0f nats at the value that the %s found",
+                    asked.equation->name().c_str(), *evidence > 0.0 ? "confirms" : "strikes", form.effect.c_str(),
+                    std::abs(*evidence), carrier.equation->name().c_str());
+      plant->notes.emplace_back(note);
+    }
+  }
+  if (finding.set.empty()) {
+    finding.verdict = Verdict::kUnnamed;
+    return;
+  }
+  finding.best = finding.set.front();
+  if (finding.set.size() == 1) finding.verdict = Verdict::kNamed;
+}
+
+/// Where several equations have a gap and can name the same effects, those are what is missing in all of them.
+void KeepShared(PlantDiagnosis* plant) {
+  EquationDiagnosis& carrier = plant->equations[plant->carrier];
+  Finding& finding = carrier.diagnosis.finding;
+  for (EquationDiagnosis& other : plant->equations) {
+    if (&other == &carrier || other.diagnosis.finding.set.empty()) continue;
+    std::vector<CandidatePtr> shared;
+    for (const CandidatePtr& mine : finding.set)
+      if (std::any_of(other.diagnosis.finding.set.begin(), other.diagnosis.finding.set.end(),
+                      [&](const CandidatePtr& theirs) { return theirs->names() == mine->names(); }))
+        shared.push_back(mine);
+    if (shared.empty()) continue;
+    finding.set = shared;
+    finding.best = shared.front();
+    finding.verdict = shared.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;
+    plant->notes.push_back(other.equation->name() + ": has a gap, too, that the same effect explains");
+    other.diagnosis.finding.verdict = Verdict::kNone;
+    other.diagnosis.finding.set.clear();
+  }
+}
+
+std::size_t CarrierOf(const std::vector<EquationDiagnosis>& equations) {
+  std::size_t best = 0;
+  double most = -1.0;
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    const EquationDiagnosis& one = equations[i];
+    const double rank = HasGap(one) ? 1.0 + one.diagnosis.finding.gap : (one.suitability.can_name ? 0.5 : 0.0);
+    if (rank > most) {
+      most = rank;
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<const EquationDiagnosis*> PlantDiagnosis::Others() const {
+  std::vector<const EquationDiagnosis*> others;
+  for (std::size_t i = 0; i < equations.size(); ++i)
+    if (i != carrier && HasGap(equations[i])) others.push_back(&equations[i]);
+  return others;
+}
+
+PlantDiagnosis DiagnosePlant(const std::string& model, const Recording& recording, const DiagnoseOptions& options) {
+  constexpr int kWindow = 15;
+  PlantDiagnosis plant;
+  for (std::unique_ptr<Equation>& equation : MakeEquations(model)) {
+    EquationDiagnosis one;
+    one.suitability = equation->Check(equation->Prepare(recording, kWindow));
+    one.diagnosis =
+        one.suitability.can_name ? Diagnose(*equation, recording, options) : CompareOnly(*equation, recording, options);
+    if (!one.suitability.note.empty()) plant.notes.push_back(one.suitability.note);
+    one.equation = std::move(equation);
+    plant.equations.push_back(std::move(one));
+  }
+  plant.carrier = CarrierOf(plant.equations);
+  Consult(&plant);
+  KeepShared(&plant);
+  return plant;
+}
+
+}  // namespace armcmc::gap
