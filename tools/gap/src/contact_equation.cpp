@@ -36,6 +36,7 @@ class ContactEquation final : public Equation {
   std::string output_name() const override { return "force"; }
   std::string output_unit() const override { return "N"; }
   std::vector<std::string> columns() const override { return {"t", "x", "v", "f"}; }
+  std::vector<std::string> smoothed_columns() const override { return {"x", "v"}; }
   std::string active_name() const override { return "contact"; }
   std::string passive_name() const override { return "free motion"; }
 

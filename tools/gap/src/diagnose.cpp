@@ -4,10 +4,12 @@
 #include <set>
 #include <stdexcept>
 
+#include "armcmc/gap/smoothing.hpp"
+
 namespace armcmc::gap {
 namespace {
 
-constexpr int kWideWindow = 15, kNarrowWindow = 7;
+constexpr int kWidestWindow = 15;
 constexpr int kNoisePasses = 2;
 constexpr int kBaseSteps = 30;
 constexpr double kCleaner = 0.97;  // of the innovation variance, below which the first noise model hid an effect
@@ -29,10 +31,22 @@ Fitted FitModel(const Fitter& fitter, const std::vector<EffectForm>& catalogue, 
   return fit;
 }
 
+/// What the motion allows.
+int WideWindow(const Equation& equation, const Recording& recording) {
+  int window = kWidestWindow;
+  for (const std::string& column : equation.smoothed_columns())
+    window = std::min(window, WidestWindow(recording.Column(column), kWidestWindow));
+  return window;
+}
+
+/// About half as wide, odd.
+int NarrowWindow(int wide) { return wide / 2 < 5 ? 1 : wide / 2 / 2 * 2 + 1; }
+
 std::unique_ptr<Look> LookAt(const Equation& equation, const Recording& recording, int window,
                              const DiagnoseOptions& options, const BlockBootstrap& bootstrap) {
   auto look = std::make_unique<Look>();
   look->signals = equation.Prepare(recording, window);
+  look->signals.window = window;
   look->catalogue = equation.Catalogue(look->signals);
   std::erase_if(look->catalogue, [&](const EffectForm& form) {
     return std::find(options.without.begin(), options.without.end(), form.effect) != options.without.end();
@@ -88,10 +102,11 @@ void Vote(const Finding& other, Finding* finding) {
 Diagnosis Diagnose(const Equation& equation, const Recording& recording, const DiagnoseOptions& options) {
   Diagnosis diagnosis;
   diagnosis.bootstrap = std::make_unique<BlockBootstrap>(options.seed);
-  diagnosis.look = LookAt(equation, recording, kWideWindow, options, *diagnosis.bootstrap);
+  const int window = WideWindow(equation, recording);
+  diagnosis.look = LookAt(equation, recording, window, options, *diagnosis.bootstrap);
   diagnosis.finding = diagnosis.look->finding;
-  if (Names(diagnosis.finding)) {
-    diagnosis.narrow = LookAt(equation, recording, kNarrowWindow, options, *diagnosis.bootstrap);
+  if (Names(diagnosis.finding) && window > 1) {
+    diagnosis.narrow = LookAt(equation, recording, NarrowWindow(window), options, *diagnosis.bootstrap);
     Vote(diagnosis.narrow->finding, &diagnosis.finding);
   }
   return diagnosis;
@@ -102,7 +117,9 @@ Diagnosis CompareOnly(const Equation& equation, const Recording& recording, cons
   diagnosis.bootstrap = std::make_unique<BlockBootstrap>(options.seed);
   diagnosis.look = std::make_unique<Look>();
   Look& look = *diagnosis.look;
-  look.signals = equation.Prepare(recording, kWideWindow);
+  const int window = WideWindow(equation, recording);
+  look.signals = equation.Prepare(recording, window);
+  look.signals.window = window;
   Whitener whitener;
   for (int pass = 0; pass < kNoisePasses; ++pass) {
     look.fitter = std::make_unique<Fitter>(equation, look.signals, whitener);

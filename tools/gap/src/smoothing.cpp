@@ -47,6 +47,24 @@ Vector SavitzkyGolay(const Vector& series, int window, int derivative) {
   return out;
 }
 
+int WidestWindow(const Vector& series, int widest) {
+  // Fourth differences know nothing of a smooth motion: noise of variance s^2 gives them 70 s^2.
+  constexpr double kGain = 70.0;
+  constexpr double kAllowed = 2.0;      // times the noise that a window may remove
+  constexpr double kNegligible = 1e-6;  // of the variance of the series, that may go as well
+  const Eigen::Index n = series.size();
+  if (n < 2 * widest) return 1;
+  const Vector fourth = series.segment(0, n - 4) - 4.0 * series.segment(1, n - 4) + 6.0 * series.segment(2, n - 4) -
+                        4.0 * series.segment(3, n - 4) + series.segment(4, n - 4);
+  const double noise = fourth.squaredNorm() / (kGain * static_cast<double>(n - 4));
+  const double variance = (series.array() - series.mean()).square().mean();
+  for (int window = widest; window >= kOrder + 2; window -= 2) {
+    const double removed = (series - SavitzkyGolay(series, window, 0)).squaredNorm() / static_cast<double>(n);
+    if (removed <= kAllowed * noise + kNegligible * variance) return window;
+  }
+  return 1;
+}
+
 Vector Leaky(const Vector& series, double tau_samples, double start) {
   const double keep = std::exp(-1.0 / tau_samples);
   Vector out(series.size());

@@ -9,7 +9,6 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr int kWindow = 15;
 constexpr double kBand95 = 1.959963984540054;
 constexpr int kLags = 25;
 
@@ -59,7 +58,7 @@ ModeFit OfMode(const std::string& name, const Vector& mask, const Vector& before
 HeldOut::HeldOut(const Equation& equation, const Look& look, const Recording& recording, Eigen::Index first)
     : equation_(&equation),
       look_(&look),
-      all_(equation.PrepareLike(recording, kWindow, look.signals)),
+      all_(equation.PrepareLike(recording, look.signals.window, look.signals)),
       tail_(Tail(all_, first)),
       first_(first) {
   if (tail_.rows() < kNumBlocks)

@@ -17,7 +17,6 @@ namespace armcmc::gap {
 namespace {
 
 constexpr double kDiagnosisShare = 0.7;  // of the recording; the rest stays sealed to the end
-constexpr int kWindow = 15;
 constexpr std::size_t kListed = 20;
 constexpr double kUnseenRatio = 0.15;  // gap over noise on the sealed data, below which they can confirm nothing
 constexpr double kWorse = 1.005;       // times the error of the model before, that a named effect must not exceed
@@ -328,7 +327,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     const auto first = report(before), second = report(after);
     for (std::size_t i = 0; look.signals.law_seen && i < first.size(); ++i)
       result.parameters.push_back({first[i], second[i]});
-    const Signals all = equation->PrepareLike(parts.shown, kWindow, look.signals);
+    const Signals all = equation->PrepareLike(parts.shown, look.signals.window, look.signals);
     result.figures = MakeFigures(*equation, all, look, before, after);
     result.figures.diagnosis_end_s =
         request.heldout ? std::numeric_limits<double>::quiet_NaN() : parts.shown.t[parts.first_shown];

@@ -79,6 +79,8 @@ class Equation {
 
   /// Coordinates of the law.
   [[nodiscard]] virtual std::vector<Coordinate> base(const Signals& signals) const = 0;
+  /// Columns whose motion bounds the window of the smoother; none: the widest window will do.
+  [[nodiscard]] virtual std::vector<std::string> smoothed_columns() const { return {}; }
   /// Where a fit starts.
   [[nodiscard]] virtual Vector Start(const Signals& signals) const = 0;
   /// The law at `theta`; fills columns [0, base) and those of the slopes. The jacobian is sized by the caller.

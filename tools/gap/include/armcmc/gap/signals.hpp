@@ -33,6 +33,7 @@ struct Signals {
   std::array<double, kNumRoles> scale{};  ///< Root mean square of each input while the law acts.
   double output_scale = 1.0;              ///< Root mean square of the output while the law acts.
   double output_peak = 1.0;               ///< Largest output, outliers aside.
+  int window = 1;                         ///< Samples of the smoother.
   double origin = 0.0;                    ///< Time from which effects that drift count; s.
   double duration = 1.0;                  ///< Time over which they reach their amplitude; s.
   bool law_seen = true;                   ///< The law acts often enough for its parameters to be fitted.
