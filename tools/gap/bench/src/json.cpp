@@ -35,6 +35,7 @@ json CaseJson(const Outcome& o) {
   out["label"] = {{"text", o.label}, {"probability", o.label_probability}, {"right", o.label_right}};
   out["cpu_s"] = o.answer.cpu_s;
   if (o.onset_error_s) out["onset_error_s"] = *o.onset_error_s;
+  if (o.diagnosed_strength) out["diagnosed_strength"] = *o.diagnosed_strength;
   if (o.when_right) out["when_right"] = *o.when_right;
   return out;
 }

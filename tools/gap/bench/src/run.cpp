@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <cstdio>
 #include <exception>
 #include <fstream>
 #include <mutex>
+#include <numeric>
 #include <thread>
+#include <tuple>
 
 #include "armcmc/gap/equation.hpp"
 #include "armcmc/gap/workflow.hpp"
@@ -55,13 +59,22 @@ std::string ScenarioOf(const PlantProcess& plant, const Case& what) {
   return Contents(std::filesystem::exists(own) ? own : support::FindSharedFile("scenarios", what.scenario));
 }
 
-/// What the only effect adds to the output when it acts from the first sample to the last.
-std::vector<double> Contribution(const PlantProcess& plant, const Case& what, const Truth& truth) {
+/// What the effects add to the output, [row].
+/// @param gates  Whether they keep their gates; otherwise they act from the first sample to the last.
+std::vector<double> Contribution(const PlantProcess& plant, const Case& what, const Truth& truth, bool gates) {
   const std::string scenario = WithoutTables(ScenarioOf(plant, what), "hidden_effect");
-  std::vector<double> with = plant.Output(what, scenario + EffectTables(truth, false));
+  std::vector<double> with = plant.Output(what, scenario + EffectTables(truth, gates));
   const std::vector<double> base = plant.Output(what, scenario);
   for (std::size_t i = 0; i < with.size(); ++i) with[i] -= base[i];
   return with;
+}
+
+double DiagnosedStrength(const PlantProcess& plant, const Case& what, const Truth& truth) {
+  constexpr double kDiagnosed = 0.7;  // of the recording
+  const std::vector<double> added = Contribution(plant, what, truth, true);
+  const auto rows = static_cast<std::ptrdiff_t>(kDiagnosed * static_cast<double>(added.size()));
+  const double squares = std::inner_product(added.begin(), added.begin() + rows, added.begin(), 0.0);
+  return std::sqrt(squares / static_cast<double>(std::max<std::ptrdiff_t>(rows, 1))) / truth.noise_sd;
 }
 
 void Score(const PlantProcess& plant, Outcome* outcome) {
@@ -69,12 +82,14 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
   outcome->grade = GradeOf(outcome->what, outcome->truth, result);
   std::tie(outcome->label, outcome->label_probability) = TopLabel(result);
   outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label);
+  if (outcome->grade == Grade::kNone)
+    outcome->diagnosed_strength = DiagnosedStrength(plant, outcome->what, outcome->truth);
   if (outcome->truth.effects.size() != 1) return;
   const TrueEffect& effect = outcome->truth.effects.front();
   if (effect.onset_s && !result.effects.empty())
     outcome->onset_error_s = OnsetError(result, effect.name,
-                                        OnsetInterval(Contribution(plant, outcome->what, outcome->truth), result.dt,
-                                                      *effect.onset_s, outcome->truth.noise_sd));
+                                        OnsetInterval(Contribution(plant, outcome->what, outcome->truth, false),
+                                                      result.dt, *effect.onset_s, outcome->truth.noise_sd));
   const bool contact = effect.gate == "contact";
   if ((contact || effect.gate == "free") && !result.effects.empty())
     outcome->when_right =

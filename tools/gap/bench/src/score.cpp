@@ -88,7 +88,10 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
     Names names;
     for (const std::string& text : candidate.effects) names.push_back(NameIn(text));
     std::sort(names.begin(), names.end());
-    probability[Joined(names)] += candidate.probability;
+    // Physics that competes without a name in the catalogue.
+    const bool unlisted =
+        std::any_of(names.begin(), names.end(), [](const std::string& name) { return FindEffect(name) < 0; });
+    probability[unlisted ? "unnamed" : Joined(names)] += candidate.probability;
   }
   const auto top = std::max_element(probability.begin(), probability.end(),
                                     [](const auto& a, const auto& b) { return a.second < b.second; });

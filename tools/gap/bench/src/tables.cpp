@@ -1,6 +1,6 @@
-#include <cmath>
-#include <cstdio>
+#include <sstream>
 
+#include "armcmc/gap/result_json.hpp"
 #include "armcmc/gap_bench/report.hpp"
 #include "armcmc/gap_bench/score.hpp"
 #include "armcmc/gap_bench/summary.hpp"
@@ -26,16 +26,6 @@ std::string Truths(const Outcome& o) {
   for (const TrueEffect& effect : o.truth.effects)
     text += (text.empty() ? "" : ",") + effect.name + ":" + effect.variant;
   return text.empty() ? o.what.effect : text;
-}
-
-const char* VerdictWord(gap::Verdict verdict) {
-  switch (verdict) {
-    case gap::Verdict::kNone: return "none";
-    case gap::Verdict::kNamed: return "named";
-    case gap::Verdict::kAmbiguous: return "ambiguous";
-    case gap::Verdict::kUnnamed: return "unnamed";
-  }
-  return "";
 }
 
 std::string CountTable(const std::vector<Outcome>& outcomes) {
@@ -88,19 +78,20 @@ std::string ConfusionTable(const std::vector<Outcome>& outcomes) {
 }  // namespace
 
 std::string Line(const Outcome& o) {
-  char text[512];
-  if (o.grade == Grade::kNotMade || o.grade == Grade::kFailed) {
-    std::snprintf(text, sizeof(text), "%-8s %s %s", GradeName(o.grade), o.what.Name().c_str(), o.answer.error.c_str());
-    return text;
-  }
+  std::ostringstream line;
+  line << GradeName(o.grade) << ": " << o.what.stratum << ", " << o.what.group << ", " << Truths(o);
+  if (!o.what.gate.empty()) line << ' ' << o.what.gate;
+  line << ", seed " << o.what.seed;
+  if (o.grade == Grade::kNotMade) return line.str();
+  if (o.grade == Grade::kFailed) return line.str() + ": " + o.answer.error;
   const gap::Result& result = o.answer.result;
-  std::snprintf(text, sizeof(text), "%-8s %s, %s: %s %s -> %s [%s]%s, P %.3f of %s, closed %.3f, %.1f s, seed %llu",
-                GradeName(o.grade), o.what.stratum.c_str(), o.what.group.c_str(), Truths(o).c_str(),
-                o.what.gate.c_str(), VerdictWord(result.verdict), Sets(result).c_str(),
-                o.onset_error_s ? (" onset off by " + Significant(*o.onset_error_s, 2) + " s").c_str() : "",
-                o.label_probability, o.label.c_str(), result.gap.closed_fraction, o.answer.cpu_s,
-                static_cast<unsigned long long>(o.what.seed));
-  return text;
+  line << " -> " << gap::Name(result.verdict);
+  if (!SetsOf(result).empty()) line << ' ' << Sets(result) << ", closed " << Significant(result.gap.closed_fraction, 3);
+  line << ", P " << Significant(o.label_probability, 3) << " of " << o.label;
+  if (o.onset_error_s) line << ", onset off by " << Significant(*o.onset_error_s, 2) << " s";
+  if (o.diagnosed_strength) line << ", at most R " << Significant(*o.diagnosed_strength, 2) << " in what was diagnosed";
+  line << ", " << Significant(o.answer.cpu_s, 2) << " s";
+  return line.str();
 }
 
 std::string Tables(const std::vector<Outcome>& outcomes) {

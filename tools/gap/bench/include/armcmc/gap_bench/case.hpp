@@ -59,7 +59,7 @@ enum class Grade {
   kNone,     ///< Nothing beyond the noise, where there is something.
   kWrong,    ///< A false name.
   kNotMade,  ///< The plant cannot hide this effect at this strength in this motion.
-  kFailed,   ///< The tool gave no answer.
+  kFailed,   ///< No answer: the tool failed, or the plant did.
 };
 inline constexpr int kNumGrades = 9;
 [[nodiscard]] const char* GradeName(Grade grade);
@@ -75,6 +75,9 @@ struct Outcome {
   bool label_right = false;
   std::optional<double> onset_error_s;  ///< Beyond the times at which the data cannot tell the onset apart.
   std::optional<bool> when_right;       ///< Contact-only and free-only effects: said so.
+  /// Of effects that were not noticed: rms of what they add to the output in the diagnosed part of the recording, over
+  /// the noise. A bound of R there, since the base parameters absorb some of it.
+  std::optional<double> diagnosed_strength;
 };
 
 }  // namespace armcmc::gap_bench
