@@ -101,11 +101,16 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
 Outcome RunCase(const PlantProcess& plant, const Case& what, bool keep) {
   Outcome outcome;
   outcome.what = what;
-  if (!plant.Make(what)) return outcome;
-  outcome.answer = Ask(plant.Recording(what), what.without);
-  outcome.truth = ReadSealed(plant.Sealed(what));
-  outcome.grade = Grade::kFailed;
-  if (outcome.answer.error.empty()) Score(plant, &outcome);
+  try {
+    if (!plant.Make(what)) return outcome;
+    outcome.grade = Grade::kFailed;
+    outcome.answer = Ask(plant.Recording(what), what.without);
+    outcome.truth = ReadSealed(plant.Sealed(what));
+    if (outcome.answer.error.empty()) Score(plant, &outcome);
+  } catch (const std::exception& error) {
+    outcome.grade = Grade::kFailed;
+    outcome.answer.error = error.what();
+  }
   if (!keep) plant.Remove(what);
   return outcome;
 }
@@ -115,26 +120,17 @@ std::vector<Outcome> RunCases(const PlantProcess& plant, const std::vector<Case>
   std::vector<Outcome> outcomes(cases.size());
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
-  std::exception_ptr failure;
   const auto work = [&] {
     for (std::size_t i = next++; i < cases.size(); i = next++) {
-      try {
-        outcomes[i] = RunCase(plant, cases[i], keep);
-        const std::lock_guard lock(mutex);
-        if (done) done(outcomes[i]);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = cases.size();
-      }
+      outcomes[i] = RunCase(plant, cases[i], keep);
+      const std::lock_guard lock(mutex);
+      if (done) done(outcomes[i]);
     }
   };
-  {
-    std::vector<std::jthread> threads;
-    for (int j = 1; j < jobs; ++j) threads.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  std::vector<std::jthread> threads;
+  for (int j = 1; j < jobs; ++j) threads.emplace_back(work);
+  work();
+  threads.clear();
   return outcomes;
 }
 

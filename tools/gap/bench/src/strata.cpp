@@ -140,10 +140,10 @@ std::pair<std::string, std::string> DrawPair(std::mt19937_64* random) {
   return {kCatalogue[first], kCatalogue[second]};
 }
 
-std::string PairTable(const std::string& effect, double strength, std::uint64_t seed) {
+std::string HiddenTable(const std::string& effect, double strength) {
   const std::size_t colon = effect.find(':');
   return "\n[[hidden_effect]]\nname = \"" + effect.substr(0, colon) + "\"\nvariant = \"" + effect.substr(colon + 1) +
-         "\"\nstrength = " + Text(strength) + "\nseed = " + std::to_string(seed) + "\n";
+         "\"\nstrength = " + Text(strength) + "\n";
 }
 
 void Pairs(Builder* b) {
@@ -155,9 +155,10 @@ void Pairs(Builder* b) {
   for (int cell = 0; cell < kUnequalPairCells; ++cell)
     b->Cell(Like("R 0.3 + 3", kRich, "", 1.0), std::to_string(cell), [b](Case* one, std::mt19937_64* random) {
       const auto [weak, strong] = DrawPair(random);
+      // The first table seeds the draws of both.
+      const std::string first = HiddenTable(weak, 0.3) + "seed = " + std::to_string(one->seed) + "\n";
       one->scenario =
-          b->Write("pair_" + std::to_string(one->seed),
-                   ScenarioOfPlant(kRich) + PairTable(weak, 0.3, one->seed) + PairTable(strong, 3.0, one->seed));
+          b->Write("pair_" + std::to_string(one->seed), ScenarioOfPlant(kRich) + first + HiddenTable(strong, 3.0));
     });
 }
 

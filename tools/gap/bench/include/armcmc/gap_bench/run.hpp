@@ -9,6 +9,7 @@
 namespace armcmc::gap_bench {
 
 /// Makes a recording, diagnoses it without the sealed file, then opens that and scores.
+/// Whatever goes wrong is kFailed, with the reason.
 /// @param keep  Whether recordings and sealed files stay.
 [[nodiscard]] Outcome RunCase(const PlantProcess& plant, const Case& what, bool keep);
 
