@@ -30,7 +30,7 @@ TEST(Rows, CountGradesAndLeaveOutWhatCouldNotBeMade) {
   const auto rows = Rows({Made("singles", Grade::kRight, 1, true), Made("singles", Grade::kWrong, 1, false),
                           Made("singles", Grade::kNotMade, 0, false), Made("null", Grade::kRight, 1, true)});
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].made(), 2);
+  EXPECT_EQ(rows[0].counted(), 2);
   EXPECT_EQ(rows[0].of(Grade::kWrong), 1);
   EXPECT_EQ(rows[0].of(Grade::kNotMade), 1);
 }

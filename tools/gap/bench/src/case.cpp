@@ -27,6 +27,7 @@ const char* GradeName(Grade grade) {
     case Grade::kUnnamed: return "unnamed";
     case Grade::kNone: return "none";
     case Grade::kWrong: return "wrong";
+    case Grade::kNotShown: return "not shown";
     case Grade::kNotMade: return "not made";
     case Grade::kFailed: return "failed";
   }

@@ -43,7 +43,7 @@ class Gatherer {
              bool at_least) {
     int n = 0, count = 0;
     for (const Outcome& o : outcomes_) {
-      if (o.grade == Grade::kNotMade || !which(o)) continue;
+      if (!Counts(o) || !which(o)) continue;
       ++n;
       count += what(o) ? 1 : 0;
     }
@@ -53,7 +53,7 @@ class Gatherer {
                 const std::function<double(const Outcome&)>& value, double limit, bool at_least) {
     std::vector<double> values;
     for (const Outcome& o : outcomes_)
-      if (o.grade != Grade::kNotMade && which(o)) values.push_back(value(o));
+      if (Counts(o) && which(o)) values.push_back(value(o));
     if (!values.empty())
       Add(stratum, metric, gap_bench::Quantile(values, share), limit, at_least, static_cast<int>(values.size()));
   }

@@ -34,15 +34,17 @@ void AddCounts(const std::vector<Outcome>& outcomes, plots::Page* page) {
   page->Html("<section class=\"card\"><h2>Answers</h2>\n<div class=\"scroll\"><table>" + head + "</tr>\n");
   for (const Row& row : Rows(outcomes)) {
     std::string cells = "<tr><td>" + EscapeHtml(row.stratum) + "</td><td>" + EscapeHtml(row.group) + "</td>" +
-                        Cell(std::to_string(row.made()));
+                        Cell(std::to_string(row.counted()));
     for (int g = 0; g < kNumGrades; ++g) cells += Cell(std::to_string(row.of(static_cast<Grade>(g))));
     page->Html(cells + "</tr>\n");
   }
   page->Html(
       "</table></div>\n<p class=\"soft\">right: the truth and nothing else (data without an effect: nothing; an effect "
       "outside the catalogue: unnamed). tie: several sets, the truth among them. family: another effect of the same "
-      "family. partial: one of two. wrong: a false name. not made: the plant cannot hide that effect so "
-      "strongly in that motion.</p></section>\n");
+      "family. partial: one of two. wrong: a false name. not shown: the "
+      "effect leaves no trace in the diagnosed part, and none was found. not made: the plant cannot hide that effect "
+      "so "
+      "strongly in that motion. The last two do not count.</p></section>\n");
 }
 
 /// A map whose axes count what the lists below it name.

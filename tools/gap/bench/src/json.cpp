@@ -45,7 +45,7 @@ json CaseJson(const Outcome& o) {
 json ToJson(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
   json out = {{"schema", 1}, {"seed", seed}};
   for (const Row& row : Rows(outcomes)) {
-    json one = {{"stratum", row.stratum}, {"group", row.group}, {"n", row.made()}};
+    json one = {{"stratum", row.stratum}, {"group", row.group}, {"n", row.counted()}};
     for (int g = 0; g < kNumGrades; ++g) one[GradeName(static_cast<Grade>(g))] = row.of(static_cast<Grade>(g));
     out["strata"].push_back(std::move(one));
   }

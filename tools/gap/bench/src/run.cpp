@@ -84,6 +84,7 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
   outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label);
   if (outcome->grade == Grade::kNone)
     outcome->diagnosed_strength = DiagnosedStrength(plant, outcome->what, outcome->truth);
+  if (outcome->diagnosed_strength.value_or(kTrace) < kTrace) outcome->grade = Grade::kNotShown;
   if (outcome->truth.effects.size() != 1) return;
   const TrueEffect& effect = outcome->truth.effects.front();
   if (effect.onset_s && !result.effects.empty())

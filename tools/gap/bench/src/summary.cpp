@@ -16,16 +16,20 @@ constexpr double kVisible = 0.3;  // gap ratio from which an effect has to be fo
 constexpr double kClear = 1.0;
 constexpr double kSure = 0.9;
 
-bool Made(const Outcome& o) { return o.grade != Grade::kNotMade && o.grade != Grade::kFailed; }
+bool Answered(const Outcome& o) { return Counts(o) && o.grade != Grade::kFailed; }
 
 bool SingleEffect(const Outcome& o) {
   const std::string& stratum = o.what.stratum;
-  return (stratum == "singles" || stratum == "scale" || stratum == "paper") && Made(o);
+  return (stratum == "singles" || stratum == "scale" || stratum == "paper") && Answered(o);
 }
 
 }  // namespace
 
-int Row::made() const { return std::accumulate(count.begin(), count.end(), 0) - of(Grade::kNotMade); }
+int Row::counted() const {
+  return std::accumulate(count.begin(), count.end(), 0) - of(Grade::kNotMade) - of(Grade::kNotShown);
+}
+
+bool Counts(const Outcome& o) { return o.grade != Grade::kNotMade && o.grade != Grade::kNotShown; }
 
 std::vector<Row> Rows(const std::vector<Outcome>& outcomes) {
   std::vector<Row> rows;
@@ -51,7 +55,7 @@ Calibration Calibrate(const std::vector<Outcome>& outcomes) {
     calibration.bins.push_back(bin);
   }
   for (const Outcome& outcome : outcomes) {
-    if (!Made(outcome)) continue;
+    if (!Answered(outcome)) continue;
     const double p = std::clamp(outcome.label_probability, 0.0, 1.0);
     Bin& bin = calibration.bins[static_cast<std::size_t>(std::min(static_cast<int>(p * kBins), kBins - 1))];
     ++bin.n;
@@ -120,7 +124,7 @@ double Quantile(std::vector<double> values, double share) {
 SureLabels CountSure(const std::vector<Outcome>& outcomes) {
   SureLabels sure;
   for (const Outcome& o : outcomes) {
-    if (!Made(o) || o.label_probability < kSure) continue;
+    if (!Answered(o) || o.label_probability < kSure) continue;
     ++sure.n;
     sure.right += o.label_right ? 1 : 0;
   }

@@ -29,12 +29,12 @@ std::string Truths(const Outcome& o) {
 }
 
 std::string CountTable(const std::vector<Outcome>& outcomes) {
-  TextTable table(
-      {"stratum", "n", "right", "tie", "family", "partial", "unnamed", "none", "wrong", "failed", "not made"});
+  TextTable table({"stratum", "n", "right", "tie", "family", "partial", "unnamed", "none", "wrong", "failed",
+                   "not shown", "not made"});
   for (const Row& row : Rows(outcomes)) {
-    std::vector<std::string> cells = {row.stratum + ", " + row.group, std::to_string(row.made())};
+    std::vector<std::string> cells = {row.stratum + ", " + row.group, std::to_string(row.counted())};
     for (const Grade grade : {Grade::kRight, Grade::kTie, Grade::kFamily, Grade::kPartial, Grade::kUnnamed,
-                              Grade::kNone, Grade::kWrong, Grade::kFailed, Grade::kNotMade})
+                              Grade::kNone, Grade::kWrong, Grade::kFailed, Grade::kNotShown, Grade::kNotMade})
       cells.push_back(std::to_string(row.of(grade)));
     table.AddRow(std::move(cells));
   }

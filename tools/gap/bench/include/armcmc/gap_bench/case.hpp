@@ -50,19 +50,24 @@ struct Answer {
 
 /// How an answer stands to the truth.
 enum class Grade {
-  kRight,    ///< The truth and nothing else. Of data without an effect: nothing beyond the noise. Of an effect outside
-             ///< the catalogue: unnamed.
-  kTie,      ///< Several sets, the truth among them.
-  kFamily,   ///< Another effect of the same family.
-  kPartial,  ///< One of two effects, and nothing false.
-  kUnnamed,  ///< Something without a name, where there is an effect with one, or nothing.
-  kNone,     ///< Nothing beyond the noise, where there is something.
-  kWrong,    ///< A false name.
-  kNotMade,  ///< The plant cannot hide this effect at this strength in this motion.
-  kFailed,   ///< No answer: the tool failed, or the plant did.
+  kRight,     ///< The truth and nothing else. Of data without an effect: nothing beyond the noise. Of an effect outside
+              ///< the catalogue: unnamed.
+  kTie,       ///< Several sets, the truth among them.
+  kFamily,    ///< Another effect of the same family.
+  kPartial,   ///< One of two effects, and nothing false.
+  kUnnamed,   ///< Something without a name, where there is an effect with one, or nothing.
+  kNone,      ///< Nothing beyond the noise, where there is something.
+  kWrong,     ///< A false name.
+  kNotShown,  ///< Nothing beyond the noise, and the effect leaves no trace in the part that is diagnosed.
+  kNotMade,   ///< The plant cannot hide this effect at this strength in this motion.
+  kFailed,    ///< No answer: the tool failed, or the plant did.
 };
-inline constexpr int kNumGrades = 9;
+inline constexpr int kNumGrades = 10;
 [[nodiscard]] const char* GradeName(Grade grade);
+
+/// Rms over noise below which an effect leaves no trace: its square is the share of the noise variance that the
+/// workflow never names.
+inline constexpr double kTrace = 0.07;
 
 /// A finished case.
 struct Outcome {

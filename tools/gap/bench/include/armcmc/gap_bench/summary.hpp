@@ -12,8 +12,8 @@ namespace armcmc::gap_bench {
 struct Row {
   std::string stratum, group;
   std::array<int, kNumGrades> count{};
-  /// Cases that the plant made.
-  [[nodiscard]] int made() const;
+  /// Cases that count: all but those that the plant could not make or that do not show their effect.
+  [[nodiscard]] int counted() const;
   [[nodiscard]] int of(Grade grade) const { return count[static_cast<std::size_t>(grade)]; }
 };
 
@@ -50,6 +50,8 @@ struct SureLabels {
   int n = 0, right = 0;
 };
 
+/// Whether a case counts: it could be made, and shows its effect.
+[[nodiscard]] bool Counts(const Outcome& outcome);
 [[nodiscard]] std::vector<Row> Rows(const std::vector<Outcome>& outcomes);
 [[nodiscard]] Calibration Calibrate(const std::vector<Outcome>& outcomes);
 [[nodiscard]] Confusion Confuse(const std::vector<Outcome>& outcomes);
