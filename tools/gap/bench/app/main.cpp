@@ -83,7 +83,7 @@ int Run(Arguments a) {
   if (std::find(a.strata.begin(), a.strata.end(), kTies) != a.strata.end()) {
     cases.clear();
     for (const Outcome& outcome : outcomes)
-      if (outcome.grade == Grade::kTie) cases.push_back(FollowUp(plant, outcome));
+      if (CanFollowUp(outcome)) cases.push_back(FollowUp(plant, outcome));
     std::vector<Outcome> resolved = RunAll(plant, cases, a);
     outcomes.insert(outcomes.end(), std::make_move_iterator(resolved.begin()), std::make_move_iterator(resolved.end()));
   }

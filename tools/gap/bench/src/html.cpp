@@ -41,9 +41,8 @@ void AddCounts(const std::vector<Outcome>& outcomes, plots::Page* page) {
   page->Html(
       "</table></div>\n<p class=\"soft\">right: the truth and nothing else (data without an effect: nothing; an effect "
       "outside the catalogue: unnamed). tie: several sets, the truth among them. family: another effect of the same "
-      "family. partial: one of two. wrong: a false name. not shown: the "
-      "effect leaves no trace in the diagnosed part, and none was found. not made: the plant cannot hide that effect "
-      "so "
+      "family. partial: one of two. wrong: a false name. not shown: the effect that was not found leaves no trace in "
+      "the diagnosed part. not made: the plant cannot hide that effect so "
       "strongly in that motion. The last two do not count.</p></section>\n");
 }
 

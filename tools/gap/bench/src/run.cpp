@@ -69,6 +69,16 @@ std::vector<double> Contribution(const PlantProcess& plant, const Case& what, co
   return with;
 }
 
+/// The truth without the effects that the answer names.
+Truth NotFound(const Truth& truth, const gap::Result& result) {
+  Truth rest = truth;
+  for (const Names& set : SetsOf(result))
+    std::erase_if(rest.effects, [&](const TrueEffect& effect) {
+      return std::find(set.begin(), set.end(), effect.name) != set.end();
+    });
+  return rest;
+}
+
 double DiagnosedStrength(const PlantProcess& plant, const Case& what, const Truth& truth) {
   constexpr double kDiagnosed = 0.7;  // of the recording
   const std::vector<double> added = Contribution(plant, what, truth, true);
@@ -82,9 +92,10 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
   outcome->grade = GradeOf(outcome->what, outcome->truth, result);
   std::tie(outcome->label, outcome->label_probability) = TopLabel(result);
   outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label);
-  if (outcome->grade == Grade::kNone)
-    outcome->diagnosed_strength = DiagnosedStrength(plant, outcome->what, outcome->truth);
-  if (outcome->diagnosed_strength.value_or(kTrace) < kTrace) outcome->grade = Grade::kNotShown;
+  if (outcome->grade == Grade::kNone || outcome->grade == Grade::kPartial) {
+    outcome->diagnosed_strength = DiagnosedStrength(plant, outcome->what, NotFound(outcome->truth, result));
+    if (*outcome->diagnosed_strength < kTrace) outcome->grade = Grade::kNotShown;
+  }
   if (outcome->truth.effects.size() != 1) return;
   const TrueEffect& effect = outcome->truth.effects.front();
   if (effect.onset_s && !result.effects.empty())
@@ -133,6 +144,13 @@ std::vector<Outcome> RunCases(const PlantProcess& plant, const std::vector<Case>
   work();
   threads.clear();
   return outcomes;
+}
+
+bool CanFollowUp(const Outcome& outcome) {
+  const std::vector<TrueEffect>& effects = outcome.truth.effects;
+  return outcome.grade == Grade::kTie && std::all_of(effects.begin(), effects.end(), [](const TrueEffect& effect) {
+           return effect.kind == "catalogue";
+         });
 }
 
 Case FollowUp(const PlantProcess& plant, const Outcome& outcome) {

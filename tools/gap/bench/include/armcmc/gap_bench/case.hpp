@@ -58,7 +58,7 @@ enum class Grade {
   kUnnamed,   ///< Something without a name, where there is an effect with one, or nothing.
   kNone,      ///< Nothing beyond the noise, where there is something.
   kWrong,     ///< A false name.
-  kNotShown,  ///< Nothing beyond the noise, and the effect leaves no trace in the part that is diagnosed.
+  kNotShown,  ///< What was not found leaves no trace in the part that is diagnosed.
   kNotMade,   ///< The plant cannot hide this effect at this strength in this motion.
   kFailed,    ///< No answer: the tool failed, or the plant did.
 };
@@ -80,7 +80,7 @@ struct Outcome {
   bool label_right = false;
   std::optional<double> onset_error_s;  ///< Beyond the times at which the data cannot tell the onset apart.
   std::optional<bool> when_right;       ///< Contact-only and free-only effects: said so.
-  /// Of effects that were not noticed: rms of what they add to the output in the diagnosed part of the recording, over
+  /// Of effects that were not found: rms of what they add to the output in the diagnosed part of the recording, over
   /// the noise. A bound of R there, since the base parameters absorb some of it.
   std::optional<double> diagnosed_strength;
 };

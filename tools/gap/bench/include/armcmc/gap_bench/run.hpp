@@ -17,6 +17,8 @@ namespace armcmc::gap_bench {
 [[nodiscard]] std::vector<Outcome> RunCases(const PlantProcess& plant, const std::vector<Case>& cases, int jobs,
                                             bool keep, const std::function<void(const Outcome&)>& done);
 
+/// Whether an answer is a tie that an experiment could resolve: the effects are the catalogue's own.
+[[nodiscard]] bool CanFollowUp(const Outcome& outcome);
 /// For an ambiguous answer: the experiment that the tool proposes, made with the plant and the effect of the case, both
 /// as the sealed file tells them. The scenario file is written to the plant's folder.
 [[nodiscard]] Case FollowUp(const PlantProcess& plant, const Outcome& outcome);
