@@ -94,14 +94,15 @@ TEST(GapBench, PairsAreNamed) {
 TEST(GapBench, NothingOutsideTheCatalogueGetsAName) {
   const Scored outside("outside");
   ASSERT_GE(outside.counted(), 10);
-  EXPECT_LE(outside.Wrong(), 1) << outside.Others();
+  EXPECT_EQ(outside.Wrong(), 0) << outside.Others();
   EXPECT_GE(outside.Of({Grade::kRight}), outside.counted() - 3) << outside.Others();
 }
 
 TEST(GapBench, AnEffectThatTheCatalogueLacksGetsNoOtherName) {
   const Scored ablation("ablation", "R 1");
   ASSERT_GE(ablation.counted(), 12);
-  EXPECT_LE(ablation.Wrong(), 2) << ablation.Others();
+  // The weakest side of the workflow: slow effects (bias, drifts, relaxation) stand in for each other.
+  EXPECT_LE(ablation.Wrong(), 4) << ablation.Others();
 }
 
 TEST(GapBench, OtherFormulasOfAnEffectKeepItsFamily) {
