@@ -1,0 +1,130 @@
+#include "armcmc/gap_bench/score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace armcmc::gap_bench {
+namespace {
+
+Truth Hidden(const Names& names, const std::string& kind = "catalogue") {
+  Truth truth;
+  for (const std::string& name : names) {
+    TrueEffect effect;
+    effect.name = name;
+    effect.kind = kind;
+    effect.gate = "always";
+    truth.effects.push_back(effect);
+  }
+  return truth;
+}
+
+gap::Result Said(const std::vector<Names>& sets) {
+  gap::Result result;
+  result.verdict = sets.size() == 1 ? gap::Verdict::kNamed : gap::Verdict::kAmbiguous;
+  for (const std::string& name : sets.front()) {
+    gap::EffectFinding effect;
+    effect.name = name;
+    result.effects.push_back(effect);
+  }
+  if (sets.size() > 1) result.ambiguous_set = sets;
+  return result;
+}
+
+gap::Result Said(gap::Verdict verdict) {
+  gap::Result result;
+  result.verdict = verdict;
+  return result;
+}
+
+TEST(GradeOf, DataWithoutAnEffect) {
+  const Truth nothing;
+  EXPECT_EQ(GradeOf({}, nothing, Said(gap::Verdict::kNone)), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, nothing, Said(gap::Verdict::kUnnamed)), Grade::kUnnamed);
+  EXPECT_EQ(GradeOf({}, nothing, Said({{"inertia"}})), Grade::kWrong);
+}
+
+TEST(GradeOf, OneEffectOfTheCatalogue) {
+  const Truth truth = Hidden({"sensor_delay"});
+  EXPECT_EQ(GradeOf({}, truth, Said({{"sensor_delay"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"sensor_lag"}, {"sensor_delay"}})), Grade::kTie);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"sensor_lag"}})), Grade::kFamily);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"sensor_lag"}, {"inertia"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"inertia"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"sensor_delay", "inertia"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, truth, Said(gap::Verdict::kNone)), Grade::kNone);
+  EXPECT_EQ(GradeOf({}, truth, Said(gap::Verdict::kUnnamed)), Grade::kUnnamed);
+}
+
+TEST(GradeOf, TwoEffectsInAnyOrder) {
+  const Truth truth = Hidden({"inertia", "coulomb_friction"});
+  EXPECT_EQ(GradeOf({}, truth, Said({{"coulomb_friction", "inertia"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"inertia", "coulomb_friction"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"inertia", "presliding_friction"}})), Grade::kFamily);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"inertia"}})), Grade::kPartial);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"inertia", "adhesion"}})), Grade::kWrong);
+}
+
+TEST(GradeOf, WhatTheCatalogueLacksHasNoRightName) {
+  const Truth outside = Hidden({"backlash"}, "outside");
+  EXPECT_EQ(GradeOf({}, outside, Said(gap::Verdict::kUnnamed)), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, outside, Said({{"contact_offset"}})), Grade::kWrong);
+  Case ablated;
+  ablated.without = {"force_drift"};
+  const Truth truth = Hidden({"force_drift"});
+  EXPECT_EQ(GradeOf(ablated, truth, Said(gap::Verdict::kUnnamed)), Grade::kRight);
+  EXPECT_EQ(GradeOf(ablated, truth, Said({{"force_bias"}})), Grade::kFamily);
+  EXPECT_EQ(GradeOf(ablated, truth, Said({{"inertia"}})), Grade::kWrong);
+}
+
+TEST(TopLabel, AddsUpFormulasAndTimesAndCallsUnlistedPhysicsUnnamed) {
+  gap::Result result = Said({{"inertia"}});
+  result.probability_none = 0.0;
+  result.candidates = {{{"inertia"}, 0, 0, 0.3, 0},
+                       {{"inertia from 3 s"}, 0, 0, 0.2, 0},
+                       {{"adhesion (pull_off)"}, 0, 0, 0.35, 0},
+                       {{"a ripple along the path"}, 0, 0, 0.15, 0}};
+  EXPECT_EQ(TopLabel(result).first, "inertia");
+  EXPECT_NEAR(TopLabel(result).second, 0.5, 1e-12);
+  result.probability_unnamed = 0.4;
+  EXPECT_EQ(TopLabel(result).first, "unnamed");
+}
+
+TEST(LabelRight, ARelativeCountsWhereTheFormulaIsNotInTheCatalogue) {
+  EXPECT_TRUE(LabelRight({}, {}, "none"));
+  EXPECT_FALSE(LabelRight({}, Hidden({"inertia"}), "none"));
+  EXPECT_TRUE(LabelRight({}, Hidden({"inertia", "adhesion"}), "adhesion + inertia"));
+  EXPECT_FALSE(LabelRight({}, Hidden({"sensor_lag"}), "sensor_delay"));
+  EXPECT_TRUE(LabelRight({}, Hidden({"sensor_lag"}, "variant"), "sensor_delay"));
+  EXPECT_TRUE(LabelRight({}, Hidden({"backlash"}, "outside"), "unnamed"));
+  EXPECT_FALSE(LabelRight({}, Hidden({"inertia"}), "unnamed"));
+}
+
+TEST(OnsetInterval, ReachesAsFarAsTheEffectLeavesNoTrace) {
+  // Ten samples a second; nothing is felt from 3.0 s to 5.0 s.
+  std::vector<double> contribution(100, 10.0);
+  for (std::size_t i = 30; i < 50; ++i) contribution[i] = 0.0;
+  const auto [first, last] = OnsetInterval(contribution, 0.1, 4.0, 1.0);
+  EXPECT_NEAR(first, 3.0, 1e-12);
+  EXPECT_NEAR(last, 5.0, 1e-12);
+  const auto sharp = OnsetInterval(contribution, 0.1, 7.0, 1.0);
+  EXPECT_NEAR(sharp.first, 7.0, 1e-12);
+  EXPECT_NEAR(sharp.second, 7.0, 1e-12);
+  // Each sample brings 4 noise variances: the third would pass 9.
+  const auto weak = OnsetInterval(std::vector<double>(100, 2.0), 0.1, 5.0, 1.0);
+  EXPECT_NEAR(weak.first, 4.8, 1e-12);
+  EXPECT_NEAR(weak.second, 5.2, 1e-12);
+}
+
+TEST(OnsetError, CountsFromTheEdgesOfTheInterval) {
+  gap::Result result = Said({{"inertia"}});
+  EXPECT_FALSE(OnsetError(result, "inertia", {3.0, 5.0}));
+  result.effects.front().when = {gap::When::Kind::kFrom, 5.5};
+  EXPECT_NEAR(OnsetError(result, "inertia", {3.0, 5.0}).value(), 0.5, 1e-12);
+  result.effects.front().when.time_s = 4.0;
+  EXPECT_EQ(OnsetError(result, "inertia", {3.0, 5.0}).value(), 0.0);
+  EXPECT_FALSE(OnsetError(result, "adhesion", {3.0, 5.0}));
+}
+
+}  // namespace
+}  // namespace armcmc::gap_bench

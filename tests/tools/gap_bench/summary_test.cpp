@@ -1,0 +1,83 @@
+#include "armcmc/gap_bench/summary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "armcmc/gap_bench/report.hpp"
+
+namespace armcmc::gap_bench {
+namespace {
+
+Outcome Made(const std::string& stratum, Grade grade, double probability, bool right) {
+  Outcome outcome;
+  outcome.what.stratum = stratum;
+  outcome.what.group = "R 1";
+  outcome.grade = grade;
+  outcome.label_probability = probability;
+  outcome.label_right = right;
+  return outcome;
+}
+
+const Gate* Find(const std::vector<Gate>& gates, const std::string& stratum, const std::string& metric) {
+  for (const Gate& gate : gates)
+    if (gate.stratum == stratum && gate.metric == metric) return &gate;
+  return nullptr;
+}
+
+TEST(Rows, CountGradesAndLeaveOutWhatCouldNotBeMade) {
+  const auto rows = Rows({Made("singles", Grade::kRight, 1, true), Made("singles", Grade::kWrong, 1, false),
+                          Made("singles", Grade::kNotMade, 0, false), Made("null", Grade::kRight, 1, true)});
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].counted(), 2);
+  EXPECT_EQ(rows[0].of(Grade::kWrong), 1);
+  EXPECT_EQ(rows[0].of(Grade::kNotMade), 1);
+}
+
+TEST(Calibrate, IsTheMeanDistanceOfWhatWasPrintedFromWhatCameTrue) {
+  // Three at 0.9 of which two came true, one at 0.4 that did not: (3 |0.9 - 2/3| + 1 |0.4 - 0|) / 4.
+  const Calibration calibration =
+      Calibrate({Made("singles", Grade::kRight, 0.9, true), Made("singles", Grade::kRight, 0.9, true),
+                 Made("singles", Grade::kWrong, 0.9, false), Made("singles", Grade::kWrong, 0.4, false),
+                 Made("singles", Grade::kNotMade, 1.0, false)});
+  EXPECT_EQ(calibration.n, 4);
+  EXPECT_NEAR(calibration.error, (3 * (0.9 - 2.0 / 3.0) + 0.4) / 4, 1e-12);
+  EXPECT_EQ(calibration.bins.back().n, 3);
+}
+
+TEST(Gates, StandOnlyForStrataThatRan) {
+  const std::vector<Gate> gates = Gates({Made("null", Grade::kRight, 1, true), Made("null", Grade::kWrong, 1, false)});
+  ASSERT_NE(Find(gates, "null", "named"), nullptr);
+  EXPECT_EQ(Find(gates, "null", "named")->value, 0.5);
+  EXPECT_FALSE(Find(gates, "null", "named")->passed());
+  EXPECT_EQ(Find(gates, "pairs", "wrong"), nullptr);
+}
+
+TEST(Gates, AnAnswerThatFailedCountsAsWrong) {
+  const std::vector<Gate> gates =
+      Gates({Made("pairs", Grade::kFailed, 0, false), Made("pairs", Grade::kRight, 1, true)});
+  EXPECT_EQ(Find(gates, "pairs", "wrong")->value, 0.5);
+}
+
+TEST(Quantile, IsLinearBetweenValues) {
+  EXPECT_NEAR(Quantile({3.0, 1.0, 2.0}, 0.25), 1.5, 1e-12);
+  EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));
+}
+
+TEST(BenchReport, HoldsEveryCaseWithItsCommands) {
+  Outcome outcome = Made("singles", Grade::kRight, 1, true);
+  outcome.what.scenario = "contact_rich";
+  outcome.what.effect = "inertia:rigid";
+  outcome.what.seed = 17;
+  outcome.what.without = {"adhesion"};
+  const nlohmann::json json = ToJson({outcome}, 4);
+  EXPECT_EQ(json.at("schema"), 1);
+  const std::string plant = json.at("cases").at(0).at("plant");
+  EXPECT_NE(plant.find("--scenario contact_rich --seed 17 --hide-effect inertia:rigid"), std::string::npos) << plant;
+  EXPECT_NE(json["cases"][0].at("tool").get<std::string>().find("--without adhesion"), std::string::npos);
+  EXPECT_NE(Html({outcome}, 4).find("</html>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace armcmc::gap_bench

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "armcmc/gap/result.hpp"
+
+namespace armcmc::gap_bench {
+
+/// One recording that is to be made and diagnosed. What it says about the hidden effect goes to the plant alone.
+struct Case {
+  std::string stratum;   ///< "singles"
+  std::string group;     ///< Row of the table within the stratum: "R 0.3".
+  std::string scenario;  ///< Of the plant: a name, or a file relative to the folder of the run.
+  std::string effect;    ///< --hide-effect; empty: the scenario hides effects of its own.
+  std::string gate;      ///< --effect-gate; empty: none.
+  double strength = 1.0;
+  std::uint64_t seed = 1;
+  std::vector<std::string> without;  ///< Effects that are taken out of the catalogue of the tool.
+
+  /// Unique within a run, good as a file name.
+  [[nodiscard]] std::string Name() const;
+};
+
+/// An effect as the sealed file tells it.
+struct TrueEffect {
+  std::string name, variant, kind;  ///< kind: catalogue, variant, outside.
+  std::string gate;                 ///< "always", "contact", "free", "from:S", "until:S"
+  std::optional<double> onset_s;
+  std::vector<std::pair<std::string, double>> parameters;
+};
+
+/// The sealed file.
+struct Truth {
+  std::vector<TrueEffect> effects;
+  std::vector<std::pair<std::string, double>> base_parameters;
+  std::string noise_tables;  ///< As tables of a scenario file.
+  double noise_sd = 0.0;     ///< Of the output, in its unit.
+};
+
+/// What the tool said, its curves left out.
+struct Answer {
+  gap::Result result;
+  double cpu_s = 0.0;  ///< Processor time of the diagnosis and its proof.
+  std::string error;   ///< Why there is no result; empty when there is one.
+};
+
+/// How an answer stands to the truth.
+enum class Grade {
+  kRight,     ///< The truth and nothing else. Of data without an effect: nothing beyond the noise. Of an effect outside
+              ///< the catalogue: unnamed.
+  kTie,       ///< Several sets, the truth among them.
+  kFamily,    ///< Another effect of the same family.
+  kPartial,   ///< One of two effects, and nothing false.
+  kUnnamed,   ///< Something without a name, where there is an effect with one, or nothing.
+  kNone,      ///< Nothing beyond the noise, where there is something.
+  kWrong,     ///< A false name.
+  kNotShown,  ///< What was not found leaves no trace in the part that is diagnosed.
+  kNotMade,   ///< The plant cannot hide this effect at this strength in this motion.
+  kFailed,    ///< No answer: the tool failed, or the plant did.
+};
+inline constexpr int kNumGrades = 10;
+[[nodiscard]] const char* GradeName(Grade grade);
+
+/// Rms over noise below which an effect leaves no trace: its square is the share of the noise variance that the
+/// workflow never names.
+inline constexpr double kTrace = 0.07;
+
+/// A finished case.
+struct Outcome {
+  Case what;
+  Truth truth;
+  Answer answer;
+  Grade grade = Grade::kNotMade;
+  std::string label;             ///< What the tool holds most probable, see TopLabel.
+  double label_probability = 0;  ///< Printed with it.
+  bool label_right = false;
+  std::optional<double> onset_error_s;  ///< Beyond the times at which the data cannot tell the onset apart.
+  std::optional<bool> when_right;       ///< Contact-only and free-only effects: said so.
+  /// Of effects that were not found: rms of what they add to the output in the diagnosed part of the recording, over
+  /// the noise. A bound of R there, since the base parameters absorb some of it.
+  std::optional<double> diagnosed_strength;
+};
+
+}  // namespace armcmc::gap_bench

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "armcmc/gap_bench/case.hpp"
+
+namespace armcmc::gap_bench {
+
+using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, sorted.
+
+/// Every set of effects that the answer leaves possible: one when it is named, none without a name.
+[[nodiscard]] std::vector<Names> SetsOf(const gap::Result& result);
+/// Names of the true effects, sorted.
+[[nodiscard]] Names NamesOf(const Truth& truth);
+/// Families of effects, sorted; a name that the catalogue does not know is a family of its own.
+[[nodiscard]] Names FamiliesOf(const Names& names);
+
+/// Compares an answer with the truth. An effect that is outside the catalogue, or was taken out of it, has no right
+/// name.
+[[nodiscard]] Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result);
+
+/// What the tool holds most probable, of: "none", "unnamed", and each set of names ("a + b", summed over formulas and
+/// times), with the probability that it prints.
+[[nodiscard]] std::pair<std::string, double> TopLabel(const gap::Result& result);
+/// Whether that label is true. A relative of the family counts where the catalogue lacks the effect or its formula.
+[[nodiscard]] bool LabelRight(const Case& what, const Truth& truth, const std::string& label);
+
+/// Times at which an effect could have begun without the data knowing: between them the effect would have changed the
+/// squared output by less than 9 noise variances, 4.5 nats, on either side of the true onset.
+/// @param contribution  What the effect adds to the output when it acts always, [row].
+[[nodiscard]] std::pair<double, double> OnsetInterval(const std::vector<double>& contribution, double dt,
+                                                      double onset_s, double noise_sd);
+
+/// How far the answer's onset is from that interval. Nothing where it names none.
+[[nodiscard]] std::optional<double> OnsetError(const gap::Result& result, const std::string& effect,
+                                               std::pair<double, double> interval);
+
+}  // namespace armcmc::gap_bench

@@ -1,0 +1,180 @@
+#include "armcmc/gap_bench/plant.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "armcmc/support/program.hpp"
+
+namespace armcmc::gap_bench {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string Contents(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// Runs a program in `folder`, its stderr to a file. @return its exit code.
+int Run(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+        const std::filesystem::path& folder, const std::filesystem::path& errors) {
+  std::vector<std::string> texts = {program.string()};
+  texts.insert(texts.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& text : texts) argv.push_back(text.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  pid_t pid = -1;
+  const int error = posix_spawn(&pid, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw std::runtime_error(program.string() + ": " + std::strerror(error));
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0)
+    if (errno != EINTR) throw std::runtime_error(program.string() + ": " + std::strerror(errno));
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+/// Leaves t,x,v,f, the columns that a robot would record: those after them are the plant's own truth.
+void HideTruth(const std::filesystem::path& path) {
+  constexpr int kColumns = 4;
+  std::istringstream lines(Contents(path));
+  std::string kept;
+  for (std::string line; std::getline(lines, line);) {
+    std::size_t end = 0;
+    for (int c = 0; c < kColumns && end != std::string::npos; ++c) end = line.find(',', end + (c > 0 ? 1 : 0));
+    kept.append(line, 0, end);
+    kept += '\n';
+  }
+  std::ofstream(path, std::ios::binary) << kept;
+}
+
+std::string Number(const Json& value) { return value.dump(); }
+
+std::string NoiseTables(const Json& noise) {
+  std::string text;
+  for (const auto& [channel, law] : noise.items()) {
+    if (law.at("kind") == "none") continue;
+    text += "\n[noise." + channel + "]\nkind = " + law.at("kind").dump() + "\nstd = " + Number(law.at("std")) +
+            "\ncorrelation = " + Number(law.at("correlation")) + "\ngrowth = " + Number(law.at("growth")) + "\n";
+    for (const char* key : {"dof", "outlier_weight", "outlier_scale"})
+      if (law.contains(key)) text += std::string(key) + " = " + Number(law.at(key)) + "\n";
+  }
+  return text;
+}
+
+/// A TOML float: JSON writes 3.0 as 3.0 and 1e-7 as 1e-07, which TOML reads, too.
+std::string Toml(double value) { return Json(value).dump(); }
+
+}  // namespace
+
+PlantProcess::PlantProcess(std::filesystem::path program, std::filesystem::path folder)
+    : program_(std::filesystem::absolute(program)), folder_(std::filesystem::absolute(folder)) {
+  std::filesystem::create_directories(folder_);
+}
+
+std::vector<std::string> PlantProcess::Arguments(const Case& what) {
+  std::vector<std::string> arguments = {"--scenario", what.scenario, "--seed", std::to_string(what.seed)};
+  if (!what.effect.empty()) {
+    arguments.insert(arguments.end(), {"--hide-effect", what.effect});
+    if (what.effect != "none") arguments.insert(arguments.end(), {"--effect-strength", Json(what.strength).dump()});
+    if (!what.gate.empty()) arguments.insert(arguments.end(), {"--effect-gate", what.gate});
+  }
+  arguments.insert(arguments.end(), {"--sealed", what.Name() + ".sealed.json", "--csv", what.Name() + ".csv"});
+  return arguments;
+}
+
+std::filesystem::path PlantProcess::Recording(const Case& what) const { return folder_ / (what.Name() + ".csv"); }
+std::filesystem::path PlantProcess::Sealed(const Case& what) const { return folder_ / (what.Name() + ".sealed.json"); }
+
+void PlantProcess::Remove(const Case& what) const {
+  std::filesystem::remove(Recording(what));
+  std::filesystem::remove(Sealed(what));
+}
+
+bool PlantProcess::Make(const Case& what) const {
+  const std::filesystem::path errors = folder_ / (what.Name() + ".err");
+  const int code = Run(program_, Arguments(what), folder_, errors);
+  const std::string message = Contents(errors);
+  std::filesystem::remove(errors);
+  // Out of reach is the one bad input that a case may be.
+  if (code == support::kExitBadInput && message.find("gap ratio") != std::string::npos) return false;
+  if (code != 0) throw std::runtime_error(program_.string() + " for " + what.Name() + ": " + message);
+  HideTruth(Recording(what));
+  return true;
+}
+
+std::vector<double> PlantProcess::Output(const Case& what, const std::string& scenario_text) const {
+  const std::string name = what.Name() + "_contribution";
+  const std::filesystem::path scenario = folder_ / (name + ".toml"), csv = folder_ / (name + ".csv"),
+                              errors = folder_ / (name + ".err");
+  std::ofstream(scenario, std::ios::binary) << scenario_text;
+  const int code =
+      Run(program_, {"--scenario", scenario.string(), "--seed", std::to_string(what.seed), "--csv", csv.string()},
+          folder_, errors);
+  const std::string message = Contents(errors);
+  std::vector<double> output;
+  std::ifstream rows(csv);
+  std::string row;
+  std::getline(rows, row);
+  while (std::getline(rows, row)) {
+    std::istringstream fields(row);
+    std::string field;
+    for (int c = 0; c < 4; ++c) std::getline(fields, field, ',');
+    output.push_back(std::stod(field));
+  }
+  for (const std::filesystem::path& path : {scenario, csv, errors}) std::filesystem::remove(path);
+  if (code != 0) throw std::runtime_error(program_.string() + " for " + name + ": " + message);
+  return output;
+}
+
+Truth ReadSealed(const std::filesystem::path& path) {
+  try {
+    const Json sealed = Json::parse(Contents(path));
+    Truth truth;
+    for (const Json& effect : sealed.at("effects")) {
+      TrueEffect one;
+      one.name = effect.at("name");
+      one.variant = effect.at("variant");
+      one.kind = effect.at("formula_kind");
+      one.gate = effect.at("gate");
+      if (!effect.at("onset_s").is_null()) one.onset_s = effect.at("onset_s").get<double>();
+      for (const auto& [name, parameter] : effect.at("parameters").items())
+        one.parameters.emplace_back(name, parameter.at("value").get<double>());
+      truth.effects.push_back(std::move(one));
+    }
+    for (const auto& [name, value] : sealed.at("base_parameters").items())
+      truth.base_parameters.emplace_back(name, value.get<double>());
+    truth.noise_tables = NoiseTables(sealed.at("noise"));
+    truth.noise_sd = sealed.at("noise").at("f").at("sd");
+    return truth;
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
+std::string EffectTables(const Truth& truth, bool gates) {
+  std::string text;
+  for (const TrueEffect& effect : truth.effects) {
+    text += "\n[[hidden_effect]]\nname = \"" + effect.name + "\"\nvariant = \"" + effect.variant + "\"\ngate = \"" +
+            (gates ? effect.gate : "always") + "\"\n[hidden_effect.parameters]\n";
+    for (const auto& [name, value] : effect.parameters) text += name + " = " + Toml(value) + "\n";
+  }
+  return text;
+}
+
+}  // namespace armcmc::gap_bench

@@ -1,0 +1,182 @@
+#include "armcmc/gap_bench/run.hpp"
+
+#include <ctime>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <tuple>
+
+#include "armcmc/gap/equation.hpp"
+#include "armcmc/gap/workflow.hpp"
+#include "armcmc/gap_bench/scenario_text.hpp"
+#include "armcmc/gap_bench/score.hpp"
+#include "armcmc/support/shared_files.hpp"
+
+namespace armcmc::gap_bench {
+namespace {
+
+constexpr const char* kModel = "hunt_crossley";
+
+/// Processor time of this thread: on a machine that others use, too, the clock on the wall tells little.
+double CpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::string Contents(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// All that the tool is given: a recording, and which effects its catalogue lacks.
+Answer Ask(const std::filesystem::path& recording, const std::vector<std::string>& without) {
+  Answer answer;
+  const double start = CpuSeconds();
+  try {
+    gap::WorkflowRequest request;
+    request.model = kModel;
+    request.data = gap::ReadRecording(recording, gap::MakeEquation(kModel)->columns(), false);
+    request.diagnose.without = without;
+    answer.result = gap::RunWorkflow(request).result;
+    answer.result.figures = {};
+  } catch (const std::exception& error) {
+    answer.error = error.what();
+  }
+  answer.cpu_s = CpuSeconds() - start;
+  return answer;
+}
+
+std::string ScenarioOf(const PlantProcess& plant, const Case& what) {
+  const std::filesystem::path own = plant.folder() / what.scenario;
+  return Contents(std::filesystem::exists(own) ? own : support::FindSharedFile("scenarios", what.scenario));
+}
+
+/// What the effects add to the output, [row].
+/// @param gates  Whether they keep their gates; otherwise they act from the first sample to the last.
+std::vector<double> Contribution(const PlantProcess& plant, const Case& what, const Truth& truth, bool gates) {
+  const std::string scenario = WithoutTables(ScenarioOf(plant, what), "hidden_effect");
+  std::vector<double> with = plant.Output(what, scenario + EffectTables(truth, gates));
+  const std::vector<double> base = plant.Output(what, scenario);
+  for (std::size_t i = 0; i < with.size(); ++i) with[i] -= base[i];
+  return with;
+}
+
+/// The truth without the effects that the answer names.
+Truth NotFound(const Truth& truth, const gap::Result& result) {
+  Truth rest = truth;
+  for (const Names& set : SetsOf(result))
+    std::erase_if(rest.effects, [&](const TrueEffect& effect) {
+      return std::find(set.begin(), set.end(), effect.name) != set.end();
+    });
+  return rest;
+}
+
+double DiagnosedStrength(const PlantProcess& plant, const Case& what, const Truth& truth) {
+  constexpr double kDiagnosed = 0.7;  // of the recording
+  const std::vector<double> added = Contribution(plant, what, truth, true);
+  const auto rows = static_cast<std::ptrdiff_t>(kDiagnosed * static_cast<double>(added.size()));
+  const double squares = std::inner_product(added.begin(), added.begin() + rows, added.begin(), 0.0);
+  return std::sqrt(squares / static_cast<double>(std::max<std::ptrdiff_t>(rows, 1))) / truth.noise_sd;
+}
+
+void Score(const PlantProcess& plant, Outcome* outcome) {
+  const gap::Result& result = outcome->answer.result;
+  outcome->grade = GradeOf(outcome->what, outcome->truth, result);
+  std::tie(outcome->label, outcome->label_probability) = TopLabel(result);
+  outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label);
+  if (outcome->grade == Grade::kNone || outcome->grade == Grade::kPartial) {
+    outcome->diagnosed_strength = DiagnosedStrength(plant, outcome->what, NotFound(outcome->truth, result));
+    if (*outcome->diagnosed_strength < kTrace) outcome->grade = Grade::kNotShown;
+  }
+  if (outcome->truth.effects.size() != 1) return;
+  const TrueEffect& effect = outcome->truth.effects.front();
+  if (effect.onset_s && !result.effects.empty())
+    outcome->onset_error_s = OnsetError(result, effect.name,
+                                        OnsetInterval(Contribution(plant, outcome->what, outcome->truth, false),
+                                                      result.dt, *effect.onset_s, outcome->truth.noise_sd));
+  const bool contact = effect.gate == "contact";
+  if ((contact || effect.gate == "free") && !result.effects.empty())
+    outcome->when_right =
+        result.effects.front().when.kind == (contact ? gap::When::Kind::kContact : gap::When::Kind::kFree);
+}
+
+}  // namespace
+
+Outcome RunCase(const PlantProcess& plant, const Case& what, bool keep) {
+  Outcome outcome;
+  outcome.what = what;
+  try {
+    if (!plant.Make(what)) return outcome;
+    outcome.grade = Grade::kFailed;
+    outcome.answer = Ask(plant.Recording(what), what.without);
+    outcome.truth = ReadSealed(plant.Sealed(what));
+    if (outcome.answer.error.empty()) Score(plant, &outcome);
+  } catch (const std::exception& error) {
+    outcome.grade = Grade::kFailed;
+    outcome.answer.error = error.what();
+  }
+  if (!keep) plant.Remove(what);
+  return outcome;
+}
+
+std::vector<Outcome> RunCases(const PlantProcess& plant, const std::vector<Case>& cases, int jobs, bool keep,
+                              const std::function<void(const Outcome&)>& done) {
+  std::vector<Outcome> outcomes(cases.size());
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < cases.size(); i = next++) {
+      outcomes[i] = RunCase(plant, cases[i], keep);
+      const std::lock_guard lock(mutex);
+      if (done) done(outcomes[i]);
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (int j = 1; j < jobs; ++j) threads.emplace_back(work);
+  work();
+  threads.clear();
+  return outcomes;
+}
+
+bool CanFollowUp(const Outcome& outcome) {
+  const std::vector<TrueEffect>& effects = outcome.truth.effects;
+  return outcome.grade == Grade::kTie && std::all_of(effects.begin(), effects.end(), [](const TrueEffect& effect) {
+           return effect.kind == "catalogue";
+         });
+}
+
+Case FollowUp(const PlantProcess& plant, const Outcome& outcome) {
+  Case next = outcome.what;
+  next.stratum = "ties";
+  next.group = outcome.what.stratum;
+  next.effect.clear();
+  next.gate.clear();
+  std::string parameters;
+  for (const auto& [name, value] : outcome.truth.base_parameters) {
+    char line[64];
+    std::snprintf(line, sizeof(line), "%s = %.17g\n", name.c_str(), value);
+    parameters += line;
+  }
+  std::string text = WithTable(outcome.answer.result.separate_by.scenario_text, "parameters", parameters);
+  text = WithoutTables(text, "noise.") + outcome.truth.noise_tables;
+  // What began during the first recording goes on in the second.
+  Truth truth = outcome.truth;
+  for (TrueEffect& effect : truth.effects)
+    if (effect.onset_s) effect.gate = "always";
+  text += EffectTables(truth, true);
+  std::filesystem::create_directories(plant.folder() / "scenarios");
+  next.scenario = "scenarios/experiment_" + outcome.what.Name() + ".toml";
+  std::ofstream(plant.folder() / next.scenario, std::ios::binary) << text;
+  ++next.seed;  // another day, other noise
+  return next;
+}
+
+}  // namespace armcmc::gap_bench

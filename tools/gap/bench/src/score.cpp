@@ -1,0 +1,146 @@
+#include "armcmc/gap_bench/score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "armcmc/effects/registry.hpp"
+
+namespace armcmc::gap_bench {
+namespace {
+
+constexpr double kUnnoticed = 9.0;  // noise variances
+
+std::string Joined(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
+  return text;
+}
+
+/// "force_bias from 4.25 s", "adhesion (pull_off)" -> the name.
+std::string NameIn(const std::string& text) { return text.substr(0, text.find(' ')); }
+
+/// Whether the tool could have given the right name.
+bool Nameable(const Case& what, const Truth& truth) {
+  return std::all_of(truth.effects.begin(), truth.effects.end(), [&](const TrueEffect& effect) {
+    return effect.kind != "outside" &&
+           std::find(what.without.begin(), what.without.end(), effect.name) == what.without.end();
+  });
+}
+
+bool AllOfFamily(const std::vector<Names>& sets, const Names& families) {
+  return std::all_of(sets.begin(), sets.end(), [&](const Names& set) { return FamiliesOf(set) == families; });
+}
+
+}  // namespace
+
+std::vector<Names> SetsOf(const gap::Result& result) {
+  std::vector<Names> sets;
+  if (result.verdict == gap::Verdict::kNamed) {
+    Names names;
+    for (const gap::EffectFinding& effect : result.effects) names.push_back(effect.name);
+    sets.push_back(std::move(names));
+  } else if (result.verdict == gap::Verdict::kAmbiguous) {
+    sets = result.ambiguous_set;
+  }
+  for (Names& set : sets) std::sort(set.begin(), set.end());
+  return sets;
+}
+
+Names NamesOf(const Truth& truth) {
+  Names names;
+  for (const TrueEffect& effect : truth.effects) names.push_back(effect.name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Names FamiliesOf(const Names& names) {
+  Names families;
+  for (const std::string& name : names) {
+    const int index = FindEffect(name);
+    families.emplace_back(index < 0 ? name : std::string(AllEffects::kInfos[static_cast<std::size_t>(index)]->family));
+  }
+  std::sort(families.begin(), families.end());
+  return families;
+}
+
+Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result) {
+  const std::vector<Names> sets = SetsOf(result);
+  const bool none = result.verdict == gap::Verdict::kNone;
+  if (truth.effects.empty()) return none ? Grade::kRight : sets.empty() ? Grade::kUnnamed : Grade::kWrong;
+  if (none) return Grade::kNone;
+  const bool nameable = Nameable(what, truth);
+  if (sets.empty()) return nameable ? Grade::kUnnamed : Grade::kRight;
+  const Names names = NamesOf(truth);
+  if (nameable && std::find(sets.begin(), sets.end(), names) != sets.end())
+    return sets.size() == 1 ? Grade::kRight : Grade::kTie;
+  if (AllOfFamily(sets, FamiliesOf(names))) return Grade::kFamily;
+  const bool nothing_false = std::all_of(sets.begin(), sets.end(), [&](const Names& set) {
+    return std::includes(names.begin(), names.end(), set.begin(), set.end());
+  });
+  return nameable && nothing_false ? Grade::kPartial : Grade::kWrong;
+}
+
+std::pair<std::string, double> TopLabel(const gap::Result& result) {
+  std::map<std::string, double> probability = {{"none", result.probability_none},
+                                               {"unnamed", result.probability_unnamed}};
+  for (const gap::CandidateScore& candidate : result.candidates) {
+    Names names;
+    for (const std::string& text : candidate.effects) names.push_back(NameIn(text));
+    std::sort(names.begin(), names.end());
+    // Physics that competes without a name in the catalogue.
+    const bool unlisted =
+        std::any_of(names.begin(), names.end(), [](const std::string& name) { return FindEffect(name) < 0; });
+    probability[unlisted ? "unnamed" : Joined(names)] += candidate.probability;
+  }
+  const auto top = std::max_element(probability.begin(), probability.end(),
+                                    [](const auto& a, const auto& b) { return a.second < b.second; });
+  return *top;
+}
+
+bool LabelRight(const Case& what, const Truth& truth, const std::string& label) {
+  if (truth.effects.empty()) return label == "none";
+  if (label == "none") return false;
+  if (label == "unnamed") return !Nameable(what, truth);
+  const Names names = NamesOf(truth);
+  if (Nameable(what, truth) && label == Joined(names)) return true;
+  const bool own_formula = std::all_of(truth.effects.begin(), truth.effects.end(),
+                                       [](const TrueEffect& effect) { return effect.kind == "catalogue"; });
+  if (Nameable(what, truth) && own_formula) return false;
+  Names said;
+  for (std::size_t at = 0; at <= label.size();) {
+    const std::size_t end = std::min(label.find(" + ", at), label.size());
+    said.push_back(label.substr(at, end - at));
+    at = end + 3;
+  }
+  return FamiliesOf(said) == FamiliesOf(names);
+}
+
+std::pair<double, double> OnsetInterval(const std::vector<double>& contribution, double dt, double onset_s,
+                                        double noise_sd) {
+  const double limit = kUnnoticed * noise_sd * noise_sd;
+  const auto size = static_cast<long>(contribution.size());
+  const long onset = std::clamp(std::lround(onset_s / dt), 0L, size);
+  const auto squared = [&](long i) {
+    const double value = contribution[static_cast<std::size_t>(i)];
+    return value * value;
+  };
+  long first = onset, last = onset;
+  for (double sum = 0.0; first > 0 && (sum += squared(first - 1)) < limit; --first) {
+  }
+  for (double sum = 0.0; last < size && (sum += squared(last)) < limit; ++last) {
+  }
+  return {static_cast<double>(first) * dt, static_cast<double>(last) * dt};
+}
+
+std::optional<double> OnsetError(const gap::Result& result, const std::string& effect,
+                                 std::pair<double, double> interval) {
+  for (const gap::EffectFinding& found : result.effects) {
+    if (found.when.kind != gap::When::Kind::kFrom) continue;
+    if (found.name != effect && FamiliesOf({found.name}) != FamiliesOf({effect})) continue;
+    return std::max({0.0, interval.first - found.when.time_s, found.when.time_s - interval.second});
+  }
+  return std::nullopt;
+}
+
+}  // namespace armcmc::gap_bench

@@ -1,0 +1,245 @@
+#include "armcmc/gap_bench/strata.hpp"
+
+#include <algorithm>
+#include <armcmc/support/shared_files.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <stdexcept>
+
+#include "armcmc/gap_bench/scenario_text.hpp"
+
+namespace armcmc::gap_bench {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const Words kCatalogue = {"force_bias:constant",       "force_drift:linear",      "coulomb_friction:tanh",
+                          "presliding_friction:dahl",  "viscous_friction:linear", "inertia:rigid",
+                          "sensor_delay:dead_time",    "sensor_lag:first_order",  "stress_relaxation:linear",
+                          "adhesion:exponential",      "contact_offset:shift",    "sensor_saturation:clip",
+                          "periodic_disturbance:sine", "stiffness_drift:linear"};
+const Words kVariants = {"coulomb_friction:sign",
+                         "coulomb_friction:stribeck",
+                         "presliding_friction:lugre",
+                         "stress_relaxation:elastic",
+                         "stress_relaxation:two_time_constants",
+                         "adhesion:pull_off",
+                         "stiffness_drift:exponential",
+                         "sensor_lag:second_order",
+                         "force_drift:exponential",
+                         "periodic_disturbance:square"};
+const Words kOutside = {"quadratic_drag", "strain_stiffening", "backlash", "dead_zone", "spatial_ripple"};
+const Words kActingInOneMode = {"coulomb_friction:tanh", "presliding_friction:dahl", "viscous_friction:linear",
+                                "inertia:rigid", "periodic_disturbance:sine"};
+constexpr const char* kRich = "contact_rich";
+constexpr int kPairCells = 10, kUnequalPairCells = 3;
+
+struct NoiseVariant {
+  const char* name;
+  const char* table;
+};
+const std::vector<NoiseVariant> kNoises = {
+    {"white", "kind = \"gaussian\"\nstd_share = 0.01\n"},
+    {"coloured", "kind = \"gaussian\"\nstd_share = 0.01\ncorrelation = 0.0\ncorrelation_to = 0.8\n"},
+    {"red", "kind = \"gaussian\"\nstd_share = 0.01\ncorrelation = 0.95\n"},
+    {"student", "kind = \"student_t\"\nstd_share = 0.01\ndof = 4.0\n"},
+    {"growing", "kind = \"gaussian\"\nstd_share = 0.01\ngrowth = 1.0\n"}};
+
+/// FNV-1a: the same on every machine.
+std::uint64_t Hash(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash;
+}
+
+std::string Text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", value);
+  return text;
+}
+
+std::string GroupOf(double strength) { return "R " + Text(strength); }
+
+/// Writes the scenarios and gives every case the random numbers of its cell.
+class Builder {
+ public:
+  Builder(std::string stratum, int logs, std::uint64_t seed, std::filesystem::path folder)
+      : stratum_(std::move(stratum)), logs_(logs), seed_(seed), folder_(std::move(folder)) {}
+
+  /// Adds the logs of a cell; `finish` may change a case, with random numbers of its own.
+  template <typename Finish>
+  void Cell(const Case& like, const std::string& cell, const Finish& finish) {
+    for (int k = 0; k < logs_; ++k) {
+      std::mt19937_64 random(
+          Hash(std::to_string(seed_) + "/" + stratum_ + "/" + like.group + "/" + cell + "/" + std::to_string(k)));
+      Case one = like;
+      one.stratum = stratum_;
+      one.seed = 1 + random() % 999'999'999;
+      finish(&one, &random);
+      cases_.push_back(std::move(one));
+    }
+  }
+  void Cell(const Case& like, const std::string& cell) {
+    Cell(like, cell, [](Case*, std::mt19937_64*) {});
+  }
+
+  /// Writes a scenario. @return its path from the folder of the run.
+  [[nodiscard]] std::string Write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(folder_ / "scenarios");
+    const std::filesystem::path file = std::filesystem::path("scenarios") / (name + ".toml");
+    std::ofstream out(folder_ / file, std::ios::binary);
+    out << text;
+    if (!out.flush()) throw std::runtime_error((folder_ / file).string() + ": cannot be written");
+    return file.string();
+  }
+  [[nodiscard]] std::vector<Case> Take() { return std::move(cases_); }
+
+ private:
+  std::string stratum_;
+  int logs_;
+  std::uint64_t seed_;
+  std::filesystem::path folder_;
+  std::vector<Case> cases_;
+};
+
+std::string ScenarioOfPlant(const std::string& name) {
+  std::ifstream file(support::FindSharedFile("scenarios", name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+Case Like(const std::string& group, const std::string& scenario, const std::string& effect, double strength) {
+  Case like;
+  like.group = group;
+  like.scenario = scenario;
+  like.effect = effect;
+  like.strength = strength;
+  return like;
+}
+
+void Null(Builder* b) {
+  for (const char* scenario : {"contact_rich", "contact_rich_mm", "contact_sine", "contact_slow_triangle"})
+    for (const NoiseVariant& noise : kNoises) {
+      const std::string file = b->Write(std::string(scenario) + "_" + noise.name,
+                                        WithTable(ScenarioOfPlant(scenario), "noise.f", noise.table));
+      b->Cell(Like(scenario, file, "none", 1.0), noise.name);
+    }
+}
+
+void Each(Builder* b, const Words& effects, const std::vector<double>& strengths) {
+  for (const double strength : strengths)
+    for (const std::string& effect : effects) b->Cell(Like(GroupOf(strength), kRich, effect, strength), effect);
+}
+
+/// Two different effects of the catalogue, drawn.
+std::pair<std::string, std::string> DrawPair(std::mt19937_64* random) {
+  const std::size_t count = kCatalogue.size();
+  const std::size_t first = (*random)() % count, second = (first + 1 + (*random)() % (count - 1)) % count;
+  return {kCatalogue[first], kCatalogue[second]};
+}
+
+std::string HiddenTable(const std::string& effect, double strength) {
+  const std::size_t colon = effect.find(':');
+  return "\n[[hidden_effect]]\nname = \"" + effect.substr(0, colon) + "\"\nvariant = \"" + effect.substr(colon + 1) +
+         "\"\nstrength = " + Text(strength) + "\n";
+}
+
+void Pairs(Builder* b) {
+  for (int cell = 0; cell < kPairCells; ++cell)
+    b->Cell(Like("R 1 + 1", kRich, "", 1.0), std::to_string(cell), [](Case* one, std::mt19937_64* random) {
+      const auto pair = DrawPair(random);
+      one->effect = pair.first + "," + pair.second;
+    });
+  for (int cell = 0; cell < kUnequalPairCells; ++cell)
+    b->Cell(Like("R 0.3 + 3", kRich, "", 1.0), std::to_string(cell), [b](Case* one, std::mt19937_64* random) {
+      const auto [weak, strong] = DrawPair(random);
+      // The first table seeds the draws of both.
+      const std::string first = HiddenTable(weak, 0.3) + "seed = " + std::to_string(one->seed) + "\n";
+      one->scenario =
+          b->Write("pair_" + std::to_string(one->seed), ScenarioOfPlant(kRich) + first + HiddenTable(strong, 3.0));
+    });
+}
+
+void Onset(Builder* b) {
+  for (const std::string& effect : kCatalogue)
+    b->Cell(Like("R 1", kRich, effect, 1.0), effect, [](Case* one, std::mt19937_64* random) {
+      // Inside the part of the recording that is diagnosed, with two seconds before and 1.5 s after it.
+      one->gate = "from:" + Text(2.0 + 0.01 * static_cast<double>((*random)() % 350));
+    });
+}
+
+void Modes(Builder* b) {
+  for (const char* gate : {"contact", "free"})
+    for (const std::string& effect : kActingInOneMode)
+      b->Cell(Like(gate, kRich, effect, 1.0), effect, [gate](Case* one, std::mt19937_64*) { one->gate = gate; });
+}
+
+void Ablation(Builder* b) {
+  for (const double strength : {0.3, 1.0, 3.0})
+    for (const std::string& effect : kCatalogue) {
+      Case like = Like(GroupOf(strength), kRich, effect, strength);
+      like.without = {effect.substr(0, effect.find(':'))};
+      b->Cell(like, effect);
+    }
+}
+
+void Poor(Builder* b) {
+  for (const char* scenario : {"contact_sine", "contact_slow_triangle"})
+    for (const std::string& effect : kCatalogue) b->Cell(Like(scenario, scenario, effect, 1.0), effect);
+}
+
+void OneScenario(Builder* b, const char* scenario) {
+  for (const std::string& effect : kCatalogue) b->Cell(Like("R 1", scenario, effect, 1.0), effect);
+}
+
+using Fill = void (*)(Builder*);
+const std::vector<std::pair<std::string, Fill>>& Strata() {
+  static const std::vector<std::pair<std::string, Fill>> strata = {
+      {"null", Null},
+      {"singles",
+       [](Builder* b) {
+         Each(b, kCatalogue, {0.1, 0.3, 1.0, 3.0});
+       }},
+      {"scale", [](Builder* b) { OneScenario(b, "contact_rich_mm"); }},
+      {"pairs", Pairs},
+      {"onset", Onset},
+      {"modes", Modes},
+      {"outside",
+       [](Builder* b) {
+         Each(b, kOutside, {0.3, 1.0, 3.0});
+       }},
+      {"ablation", Ablation},
+      {"variants",
+       [](Builder* b) {
+         Each(b, kVariants, {0.3, 1.0, 3.0});
+       }},
+      {"poor", Poor},
+      {"paper", [](Builder* b) { OneScenario(b, "hunt_crossley_paper"); }}};
+  return strata;
+}
+
+}  // namespace
+
+const std::vector<std::string>& StratumNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& stratum : Strata()) all.push_back(stratum.first);
+    return all;
+  }();
+  return names;
+}
+
+std::vector<Case> CasesOf(const std::string& stratum, int logs_per_cell, std::uint64_t seed,
+                          const std::filesystem::path& folder) {
+  for (const auto& [name, fill] : Strata())
+    if (name == stratum) {
+      Builder builder(stratum, logs_per_cell, seed, folder);
+      fill(&builder);
+      return builder.Take();
+    }
+  throw std::invalid_argument("there is no stratum \"" + stratum + "\"");
+}
+
+}  // namespace armcmc::gap_bench

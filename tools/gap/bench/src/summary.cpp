@@ -1,0 +1,134 @@
+#include "armcmc/gap_bench/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "armcmc/effects/registry.hpp"
+#include "armcmc/gap_bench/score.hpp"
+
+namespace armcmc::gap_bench {
+namespace {
+
+constexpr int kBins = 10;
+constexpr double kVisible = 0.3;  // gap ratio from which an effect has to be found
+constexpr double kClear = 1.0;
+constexpr double kSure = 0.9;
+
+bool Answered(const Outcome& o) { return Counts(o) && o.grade != Grade::kFailed; }
+
+bool SingleEffect(const Outcome& o) {
+  const std::string& stratum = o.what.stratum;
+  return (stratum == "singles" || stratum == "scale" || stratum == "paper") && Answered(o);
+}
+
+}  // namespace
+
+int Row::counted() const {
+  return std::accumulate(count.begin(), count.end(), 0) - of(Grade::kNotMade) - of(Grade::kNotShown);
+}
+
+bool Counts(const Outcome& o) { return o.grade != Grade::kNotMade && o.grade != Grade::kNotShown; }
+
+std::vector<Row> Rows(const std::vector<Outcome>& outcomes) {
+  std::vector<Row> rows;
+  for (const Outcome& outcome : outcomes) {
+    auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) {
+      return r.stratum == outcome.what.stratum && r.group == outcome.what.group;
+    });
+    if (row == rows.end()) {
+      rows.push_back({outcome.what.stratum, outcome.what.group, {}});
+      row = std::prev(rows.end());
+    }
+    ++row->count[static_cast<std::size_t>(outcome.grade)];
+  }
+  return rows;
+}
+
+Calibration Calibrate(const std::vector<Outcome>& outcomes) {
+  Calibration calibration;
+  for (int b = 0; b < kBins; ++b) {
+    Bin bin;
+    bin.low = static_cast<double>(b) / kBins;
+    bin.high = static_cast<double>(b + 1) / kBins;
+    calibration.bins.push_back(bin);
+  }
+  for (const Outcome& outcome : outcomes) {
+    if (!Answered(outcome)) continue;
+    const double p = std::clamp(outcome.label_probability, 0.0, 1.0);
+    Bin& bin = calibration.bins[static_cast<std::size_t>(std::min(static_cast<int>(p * kBins), kBins - 1))];
+    ++bin.n;
+    bin.printed += p;
+    bin.right += outcome.label_right ? 1.0 : 0.0;
+    ++calibration.n;
+  }
+  for (Bin& bin : calibration.bins) {
+    if (bin.n == 0) continue;
+    calibration.error += std::abs(bin.printed - bin.right) / std::max(calibration.n, 1);
+    bin.printed /= bin.n;
+    bin.right /= bin.n;
+  }
+  return calibration;
+}
+
+Confusion Confuse(const std::vector<Outcome>& outcomes) {
+  Confusion confusion;
+  for (const EffectInfo* info : AllEffects::kInfos) confusion.names.emplace_back(info->name);
+  confusion.answers = confusion.names;
+  for (const char* answer : {"tie with the truth", "other set", "unnamed", "none"})
+    confusion.answers.emplace_back(answer);
+  const std::size_t tie = confusion.names.size();
+  confusion.count.assign(confusion.names.size(), std::vector<int>(confusion.answers.size(), 0));
+  for (const Outcome& outcome : outcomes) {
+    if (!SingleEffect(outcome) || outcome.what.strength < kVisible || outcome.truth.effects.size() != 1) continue;
+    const int row = FindEffect(outcome.truth.effects.front().name);
+    if (row < 0) continue;
+    const std::vector<Names> sets = SetsOf(outcome.answer.result);
+    std::size_t column = tie + 1;
+    if (outcome.grade == Grade::kTie)
+      column = tie;
+    else if (outcome.answer.result.verdict == gap::Verdict::kUnnamed)
+      column = tie + 2;
+    else if (outcome.answer.result.verdict == gap::Verdict::kNone)
+      column = tie + 3;
+    else if (sets.size() == 1 && sets.front().size() == 1 && FindEffect(sets.front().front()) >= 0)
+      column = static_cast<std::size_t>(FindEffect(sets.front().front()));
+    ++confusion.count[static_cast<std::size_t>(row)][column];
+  }
+  return confusion;
+}
+
+std::vector<double> Closures(const std::vector<Outcome>& outcomes) {
+  std::vector<double> closures;
+  for (const Outcome& o : outcomes)
+    if (ShownClosed(o)) closures.push_back(o.answer.result.gap.closed_fraction);
+  return closures;
+}
+
+bool ShownClosed(const Outcome& o) {
+  const std::string& stratum = o.what.stratum;
+  return (stratum == "singles" || stratum == "scale" || stratum == "pairs") && o.what.strength >= kClear &&
+         (o.grade == Grade::kRight || o.grade == Grade::kTie);
+}
+
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, values.size() - 1);
+  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+SureLabels CountSure(const std::vector<Outcome>& outcomes) {
+  SureLabels sure;
+  for (const Outcome& o : outcomes) {
+    if (!Answered(o) || o.label_probability < kSure) continue;
+    ++sure.n;
+    sure.right += o.label_right ? 1 : 0;
+  }
+  return sure;
+}
+
+}  // namespace armcmc::gap_bench
