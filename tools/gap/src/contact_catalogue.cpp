@@ -23,6 +23,16 @@ Coordinate Shape(const char* name, const char* unit, double unit_size, double lo
   return {name, unit, low, high, 0.5 * (low + high), 1.0, unit_size, true};
 }
 
+/// The same, with bounds beyond which the effect would be another.
+Coordinate Below(Coordinate shape) {
+  shape.other_above = true;
+  return shape;
+}
+Coordinate Above(Coordinate shape) {
+  shape.other_below = true;
+  return shape;
+}
+
 /// `count` values spread evenly over the inside of a coordinate's range.
 std::vector<double> Spread(const Coordinate& c, int count) {
   std::vector<double> values;
@@ -128,7 +138,7 @@ void AddSensorZero(const Signals& s, std::vector<EffectForm>* out) {
   out->push_back(drift);
   EffectForm exponential =
       Variant(drift, "exponential", "f + force (1 - exp(-t / time_constant))",
-              {Amplitude("force", "N", force, false), Shape("time_constant", "s", s.duration, 0.05, 1.5)}, 1);
+              {Amplitude("force", "N", force, false), Above(Shape("time_constant", "s", s.duration, 0.05, 1.5))}, 1);
   exponential.features = [exponential](const Signals& in, const double* shape) -> Matrix {
     const double tau = Value(exponential, 0, shape);
     return in.output_scale * (1.0 - (-(in.t.array() - in.origin) / tau).exp()).matrix();
@@ -140,8 +150,8 @@ void AddSensorZero(const Signals& s, std::vector<EffectForm>* out) {
 void AddDryFriction(const Signals& s, std::vector<EffectForm>* out) {
   const double force = s.output_scale, speed = s.scale_of(Role::kVelocity), length = s.scale_of(Role::kPosition);
   const Coordinate level = Amplitude("force", "N", force, true);
-  const Coordinate width = Shape("speed", "m/s", speed, 0.003, 0.4);
-  const Coordinate distance = Shape("distance", "m", length, 0.003, 0.6);
+  const Coordinate width = Below(Shape("speed", "m/s", speed, 0.003, 0.4));
+  const Coordinate distance = Below(Shape("distance", "m", length, 0.003, 0.6));
   const Coordinate stribeck_speed = Shape("stribeck_speed", "m/s", speed, 0.03, 1.0);
   EffectForm coulomb = FromCore("coulomb_friction", {level, width});
   coulomb.gates_by_mode = true;
@@ -219,9 +229,9 @@ void AddMechanism(const Signals& s, std::vector<EffectForm>* out) {
 void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   const double force = s.output_scale, length = s.scale_of(Role::kPosition);
   const Coordinate stiffness = Amplitude("stiffness", "N/m", force / length, true, 0.5, 20.0);
-  const Coordinate tau = Shape("time_constant", "s", 1.0, 15.0 * s.dt, 0.4 * s.duration);
+  const Coordinate tau = Below(Shape("time_constant", "s", 1.0, 15.0 * s.dt, 0.4 * s.duration));
   // What the branch remembers of the time before the recording: 1 it had relaxed, 0 it had seen nothing.
-  const Coordinate start{"start", "-", 0.0, 1.3, 1.0, 0.5, 1.0, false};
+  const Coordinate start = Below({"start", "-", 0.0, 1.3, 1.0, 0.5, 1.0, false});
   EffectForm relaxation = FromCore("stress_relaxation", {stiffness, tau, start});
   relaxation.features = [relaxation](const Signals& in, const double* shape) -> Matrix {
     const Vector depth = in.at(Role::kPosition).cwiseMax(0.0);
@@ -256,7 +266,7 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   out->push_back(two);
 
   const Coordinate tension = Amplitude("force", "N", force, true, 0.3);
-  const Coordinate reach = Shape("distance", "m", length, 0.015, 1.2);
+  const Coordinate reach = Below(Shape("distance", "m", length, 0.015, 1.2));
   EffectForm adhesion = FromCore("adhesion", {tension, reach});
   adhesion.features = [adhesion](const Signals& in, const double* shape) -> Matrix {
     const Eigen::ArrayXd x = in.at(Role::kPosition).array();
@@ -315,7 +325,7 @@ void AddSurfaceAndStiffness(const Signals& s, std::vector<EffectForm>* out) {
   out->push_back(drift);
   EffectForm exponential = Variant(
       drift, "exponential", "K (1 + share (1 - exp(-t / time_constant))) in place of K",
-      {{"share", "-", -0.95, 3.0, 0.0, 0.3, 1.0, false}, Shape("time_constant", "s", s.duration, 0.05, 1.5)}, 1);
+      {{"share", "-", -0.95, 3.0, 0.0, 0.3, 1.0, false}, Above(Shape("time_constant", "s", s.duration, 0.05, 1.5))}, 1);
   exponential.features = [exponential](const Signals& in, const double* shape) -> Matrix {
     const double tau = Value(exponential, 0, shape);
     return (1.0 - (-(in.t.array() - in.origin) / tau).exp()).matrix();

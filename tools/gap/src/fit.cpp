@@ -80,6 +80,16 @@ Matrix Basis(const Matrix& columns) {
 
 }  // namespace
 
+bool Fitted::on_edge() const {
+  constexpr double kNear = 1e-3;  // of the range
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const Coordinate& c = coordinates[i];
+    const double at = theta[static_cast<Eigen::Index>(i)], near = kNear * (c.upper - c.lower);
+    if ((c.other_below && at < c.lower + near) || (c.other_above && at > c.upper - near)) return true;
+  }
+  return false;
+}
+
 Matrix Fitted::Covariance(double s2) const {
   std::vector<Eigen::Index> free = FreeOf(at_bound);
   Matrix covariance = Matrix::Zero(theta.size(), theta.size());

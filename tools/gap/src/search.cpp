@@ -89,7 +89,7 @@ double Search::Closure(const CandidatePtr& candidate) const {
 
 bool Search::Adequate(const CandidatePtr& candidate, double gap) const {
   const Remainder& left = Judge(candidate);
-  if (Closure(candidate) < limits_.adequate_closure) return false;
+  if (candidate->fit.on_edge() || Closure(candidate) < limits_.adequate_closure) return false;
   const double floor = std::max(limits_.min_remainder, limits_.remainder_share * gap);
   return 2.0 * left.total() / rows_ < floor ||
          bootstrap_->ProbabilityAbove(left.gain, 0.1 * limits_.min_gain * rows_) < limits_.p_remainder;
@@ -353,7 +353,8 @@ Finding Search::Run(bool pairs) const {
     finding.verdict = Verdict::kUnnamed;
     finding.best = top;
     const CandidatePtr single = listed.front();
-    if (!finding.unlisted && Closure(single) > limits_.family_closure && FamilyHolds(single, singles)) {
+    if (!finding.unlisted && !single->fit.on_edge() && Closure(single) > limits_.family_closure &&
+        FamilyHolds(single, singles)) {
       finding.verdict = Verdict::kNamed;
       finding.approximate = true;
       finding.best = single;

@@ -180,7 +180,7 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
   };
   const auto holds = [&](const GapSummary& gap) {
     if (gap.gap_ratio < kUnseenRatio) return gap.after.rmse < kWorse * gap.before.rmse;
-    return gap.closed_high > limits.confirmed;
+    return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
   if (holds(closed(finding.best->fit))) return;
   for (const CandidatePtr& other : finding.tried) {

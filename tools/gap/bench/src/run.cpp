@@ -43,7 +43,7 @@ Answer Ask(const std::filesystem::path& recording, const std::vector<std::string
   try {
     gap::WorkflowRequest request;
     request.model = kModel;
-    request.data = gap::ReadRecording(recording, gap::MakeEquation(kModel)->columns(), false);
+    request.data = gap::ReadRecording(recording, gap::ColumnsOf(kModel), false);
     request.diagnose.without = without;
     answer.result = gap::RunWorkflow(request).result;
     answer.result.figures = {};

@@ -24,6 +24,8 @@ struct Fitted {
   double log_evidence = 0.0;   ///< Laplace, with the catalogue's priors, nats.
 
   [[nodiscard]] double score() const { return heldout.sum(); }
+  /// Whether a coordinate rests on a bound beyond which the effect would be another.
+  [[nodiscard]] bool on_edge() const;
   /// s2 H^-1 of the whitened fit, zero for coordinates at a bound.
   [[nodiscard]] Matrix Covariance(double s2) const;
 };

@@ -19,14 +19,15 @@ struct Thresholds {
   double sure = 0.80;            ///< Probability that a single name must have,
   double sure_set = 0.90;        ///< or the set that it is widened to,
   double doubt = 0.50;           ///< and below which no name is given.
-  double confirmed = 0.80;       ///< Closed fraction on sealed data that must be within the interval, to keep a name.
-  double family_closure = 0.92;  ///< Closure that names a family whose formula is not adequate.
-  double family_lead = 0.90;     ///< Share of the best gain that every other family must stay below.
-  double relaxed_share = 0.70;   ///< Of what its free shape gains, that the formula itself must gain.
-  double event_nats = 30.0;      ///< Evidence that names an effect seen in too few blocks to leave any out.
-  double event_excess = 10.0;    ///< Robust standard deviations of a block's energy that make it an event,
-  double event_rest = 5.0;       ///< and up to which it may stay one once it is explained.
-  int min_active_blocks = 4;     ///< Blocks in which an effect must act.
+  double confirmed = 0.90;       ///< Closed fraction on sealed data that must be within the interval, to keep a name,
+  double at_least_closed = 0.50;  ///< and the least that it may be.
+  double family_closure = 0.92;   ///< Closure that names a family whose formula is not adequate.
+  double family_lead = 0.90;      ///< Share of the best gain that every other family must stay below.
+  double relaxed_share = 0.70;    ///< Of what its free shape gains, that the formula itself must gain.
+  double event_nats = 30.0;       ///< Evidence that names an effect seen in too few blocks to leave any out.
+  double event_excess = 10.0;     ///< Robust standard deviations of a block's energy that make it an event,
+  double event_rest = 5.0;        ///< and up to which it may stay one once it is explained.
+  int min_active_blocks = 4;      ///< Blocks in which an effect must act.
 };
 
 }  // namespace armcmc::gap
