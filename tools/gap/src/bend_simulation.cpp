@@ -1,13 +1,14 @@
 #include "armcmc/gap/bend_simulation.hpp"
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <cstddef>
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace armcmc::gap {
 namespace {
 
-constexpr int kCorrections = 1;
+constexpr double kTiny = 1e-300;
 
 }  // namespace
 
@@ -53,10 +54,17 @@ void BendSimulation::Run(const Vector& t, const Vector& gauge, State x, const st
       return State{step_[0] * x.angle + step_[1] * x.rate + first_[0] * start + second_[0] * end,
                    step_[2] * x.angle + step_[3] * x.rate + first_[1] * start + second_[1] * end};
     };
-    State next = moved(constants_.q1 * gauge[i + 1] + extra);
-    for (int k = 0; k < kCorrections && !forces.empty(); ++k)
-      next = moved(constants_.q1 * gauge[i + 1] + added(next, i + 1));
-    x = next;
+    if (forces.empty()) {
+      x = moved(constants_.q1 * gauge[i + 1]);
+      continue;
+    }
+    // The force e at the end of the step solves e = added(moved(e)): one secant step, exact where it is linear. A stiff
+    // one (dry friction that turns within a sample) would swing about without.
+    const auto missed = [&](double e) { return added(moved(constants_.q1 * gauge[i + 1] + e), i + 1) - e; };
+    const double miss = missed(extra), half = extra + 0.5 * miss, half_miss = missed(half);
+    const double bend = half_miss - miss;
+    const double end = std::abs(bend) > kTiny ? half - half_miss * (half - extra) / bend : half + half_miss;
+    x = moved(constants_.q1 * gauge[i + 1] + end);
   }
 }
 

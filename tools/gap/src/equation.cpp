@@ -51,6 +51,12 @@ std::vector<std::unique_ptr<Equation>> MakeEquations(const std::string& model) {
   return equations;
 }
 
+std::unique_ptr<Equation> MakeEquation(const std::string& model) {
+  auto equations = MakeEquations(model);
+  if (equations.size() != 1) throw std::invalid_argument(model + " has several equations");
+  return std::move(equations.front());
+}
+
 std::vector<std::string> ColumnsOf(const std::string& model) {
   std::vector<std::string> columns;
   for (const auto& equation : MakeEquations(model))

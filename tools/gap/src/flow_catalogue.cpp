@@ -170,10 +170,7 @@ void AddUnlisted(const Signals& s, std::vector<EffectForm>* out) {
   SetStarts(&zero, {});
   out->push_back(zero);
 
-  EffectForm tube = UnlistedForm("a lag of the pressure-rate sensor", "tube", "g, tau g' + g = p'", Slot::kMemory);
-  tube.slot = Slot::kLag;
-  const std::vector<EffectForm> latency = LatencyForms(s);
-  tube = latency[1];
+  EffectForm tube = LatencyForms(s)[1];
   tube.listed = false;
   tube.effect = "a lag of the pressure-rate sensor";
   tube.family = "tube";

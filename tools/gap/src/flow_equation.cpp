@@ -21,7 +21,7 @@ constexpr double kMinOpenShare = 0.02;  // of the samples
 
 class FlowEquation final : public Equation {
  public:
-  explicit FlowEquation(const std::string& model) : model_(model), constants_(BuiltinSettings(model).constants) {}
+  explicit FlowEquation(const std::string& model) : constants_(BuiltinSettings(model).constants) {}
 
   std::string name() const override { return "flow law"; }
   std::string output_name() const override { return "pressure rate"; }
@@ -188,7 +188,6 @@ class FlowEquation final : public Equation {
     return std::sqrt((1.0 + cosine) / std::max(1.0 - cosine, 1e-15));
   }
 
-  std::string model_;
   PlantConstants constants_;
 };
 

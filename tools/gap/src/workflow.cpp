@@ -238,6 +238,17 @@ Parts Divide(const WorkflowRequest& request) {
   return {request.data.Slice(0, rows), request.data, rows};
 }
 
+/// Where the first part of a recording lacks nothing in any equation, all of it is looked at: a load may come late.
+/// @return whether something is missing then; `plant` is what all of the recording says.
+bool BeginsLate(const WorkflowRequest& request, PlantDiagnosis* plant) {
+  if (request.heldout || plant->equations.size() < 2 || !plant->carrying().suitability.can_name) return false;
+  if (plant->carrying().diagnosis.finding.verdict != Verdict::kNone) return false;
+  PlantDiagnosis whole = DiagnosePlant(request.model, request.data, request.diagnose);
+  if (whole.carrying().diagnosis.finding.verdict == Verdict::kNone) return false;
+  *plant = std::move(whole);
+  return true;
+}
+
 }  // namespace
 
 WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
@@ -254,6 +265,10 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
 
   clock.Begin("compare and name", 0.0);
   PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
+  if (BeginsLate(request, &plant))
+    result.notes.push_back(
+        "what is missing begins in the last 30 % of the recording: nothing could be kept sealed, and the gap is shown "
+        "on data that were diagnosed, too. Record another run for --heldout");
   const Equation* equation = plant.carrying().equation.get();
   Diagnosis& diagnosis = plant.carrying().diagnosis;
   const std::string in = equation->name().empty() ? "" : " in the " + equation->name();

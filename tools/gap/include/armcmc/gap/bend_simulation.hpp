@@ -12,8 +12,8 @@ namespace armcmc::gap {
 /// Free run of  alpha'' = q1 (p - p_atm) - q2 alpha' - q3 alpha + forces(alpha, alpha', t)  on the samples of a
 /// recording.
 ///
-/// The linear part is exact for a pressure that is linear between samples; the forces are, too, by one correction a
-/// step of their value at its end.
+/// The linear part is exact for a pressure that is linear between samples; the forces are
+/// solved for at the end of each step.
 class BendSimulation {
  public:
   BendSimulation(const PlantConstants& constants, double dt);

@@ -103,6 +103,9 @@ class Equation {
 /// The equations of a built-in model: each is diagnosed on the same recording.
 /// @throws std::invalid_argument listing the models that there are.
 [[nodiscard]] std::vector<std::unique_ptr<Equation>> MakeEquations(const std::string& model);
+/// The equation of a model that has one.
+/// @throws std::invalid_argument for any other.
+[[nodiscard]] std::unique_ptr<Equation> MakeEquation(const std::string& model);
 /// The columns that the equations of a model read, time first.
 [[nodiscard]] std::vector<std::string> ColumnsOf(const std::string& model);
 

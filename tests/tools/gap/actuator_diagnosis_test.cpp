@@ -1,0 +1,157 @@
+// What is hidden in the simulated actuator, named from its recordings alone.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/gap/plant_diagnosis.hpp"
+#include "armcmc/gap/workflow.hpp"
+#include "support/paths.hpp"
+#include "tools/gap/actuator_rig.hpp"
+
+namespace armcmc::gap::test {
+namespace {
+
+constexpr char kModel[] = "soft_actuator_excited";
+constexpr double kSeconds = 8.0;
+
+std::vector<std::vector<std::string>> Names(const Finding& finding) {
+  std::vector<std::vector<std::string>> names;
+  for (const CandidatePtr& candidate : finding.set) names.push_back(candidate->names());
+  return names;
+}
+
+bool Contains(const Finding& finding, const std::string& effect) {
+  const auto names = Names(finding);
+  return std::find(names.begin(), names.end(), std::vector<std::string>{effect}) != names.end();
+}
+
+struct Case {
+  const char* effect;
+  const char* equation;
+  bool alone;  ///< Nothing else explains it as well in this motion.
+};
+
+class Recovery : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Recovery, NamesWhatIsHiddenInItsOwnEquation) {
+  const Recording recording = RecordPlant(kModel, {{GetParam().effect, 1.0, {}}}, 61, kSeconds);
+  const PlantDiagnosis plant = DiagnosePlant(kModel, recording);
+  const Finding& finding = plant.carrying().diagnosis.finding;
+  EXPECT_EQ(plant.carrying().equation->name(), GetParam().equation);
+  EXPECT_TRUE(Contains(finding, GetParam().effect));
+  if (GetParam().alone) {
+    EXPECT_EQ(finding.verdict, Verdict::kNamed);
+  }
+  EXPECT_TRUE(plant.Others().empty());
+}
+
+// A constant pressure bias and a constant angle bias bend the actuator alike: only the vent flow tells them apart.
+INSTANTIATE_TEST_SUITE_P(
+    Actuator, Recovery,
+    ::testing::Values(Case{"leak", "flow law", true}, Case{"valve_dead_band", "flow law", true},
+                      Case{"valve_lag", "flow law", true}, Case{"supply_droop", "flow law", true},
+                      Case{"pressure_bias", "bend equation", false}, Case{"angle_bias", "bend equation", false},
+                      Case{"joint_friction", "bend equation", true}, Case{"cubic_stiffness", "bend equation", true},
+                      Case{"hysteresis", "bend equation", true}, Case{"gravity_load", "bend equation", false},
+                      Case{"payload_step", "bend equation", true}, Case{"sensor_delay", "bend equation", true},
+                      Case{"periodic_disturbance", "bend equation", true}),
+    [](const auto& at) { return std::string(at.param.effect); });
+
+TEST(PlantDiagnosis, NamesNothingWhereNothingIsHidden) {
+  for (const unsigned long long seed : {71u, 72u, 73u}) {
+    const PlantDiagnosis plant = DiagnosePlant(kModel, RecordPlant(kModel, {}, seed, kSeconds));
+    for (const EquationDiagnosis& one : plant.equations)
+      EXPECT_EQ(one.diagnosis.finding.verdict, Verdict::kNone) << one.equation->name() << ", seed " << seed;
+  }
+}
+
+TEST(PlantDiagnosis, FindsAnEffectInEachEquation) {
+  const Recording recording = RecordPlant(kModel, {{"leak", 1.0, {}}, {"joint_friction", 1.0, {}}}, 62, kSeconds);
+  const PlantDiagnosis plant = DiagnosePlant(kModel, recording);
+  ASSERT_EQ(plant.Others().size(), 1u);
+  const std::vector<std::vector<std::string>> both = {Names(plant.carrying().diagnosis.finding).front(),
+                                                      Names(plant.Others().front()->diagnosis.finding).front()};
+  EXPECT_TRUE(std::find(both.begin(), both.end(), std::vector<std::string>{"leak"}) != both.end());
+  EXPECT_TRUE(std::find(both.begin(), both.end(), std::vector<std::string>{"joint_friction"}) != both.end());
+}
+
+TEST(PlantDiagnosis, LetsTheFlowLawDecideBetweenTheTwoBiases) {
+  // 1500 Pa change the vent flow at 15 kPa by 5 %; the same offset of the angle leaves it alone.
+  const Recording pressure = RecordPlant(kModel, {{"pressure_bias", 1.0, {1500.0}}}, 63, kSeconds);
+  const PlantDiagnosis one = DiagnosePlant(kModel, pressure);
+  EXPECT_EQ(Names(one.carrying().diagnosis.finding), (std::vector<std::vector<std::string>>{{"pressure_bias"}}));
+  const Recording angle = RecordPlant(kModel, {{"angle_bias", 1.0, {0.0318}}}, 63, kSeconds);
+  const PlantDiagnosis other = DiagnosePlant(kModel, angle);
+  EXPECT_TRUE(Contains(other.carrying().diagnosis.finding, "angle_bias"));
+  EXPECT_FALSE(Contains(other.carrying().diagnosis.finding, "pressure_bias"));
+}
+
+TEST(PlantDiagnosis, SaysThatTheConstantsAreWrongRatherThanToNameAnEffect) {
+  // The recording is of the excited plant; the angle is scaled as if q1 were 3 % larger.
+  Recording recording = RecordPlant(kModel, {}, 64, kSeconds);
+  recording.columns[5] *= 1.03;
+  const PlantDiagnosis plant = DiagnosePlant(kModel, recording);
+  const Finding& finding = plant.carrying().diagnosis.finding;
+  EXPECT_EQ(plant.carrying().equation->name(), "bend equation");
+  EXPECT_EQ(finding.verdict, Verdict::kUnnamed);
+  ASSERT_TRUE(finding.unlisted);
+  EXPECT_EQ(finding.unlisted->fit.hypothesis.terms[0].form->family, "constants");
+}
+
+TEST(ActuatorWorkflow, SaysWhichEquationAndThatTheEstimatorCannotRunTheEffect) {
+  WorkflowRequest request;
+  request.model = kModel;
+  request.data = RecordPlant(kModel, {{"leak", 1.0, {}}}, 65, kSeconds);
+  const WorkflowOutcome outcome = RunWorkflow(request);
+  const Result& result = outcome.result;
+  EXPECT_EQ(result.verdict, Verdict::kNamed);
+  EXPECT_EQ(result.equation, "flow law");
+  EXPECT_NE(result.sentence.find("in the flow law: leak"), std::string::npos) << result.sentence;
+  ASSERT_FALSE(result.where.empty());
+  EXPECT_EQ(result.where.front().feature.rfind("flow law: ", 0), 0u) << result.where.front().feature;
+  EXPECT_FALSE(outcome.augmented);
+  EXPECT_TRUE(std::any_of(result.notes.begin(), result.notes.end(),
+                          [](const std::string& note) { return note.find("offline") != std::string::npos; }));
+  EXPECT_GT(result.gap.closed_fraction, 0.9);
+  EXPECT_EQ(result.gap.unit, "Pa/s");
+}
+
+TEST(ActuatorWorkflow, FindsAPayloadThatComesAfterThePartThatIsDiagnosed) {
+  WorkflowRequest request;
+  request.model = kModel;
+  request.data = RecordPlant(kModel, {{"payload_step", 1.0, {1.0, 0.8 * kSeconds}}}, 67, kSeconds);
+  const Result result = RunWorkflow(request).result;
+  EXPECT_EQ(result.verdict, Verdict::kNamed);
+  ASSERT_EQ(result.effects.size(), 1u);
+  EXPECT_EQ(result.effects[0].name, "payload_step");
+  EXPECT_NEAR(result.effects[0].parameters[0].mean, 1.0, 0.1);
+  EXPECT_NEAR(result.effects[0].parameters[1].mean, 0.8 * kSeconds, 0.1);
+  EXPECT_TRUE(std::any_of(result.notes.begin(), result.notes.end(),
+                          [](const std::string& note) { return note.find("sealed") != std::string::npos; }));
+}
+
+TEST(ActuatorWorkflow, NamesNothingInAFlowLawThatIsNotExcitedAndProposesTheExcitation) {
+  ARMCMC_REQUIRE_DATA("paper/soft_actuator.csv");
+  WorkflowRequest request;
+  request.model = "soft_actuator";
+  request.data =
+      ReadRecording(armcmc::test::FindData("paper/soft_actuator.csv")->string(), ColumnsOf("soft_actuator"), false);
+  const Result result = RunWorkflow(request).result;
+  EXPECT_EQ(result.verdict, Verdict::kNone);
+  EXPECT_TRUE(result.effects.empty());
+  EXPECT_NE(result.sentence.find("condition number"), std::string::npos) << result.sentence;
+  EXPECT_NE(result.separate_by.scenario_text.find("pressure_steps"), std::string::npos);
+}
+
+TEST(ActuatorWorkflow, JudgesTheBendEquationOfARecordingThatDoesNotExciteTheFlowLaw) {
+  const Recording recording = RecordPlant("soft_actuator_paper", {{"cubic_stiffness", 1.0, {300.0}}}, 66, 12.0);
+  const PlantDiagnosis plant = DiagnosePlant("soft_actuator", recording);
+  EXPECT_FALSE(plant.equations[0].suitability.can_name);
+  EXPECT_EQ(plant.carrying().equation->name(), "bend equation");
+  EXPECT_TRUE(Contains(plant.carrying().diagnosis.finding, "cubic_stiffness"));
+}
+
+}  // namespace
+}  // namespace armcmc::gap::test
