@@ -67,6 +67,15 @@ TEST(PlantDiagnosis, NamesNothingWhereNothingIsHidden) {
   }
 }
 
+TEST(PlantDiagnosis, EstimatesALagThatIsShorterThanASample) {
+  const Recording recording = RecordPlant(kModel, {{"valve_lag", 1.0, {0.26e-3}}}, 61, kSeconds);
+  const PlantDiagnosis plant = DiagnosePlant(kModel, recording);
+  const Finding& finding = plant.equations[0].diagnosis.finding;
+  ASSERT_TRUE(Contains(finding, "valve_lag"));
+  const Fitted& fit = finding.best->fit;
+  EXPECT_NEAR(fit.coordinates.back().Value(fit.theta[fit.theta.size() - 1]), 0.26e-3, 0.03e-3);
+}
+
 TEST(PlantDiagnosis, FindsAnEffectInEachEquation) {
   const Recording recording = RecordPlant(kModel, {{"leak", 1.0, {}}, {"joint_friction", 1.0, {}}}, 62, kSeconds);
   const PlantDiagnosis plant = DiagnosePlant(kModel, recording);

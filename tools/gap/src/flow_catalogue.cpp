@@ -70,12 +70,13 @@ void AddLag(const Signals& s, std::vector<EffectForm>* out) {
   lag.slot = Slot::kDrive;
   lag.num_amplitudes = 0;
   lag.linear = false;
-  lag.coordinates = {ShapeOf("tau", "s", s.dt, 0.02, 300.0)};
+  lag.coordinates = {ShapeOf("tau", "s", s.dt, 0.1, 300.0)};
   lag.own_groups = {"change of opening", "change of the rate"};
   lag.features = [lag](const Signals& in, const double* shape) -> Matrix {
     return Leaky(Opening(in), ShapeValue(lag, 0, shape) / in.dt) - Opening(in);
   };
-  SetStarts(&lag, {8});
+  // Below a sample the effect goes with exp(-dt / tau): a step of Newton's from afar misses it.
+  SetStarts(&lag, {24});
   out->push_back(lag);
   EffectForm second = VariantOf(lag, "second_order", "s, (tau d/dt + 1)^2 s = u_c - u_d");
   second.features = [second](const Signals& in, const double* shape) -> Matrix {
