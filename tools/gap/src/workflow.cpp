@@ -182,22 +182,40 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     if (gap.gap_ratio < kUnseenRatio) return gap.after.rmse < kWorse * gap.before.rmse;
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
-  if (holds(closed(finding.best->fit))) return;
-  for (const CandidatePtr& other : finding.tried) {
-    if (other->names() != finding.best->names() || !holds(closed(other->fit))) continue;
-    result->notes.push_back("on the data kept apart " + Joined(Texts(finding.best), " and ") +
-                            " holds only with another formula: " + other->added().back().form->formula);
-    other->probability = finding.best->probability;
-    finding.best = other;
-    finding.set = {other};
-    finding.verdict = Verdict::kNamed;
+  std::vector<CandidatePtr> kept;
+  double lost = 0.0;
+  for (const CandidatePtr& member : finding.set) {
+    if (holds(closed(member->fit))) {
+      kept.push_back(member);
+      continue;
+    }
+    const auto other = std::find_if(finding.tried.begin(), finding.tried.end(), [&](const CandidatePtr& c) {
+      return c != member && c->names() == member->names() && holds(closed(c->fit));
+    });
+    if (other == finding.tried.end()) {
+      result->notes.push_back(Joined(Texts(member), " and ") +
+                              " explains the first part of the data but not the part kept apart: struck off");
+      lost += member->probability;
+      member->probability = 0.0;
+      continue;
+    }
+    result->notes.push_back("on the data kept apart " + Joined(Texts(member), " and ") +
+                            " holds only with another formula: " + (*other)->added().back().form->formula);
+    (*other)->probability = member->probability;
+    member->probability = 0.0;
     finding.approximate = true;
-    return;
+    kept.push_back(*other);
   }
-  result->notes.push_back(Joined(Texts(finding.best), " and ") +
-                          " explains the first part of the data but not the part kept apart: no name is given");
-  finding.verdict = Verdict::kUnnamed;
-  finding.set.clear();
+  if (kept.empty()) {
+    finding.verdict = Verdict::kUnnamed;
+    finding.p_unnamed = std::max(finding.p_unnamed, lost);
+  } else {
+    // What was struck off goes to those that hold.
+    for (const CandidatePtr& member : kept) member->probability += lost / static_cast<double>(kept.size());
+    finding.verdict = kept.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;
+    finding.best = kept.front();
+  }
+  finding.set = kept;
 }
 
 /// What the equations beside the carrier lack: named effects join the verdict, anything else is said.

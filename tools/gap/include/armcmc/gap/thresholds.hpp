@@ -7,7 +7,7 @@ struct Thresholds {
   double min_gain = 0.005;        ///< What is predictable beyond the model below this is never named.
   double min_remainder = 0.0015;  ///< What stays predictable below this is nothing.
   double remainder_share = 0.03;  ///< An adequate hypothesis leaves less than this share of the gap.
-  double p_missing = 0.99;        ///< Bootstrap probability that anything is missing, to say so.
+  double p_missing = 0.95;        ///< Bootstrap probability that anything is missing, to say so.
   double p_reject = 0.98;         ///< Bootstrap probability that a rival is worse, to reject it.
   double adequate_closure = 0.8;  ///< An adequate hypothesis closes this share of the gap, whatever is significant.
   double p_remainder = 0.70;      ///< Bootstrap probability that something is left, to call a hypothesis inadequate.
