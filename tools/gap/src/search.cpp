@@ -302,11 +302,12 @@ Finding Search::Run(bool pairs) const {
   // A flexible model sees what has no name, a name what no flexible model has the shape for.
   const double gap = finding.gap = std::max(2.0 * std::max(flexible.sum(), named.sum()) / rows_, 0.0);
   for (const Vector& gain : {flexible, named})
-    if (2.0 * gain.sum() / rows_ > limits_.min_gain)
+    if (2.0 * gain.sum() / rows_ > std::max(limits_.min_gain, 2.0 * limits_.min_nats / rows_))
       finding.p_missing =
           std::max(finding.p_missing, bootstrap_->ProbabilityAbove(gain, 0.1 * limits_.min_gain * rows_));
   finding.tried = singles;
-  if (!(gap > limits_.min_gain) || finding.p_missing < limits_.p_missing) {
+  const double least = std::max(limits_.min_gain, 2.0 * limits_.min_nats / rows_);
+  if (!(gap > least) || finding.p_missing < limits_.p_missing) {
     JudgeEvents(singles, &finding);
     return finding;
   }
@@ -380,7 +381,9 @@ void Search::Hedge(Finding* finding) const {
   for (const CandidatePtr& other : others) {
     if (sum >= limits_.sure_set || finding->set.size() >= 3) break;
     const bool mine = other->names() == finding->best->names();
-    if (mine || !other->exact() || other->probability < 0.05 || !Adequate(other, finding->gap)) continue;
+    if (mine || !other->exact() || other->probability < 0.05 || !Adequate(other, finding->gap) ||
+        Gain(other) < limits_.adequate_closure * Gain(finding->best))
+      continue;
     finding->set.push_back(other);
     sum += other->probability;
   }

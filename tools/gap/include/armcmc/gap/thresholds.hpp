@@ -6,6 +6,8 @@ namespace armcmc::gap {
 struct Thresholds {
   double min_gain = 0.005;        ///< What is predictable beyond the model below this is never named.
   double min_remainder = 0.0015;  ///< What stays predictable below this is nothing.
+  double min_nats = 20.0;         ///< Nor is what is worth less than this: a line found by looking at every frequency
+                                  ///< of a short recording is worth half of it by chance.
   double remainder_share = 0.03;  ///< An adequate hypothesis leaves less than this share of the gap.
   double p_missing = 0.95;        ///< Bootstrap probability that anything is missing, to say so.
   double p_reject = 0.98;         ///< Bootstrap probability that a rival is worse, to reject it.
