@@ -14,6 +14,16 @@ Coordinate ShapeOf(const char* name, const char* unit, double unit_size, double 
   return {name, unit, low, high, 0.5 * (low + high), 1.0, unit_size, true};
 }
 
+Coordinate UpTo(Coordinate shape) {
+  shape.other_above = true;
+  return shape;
+}
+
+Coordinate DownTo(Coordinate shape) {
+  shape.other_below = true;
+  return shape;
+}
+
 void SetStarts(EffectForm* form, const std::vector<int>& counts) {
   std::vector<std::vector<double>> grid{std::vector<double>(static_cast<std::size_t>(form->num_amplitudes), 0.0)};
   for (std::size_t s = 0; s < counts.size(); ++s) {

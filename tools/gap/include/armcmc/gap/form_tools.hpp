@@ -11,6 +11,9 @@ namespace armcmc::gap {
                                      double sd = 0.2, double upper = 3.0);
 /// A length, speed, time or opening: log-normal around the middle of its range, given in multiples of `unit_size`.
 [[nodiscard]] Coordinate ShapeOf(const char* name, const char* unit, double unit_size, double lower, double upper);
+/// The same shape, with an upper or a lower bound beyond which the effect would be another.
+[[nodiscard]] Coordinate UpTo(Coordinate shape);
+[[nodiscard]] Coordinate DownTo(Coordinate shape);
 /// Starts with amplitudes of zero, over a grid of all shapes: counts[i] values of the i-th shape.
 void SetStarts(EffectForm* form, const std::vector<int>& counts);
 /// Physical value of a form's shape.

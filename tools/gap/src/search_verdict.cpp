@@ -1,0 +1,111 @@
+// What the scores of a search amount to: few events, rivals without a name, probabilities, doubt.
+
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/gap/search.hpp"
+
+namespace armcmc::gap {
+
+bool Search::Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const {
+  if (named->added().size() > 1) return !Better(named->fit, unlisted->fit);
+  const Vector lead = unlisted->fit.heldout - named->fit.heldout;
+  return lead.sum() > limits_.tie_nats && bootstrap_->ProbabilityAbove(lead, 0.0) > limits_.p_outdone;
+}
+
+bool Search::FamilyHolds(const CandidatePtr& best, const Candidates& singles) const {
+  const std::string family = best->families().front();
+  return std::all_of(singles.begin(), singles.end(), [&](const CandidatePtr& rival) {
+    return rival->families().front() == family || Gain(rival) < limits_.family_lead * Gain(best);
+  });
+}
+
+void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
+  const Vector energy = BlockSquares(base_->fit.whitened_residual);
+  const auto median_of = [](Vector values) {
+    std::nth_element(values.data(), values.data() + kNumBlocks / 2, values.data() + kNumBlocks);
+    return values[kNumBlocks / 2];
+  };
+  const double median = median_of(energy);
+  const double spread = 1.4826 * median_of((energy.array() - median).abs().matrix()) + 1e-300;
+  const auto edges = BlockEdges(base_->fit.whitened_residual.size());
+  std::vector<Eigen::Index> events;
+  for (Eigen::Index b = 0; b < kNumBlocks; ++b)
+    if (energy[b] > median + limits_.event_excess * spread) events.push_back(b);
+  if (events.empty()) return;
+
+  Candidates pool = singles;
+  for (const CandidatePtr& gated : ExtendGated(base_, singles, 1)) pool.push_back(gated);
+  const auto evidence = [&](const CandidatePtr& c) { return c->fit.log_evidence - base_->fit.log_evidence; };
+  std::stable_sort(pool.begin(), pool.end(), [&](const auto& a, const auto& b) { return evidence(a) > evidence(b); });
+  const auto quiet = [&](const CandidatePtr& c) {
+    const Vector left = BlockSquares(c->fit.whitened_residual);
+    return std::all_of(events.begin(), events.end(),
+                       [&](Eigen::Index b) { return left[b] < median + limits_.event_rest * spread; });
+  };
+  const double margin = std::max(limits_.tie_nats, limits_.tie_share * evidence(pool.front()));
+  Candidates good;
+  if (evidence(pool.front()) > limits_.event_nats && pool.front()->fit.hypothesis.terms.back().form->listed)
+    for (const CandidatePtr& c : pool)
+      if (c->exact() && evidence(pool.front()) - evidence(c) < margin && quiet(c)) good.push_back(c);
+  if (good.empty()) {
+    for (const Eigen::Index b : events)
+      finding->events_s.push_back(fitter_->signals().t[edges[static_cast<std::size_t>(b)]]);
+    return;
+  }
+  finding->set = OnePerName(good);
+  finding->verdict = finding->set.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;
+  finding->best = finding->set.front();
+  finding->gap = 2.0 * evidence(finding->best) / rows_;
+  finding->p_missing = 1.0;
+  double total = 0.0;
+  for (const CandidatePtr& c : finding->set) total += std::exp(evidence(c) - evidence(finding->best));
+  for (const CandidatePtr& c : finding->set) c->probability = std::exp(evidence(c) - evidence(finding->best)) / total;
+}
+
+void Search::Hedge(Finding* finding) const {
+  double sum = finding->best->probability;
+  if (sum >= limits_.sure) return;
+  Candidates others = OnePerName(finding->tried);
+  std::stable_sort(others.begin(), others.end(),
+                   [](const auto& a, const auto& b) { return a->probability > b->probability; });
+  for (const CandidatePtr& other : others) {
+    if (sum >= limits_.sure_set || finding->set.size() >= 3) break;
+    const bool mine = other->names() == finding->best->names();
+    if (mine || !other->exact() || other->probability < 0.05 || !Adequate(other, finding->gap) ||
+        Gain(other) < limits_.adequate_closure * Gain(finding->best))
+      continue;
+    finding->set.push_back(other);
+    sum += other->probability;
+  }
+  if (sum < limits_.doubt) {
+    finding->verdict = Verdict::kUnnamed;
+    finding->set.clear();
+  } else if (finding->set.size() > 1) {
+    finding->verdict = Verdict::kAmbiguous;
+  }
+}
+
+void Search::AssignProbabilities(Finding* finding) const {
+  // One candidate a name; differences that do not decide a verdict do not decide a probability either.
+  constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth
+  constexpr std::size_t kCompared = 12;
+  Candidates compared = finding->set;
+  for (const CandidatePtr& candidate : OnePerName(finding->tried)) {
+    if (compared.size() >= kCompared) break;
+    const auto same = [&](const CandidatePtr& other) { return other->names() == candidate->names(); };
+    if (std::none_of(compared.begin(), compared.end(), same)) compared.push_back(candidate);
+  }
+  if (finding->approximate) {
+    finding->best->probability = finding->p_missing * (1.0 - finding->p_unnamed);
+    return;
+  }
+  Matrix scores(kNumBlocks, static_cast<Eigen::Index>(compared.size()));
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    scores.col(static_cast<Eigen::Index>(i)) = compared[i]->fit.heldout - base_->fit.heldout;
+  const Vector share = bootstrap_->SoftShare(scores, std::max(Margin(finding->gap, true) / kMarginOdds, 1.0));
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    compared[i]->probability = finding->p_missing * (1.0 - finding->p_unnamed) * share[static_cast<Eigen::Index>(i)];
+}
+
+}  // namespace armcmc::gap
