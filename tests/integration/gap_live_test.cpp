@@ -38,7 +38,7 @@ TEST_F(LiveModel, TheEstimatorRunsItAndFindsTheHiddenEffect) {
   ASSERT_EQ(plant.Wait(std::chrono::seconds(30)).code, 0) << plant.err();
   Finish(estimator.get());
   ASSERT_GT(recorder_->estimates().size(), 20u);
-  const estimate_t& last = recorder_->estimates().back();
+  const estimate_t last = recorder_->estimates().back();
   ASSERT_EQ(last.n_params, 4);
   EXPECT_THAT(reinterpret_cast<const char*>(last.param_name[3]), ::testing::StartsWith("force_bias"));
   EXPECT_NEAR(last.ar_map[3], truth, 0.2 * std::abs(truth));
