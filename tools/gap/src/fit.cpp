@@ -75,6 +75,7 @@ Matrix Basis(const Matrix& columns) {
   for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
   Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
   qr.setThreshold(1e-10);
+  if (qr.rank() == 0) return Matrix(scaled.rows(), 0);
   return qr.householderQ() * Matrix::Identity(scaled.rows(), qr.rank());
 }
 

@@ -17,6 +17,7 @@ Matrix OrthonormalBasis(const Matrix& columns) {
   for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
   Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
   qr.setThreshold(1e-10);
+  if (qr.rank() == 0) return Matrix(scaled.rows(), 0);
   return qr.householderQ() * Matrix::Identity(scaled.rows(), qr.rank());
 }
 
@@ -76,7 +77,7 @@ class Scan {
       }
       until.cross += c[i] * residual_[i];
       until.energy += c[i] * c[i];
-      until.basis += c[i] * basis_.row(i).transpose();
+      if (basis_.cols() > 0) until.basis += c[i] * basis_.row(i).transpose();
     }
     for (const GateCandidate& candidate : {from_best, until_best}) {
       const bool from = candidate.term.when.kind == When::Kind::kFrom;

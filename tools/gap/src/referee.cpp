@@ -85,8 +85,10 @@ Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* une
     Matrix gram(f + e + p, f + e + p);
     gram.topLeftCorner(f + e, f + e) = small.gram[b];
     gram.bottomRightCorner(p, p) = grams_.gram[b];
-    gram.bottomLeftCorner(p, f + e).noalias() = block.transpose() * own.middleRows(first, rows);
-    gram.topRightCorner(f + e, p) = gram.bottomLeftCorner(p, f + e).transpose();
+    if (own.cols() > 0) {
+      gram.bottomLeftCorner(p, f + e).noalias() = block.transpose() * own.middleRows(first, rows);
+      gram.topRightCorner(f + e, p) = gram.bottomLeftCorner(p, f + e).transpose();
+    }
     Vector cross(f + e + p);
     cross << small.cross[b], block.transpose() * fitted.whitened_residual.segment(first, rows);
     grams.gram.push_back(std::move(gram));
