@@ -68,8 +68,9 @@ Vector BoundedStep(const Matrix& gram, const Vector& ascent, double damping, con
   return step;
 }
 
-/// Orthonormal basis of the columns, for projecting them out.
-Matrix Basis(const Matrix& columns) {
+}  // namespace
+
+Matrix OrthonormalBasis(const Matrix& columns) {
   if (columns.cols() == 0) return columns;
   Matrix scaled = columns;
   for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
@@ -78,8 +79,6 @@ Matrix Basis(const Matrix& columns) {
   if (qr.rank() == 0) return Matrix(scaled.rows(), 0);
   return qr.householderQ() * Matrix::Identity(scaled.rows(), qr.rank());
 }
-
-}  // namespace
 
 bool Fitted::on_edge() const {
   constexpr double kNear = 1e-3;  // of the range
@@ -185,7 +184,7 @@ Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
   Hypothesis hypothesis = parent.hypothesis;
   hypothesis.terms.push_back(term);
   const Eigen::Index first = parent.theta.size();
-  const Matrix basis = Basis(parent.whitened_jacobian);
+  const Matrix basis = OrthonormalBasis(parent.whitened_jacobian);
   const auto project = [&](const Matrix& columns) -> Matrix { return columns - basis * (basis.transpose() * columns); };
 
   std::vector<std::pair<double, Vector>> starts;

@@ -40,11 +40,7 @@ class FlowEquation final : public Equation {
 
   Signals PrepareLike(const Recording& recording, int window, const Signals& like) const override {
     Signals s = WithOutput(recording, window);
-    s.origin = like.origin;
-    s.duration = like.duration;
-    s.scale = like.scale;
-    s.output_scale = like.output_scale;
-    s.output_peak = like.output_peak;
+    s.MeasureLike(like);
     return s;
   }
 

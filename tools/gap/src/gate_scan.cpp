@@ -11,16 +11,6 @@ constexpr double kEdgeShare = 0.08;       // of the recording, at each end, wher
 constexpr double kActiveShare = 0.02;     // of the busiest block's energy, from which a block counts as active
 constexpr double kMinIndependent = 1e-6;  // of a template's energy that the parent's columns must leave
 
-Matrix OrthonormalBasis(const Matrix& columns) {
-  if (columns.cols() == 0) return columns;
-  Matrix scaled = columns;
-  for (Eigen::Index c = 0; c < scaled.cols(); ++c) scaled.col(c) /= scaled.col(c).norm() + 1e-300;
-  Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
-  qr.setThreshold(1e-10);
-  if (qr.rank() == 0) return Matrix(scaled.rows(), 0);
-  return qr.householderQ() * Matrix::Identity(scaled.rows(), qr.rank());
-}
-
 int ActiveBlocks(const Vector& block_energy) {
   return static_cast<int>((block_energy.array() > kActiveShare * block_energy.maxCoeff()).count());
 }

@@ -9,6 +9,9 @@
 
 namespace armcmc::gap {
 
+/// Orthonormal basis of the columns, for projecting them out. As many columns as the rank.
+[[nodiscard]] Matrix OrthonormalBasis(const Matrix& columns);
+
 /// A hypothesis fitted to a recording.
 struct Fitted {
   Hypothesis hypothesis;

@@ -45,6 +45,14 @@ struct Signals {
   [[nodiscard]] const Vector& at(Role role) const { return input[static_cast<std::size_t>(role)]; }
   [[nodiscard]] Vector& at(Role role) { return input[static_cast<std::size_t>(role)]; }
   [[nodiscard]] double scale_of(Role role) const { return scale[static_cast<std::size_t>(role)]; }
+  /// Takes over what fitted coordinates are measured in: scales, and the time from which drifts count.
+  void MeasureLike(const Signals& like) {
+    origin = like.origin;
+    duration = like.duration;
+    scale = like.scale;
+    output_scale = like.output_scale;
+    output_peak = like.output_peak;
+  }
   /// Time since the origin over the duration: in [0, 1] on the recording that was diagnosed.
   [[nodiscard]] Vector Elapsed() const { return ((t.array() - origin) / duration).matrix(); }
 };
