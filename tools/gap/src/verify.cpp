@@ -14,6 +14,12 @@ constexpr int kLags = 25;
 
 Vector Rows(const Vector& v, Eigen::Index first) { return v.tail(v.size() - first); }
 
+/// An equation may have no column at all: Eigen takes no rows from nothing.
+Matrix RowsOf(const Matrix& m, Eigen::Index first) {
+  if (m.cols() == 0) return Matrix(m.rows() - first, 0);
+  return m.bottomRows(m.rows() - first);
+}
+
 Signals Tail(const Signals& all, Eigen::Index first) {
   Signals tail = all;
   tail.t = Rows(all.t, first);
@@ -73,9 +79,10 @@ Trial HeldOut::Try(const Fitted& fitted) const {
   trial.predicted = Rows(p.y, first_);
   trial.residual = Rows(Vector(all_.output - p.y), first_);
   trial.whitened = Rows(whitener.Apply(Vector(all_.output - p.y)), first_);
-  trial.whitened_jacobian = whitener.Apply(p.jacobian).bottomRows(all_.rows() - first_);
-  const Matrix tail = p.jacobian.bottomRows(all_.rows() - first_);
-  const Vector parameters = (tail * fitted.Covariance(whitener.s2)).cwiseProduct(tail).rowwise().sum();
+  trial.whitened_jacobian = RowsOf(whitener.Apply(p.jacobian), first_);
+  const Matrix tail = RowsOf(p.jacobian, first_);
+  Vector parameters = Vector::Zero(tail.rows());
+  if (tail.cols() > 0) parameters = (tail * fitted.Covariance(whitener.s2)).cwiseProduct(tail).rowwise().sum();
   trial.band_sd = (parameters.cwiseMax(0.0).array() + whitener.s2 * whitener.Gain()).sqrt();
   return trial;
 }
