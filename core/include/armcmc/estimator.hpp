@@ -49,23 +49,24 @@ class Estimator {
   /// @return kOk, kTruncated, kHeld, kBadPack (nothing changed) or kNonFinite (posterior kept).
   /// @rt No heap, no lock, no throw. Bounded by max_draws x num_samples.
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
-                const DrawLimits& limits = kNoDrawLimits) noexcept;
+                const DrawLimits& limits = kNoDrawLimits) noexcept ARMCMC_NONBLOCKING;
 
   /// Stage C: summary of the posterior, predicted output with band.
   /// @rt No heap, no lock, no throw. O(draws).
-  void Execute(const AdjustResult& result, Estimate* estimate) noexcept;
+  void Execute(const AdjustResult& result, Estimate* estimate) noexcept ARMCMC_NONBLOCKING;
 
   /// Forgets everything learnt: the next pack meets the initial prior. (A restarted plant is no reason to
   /// call it: the mismatch test decides whether the old posterior still holds.)
-  void Reset() noexcept;
+  void Reset() noexcept ARMCMC_NONBLOCKING;
 
-  [[nodiscard]] const EstimatorSettings& settings() const noexcept;
-  [[nodiscard]] PlantKind plant() const noexcept;
-  [[nodiscard]] int num_modes() const noexcept;
-  [[nodiscard]] std::string_view mode_name(int mode) const noexcept;  ///< mode == num_modes(): the passive one.
-  [[nodiscard]] int num_reported() const noexcept;
-  [[nodiscard]] ReportedQuantity reported(int index) const noexcept;
-  [[nodiscard]] int num_inputs() const noexcept;  ///< Columns of u that a pack must have.
+  [[nodiscard]] const EstimatorSettings& settings() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING;
+  /// mode == num_modes(): the passive one.
+  [[nodiscard]] std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING;  ///< Columns of u that a pack must have.
 
  private:
   struct Impl;

@@ -32,8 +32,8 @@ class MarginalTable {
   [[nodiscard]] double Draw(double u) const noexcept ARMCMC_NONBLOCKING;
   /// Density at x; 0 outside the nodes.
   [[nodiscard]] double Density(double x) const noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] double Mean() const noexcept;
-  [[nodiscard]] double Variance() const noexcept;
+  [[nodiscard]] double Mean() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] double Variance() const noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] int num_nodes() const noexcept { return num_nodes_; }
   [[nodiscard]] double lower() const noexcept { return lower_; }

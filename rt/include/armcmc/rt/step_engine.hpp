@@ -6,6 +6,7 @@
 #include "armcmc/data_pack.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/latest_value.hpp"
 #include "armcmc/status.hpp"
 #include "armcmc/types.hpp"
@@ -20,18 +21,19 @@ class StepEngine {
  public:
   virtual ~StepEngine() = default;
 
-  [[nodiscard]] virtual PlantKind plant() const noexcept = 0;
-  [[nodiscard]] virtual int num_inputs() const noexcept = 0;
-  [[nodiscard]] virtual int num_modes() const noexcept = 0;
-  [[nodiscard]] virtual int num_reported() const noexcept = 0;
-  [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept = 0;
+  [[nodiscard]] virtual PlantKind plant() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual int num_inputs() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual int num_modes() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual int num_reported() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING = 0;
 
   /// Computes the posterior after `pack` into a slot; stops before deadline_ns. @rt No heap, no lock, no throw.
-  virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept = 0;
+  virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock,
+                        int slot) noexcept ARMCMC_NONBLOCKING = 0;
   /// Summarises a slot. @rt No heap, no lock, no throw.
-  virtual void Execute(int slot, Estimate* estimate) noexcept = 0;
+  virtual void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING = 0;
   /// Forgets everything.
-  virtual void Reset() noexcept = 0;
+  virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
 /// The estimator of core as a StepEngine.
@@ -41,14 +43,14 @@ class EstimatorEngine final : public StepEngine {
   explicit EstimatorEngine(const EstimatorSettings& settings);
   ~EstimatorEngine() override;
 
-  [[nodiscard]] PlantKind plant() const noexcept override;
-  [[nodiscard]] int num_inputs() const noexcept override;
-  [[nodiscard]] int num_modes() const noexcept override;
-  [[nodiscard]] int num_reported() const noexcept override;
-  [[nodiscard]] ReportedQuantity reported(int index) const noexcept override;
-  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept override;
-  void Execute(int slot, Estimate* estimate) noexcept override;
-  void Reset() noexcept override;
+  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override;
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept ARMCMC_NONBLOCKING override;
+  void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;
+  void Reset() noexcept ARMCMC_NONBLOCKING override;
 
   [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
 
