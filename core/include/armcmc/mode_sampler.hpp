@@ -77,6 +77,8 @@ class ModeSampler {
 
   [[nodiscard]] const ParameterSpace& space() const noexcept { return space_; }
   [[nodiscard]] const NoiseModel& noise() const noexcept { return noise_; }
+  /// Table of the blocks that have none of their own.
+  [[nodiscard]] const MarginalTable& shared_table() const noexcept { return normal_table_; }
 
  private:
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,

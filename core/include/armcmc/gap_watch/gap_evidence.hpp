@@ -7,6 +7,9 @@
 
 namespace armcmc {
 
+class SnapshotReader;
+class SnapshotWriter;
+
 /// One check of one block.
 struct CheckScore {
   double z = 0.0;       ///< Self-normalised score: conditionally sub-Gaussian with variance 1 when there is no gap.
@@ -33,6 +36,8 @@ class GapEvidence {
   /// One block. @rt bounded. @param hours  Data in the block.
   void Add(const std::array<CheckScore, kMaxGapChecks>& scores, double hours) noexcept ARMCMC_NONBLOCKING;
   void Reset() noexcept ARMCMC_NONBLOCKING;
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] double total() const noexcept ARMCMC_NONBLOCKING;  ///< Capital; 1 is the alarm.
   [[nodiscard]] double stakes() const noexcept { return stakes_; }

@@ -16,6 +16,9 @@
 
 namespace armcmc {
 
+class SnapshotReader;
+class SnapshotWriter;
+
 /// Watches for a persistent gap between a model and its plant, while the estimator runs.
 ///
 /// Errors are looked at in blocks of kGapBlockPacks packs (shorter ones than kShortestPack are joined). A block is
@@ -41,6 +44,9 @@ class GapWatch {
   void Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept ARMCMC_NONBLOCKING;
   void Reset() noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] const GapState& state() const noexcept { return state_; }
+  /// The evidence of the blocks that were judged, and the alarm. The block under way is not kept.
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
   /// Of the last block.
   [[nodiscard]] const std::array<CheckScore, kMaxGapChecks>& scores() const noexcept { return scores_; }
 

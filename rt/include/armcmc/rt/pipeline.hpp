@@ -60,6 +60,8 @@ class Pipeline {
   void RequestStop() noexcept ARMCMC_NONBLOCKING;
   /// true after RequestStop() or when max_steps are done.
   [[nodiscard]] bool stopping() const noexcept { return stop_.load(std::memory_order_acquire); }
+  /// Flags a fault of another thread in the next status message. Any time, from any thread.
+  void RaiseFault(std::int32_t flags) noexcept { counters_.faults.Raise(flags); }
   /// Waits for all threads; finished steps are published first. Follows RequestStop().
   void Join() noexcept;
 

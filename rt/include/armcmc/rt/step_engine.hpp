@@ -1,13 +1,17 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/latest_value.hpp"
+#include "armcmc/rt/snapshot_hand_over.hpp"
 #include "armcmc/status.hpp"
 #include "armcmc/types.hpp"
 
@@ -32,7 +36,7 @@ class StepEngine {
                         int slot) noexcept ARMCMC_NONBLOCKING = 0;
   /// Summarises a slot. @rt No heap, no lock, no throw.
   virtual void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING = 0;
-  /// Forgets everything.
+  /// Comes back to what it was at the start. Ends the warm-up.
   virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
@@ -52,11 +56,22 @@ class EstimatorEngine final : public StepEngine {
   void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;
   void Reset() noexcept ARMCMC_NONBLOCKING override;
 
+  /// Hands what is learnt to another thread after every step. Before the pipeline starts.
+  /// @param snapshots  Of Estimator::kSnapshotBytes; outlives the engine.
+  void SetSnapshots(SnapshotHandOver* snapshots) noexcept { snapshots_ = snapshots; }
+  /// Goes on from what an engine of the same SnapshotIdentity() has saved; kept, so that Reset(), which ends the
+  /// warm-up, comes back to it. Before the pipeline starts.
+  /// @return false when it is damaged: starts afresh.
+  [[nodiscard]] bool Resume(std::span<const std::byte> adjusted, std::span<const std::byte> executed);
+
   [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
 
  private:
   Estimator estimator_;
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
+  SnapshotHandOver* snapshots_ = nullptr;
+  bool warm_ = false;  // what the warm-up learns is handed to nobody
+  std::vector<std::byte> resumed_adjusted_, resumed_executed_;
 };
 
 }  // namespace armcmc::rt
