@@ -1,11 +1,9 @@
 #include "armcmc/density_fit.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "armcmc/linear_algebra.hpp"
 #include "simd/kernels.hpp"
 
 namespace armcmc {
@@ -52,7 +50,7 @@ void PrincipalAxes(const ParamMatrix& covariance, ParamMatrix* whiten, ParamMatr
   ParamMatrix correlation(dim, dim);
   for (Eigen::Index i = 0; i < dim; ++i)
     for (Eigen::Index j = 0; j < dim; ++j) correlation(i, j) = covariance(i, j) / (sd[i] * sd[j]);
-  Eigen::SelfAdjointEigenSolver<ParamMatrix> solver(correlation);
+  const auto solver = SymmetricEigen(correlation);
   *whiten = ParamMatrix::Zero(dim, dim);
   *unwhiten = ParamMatrix::Zero(dim, dim);
   if (solver.info() != Eigen::Success) {
@@ -82,12 +80,12 @@ void FitPolynomials(const simd::Kernels& kernels, const WeightedDraws& draws, do
   for (int i = 0; i < kPowers; ++i)
     for (int j = 0; j < kPowers; ++j) gram(i, j) = sums[static_cast<std::size_t>(i + j)] / sums[0];
   gram.diagonal() *= 1.0 + 1e-9;
-  const auto solver = gram.ldlt();
+  const auto factor = FactorSymmetric(gram);
   std::size_t t = 2 * DensityBlock::kDegree + 1;
   for (int i = 1; i < block->dim; ++i) {
     Eigen::Matrix<double, kPowers, 1> cross;
     for (int q = 0; q < kPowers; ++q) cross[q] = sums[t++] / sums[0];
-    const Eigen::Matrix<double, kPowers, 1> c = solver.solve(cross);
+    const Eigen::Matrix<double, kPowers, 1> c = Solve(factor, cross);
     if (!c.allFinite()) continue;
     for (int q = 0; q < kPowers; ++q) block->poly[static_cast<std::size_t>(i)][static_cast<std::size_t>(q)] = c[q];
   }
@@ -126,10 +124,10 @@ void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, i
   // Equilibrate: the rows differ by powers of a ridge's thickness.
   Vector size(n);
   for (int a = 0; a < n; ++a) size[a] = gram(a, a) > 0.0 ? 1.0 / std::sqrt(gram(a, a)) : 0.0;
-  gram = size.asDiagonal() * gram * size.asDiagonal();
+  gram = Evaluate(size.asDiagonal() * gram * size.asDiagonal());
   gram.diagonal().array() += 1e-9;
   const Vector scaled = size.asDiagonal() * cross;
-  Vector c = gram.ldlt().solve(scaled);
+  Vector c = Solve(FactorSymmetric(gram), scaled);
   c = (size.asDiagonal() * c).eval();
   if (!c.allFinite()) return;
   const auto ii = static_cast<std::size_t>(i);
@@ -187,7 +185,7 @@ void FitThickness(const WeightedDraws& draws, double ess, int i, double* const* 
     ++used;
   }
   if (used < 4) return;
-  const Eigen::Vector3d fit = gram.ldlt().solve(cross);
+  const Eigen::Vector3d fit = Solve(FactorSymmetric(gram), cross);
   if (!fit.allFinite()) return;
   // The log of a standard deviation from n draws has variance 1 / 2n, so that without any taper twice the explained sum
   // of squares is a chi-square of two degrees of freedom, which exceeds this once in a thousand fits.
@@ -258,7 +256,7 @@ void Smooth(double h, std::array<double, kNodes>* values) noexcept {
 
 /// |det W| / prod scale.
 void UpdateNorm(const ParamMatrix& whiten, DensityBlock* block) noexcept {
-  block->norm = std::fabs(whiten.determinant());
+  block->norm = std::fabs(Determinant(whiten));
   for (int i = 0; i < block->dim; ++i) block->norm /= block->scale[static_cast<std::size_t>(i)];
 }
 
@@ -311,7 +309,7 @@ ParamMatrix CovarianceOf(const DensityBlock& block) noexcept {
   for (int i = 0; i < block.dim; ++i)
     for (int j = 0; j < block.dim; ++j)
       a(i, j) = block.unwhiten[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-  return a * a.transpose();
+  return Evaluate(a * a.transpose());
 }
 
 double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const FitOptions& options,

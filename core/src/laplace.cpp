@@ -1,6 +1,5 @@
 #include "armcmc/laplace.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +8,8 @@
 namespace armcmc {
 namespace {
 
+constexpr std::array<double, 4> kDampings{0.0, 1e-2, 1.0, 100.0};
+constexpr std::array<double, 8> kLengths{1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 1.5, 0.0};
 constexpr double kDifference = 1e-4;  // in prior standard deviations; error of central differences about 1e-8
 
 /// Writes one candidate into a lane of the batch.
@@ -26,7 +27,7 @@ void Clamp(const ParameterSpace& space, ParamVector* u) noexcept {
 
 double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
   const ParamVector d = u - prior.mean;
-  return -0.5 * d.dot(prior.precision * d);
+  return -0.5 * d.dot(Evaluate(prior.precision * d));
 }
 
 /// Gradient and Gauss-Newton Hessian of minus the log posterior at u.
@@ -47,7 +48,7 @@ void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, co
   for (int lane = 1 + 2 * np; lane < kTileLanes; ++lane) SetLane(space, u, lane, &scratch->theta, log_scale);
   kernels.predict(model, data, scratch->theta, &scratch->prediction);
 
-  *gradient = prior.precision * (u - prior.mean);
+  *gradient = Evaluate(prior.precision * (u - prior.mean));
   *hessian = prior.precision;
   const double scale = std::exp(space.LogNoiseScale(u.data()));
   double scale_gradient = 0.0;
@@ -83,8 +84,6 @@ void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, co
 double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                   const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,
                   Gaussian* fit) noexcept {
-  static constexpr std::array<double, 4> kDampings{0.0, 1e-2, 1.0, 100.0};
-  static constexpr std::array<double, 8> kLengths{1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 1.5, 0.0};
   const int dim = space.dim;
   alignas(64) double log_scale[kTileLanes];
   alignas(64) double log_likelihood[kTileLanes];
@@ -100,7 +99,7 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
     for (const double damping : kDampings) {
       ParamMatrix damped = hessian;
       damped.diagonal() *= 1.0 + damping;
-      ParamVector step = -damped.ldlt().solve(gradient);
+      ParamVector step = -Solve(FactorSymmetric(damped), gradient);
       if (!step.allFinite()) step.setZero();
       for (const double length : kLengths) {
         ParamVector& candidate = trial[static_cast<std::size_t>(lane)];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "armcmc/snapshot.hpp"
+
 namespace armcmc {
 namespace {
 
@@ -49,12 +51,34 @@ void MarginalTable::Build(const double* values, int num_nodes, double lower) noe
     pdf_[k] = values[i] * scale;
     cdf_[k] *= scale;
   }
+  BuildGuide();
+}
+
+void MarginalTable::BuildGuide() noexcept {
   int node = 0;
   for (int g = 0; g < kGuideSize; ++g) {
     const double u = static_cast<double>(g) / kGuideSize;
     while (node < num_nodes_ - 2 && cdf_[static_cast<std::size_t>(node) + 1] <= u) ++node;
     guide_[static_cast<std::size_t>(g)] = node;
   }
+}
+
+void MarginalTable::Save(SnapshotWriter* out) const noexcept {
+  out->Put(std::int64_t{num_nodes_});
+  out->Put(lower_);
+  out->PutRow(pdf_.data(), static_cast<std::size_t>(num_nodes_));
+  out->PutRow(cdf_.data(), static_cast<std::size_t>(num_nodes_));
+}
+
+void MarginalTable::Restore(SnapshotReader* in) noexcept {
+  num_nodes_ = static_cast<int>(in->Integer(2, kMaxNodes));
+  lower_ = in->Number();
+  in->Row(pdf_.data(), static_cast<std::size_t>(num_nodes_));
+  in->Row(cdf_.data(), static_cast<std::size_t>(num_nodes_));
+  in->Require(cdf_[0] == 0.0 && std::fabs(cdf_[static_cast<std::size_t>(num_nodes_) - 1] - 1.0) < 1e-9);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(num_nodes_); ++n)
+    in->Require(pdf_[n] >= 0.0 && (n == 0 || cdf_[n] >= cdf_[n - 1]));
+  BuildGuide();
 }
 
 double MarginalTable::Density(double x) const noexcept ARMCMC_NONBLOCKING {

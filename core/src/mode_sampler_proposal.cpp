@@ -2,7 +2,6 @@
 
 #include "armcmc/mode_sampler.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -30,11 +29,12 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
         LaplaceFit(kernels_, model_, data, noise_, space_, initial, previous.mean, &ws->laplace, &other);
     if (value > best) fit_fresh_ = other;
   }
-  SetElliptic(fit_fresh_.mean, fit_fresh_.precision.inverse(), kLaplaceInflation, &student_table_, &laplace_fresh_);
+  SetElliptic(fit_fresh_.mean, Evaluate(fit_fresh_.precision.inverse()), kLaplaceInflation, &student_table_,
+              &laplace_fresh_);
   if (!use_previous) return;
-  const Gaussian prior{previous.mean, previous.covariance.inverse()};
+  const Gaussian prior{previous.mean, Evaluate(previous.covariance.inverse())};
   LaplaceFit(kernels_, model_, data, noise_, space_, prior, previous.mean, &ws->laplace, &fit_persisted_);
-  SetElliptic(fit_persisted_.mean, fit_persisted_.precision.inverse(), kLaplaceInflation, &student_table_,
+  SetElliptic(fit_persisted_.mean, Evaluate(fit_persisted_.precision.inverse()), kLaplaceInflation, &student_table_,
               &laplace_persisted_);
 }
 
@@ -66,7 +66,7 @@ bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory
                                      double lambda_q, SamplerWorkspace* ws, Proposal* proposal) noexcept {
   const int dim = space_.dim;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
-  const Gaussian persisted = use_previous ? Gaussian{previous.mean, previous.covariance.inverse()} : initial;
+  const Gaussian persisted = use_previous ? Gaussian{previous.mean, Evaluate(previous.covariance.inverse())} : initial;
   const int anchors = FollowRidge(kernels_, model_, data, noise_, space_, persisted,
                                   use_previous ? fit_persisted_ : fit_fresh_, &ws->laplace, &anchors_);
   if (anchors == 0) return false;

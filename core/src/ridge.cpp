@@ -1,7 +1,5 @@
 #include "armcmc/ridge.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -29,8 +27,8 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
   begin[j] = value;
   // (u_j - value)^2 kPinned added to the prior's quadratic form.
   pinned.precision(j, j) += kPinned;
-  pinned.mean =
-      pinned.precision.ldlt().solve(prior.precision * prior.mean + kPinned * value * ParamVector::Unit(space.dim, j));
+  pinned.mean = Solve(FactorSymmetric(pinned.precision),
+                      Evaluate(prior.precision * prior.mean + kPinned * value * ParamVector::Unit(space.dim, j)));
   Gaussian fit;
   const double height = LaplaceFit(kernels, model, data, noise, space, pinned, begin, scratch, &fit);
   ParamMatrix h = fit.precision;
@@ -42,17 +40,17 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
   rest.row(j).setZero();
   rest.col(j).setZero();
   rest(j, j) = 1.0;
-  const auto factor = rest.ldlt();
-  const ParamVector slope = factor.solve(coupling);
+  const auto factor = FactorSymmetric(rest);
+  const ParamVector slope = Solve(factor, coupling);
   h(j, j) = 1.0 / (step * step) + coupling.dot(slope);
   anchor->mean = fit.mean;
-  anchor->covariance = h.inverse();
+  anchor->covariance = Evaluate(h.inverse());
   const double determinant = factor.vectorD().prod();
   const ParamVector offset = fit.mean - prior.mean;
   const ParamVector pinned_offset = fit.mean - pinned.mean;
   // Height of the unpinned posterior: swap the pinned quadratic form for the prior's.
-  anchor->share = height + 0.5 * pinned_offset.dot(pinned.precision * pinned_offset) -
-                  0.5 * offset.dot(prior.precision * offset) - 0.5 * std::log(std::fmax(determinant, 1e-300));
+  anchor->share = height + 0.5 * pinned_offset.dot(Evaluate(pinned.precision * pinned_offset)) -
+                  0.5 * offset.dot(Evaluate(prior.precision * offset)) - 0.5 * std::log(std::fmax(determinant, 1e-300));
   return anchor->mean.allFinite() && anchor->covariance.allFinite() && std::isfinite(anchor->share);
 }
 
@@ -61,7 +59,7 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
 int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                 const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, LaplaceScratch* scratch,
                 std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept {
-  const ParamMatrix covariance = fit.precision.inverse();
+  const ParamMatrix covariance = Evaluate(fit.precision.inverse());
   const int j = WorstKnown(space, covariance);
   const auto ij = static_cast<std::size_t>(j);
   const double sd = std::sqrt(std::fmax(covariance(j, j), 0.0));

@@ -32,8 +32,8 @@ struct MeanAndSd {
 };
 
 /// Of values with weights that sum to `total`.
-MeanAndSd Moments(const double* value, const double* weight, int count, double total) noexcept {
-  const simd::Kernels& kernels = simd::Best();
+MeanAndSd Moments(const simd::Kernels& kernels, const double* value, const double* weight, int count,
+                  double total) noexcept {
   const int whole = count / 8 * 8;  // the kernels take whole vectors
   std::array<double, 3> sums{};
   kernels.first_moments(1, &value, weight, whole, sums.data());
@@ -90,7 +90,8 @@ void Distribution(const double* value, const double* visits, int count, double t
 }  // namespace
 
 SummaryWorkspace::SummaryWorkspace(int capacity)
-    : value(static_cast<std::size_t>(capacity)),
+    : kernels(simd::Best()),
+      value(static_cast<std::size_t>(capacity)),
       visited_value(static_cast<std::size_t>(capacity)),
       visits(static_cast<std::size_t>(capacity)),
       visited(static_cast<std::size_t>(capacity)) {}
@@ -169,10 +170,10 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
     MarginalSummary& m = estimate->marginal[static_cast<std::size_t>(r)];
     Reported(info, constants, space, draws, r, value);
     for (int j = 0; j < visited; ++j) visited_value[j] = value[workspace->visited[static_cast<std::size_t>(j)]];
-    const MeanAndSd weighted = Moments(value, draws.weight, draws.draws, 1.0);
+    const MeanAndSd weighted = Moments(workspace->kernels, value, draws.weight, draws.draws, 1.0);
     m.is_mean = weighted.mean;
     m.is_sd = weighted.sd;
-    const MeanAndSd chain = Moments(visited_value, visits, visited, total);
+    const MeanAndSd chain = Moments(workspace->kernels, visited_value, visits, visited, total);
     m.ar_ap = chain.mean;
     m.sd = chain.sd;
     m.ar_map = draws.decision == Decision::kModification ? mode[static_cast<std::size_t>(r)] : m.ar_ap;

@@ -5,14 +5,19 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "armcmc/estimator.hpp"
+#include "armcmc/estimator_status_t.hpp"
 #include "armcmc/rt/allocation_counter.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/pipeline.hpp"
 #include "armcmc/rt/process_setup.hpp"
+#include "armcmc/rt/snapshot_hand_over.hpp"
 #include "armcmc/rt/step_engine.hpp"
+#include "armcmc/snapshot.hpp"
 #include "armcmc/support/estimator_config.hpp"
 #include "armcmc/support/model_file.hpp"
 #include "armcmc/support/program.hpp"
@@ -22,6 +27,7 @@
 #include "gap_log.hpp"
 #include "report.hpp"
 #include "rt_config.hpp"
+#include "snapshot_saver.hpp"
 #include "summary.hpp"
 
 namespace armcmc::app {
@@ -46,6 +52,7 @@ struct Options {
   std::string prefix;
   std::string report;
   std::string gap_log;
+  std::string resume;
   std::int64_t steps = 0;
   bool verbose = false;
 };
@@ -102,18 +109,37 @@ void Attend(rt::Pipeline* pipeline, const sigset_t& signals, EventPrinter* print
   }
 }
 
-/// A report that cannot be written is found out before the run, not after it.
-void CheckReportPath(const std::string& path) {
+/// A file that cannot be written is found out before the run, not after it.
+void CheckPath(const std::string& option, const std::string& path) {
   if (path.empty()) return;
   const auto folder = std::filesystem::absolute(path).parent_path();
   if (!std::filesystem::is_directory(folder) || std::filesystem::is_directory(path)) {
-    throw support::InputError("--report " + path + ": expected a file in a folder that exists");
+    throw support::InputError(option + " " + path + ": expected a file in a folder that exists");
   }
+}
+
+void Say(const std::string& line) { std::cerr << std::string(kName) + ": " + line + "\n"; }
+
+/// Reads the snapshot of --resume into the engine and sets up its successor. nullptr without --resume.
+std::unique_ptr<SnapshotSaver> Resume(const Options& options, rt::EstimatorEngine* engine,
+                                      rt::SnapshotHandOver* snapshots, const SnapshotSaver::OnFailure& on_failure) {
+  if (options.resume.empty()) return nullptr;
+  Snapshot start = LoadSnapshot(
+      options.resume, SnapshotIdentity(engine->estimator().settings()), rt::RealtimeMicros(),
+      [engine](const Snapshot& s) { return engine->Resume(s.adjusted, s.executed); }, Say);
+  engine->SetSnapshots(snapshots);
+  return std::make_unique<SnapshotSaver>(options.resume, std::move(start), snapshots, Say, on_failure);
+}
+
+std::optional<rt::SnapshotCounts> SnapshotReport(const SnapshotSaver* saver) {
+  if (saver == nullptr) return std::nullopt;
+  return rt::SnapshotCounts{saver->path(), saver->resumed_from(), saver->written(), saver->failed()};
 }
 
 int Run(const Options& options) {
   const Configuration configuration = Load(options);
-  CheckReportPath(options.report);
+  CheckPath("--report", options.report);
+  CheckPath("--resume", options.resume);
 
   // Blocked before the first thread starts: all inherit it, and sigtimedwait() below is the only one to hear them.
   sigset_t signals;
@@ -122,12 +148,15 @@ int Run(const Options& options) {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
+  const auto snapshots = std::make_unique<rt::SnapshotHandOver>(Estimator::kSnapshotBytes);
   rt::EstimatorEngine engine(configuration.estimator);
   rt::PipelineOptions pipeline_options;
   pipeline_options.max_steps = options.steps;
   if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
   pipeline_options.record_packs = configuration.estimator.gap_watch.enabled;
   rt::Pipeline pipeline(configuration.rt, &engine, pipeline_options);
+  const auto saver = Resume(options, &engine, snapshots.get(),
+                            [&pipeline] { pipeline.RaiseFault(estimator_status_t::FAULT_SNAPSHOT); });
   const Nanos start_ns = rt::MonotonicNow();
   try {
     pipeline.Start();
@@ -147,14 +176,16 @@ int Run(const Options& options) {
                                        [](const std::string& line) { std::cerr << line + "\n"; });
     gap_log->Start();
   }
+  if (saver) saver->Start();
   Attend(&pipeline, signals, &printer);
   if (gap_log) gap_log->Stop();
+  if (saver) saver->Stop();
   const std::string window = gap_log ? gap_log->path() : "";
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second Ctrl-C may end a program whose disk hangs
 
   std::cout << SummaryText(pipeline, engine.estimator(), window);
   if (!options.report.empty()) {
-    rt::WriteReport(pipeline, options.report, window);
+    rt::WriteReport(pipeline, options.report, window, SnapshotReport(saver.get()));
     std::cout << "\nreport: " << options.report << '\n';
   }
   return support::kExitOk;
@@ -186,6 +217,9 @@ int main(int argc, char** argv) {
   cli.add_option("--gap-log", options.gap_log,
                  "Folder for the data around a suspected gap. Default: the configuration's (gap_logs)")
       ->type_name("DIR");
+  cli.add_option("--resume", options.resume,
+                 "Go on from what was learnt before, kept in this file, and keep it up to date, once per second")
+      ->type_name("FILE");
   cli.add_flag("--verbose", options.verbose, "Also print lost and dropped packs");
   return support::RunProgram(cli, app::kName, argc, argv, [&options] { return app::Run(options); });
 }

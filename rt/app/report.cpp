@@ -122,9 +122,18 @@ Json Gap(const GapState& gap, const std::string& window) {
           {"window", window.empty() ? Json(nullptr) : Json(window)}};
 }
 
+Json SnapshotState(const std::optional<SnapshotCounts>& s) {
+  if (!s) return nullptr;
+  return {{"file", s->path},
+          {"resumed_from_pack", s->resumed_from > 0 ? Json(s->resumed_from) : Json(nullptr)},
+          {"written", s->written},
+          {"failed", s->failed}};
+}
+
 }  // namespace
 
-std::string ReportJson(const Pipeline& p, const std::string& gap_window) {
+std::string ReportJson(const Pipeline& p, const std::string& gap_window,
+                       const std::optional<SnapshotCounts>& snapshot) {
   const RtSettings& s = p.settings();
   const Counters& c = p.counters();
   const DeadlineMonitor& m = p.monitor();
@@ -163,12 +172,14 @@ std::string ReportJson(const Pipeline& p, const std::string& gap_window) {
       {"ess", {{"median", ess.Quantile(0.5)}, {"min", ess.min()}}},
       {"numeric_troubles", c.adjust.numeric.Get()},
       {"gap", Gap(p.last_estimate().gap, gap_window)},
+      {"snapshot", SnapshotState(snapshot)},
       {"parameters", Parameters(p)}};
   return report.dump(2) + "\n";
 }
 
-void WriteReport(const Pipeline& pipeline, const std::string& path, const std::string& gap_window) {
-  const std::string text = ReportJson(pipeline, gap_window);
+void WriteReport(const Pipeline& pipeline, const std::string& path, const std::string& gap_window,
+                 const std::optional<SnapshotCounts>& snapshot) {
+  const std::string text = ReportJson(pipeline, gap_window, snapshot);
   const std::string temporary = path + ".tmp";
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);

@@ -25,7 +25,13 @@ namespace {
 
 namespace armcmc::rt {
 
-std::uint64_t ThreadHeapCalls() noexcept { return heap_calls; }
+ARMCMC_TRUST_NONBLOCKING_BEGIN  // initial-exec: reading it is one load
+    std::uint64_t
+    ThreadHeapCalls() noexcept ARMCMC_NONBLOCKING {
+  return heap_calls;
+}
+ARMCMC_TRUST_NONBLOCKING_END
+
 bool HeapCallsAreCounted() noexcept { return ARMCMC_COUNT_HEAP_CALLS != 0; }
 
 }  // namespace armcmc::rt

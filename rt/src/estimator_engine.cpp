@@ -16,13 +16,34 @@ int EstimatorEngine::num_reported() const noexcept { return estimator_.num_repor
 ReportedQuantity EstimatorEngine::reported(int index) const noexcept { return estimator_.reported(index); }
 
 Status EstimatorEngine::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept {
-  return estimator_.Adjust(pack, deadline_ns, clock, results_[static_cast<std::size_t>(slot)].get());
+  const Status status = estimator_.Adjust(pack, deadline_ns, clock, results_[static_cast<std::size_t>(slot)].get());
+  const bool learnt = status == Status::kOk || status == Status::kTruncated;
+  if (snapshots_ != nullptr && warm_ && learnt) {
+    snapshots_->adjusted.Write(pack.seq,
+                               [this](std::span<std::byte> out) noexcept { return estimator_.SaveAdjusted(out); });
+  }
+  return status;
 }
 
 void EstimatorEngine::Execute(int slot, Estimate* estimate) noexcept {
   estimator_.Execute(*results_[static_cast<std::size_t>(slot)], estimate);
+  if (snapshots_ != nullptr && warm_) {
+    snapshots_->executed.Write(estimate->seq,
+                               [this](std::span<std::byte> out) noexcept { return estimator_.SaveExecuted(out); });
+  }
 }
 
-void EstimatorEngine::Reset() noexcept { estimator_.Reset(); }
+bool EstimatorEngine::Resume(std::span<const std::byte> adjusted, std::span<const std::byte> executed) {
+  if (!estimator_.Restore(adjusted, executed)) return false;
+  resumed_adjusted_.assign(adjusted.begin(), adjusted.end());
+  resumed_executed_.assign(executed.begin(), executed.end());
+  return true;
+}
+
+void EstimatorEngine::Reset() noexcept {
+  estimator_.Reset();
+  if (!resumed_adjusted_.empty()) (void)estimator_.Restore(resumed_adjusted_, resumed_executed_);
+  warm_ = true;
+}
 
 }  // namespace armcmc::rt

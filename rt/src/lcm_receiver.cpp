@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/system_call.hpp"
 
 namespace armcmc::rt {
 namespace {
@@ -105,7 +106,11 @@ void LcmReceiver::Close() noexcept {
   socket_ = wake_ = -1;
 }
 
-bool LcmReceiver::WaitUntil(Nanos t_ns) noexcept {
+// The socket is read, and the next pack waited for, on the collect thread: system calls by nature.
+ARMCMC_TRUST_NONBLOCKING_BEGIN
+
+bool LcmReceiver::WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING {
+  const SystemCall wait;
   pollfd fds[2] = {{socket_, POLLIN, 0}, {wake_, POLLIN, 0}};
   const timespec timeout = ToTimespec(std::max<Nanos>(0, t_ns - MonotonicNow()));
   if (ppoll(fds, 2, &timeout, nullptr) <= 0) return false;
@@ -116,7 +121,8 @@ bool LcmReceiver::WaitUntil(Nanos t_ns) noexcept {
   return fds[0].revents != 0;
 }
 
-bool LcmReceiver::ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept {
+bool LcmReceiver::ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept ARMCMC_NONBLOCKING {
+  const SystemCall read;
   iovec io{buffer_.data(), buffer_.size()};
   alignas(cmsghdr) std::array<char, 128> control{};
   msghdr message{};
@@ -136,6 +142,14 @@ bool LcmReceiver::ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept {
   }
   return true;
 }
+
+void LcmReceiver::Wake() noexcept ARMCMC_NONBLOCKING {
+  const std::uint64_t one = 1;
+  const SystemCall wake_up;
+  (void)!write(wake_, &one, sizeof one);
+}
+
+ARMCMC_TRUST_NONBLOCKING_END
 
 bool LcmReceiver::TryReceive(Datagram* datagram) noexcept {
   for (int i = 0; i <= kMaxSkipped; ++i) {
@@ -157,11 +171,6 @@ void LcmReceiver::Drain() noexcept {
   Nanos arrival_ns = 0;
   for (int i = recv_buf_size_ / kSmallestCharge; i > 0 && ReadOne(&size, &arrival_ns); --i) {
   }
-}
-
-void LcmReceiver::Wake() noexcept {
-  const std::uint64_t one = 1;
-  (void)!write(wake_, &one, sizeof one);
 }
 
 }  // namespace armcmc::rt

@@ -55,12 +55,19 @@ PackCodec::PackCodec(PlantKind plant, int num_inputs) noexcept
       fingerprint_(data_pack_t::getHash()),  // here, since its first call takes a lock
       encoded_size_(static_cast<std::size_t>(message_.getEncodedSize())) {}
 
+ARMCMC_TRUST_NONBLOCKING_BEGIN  // decode() looks up the fingerprint in a static variable that the constructor filled
+    bool
+    PackCodec::DecodeMessage(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING {
+  return message_.decode(payload.data(), 0, static_cast<int>(payload.size())) >= 0;
+}
+ARMCMC_TRUST_NONBLOCKING_END
+
 RejectCause PackCodec::Decode(std::span<const std::uint8_t> payload) noexcept {
   decoded_ = false;
   if (payload.size() < 8) return RejectCause::kLength;
   if (ReadFingerprint(payload) != fingerprint_) return RejectCause::kFingerprint;
   if (payload.size() != encoded_size_) return RejectCause::kLength;
-  if (message_.decode(payload.data(), 0, static_cast<int>(payload.size())) < 0) return RejectCause::kLength;
+  if (!DecodeMessage(payload)) return RejectCause::kLength;
   decoded_ = true;
   return Check();
 }

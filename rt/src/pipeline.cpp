@@ -101,8 +101,10 @@ void Pipeline::Start() {
 void Pipeline::StartThreads() {
   // Adjust first: it warms the engine up before anything can be released. Collect last: it releases.
   // The monitor knows its witnesses before a thread that asks it starts.
-  StartThread(&adjust_thread_, "adjust", settings_.adjust,
-              [](void* self) noexcept { static_cast<Pipeline*>(self)->AdjustLoop(); });
+  StartThread(&adjust_thread_, "adjust", settings_.adjust, [](void* self) noexcept {
+    static_cast<Pipeline*>(self)->WarmUpEngine();
+    static_cast<Pipeline*>(self)->AdjustLoop();
+  });
   while (!warm_waiter_.WaitUntil(MonotonicNow() + kNanosPerSecond)) {
   }
   StartWitnesses();
@@ -167,9 +169,12 @@ void Pipeline::CollectLoop() noexcept {
   }
 }
 
-void Pipeline::AdjustLoop() noexcept {
+void Pipeline::WarmUpEngine() noexcept {
   WarmUp(engine_);
   warm_waiter_.Post();
+}
+
+void Pipeline::AdjustLoop() noexcept {
   const std::uint64_t baseline = HeapCalls();
   while (!stopping()) {
     (void)adjust_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);

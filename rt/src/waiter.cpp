@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/system_call.hpp"
 
 namespace armcmc::rt {
 
@@ -13,13 +14,18 @@ Waiter::Waiter() {
 
 Waiter::~Waiter() { sem_destroy(&semaphore_); }
 
-void Waiter::Post() noexcept {
+// A thread waits here between two steps, and a thread that has finished one wakes the next: outside the stages.
+ARMCMC_TRUST_NONBLOCKING_BEGIN
+
+void Waiter::Post() noexcept ARMCMC_NONBLOCKING {
   posts_.fetch_add(1, std::memory_order_release);
   // The only possible error is an overflow of the count, and then the waiter is awake anyway.
+  const SystemCall wake_up;
   (void)sem_post(&semaphore_);
 }
 
-bool Waiter::WaitUntil(Nanos t_ns) noexcept {
+bool Waiter::WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING {
+  const SystemCall wait;
   const timespec t = ToTimespec(t_ns);
   while (sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &t) != 0) {
     if (errno != EINTR) return false;
@@ -27,5 +33,7 @@ bool Waiter::WaitUntil(Nanos t_ns) noexcept {
   (void)posts_.load(std::memory_order_acquire);
   return true;
 }
+
+ARMCMC_TRUST_NONBLOCKING_END
 
 }  // namespace armcmc::rt

@@ -58,7 +58,8 @@ TEST_P(NullData, NothingIsNamed) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "gap/model.toml"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, NullData, ::testing::Range(1001, 1021));
+INSTANTIATE_TEST_SUITE_P(Seeds, NullData, ::testing::Range(1001, 1021),
+                         [](const auto& at) { return std::to_string(at.param); });
 
 class Catalogue : public Names, public ::testing::WithParamInterface<std::string> {};
 
@@ -70,12 +71,12 @@ TEST_P(Catalogue, TruthIsInTheReportedSet) {
   EXPECT_THAT(Reported(result), ::testing::Contains(std::vector<std::string>{GetParam()})) << result["sentence"];
 }
 
-INSTANTIATE_TEST_SUITE_P(Effects, Catalogue,
-                         ::testing::Values("force_bias", "force_drift", "coulomb_friction", "presliding_friction",
-                                           "viscous_friction", "inertia", "sensor_delay", "sensor_lag",
-                                           "stress_relaxation", "adhesion", "contact_offset", "sensor_saturation",
-                                           "periodic_disturbance", "stiffness_drift"),
-                         [](const auto& at) { return at.param; });
+INSTANTIATE_TEST_SUITE_P(
+    Effects, Catalogue,
+    ::testing::Values("force_bias", "force_drift", "coulomb_friction", "presliding_friction", "viscous_friction",
+                      "inertia", "sensor_delay", "sensor_lag", "stress_relaxation", "adhesion", "contact_offset",
+                      "sensor_saturation", "periodic_disturbance", "stiffness_drift"),
+    [](const auto& at) { return at.param; }, [](const auto& at) { return std::string(at.param); });
 
 }  // namespace
 }  // namespace armcmc::test

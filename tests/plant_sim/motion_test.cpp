@@ -104,7 +104,8 @@ TEST_P(EveryProgram, HasNothingFarAboveTheBandLimit) {
 
 INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram,
                          testing::Values("rich", "sine", "slow_triangle", "fast_taps", "step_hold", "taps_of_depths",
-                                         "contact_chirp", "free_air_chirp", "free_air"));
+                                         "contact_chirp", "free_air_chirp", "free_air"),
+                         [](const auto& at) { return std::string(at.param); });
 
 TEST(Motion, PressesAsDeepAsAskedForAndMakesTheContactThatItsNamePromises) {
   const auto share = [](const char* program) { return ContactShare(Follow(MotionSettings(program), 1)); };

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "armcmc/plant_sim/effects/effect.hpp"
 #include "armcmc/plant_sim/latency_histogram.hpp"
 #include "armcmc/plant_sim/log_ring.hpp"
@@ -61,7 +63,8 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, PublishingPath,
                          testing::Values("hunt_crossley_paper", "hunt_crossley_drift", "soft_actuator_paper",
                                          "soft_actuator_excited", "contact_rich", "experiment_step_hold",
                                          "experiment_closed_valve_hold", "experiment_u_triangle",
-                                         "experiment_fast_and_slow_fills"));
+                                         "experiment_fast_and_slow_fills"),
+                         [](const auto& at) { return std::string(at.param); });
 
 }  // namespace
 }  // namespace armcmc::plant_sim

@@ -117,7 +117,8 @@ TEST_P(CsvAgainstPacks, AreIdenticalToTheBit) {
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, CsvAgainstPacks,
                          testing::Values("hunt_crossley_impulsive", "soft_actuator_excited",
-                                         "hunt_crossley_heavy_tailed"));
+                                         "hunt_crossley_heavy_tailed"),
+                         [](const auto& at) { return std::string(at.param); });
 
 }  // namespace
 }  // namespace armcmc::plant_sim

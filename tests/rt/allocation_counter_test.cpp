@@ -4,8 +4,10 @@
 #include <malloc.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <new>
+#include <string>
 #include <thread>
 
 namespace armcmc::rt {
@@ -42,6 +44,8 @@ TEST_F(AllocationCounterTest, SeesEveryWayToAllocateAndItsRelease) {
   EXPECT_EQ(CallsOf([&] { pair(std::realloc(nullptr, 10)); }), 2U);
   EXPECT_EQ(CallsOf([&] { pair(std::aligned_alloc(64, 128)); }), 2U);
   EXPECT_EQ(CallsOf([&] { pair(memalign(64, 128)); }), 2U);
+  EXPECT_EQ(CallsOf([&] { pair(valloc(128)); }), 2U);
+  EXPECT_EQ(CallsOf([&] { pair(pvalloc(128)); }), 2U);
   EXPECT_EQ(CallsOf([&] {
               void* block = nullptr;
               ASSERT_EQ(posix_memalign(&block, 64, 128), 0);
@@ -50,6 +54,12 @@ TEST_F(AllocationCounterTest, SeesEveryWayToAllocateAndItsRelease) {
             2U);
   EXPECT_EQ(CallsOf([] {
               auto* value = new int(1);
+              Escape(value);
+              delete value;
+            }),
+            2U);
+  EXPECT_EQ(CallsOf([] {
+              auto* value = new (std::nothrow) int(1);
               Escape(value);
               delete value;
             }),
@@ -63,6 +73,29 @@ TEST_F(AllocationCounterTest, SeesEveryWayToAllocateAndItsRelease) {
               delete[] value;
             }),
             2U);
+}
+
+TEST_F(AllocationCounterTest, SeesWhatTheLibrariesHide) {
+  EXPECT_EQ(CallsOf([] {
+              char* copy = strdup("a copy on the heap");
+              Escape(copy);
+              std::free(copy);
+            }),
+            2U);
+  EXPECT_EQ(CallsOf([] {
+              void* block = std::malloc(10);
+              Escape(block);
+              block = std::realloc(block, 100'000);
+              Escape(block);
+              std::free(block);
+            }),
+            3U);
+  EXPECT_GE(CallsOf([] {
+              const std::string text(100, 'x');
+              Escape(const_cast<char*>(text.data()));
+            }),
+            2U);
+  EXPECT_EQ(CallsOf([] { std::free(nullptr); }), 0U) << "frees nothing";
 }
 
 TEST_F(AllocationCounterTest, CountsEachThreadForItself) {

@@ -1,26 +1,52 @@
 #pragma once
 
+#include <pthread.h>
+#include <time.h>
+
 #include <array>
 #include <atomic>
 #include <cstddef>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/step_engine.hpp"
 
 namespace armcmc::rt::test {
 
+/// What a real-time stage must never do.
+enum class Planted { kNothing, kAllocation, kLock, kSystemCall };
+
+ARMCMC_TRUST_NONBLOCKING_BEGIN  // hidden from the compiler on purpose: whoever runs it has to notice
+    inline void
+    PlantedFault(Planted fault) noexcept ARMCMC_NONBLOCKING {
+  if (fault == Planted::kAllocation) {
+    auto* leak = new int(1);
+    asm volatile("" : : "g"(leak) : "memory");
+    delete leak;
+  } else if (fault == Planted::kLock) {
+    pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    pthread_mutex_lock(&mutex);
+    pthread_mutex_unlock(&mutex);
+  } else if (fault == Planted::kSystemCall) {
+    const timespec moment{0, 1};
+    nanosleep(&moment, nullptr);
+  }
+}
+ARMCMC_TRUST_NONBLOCKING_END
+
 /// An engine whose result is the pack number, and whose time is set by the test.
 class FakeEngine final : public StepEngine {
  public:
-  [[nodiscard]] PlantKind plant() const noexcept override { return PlantKind::kHuntCrossley; }
-  [[nodiscard]] int num_inputs() const noexcept override { return 2; }
-  [[nodiscard]] int num_modes() const noexcept override { return 1; }
-  [[nodiscard]] int num_reported() const noexcept override { return 2; }
-  [[nodiscard]] ReportedQuantity reported(int index) const noexcept override {
+  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override { return PlantKind::kHuntCrossley; }
+  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override { return 2; }
+  [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override { return 1; }
+  [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override { return 2; }
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {
     return index == 0 ? ReportedQuantity{"K", "N/m^p"} : ReportedQuantity{"a_name_of_more_than_15_characters", "-"};
   }
 
-  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept override {
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock,
+                int slot) noexcept ARMCMC_NONBLOCKING override {
     auto& result = results_[static_cast<std::size_t>(slot)];
     result.seq = pack.seq;
     result.run_id = pack.run_id;
@@ -28,15 +54,11 @@ class FakeEngine final : public StepEngine {
     adjusted.fetch_add(1);
     last_budget_ns.store(deadline_ns - clock.Now());
     if (clock.read != nullptr) SleepUntil(clock.Now() + adjust_sleep_ns.load());
-    if (allocate_in_adjust.load()) {
-      auto* leak = new int(1);
-      asm volatile("" : : "g"(leak) : "memory");
-      delete leak;
-    }
+    PlantedFault(planted.load());
     return status.load();
   }
 
-  void Execute(int slot, Estimate* estimate) noexcept override {
+  void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override {
     const auto& result = results_[static_cast<std::size_t>(slot)];
     *estimate = Estimate{};
     estimate->seq = result.seq;
@@ -56,12 +78,12 @@ class FakeEngine final : public StepEngine {
     mode.marginal[0].density.fill(1.0);
   }
 
-  void Reset() noexcept override { adjusted.store(0); }
+  void Reset() noexcept ARMCMC_NONBLOCKING override { adjusted.store(0); }
 
   std::atomic<Nanos> adjust_sleep_ns{0};
   std::atomic<Nanos> last_budget_ns{0};
   std::atomic<int> adjusted{0};
-  std::atomic<bool> allocate_in_adjust{false};
+  std::atomic<Planted> planted{Planted::kNothing};
   std::atomic<Status> status{Status::kOk};
 
  private:

@@ -139,7 +139,7 @@ TEST_F(PipelineTest, MakesNoHeapCallInItsStages) {
 TEST_F(PipelineTest, CountsAHeapCallInAStage) {
   if (!HeapCallsAreCounted()) GTEST_SKIP() << "a sanitizer owns malloc; heap calls are not counted in this build";
   StartPipeline();
-  engine_.allocate_in_adjust = true;
+  engine_.planted = test::Planted::kAllocation;
   Publish(test::ValidPack(1));
   ASSERT_TRUE(WaitForSteps(1));
   Stop();

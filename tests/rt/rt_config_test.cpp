@@ -113,7 +113,8 @@ TEST_P(ShippedConfig, IsReadCompletelyAndNamesItsModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
-                         ::testing::Values("hunt_crossley", "soft_actuator", "soft_actuator_excited"));
+                         ::testing::Values("hunt_crossley", "soft_actuator", "soft_actuator_excited"),
+                         [](const auto& at) { return std::string(at.param); });
 
 }  // namespace
 }  // namespace armcmc::app

@@ -2,7 +2,16 @@
 #
 # A GoogleTest executable, every TEST of it a test of ctest. Tests find recordings and programs through
 # "support/paths.hpp", under ctest as well as by hand. TIMEOUT (60 s) is per TEST. SERIAL: never
-# beside another test, for what needs the processors to itself. Labels default to the folder's name.
+# beside another test, for what needs the processors to itself. Labels default to the folder's name. Tests with
+# parameters name them by the last argument of INSTANTIATE_TEST_SUITE_P: their values are not printed into names.
+# What tools/test builds for a preset that runs a part of the tests only.
+add_custom_target(realtime_tests)      # marked code and the process around it
+add_custom_target(tests_with_threads)
+set(ARMCMC_GROUPS_OF_core realtime_tests)
+set(ARMCMC_GROUPS_OF_rt realtime_tests tests_with_threads)
+set(ARMCMC_GROUPS_OF_realtime realtime_tests tests_with_threads)
+set(ARMCMC_GROUPS_OF_threads tests_with_threads)
+
 function(armcmc_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "TIMEOUT" "LIBS;LABELS")
   if(NOT arg_UNPARSED_ARGUMENTS)
@@ -19,11 +28,16 @@ function(armcmc_add_test name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   target_link_libraries(${name} PRIVATE
     ${arg_LIBS} armcmc_test_support armcmc_warnings GTest::gmock GTest::gtest_main)
+  foreach(label IN LISTS arg_LABELS)
+    foreach(group IN LISTS ARMCMC_GROUPS_OF_${label})
+      add_dependencies(${group} ${name})
+    endforeach()
+  endforeach()
   set(properties TIMEOUT ${arg_TIMEOUT})
   if(arg_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 TEST_LIST ${name}_tests PROPERTIES ${properties})
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_LIST ${name}_tests PROPERTIES ${properties})
   # A list does not survive the way through gtest_discover_tests, so the labels are set where ctest reads the tests.
   set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake")
   file(WRITE "${labels_file}" "if(${name}_tests)\n"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "armcmc/marginal_table.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
@@ -45,9 +46,9 @@ struct DensityBlock {
 
   static double Clamped(double z0) noexcept { return std::min(std::max(z0, -kBendReach), kBendReach); }
   /// What is subtracted from z_i, given c and the straightened coordinates before i.
-  [[nodiscard]] double BendAt(int i, double c, const double* e) const noexcept;
+  [[nodiscard]] double BendAt(int i, double c, const double* e) const noexcept ARMCMC_NONBLOCKING;
   /// e = straightened coordinates of u.
-  void Straighten(const double* u, double* e) const noexcept;
+  void Straighten(const double* u, double* e) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool Tapers(int i) const noexcept {
     const auto& t = thickness[static_cast<std::size_t>(i)];
     return t[0] != 0.0 || t[1] != 0.0;
@@ -59,9 +60,9 @@ struct DensityBlock {
   }
 
   /// p(u); scalar reference of the batch kernel.
-  [[nodiscard]] double Density(const double* u) const noexcept;
+  [[nodiscard]] double Density(const double* u) const noexcept ARMCMC_NONBLOCKING;
   /// Maps dim uniforms in (0, 1) to a draw.
-  void Draw(const double* uniforms, double* u) const noexcept;
+  void Draw(const double* uniforms, double* u) const noexcept ARMCMC_NONBLOCKING;
 };
 
 inline double DensityBlock::BendAt(int i, double c, const double* e) const noexcept {

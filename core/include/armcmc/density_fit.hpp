@@ -5,6 +5,7 @@
 #include "armcmc/density_block.hpp"
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/marginal_table.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -15,14 +16,15 @@ struct Kernels;
 /// Makes `block` a product law around `mean` with covariance shape C: sd of marginal i along principal axis i, times
 /// `inflation`. Falls back to the diagonal of C where C has no eigenvalues. @rt bounded, no heap.
 void SetElliptic(const ParamVector& mean, const ParamMatrix& covariance, double inflation, const MarginalTable* table,
-                 DensityBlock* block) noexcept;
+                 DensityBlock* block) noexcept ARMCMC_NONBLOCKING;
 
 /// Makes `block` axis aligned and centred, coordinate i with law tables[i].
-void SetAxisAligned(int dim, const std::array<const MarginalTable*, kMaxParams>& tables, DensityBlock* block) noexcept;
+void SetAxisAligned(int dim, const std::array<const MarginalTable*, kMaxParams>& tables,
+                    DensityBlock* block) noexcept ARMCMC_NONBLOCKING;
 
 /// Mean and covariance of the law that a block was fitted to (before bending and tails).
-[[nodiscard]] ParamVector MeanOf(const DensityBlock& block) noexcept;
-[[nodiscard]] ParamMatrix CovarianceOf(const DensityBlock& block) noexcept;
+[[nodiscard]] ParamVector MeanOf(const DensityBlock& block) noexcept ARMCMC_NONBLOCKING;
+[[nodiscard]] ParamMatrix CovarianceOf(const DensityBlock& block) noexcept ARMCMC_NONBLOCKING;
 
 /// Weighted draws in structure-of-arrays form; element d of `u` points to one coordinate of all draws. Arrays are
 /// padded to a multiple of kTileLanes with finite coordinates and weight 0.
@@ -49,7 +51,7 @@ struct FitOptions {
 /// @return Kish effective sample size of the weights; below kMinimumEss nothing was written.
 /// @rt No heap, no lock, no throw. O(size dim^2).
 double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const FitOptions& options,
-                double* const* scratch, MarginalTable* tables, DensityBlock* block) noexcept;
+                double* const* scratch, MarginalTable* tables, DensityBlock* block) noexcept ARMCMC_NONBLOCKING;
 inline constexpr double kMinimumEss = 30.0;
 
 }  // namespace armcmc

@@ -4,9 +4,13 @@
 #include <cstdint>
 
 #include "armcmc/gap_watch/gap_state.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
+
+class SnapshotReader;
+class SnapshotWriter;
 
 /// What a pack did to the posterior (algorithm step 2).
 enum class Decision : std::uint8_t { kHold = 0, kReinforcement = 1, kModification = 2 };
@@ -36,6 +40,10 @@ struct ModeEstimate {
   double kish_ess = 0.0;  ///< Of the importance weights.
   double acceptance = 0.0, log_evidence = 0.0, p_changed = 0.0, noise_std = 0.0;
   std::array<MarginalSummary, kMaxReported> marginal{};  ///< Order of PlantModel::reported().
+
+  /// What a pack that says nothing about the mode leaves in place: the parameters and the noise.
+  void Save(int num_reported, SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(int num_reported, SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 };
 
 /// Everything that the execute stage reports about one pack. Plain data of fixed size.

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "armcmc/data_pack.hpp"
@@ -49,23 +51,40 @@ class Estimator {
   /// @return kOk, kTruncated, kHeld, kBadPack (nothing changed) or kNonFinite (posterior kept).
   /// @rt No heap, no lock, no throw. Bounded by max_draws x num_samples.
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
-                const DrawLimits& limits = kNoDrawLimits) noexcept;
+                const DrawLimits& limits = kNoDrawLimits) noexcept ARMCMC_NONBLOCKING;
 
   /// Stage C: summary of the posterior, predicted output with band.
   /// @rt No heap, no lock, no throw. O(draws).
-  void Execute(const AdjustResult& result, Estimate* estimate) noexcept;
+  void Execute(const AdjustResult& result, Estimate* estimate) noexcept ARMCMC_NONBLOCKING;
 
   /// Forgets everything learnt: the next pack meets the initial prior. (A restarted plant is no reason to
   /// call it: the mismatch test decides whether the old posterior still holds.)
-  void Reset() noexcept;
+  void Reset() noexcept ARMCMC_NONBLOCKING;
 
-  [[nodiscard]] const EstimatorSettings& settings() const noexcept;
-  [[nodiscard]] PlantKind plant() const noexcept;
-  [[nodiscard]] int num_modes() const noexcept;
-  [[nodiscard]] std::string_view mode_name(int mode) const noexcept;  ///< mode == num_modes(): the passive one.
-  [[nodiscard]] int num_reported() const noexcept;
-  [[nodiscard]] ReportedQuantity reported(int index) const noexcept;
-  [[nodiscard]] int num_inputs() const noexcept;  ///< Columns of u that a pack must have.
+  /// Bytes that one of the two Save functions may need.
+  static constexpr std::size_t kSnapshotBytes = 256 * 1024;
+  /// What Adjust() carries from pack to pack, the posteriors of all modes, and what Execute() carries: the estimates on
+  /// display and the evidence of the gap watch. Each is called by the thread of its stage. Restored, an estimator goes
+  /// on to the bit; what only spans neighbouring packs (memory of effects, free run of the actuator, the unfinished
+  /// block of the gap watch) starts afresh, as after a lost pack.
+  /// @param out  At least kSnapshotBytes. @return bytes written, 0 when they did not fit.
+  /// @rt No heap, no lock, no throw. O(kSnapshotBytes).
+  [[nodiscard]] std::size_t SaveAdjusted(std::span<std::byte> out) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] std::size_t SaveExecuted(std::span<std::byte> out) const noexcept ARMCMC_NONBLOCKING;
+  /// Goes on from what was saved by an estimator with the same SnapshotIdentity().
+  /// @return false when it is damaged: everything is forgotten then, as by Reset().
+  /// @rt No heap, no lock, no throw; while neither Adjust() nor Execute() runs.
+  [[nodiscard]] bool Restore(std::span<const std::byte> adjusted,
+                             std::span<const std::byte> executed) noexcept ARMCMC_NONBLOCKING;
+
+  [[nodiscard]] const EstimatorSettings& settings() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING;
+  /// mode == num_modes(): the passive one.
+  [[nodiscard]] std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING;  ///< Columns of u that a pack must have.
 
  private:
   struct Impl;

@@ -3,6 +3,7 @@
 #include "armcmc/estimate.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
@@ -36,6 +37,7 @@ struct Mismatch {
 /// log_predictive only count a worse fit than expected: a better one is no reason to forget.
 /// @rt No heap, no lock, no throw. O(samples).
 [[nodiscard]] Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& noise, double noise_scale,
-                                        const ModeData& data, const PredictiveMoments& predictive) noexcept;
+                                        const ModeData& data,
+                                        const PredictiveMoments& predictive) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

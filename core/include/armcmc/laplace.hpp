@@ -3,6 +3,7 @@
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 
 namespace armcmc {
@@ -36,7 +37,7 @@ struct LaplaceScratch {
 /// @rt No heap, no lock, no throw. At most kLaplaceIterations x 2 batches.
 double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                   const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,
-                  Gaussian* fit) noexcept;
+                  Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
 inline constexpr int kLaplaceIterations = 10;
 
 }  // namespace armcmc

@@ -9,6 +9,9 @@
 
 namespace armcmc {
 
+class SnapshotReader;
+class SnapshotWriter;
+
 /// A one-dimensional density on equally spaced nodes, linear in between, zero outside: it can be evaluated, and
 /// drawn exactly by inverse CDF in bounded time.
 class MarginalTable {
@@ -32,8 +35,12 @@ class MarginalTable {
   [[nodiscard]] double Draw(double u) const noexcept ARMCMC_NONBLOCKING;
   /// Density at x; 0 outside the nodes.
   [[nodiscard]] double Density(double x) const noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] double Mean() const noexcept;
-  [[nodiscard]] double Variance() const noexcept;
+  [[nodiscard]] double Mean() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] double Variance() const noexcept ARMCMC_NONBLOCKING;
+
+  /// For Restore(), which is equal to the bit. in->good() is false when it is no density.
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] int num_nodes() const noexcept { return num_nodes_; }
   [[nodiscard]] double lower() const noexcept { return lower_; }
@@ -42,6 +49,8 @@ class MarginalTable {
   [[nodiscard]] const double* guide() const noexcept { return guide_.data(); }
 
  private:
+  void BuildGuide() noexcept ARMCMC_NONBLOCKING;
+
   int num_nodes_ = 0;
   double lower_ = 0.0;
   std::array<double, kMaxNodes> pdf_{};

@@ -10,6 +10,7 @@
 #include "armcmc/marginal_table.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/posterior_memory.hpp"
 #include "armcmc/proposal.hpp"
@@ -35,7 +36,7 @@ class SamplerWorkspace {
   std::vector<double> noise_coordinate;  ///< The noise scale\'s coordinate, spread out for the memory.
   std::vector<std::int8_t> component;    ///< Component that a candidate was drawn from.
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
-  [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept;
+  [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;
   LaplaceScratch laplace;
   ThetaTile theta;
   PredictionTile prediction;
@@ -72,45 +73,48 @@ class ModeSampler {
   /// @rt No heap, no lock, no throw. O(max_draws samples).
   Status Run(const ModeData& data, const PosteriorMemory& previous, std::uint64_t pack, std::uint64_t mode,
              Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* workspace, PosteriorMemory* next,
-             ModeDraws* out) noexcept;
+             ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] const ParameterSpace& space() const noexcept { return space_; }
   [[nodiscard]] const NoiseModel& noise() const noexcept { return noise_; }
+  /// Table of the blocks that have none of their own.
+  [[nodiscard]] const MarginalTable& shared_table() const noexcept { return normal_table_; }
 
  private:
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
-                   SamplerWorkspace* ws) const noexcept;
+                   SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   void FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous,
-                  SamplerWorkspace* ws) noexcept;
+                  SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   void BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous, int num_pilot_blocks,
-                     Proposal* proposal) const noexcept;
+                     Proposal* proposal) const noexcept ARMCMC_NONBLOCKING;
   void DrawAndScore(const Proposal& proposal, const PosteriorMemory& previous, const ModeData& data, int first,
-                    int count, const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
+                    int count, const RandomStream& stream, SamplerWorkspace* ws,
+                    ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   /// Weights of [first, last) from the scored quantities. @return log of the factor taken out, or NaN if none is
   /// finite.
   double Weigh(const PosteriorMemory& previous, double lambda, int first, int last,
-               SamplerWorkspace* ws) const noexcept;
+               SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   /// prior_t at the candidates from `first` on.
   [[nodiscard]] simd::PriorTerms Prior(const PosteriorMemory& previous, double lambda, int first,
-                                       const SamplerWorkspace& ws) const noexcept;
+                                       const SamplerWorkspace& ws) const noexcept ARMCMC_NONBLOCKING;
   /// Fits the pilot's weighted draws [first, last). @return number of blocks; *ess their effective number.
   int FitPilot(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
-               const ModeDraws& draws, double* ess) noexcept;
+               const ModeDraws& draws, double* ess) noexcept ARMCMC_NONBLOCKING;
   /// Proposal along the ridge of this pack, for a second pilot. @return false when there is none.
   bool BuildRidgeProposal(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda_q,
-                          SamplerWorkspace* ws, Proposal* proposal) noexcept;
+                          SamplerWorkspace* ws, Proposal* proposal) noexcept ARMCMC_NONBLOCKING;
   /// Mode of the target: the best draw, climbed to the top after a modification (when AR-MAP reports it).
-  void FindMode(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
-  void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept;
+  void FindMode(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
+  void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   void Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
-                SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept;
+                SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   /// Spreads the noise scale's coordinate of the draws [first, draws) to a standard deviation of log s of at least
   /// kNoiseMemory, with the tails of a t law, so that a level six standard deviations away is not held to be
   /// impossible.
   /// @return the spread row.
   const double* SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
-                                 const ModeDraws& draws) const noexcept;
-  [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept;
+                                 const ModeDraws& draws) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
 
   const simd::Kernels& kernels_;
   int model_;

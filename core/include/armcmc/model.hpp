@@ -5,6 +5,7 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/mode_data.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
@@ -42,9 +43,10 @@ struct ModelInfo {
   double default_noise_std;                           ///< Unit of the target.
   int num_reported;
   std::array<ReportedInfo, kMaxReported> reported;
-  int (*mode_of)(const DataPack& pack, int n) noexcept;  ///< Mode that acts at sample n; num_modes if none does.
+  /// Mode that acts at sample n; num_modes if none does.
+  int (*mode_of)(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING;
   /// Null: what is reported are the parameters themselves.
-  void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept;
+  void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept ARMCMC_NONBLOCKING;
 };
 
 }  // namespace armcmc

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
@@ -19,11 +20,11 @@ class NoiseModel {
   explicit NoiseModel(const NoiseSettings& settings);
 
   /// log p(e) for scale s, in nats. @rt bounded.
-  [[nodiscard]] double LogDensity(double e, double scale) const noexcept;
+  [[nodiscard]] double LogDensity(double e, double scale) const noexcept ARMCMC_NONBLOCKING;
   /// Weight of a squared residual in iteratively reweighted least squares: -(d log p / de) / e.
-  [[nodiscard]] double SquareWeight(double e, double scale) const noexcept;
+  [[nodiscard]] double SquareWeight(double e, double scale) const noexcept ARMCMC_NONBLOCKING;
   /// Deviance 2 (log p(0) - log p(e)) >= 0: e^2 / s^2 for the Gaussian.
-  [[nodiscard]] double Deviance(double e, double scale) const noexcept;
+  [[nodiscard]] double Deviance(double e, double scale) const noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] NoiseKind kind() const noexcept { return settings_.kind; }
   [[nodiscard]] const NoiseSettings& settings() const noexcept { return settings_; }

@@ -4,6 +4,7 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 #include "armcmc/types.hpp"
 
@@ -33,11 +34,11 @@ class OutputPredictor {
   /// Predicts every sample of the pack and advances the state. A gap in the pack numbers restarts both runs from the
   /// measurements. @rt No heap, no lock, no throw. O(kBacklogPacks samples).
   void Predict(const DataPack& pack, const ShownEstimates& shown, std::array<double, kMaxPackSamples>* output,
-               std::array<double, kMaxPackSamples>* free_run) noexcept;
+               std::array<double, kMaxPackSamples>* free_run) noexcept ARMCMC_NONBLOCKING;
 
   /// Angle at the last sample of the pack for other parameters of `mode`, from the state before the pack; for bands.
   [[nodiscard]] double LastAngle(const DataPack& pack, const ShownEstimates& shown, int mode,
-                                 const double* theta) const noexcept;
+                                 const double* theta) const noexcept ARMCMC_NONBLOCKING;
 
  private:
   struct State {
@@ -46,8 +47,9 @@ class OutputPredictor {
   struct Input {
     double u_c = 0.0, u_d = 0.0;
   };
-  void Discretise(double dt) noexcept;
-  [[nodiscard]] bool Advance(const Input& input, const ShownEstimates& shown, State* state) const noexcept;
+  void Discretise(double dt) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool Advance(const Input& input, const ShownEstimates& shown,
+                             State* state) const noexcept ARMCMC_NONBLOCKING;
 
   const ModelInfo& info_;
   PlantConstants constants_;

@@ -4,9 +4,13 @@
 
 #include "armcmc/density_block.hpp"
 #include "armcmc/linear_algebra.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
+
+class SnapshotReader;
+class SnapshotWriter;
 
 /// The posterior of one mode, compressed to what the next pack of that mode needs: drawable, with a density.
 ///
@@ -28,6 +32,12 @@ struct PosteriorMemory {
   ParamVector mean;  ///< Of the dominant block, with its covariance: what Gauss-Newton combines with a pack.
   ParamMatrix covariance;
   double log_noise_scale = 0.0;  ///< Posterior mean of log s.
+
+  /// Everything above, for Restore(). @rt No heap, no lock, no throw. O(nodes of the tables).
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  /// What was saved, to the bit; in->good() is false when it cannot be a posterior of `dim` coordinates, and nothing is
+  /// known then. @param shared  The table of blocks that have none of their own; outlives this.
+  void Restore(int dim, const MarginalTable& shared, SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 };
 
 }  // namespace armcmc

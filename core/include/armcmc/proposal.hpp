@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "armcmc/density_block.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rng.hpp"
 #include "armcmc/types.hpp"
 
@@ -30,13 +31,13 @@ class Proposal {
     components_[static_cast<std::size_t>(size_++)] = {block, share};
   }
   /// Scales the shares to sum 1.
-  void Normalise() noexcept;
+  void Normalise() noexcept ARMCMC_NONBLOCKING;
 
   /// Draws candidates u[d][first .. first + count) by inverse CDF, and their component into component_of. Candidate k
   /// uses numbers k * kNumbersPerDraw + ... of the stream, whatever the batch it is drawn in.
   /// @pre count <= kMaxBatch; u has room for count rounded up to a multiple of 8, scratch dim rows of kMaxBatch + 8.
   void Draw(const simd::Kernels& kernels, const RandomStream& stream, int first, int count, double* const* u,
-            std::int8_t* component_of, double* const* scratch) const noexcept;
+            std::int8_t* component_of, double* const* scratch) const noexcept ARMCMC_NONBLOCKING;
   static constexpr int kMaxBatch = 1024;
   static constexpr int kNumbersPerDraw = kMaxParams + 1;
 

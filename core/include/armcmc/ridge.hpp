@@ -6,6 +6,7 @@
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 
 namespace armcmc {
@@ -29,6 +30,6 @@ inline constexpr int kRidgeAnchors = 20;
 /// @rt No heap, no lock, no throw. At most kRidgeAnchors Laplace fits.
 int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                 const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, LaplaceScratch* scratch,
-                std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept;
+                std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

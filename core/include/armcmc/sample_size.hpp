@@ -5,10 +5,10 @@
 namespace armcmc {
 
 /// Chernoff number of draws, log(2 / (1 - delta)) / (2 epsilon^2) (equation `chern`); not rounded.
-[[nodiscard]] double ChernoffBound(double epsilon, double delta) noexcept;
+[[nodiscard]] double ChernoffBound(double epsilon, double delta) noexcept ARMCMC_NONBLOCKING;
 
 /// The bound as a number of draws, rounded up: 14 979 for epsilon = 0.01, delta = 0.9.
-[[nodiscard]] int ChernoffDraws(double epsilon, double delta) noexcept;
+[[nodiscard]] int ChernoffDraws(double epsilon, double delta) noexcept ARMCMC_NONBLOCKING;
 
 /// Minimum number of draws at forgetting factor lambda: the root k of equation `neval`,
 ///

@@ -6,13 +6,19 @@
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 
 namespace armcmc {
 
+namespace simd {
+struct Kernels;
+}
+
 /// Scratch of Summarise, sized once.
 struct SummaryWorkspace {
   explicit SummaryWorkspace(int capacity);
+  const simd::Kernels& kernels;
   std::vector<double> value;          ///< Of every candidate.
   std::vector<double> visited_value;  ///< Of the candidates that the chain visited, one after the other.
   std::vector<double> visits;         ///< Theirs.
@@ -27,10 +33,10 @@ struct SummaryWorkspace {
 /// @pre draws.updated.
 /// @rt No heap, no lock, no throw. O(draws).
 void Summarise(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
-               const ModeDraws& draws, SummaryWorkspace* workspace, ModeEstimate* estimate) noexcept;
+               const ModeDraws& draws, SummaryWorkspace* workspace, ModeEstimate* estimate) noexcept ARMCMC_NONBLOCKING;
 inline constexpr int kQuantileBins = 4096;
 
 /// Effective sample size of the chain after burn-in by non-overlapping batch means, the smallest over the coordinates.
-[[nodiscard]] double ChainEss(const ModeDraws& draws) noexcept;
+[[nodiscard]] double ChainEss(const ModeDraws& draws) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

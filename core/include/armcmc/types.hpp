@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "armcmc/nonblocking.hpp"
+
 namespace armcmc {
 
 inline constexpr int kMaxParams = 8;         ///< Sampled parameters of one mode, noise scale included.
@@ -17,7 +19,7 @@ using Nanos = std::int64_t;  ///< Time in nanoseconds; the clock is whatever the
 /// The clock of a step, handed in by the caller: core never asks the operating system for the time.
 /// A default-constructed clock always reads 0, so that no deadline is ever reached (replay).
 struct ClockRef {
-  Nanos (*read)(const void* context) noexcept = nullptr;
+  Nanos (*read)(const void* context) noexcept ARMCMC_NONBLOCKING = nullptr;
   const void* context = nullptr;
   [[nodiscard]] Nanos Now() const noexcept { return read != nullptr ? read(context) : 0; }
 };

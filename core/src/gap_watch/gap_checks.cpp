@@ -52,7 +52,7 @@ enum ContactRegion : std::uint8_t {
 };
 
 void FillContact(const DataPack& pack, const std::array<int, kMaxPackSamples>&, const double* prediction,
-                 RegionMemory* memory, RegionTemplates* out) noexcept {
+                 RegionMemory* memory, RegionTemplates* out) noexcept ARMCMC_NONBLOCKING {
   RegionTemplates& t = *out;
   const double acceleration = Slope(pack, 1);
   for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
@@ -106,7 +106,7 @@ enum ActuatorRegion : std::uint8_t {
 // pdot is measured with noise, which is also in the errors: no region may depend on it, nor on predictions made from
 // it.
 void FillActuator(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double*,
-                  RegionMemory* memory, RegionTemplates* out) noexcept {
+                  RegionMemory* memory, RegionTemplates* out) noexcept ARMCMC_NONBLOCKING {
   RegionTemplates& t = *out;
   constexpr double kAtmosphere = 101'325.0;  // only a size to compare with
   for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "armcmc/snapshot.hpp"
+
 namespace armcmc {
 
 void GapEvidence::Add(const std::array<CheckScore, kMaxGapChecks>& scores, double hours) noexcept {
@@ -25,6 +27,20 @@ void GapEvidence::Add(const std::array<CheckScore, kMaxGapChecks>& scores, doubl
 void GapEvidence::Reset() noexcept {
   capital_ = {};
   stakes_ = 0.0;
+}
+
+void GapEvidence::Save(SnapshotWriter* out) const noexcept {
+  out->Put(stakes_);
+  for (const Bets& bets : capital_) out->PutRow(bets.data(), bets.size());
+}
+
+void GapEvidence::Restore(SnapshotReader* in) noexcept {
+  stakes_ = in->Number();
+  in->Require(stakes_ >= 0.0);
+  for (Bets& bets : capital_) {
+    in->Row(bets.data(), bets.size());
+    for (const double capital : bets) in->Require(capital >= 0.0 && capital <= kMostCapital);
+  }
 }
 
 double GapEvidence::of(int check) const noexcept {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "armcmc/models/registry.hpp"
+#include "armcmc/snapshot.hpp"
 
 namespace armcmc {
 namespace {
@@ -28,6 +29,28 @@ GapWatch::GapWatch(const EstimatorSettings& settings, int model, const simd::Ker
   if (enabled_)
     for (Recording& recording : recordings_) recording.packs.resize(kGapBlockPacks);
   state_.watched = enabled_;
+}
+
+void GapWatch::Save(SnapshotWriter* out) const noexcept {
+  out->PutFlag(state_.suspected);
+  out->Put(std::int64_t{state_.check});
+  for (const std::int64_t v : {state_.since_seq, state_.alarm_seq, state_.num_blocks}) out->Put(v);
+  for (const double v : {state_.log_evidence, state_.log_threshold, state_.share, excess_}) out->Put(v);
+  out->PutRow(explained_.data(), explained_.size());
+  for (const std::int64_t v : since_) out->Put(v);
+  evidence_.Save(out);
+}
+
+void GapWatch::Restore(SnapshotReader* in) noexcept {
+  constexpr std::int64_t kMostPacks = std::int64_t{1} << 62;
+  state_.suspected = in->Flag();
+  state_.check = static_cast<int>(in->Integer(-1, family_.num_checks() - 1));
+  if (state_.check >= 0) state_.where = family_.check(state_.check);
+  for (std::int64_t* v : {&state_.since_seq, &state_.alarm_seq, &state_.num_blocks}) *v = in->Integer(0, kMostPacks);
+  for (double* v : {&state_.log_evidence, &state_.log_threshold, &state_.share, &excess_}) *v = in->Number();
+  in->Row(explained_.data(), explained_.size());
+  for (std::int64_t& v : since_) v = in->Integer(0, kMostPacks);
+  evidence_.Restore(in);
 }
 
 void GapWatch::Reset() noexcept {

@@ -122,7 +122,7 @@ void DrawBlockOf(const DensityBlock& block, int count, double* const* x) noexcep
   }
 }
 
-void DrawBlock(const DensityBlock& block, int count, double* const* x) noexcept {
+void DrawBlock(const DensityBlock& block, int count, double* const* x) noexcept ARMCMC_NONBLOCKING {
   ForDimension(block.dim, [&]<int kDim>() noexcept { DrawBlockOf<kDim>(block, count, x); });
 }
 
@@ -154,7 +154,8 @@ void AddDensityOf(const DensityBlock& block, const double* const* u, int first, 
   }
 }
 
-void AddDensity(const DensityBlock& block, const double* const* u, int first, double factor, double* out) noexcept {
+void AddDensity(const DensityBlock& block, const double* const* u, int first, double factor,
+                double* out) noexcept ARMCMC_NONBLOCKING {
   ForDimension(block.dim, [&]<int kDim>() noexcept { AddDensityOf<kDim>(block, u, first, factor, out); });
 }
 
@@ -168,7 +169,8 @@ void StraightenOf(const DensityBlock& block, const double* const* u, int count, 
   }
 }
 
-void Straighten(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept {
+void Straighten(const DensityBlock& block, const double* const* u, int count,
+                double* const* e) noexcept ARMCMC_NONBLOCKING {
   ForDimension(block.dim, [&]<int kDim>() noexcept { StraightenOf<kDim>(block, u, count, e); });
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 /// Additive effects: one FMA each a sample, their number known to the compiler.
 template <std::size_t kAdditive>
-void PredictAdditive(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
+void PredictAdditive(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   using V = Simd::V;
   for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
@@ -92,7 +92,7 @@ void Sense(const EffectPack& pack, const ThetaTile& theta, std::size_t at, doubl
   }
 }
 
-void PredictSensed(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
+void PredictSensed(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   alignas(64) double series[kMaxEffectSamples * Simd::kLanes];
   for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
@@ -104,12 +104,13 @@ void PredictSensed(const EffectPack& pack, const ThetaTile& theta, PredictionTil
   }
 }
 
+using PredictComposedFn = void (*)(const EffectPack&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
+constexpr PredictComposedFn kPredictAdditive[] = {&PredictSensed,      &PredictAdditive<1>, &PredictAdditive<2>,
+                                                  &PredictAdditive<3>, &PredictAdditive<4>, &PredictAdditive<5>};
+static_assert(std::size(kPredictAdditive) == kMaxAdditive + 1);
+
 void PredictComposed(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
-  using Fn = void (*)(const EffectPack&, const ThetaTile&, PredictionTile*) noexcept;
-  static constexpr Fn kByNumber[] = {&PredictSensed,      &PredictAdditive<1>, &PredictAdditive<2>,
-                                     &PredictAdditive<3>, &PredictAdditive<4>, &PredictAdditive<5>};
-  static_assert(std::size(kByNumber) == kMaxAdditive + 1);
-  (pack.additive_only() ? kByNumber[pack.num_additive] : &PredictSensed)(pack, theta, tile);
+  (pack.additive_only() ? kPredictAdditive[pack.num_additive] : kPredictAdditive[0])(pack, theta, tile);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "armcmc/density_block.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 
 namespace armcmc::simd {
@@ -26,68 +27,75 @@ struct Kernels {
 
   /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes AllModels; effects come with
   /// `data`.
-  void (*predict)(int model, const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept;
+  void (*predict)(int model, const ModeData& data, const ThetaTile& theta,
+                  PredictionTile* tile) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] = sum_n log p((target_n - tile[n][lane] - noise mean) weight_n), in nats, at scale exp(log_scale[lane]).
   void (*log_likelihood)(const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,
-                         const double* log_scale, double* out) noexcept;
+                         const double* log_scale, double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// predict, then log_likelihood, in one; under Gaussian noise, without delays, lags and limits, the predictions never
   /// reach memory and their powers carry a relative error of 4e-11. `scratch` holds nothing of use afterwards.
   void (*score)(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta,
-                const double* log_scale, PredictionTile* scratch, double* out) noexcept;
+                const double* log_scale, PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] += factor * p(u[., first + lane]).
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,
-                      double* out) noexcept;
+                      double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] = P_0(u[., first + lane]): 0 outside the bounds.
-  void (*initial_prior)(const ParameterSpace& space, const double* const* u, int first, double* out) noexcept;
+  void (*initial_prior)(const ParameterSpace& space, const double* const* u, int first,
+                        double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// theta[.][lane] and log_scale[lane] of the candidates u[., first + lane].
   void (*to_physical)(const ParameterSpace& space, const double* const* u, int first, ThetaTile* theta,
-                      double* log_scale) noexcept;
+                      double* log_scale) noexcept ARMCMC_NONBLOCKING;
 
   /// out[k] = number first + k * stride of the stream that starts at `origin`, uniform on (0, 1). count a multiple
   /// of 8.
-  void (*uniforms)(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count, double* out) noexcept;
+  void (*uniforms)(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count,
+                   double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// Maps count draws of dim uniforms to draws of the block, in place: x[d][k]. count a multiple of 8.
-  void (*draw_block)(const DensityBlock& block, int count, double* const* x) noexcept;
+  void (*draw_block)(const DensityBlock& block, int count, double* const* x) noexcept ARMCMC_NONBLOCKING;
 
   /// sums[0] = sum w, sums[1] = sum w^2, sums[2 + d] = sum w u_d over [0, count); u[d] and w padded to a multiple of 8
   /// with w = 0.
-  void (*first_moments)(int dim, const double* const* u, const double* w, int count, double* sums) noexcept;
+  void (*first_moments)(int dim, const double* const* u, const double* w, int count,
+                        double* sums) noexcept ARMCMC_NONBLOCKING;
 
   /// sums = lower triangle, row by row, of sum w (u - mean)(u - mean)' over `dim` <= kMaxMomentRows rows. Padding as
   /// above.
   void (*second_moments)(int dim, const double* const* u, const double* w, const double* mean, int count,
-                         double* sums) noexcept;
+                         double* sums) noexcept ARMCMC_NONBLOCKING;
 
   /// e[i][k] = straightened coordinate i of u[., k] for k in [0, count), before `center` and `scale`.
-  void (*straighten)(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept;
+  void (*straighten)(const DensityBlock& block, const double* const* u, int count,
+                     double* const* e) noexcept ARMCMC_NONBLOCKING;
 
   /// With c = z_0 clamped: sums[q] = sum w c^q for q in [0, 2 kDegree], then for each i in [1, dim) kDegree + 1 sums
   /// w c^q z_i.
-  void (*bend_moments)(int dim, const double* const* z, const double* w, int count, double* sums) noexcept;
+  void (*bend_moments)(int dim, const double* const* z, const double* w, int count,
+                       double* sums) noexcept ARMCMC_NONBLOCKING;
 
   /// out[k] = exp(log_likelihood[k] - reference), k in [0, count), count a multiple of the lanes of any set (8).
-  void (*relative_likelihood)(const double* log_likelihood, double reference, int count, double* out) noexcept;
+  void (*relative_likelihood)(const double* log_likelihood, double reference, int count,
+                              double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// Largest finite value[k] where inside[k] > 0, -infinity if there is none. `count` as above, also below.
-  double (*largest_inside)(const double* value, const double* inside, int count) noexcept;
+  double (*largest_inside)(const double* value, const double* inside, int count) noexcept ARMCMC_NONBLOCKING;
 
   /// weight[k], a relative likelihood, becomes weight[k] prior_t / proposal[k]; 0 outside the bounds and where that is
   /// not finite. proposal may be null: no division then.
-  void (*weigh)(const PriorTerms& prior, const double* proposal, int count, double* weight) noexcept;
+  void (*weigh)(const PriorTerms& prior, const double* proposal, int count, double* weight) noexcept ARMCMC_NONBLOCKING;
 
   /// first_share[k] = part of prior_t that is the memory's first block; sums = {sum w first_share, sum w (part that is
   /// P_0)} with weights padded by 0.
   void (*share_prior)(const PriorTerms& prior, const double* weight, int count, double* first_share,
-                      double* sums) noexcept;
+                      double* sums) noexcept ARMCMC_NONBLOCKING;
 
   /// First k with the largest a[k] b[k], all of them >= 0; b may be null, which is 1.
-  int (*largest_product)(const double* a, const double* b, int count) noexcept;
+  int (*largest_product)(const double* a, const double* b, int count) noexcept ARMCMC_NONBLOCKING;
 };
 
 /// The best set that this CPU runs, chosen once.

@@ -16,7 +16,7 @@ constexpr double kLn2 = 0.69314718055994530942;
 constexpr double kLog2E = 1.44269504088896340736;
 
 template <class Model>
-void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept {
+void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   constexpr auto kDim = static_cast<unsigned>(Model::kInfo.num_parameters);
   for (int v = 0; v < kVectors; ++v) {
     V parameters[static_cast<unsigned>(kDim)];
@@ -28,20 +28,21 @@ void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* t
   }
 }
 
+template <class List>
+struct PredictTable;
 template <class... Models>
-void PredictAny(ModelList<Models...>, int model, const ModeData& data, const ThetaTile& theta,
-                PredictionTile* tile) noexcept {
-  using Fn = void (*)(const ModeData&, const ThetaTile&, PredictionTile*) noexcept;
-  static constexpr Fn kTable[] = {&PredictTile<Models>...};
-  kTable[model](data, theta, tile);
-}
+struct PredictTable<ModelList<Models...>> {
+  using Fn = void (*)(const ModeData&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
+  static constexpr Fn kOf[] = {&PredictTile<Models>...};
+};
 
-void Predict(int model, const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept {
+void Predict(int model, const ModeData& data, const ThetaTile& theta,
+             PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   if (data.effects != nullptr) {
     PredictComposed(*data.effects, theta, tile);
     return;
   }
-  PredictAny(AllModels{}, model, data, theta, tile);
+  PredictTable<AllModels>::kOf[model](data, theta, tile);
 }
 
 /// Standardised, weighted errors of one vector of lanes at sample n.
@@ -94,7 +95,7 @@ void SumLog2Products(const ModeData& data, const PredictionTile& tile, double no
 }
 
 void LogLikelihood(const NoiseModel& noise, const ModeData& data, const PredictionTile& tile, const double* log_scale,
-                   double* out) noexcept {
+                   double* out) noexcept ARMCMC_NONBLOCKING {
   alignas(64) double inverse_scale[kTileLanes];
   for (int v = 0; v < kVectors; ++v)
     Simd::Store(inverse_scale + v * Simd::kLanes,
@@ -148,7 +149,8 @@ void LogLikelihood(const NoiseModel& noise, const ModeData& data, const Predicti
   }
 }
 
-void InitialPrior(const ParameterSpace& space, const double* const* u, int first, double* out) noexcept {
+void InitialPrior(const ParameterSpace& space, const double* const* u, int first,
+                  double* out) noexcept ARMCMC_NONBLOCKING {
   for (int v = 0; v < kVectors; ++v) {
     V square = V{};
     Simd::I inside = Simd::I{} - 1;
@@ -164,7 +166,7 @@ void InitialPrior(const ParameterSpace& space, const double* const* u, int first
 }
 
 void ToPhysical(const ParameterSpace& space, const double* const* u, int first, ThetaTile* theta,
-                double* log_scale) noexcept {
+                double* log_scale) noexcept ARMCMC_NONBLOCKING {
   for (int v = 0; v < kVectors; ++v) {
     const int lane = v * Simd::kLanes;
     for (int d = 0; d < space.dim; ++d) {
@@ -176,12 +178,14 @@ void ToPhysical(const ParameterSpace& space, const double* const* u, int first, 
   }
 }
 
-void RelativeLikelihood(const double* log_likelihood, double reference, int count, double* out) noexcept {
+void RelativeLikelihood(const double* log_likelihood, double reference, int count,
+                        double* out) noexcept ARMCMC_NONBLOCKING {
   for (int k = 0; k < count; k += Simd::kLanes)
     Simd::Store(out + k, Simd::Exp2((Simd::Load(log_likelihood + k) - Simd::Set(reference)) * Simd::Set(kLog2E)));
 }
 
-void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count, double* out) noexcept {
+void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count,
+              double* out) noexcept ARMCMC_NONBLOCKING {
   for (int k = 0; k < count; ++k)
     out[k] = (static_cast<double>(static_cast<std::int64_t>(
                   RandomStream::At(origin, first + static_cast<std::uint64_t>(k) * stride) >> 12)) +

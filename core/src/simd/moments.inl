@@ -32,7 +32,8 @@ void FirstMomentsOf(const double* const* u, const double* w, int count, double* 
   for (int i = 0; i < 2 + kDim; ++i) sums[i] = s.Total(i);
 }
 
-void FirstMoments(int dim, const double* const* u, const double* w, int count, double* sums) noexcept {
+void FirstMoments(int dim, const double* const* u, const double* w, int count,
+                  double* sums) noexcept ARMCMC_NONBLOCKING {
   if (dim == 0) {
     FirstMomentsOf<0>(u, w, count, sums);
     return;
@@ -59,7 +60,7 @@ void SecondMomentsOf(const double* const* u, const double* w, const double* mean
 }
 
 void SecondMoments(int dim, const double* const* u, const double* w, const double* mean, int count,
-                   double* sums) noexcept {
+                   double* sums) noexcept ARMCMC_NONBLOCKING {
   static_assert(kMaxMomentRows == kMaxParams + 2);
   if (dim == kMaxParams + 1) {
     SecondMomentsOf<kMaxParams + 1>(u, w, mean, count, sums);
@@ -70,7 +71,8 @@ void SecondMoments(int dim, const double* const* u, const double* w, const doubl
   }
 }
 
-void BendMoments(int dim, const double* const* z, const double* w, int count, double* sums) noexcept {
+void BendMoments(int dim, const double* const* z, const double* w, int count,
+                 double* sums) noexcept ARMCMC_NONBLOCKING {
   constexpr int kPowers = DensityBlock::kDegree + 1;
   constexpr int kGram = 2 * DensityBlock::kDegree + 1;
   Sums<kGram + kPowers * kMaxParams> s;

@@ -104,36 +104,39 @@ void SumSquaresOf(const Forward& forward, const ModeData& data, const ThetaTile&
 }
 
 template <unsigned kAdditive>
-void SumSquaresAdditive(const ModeData& data, const ThetaTile& theta, double noise_mean, double* out) noexcept {
+void SumSquaresAdditive(const ModeData& data, const ThetaTile& theta, double noise_mean,
+                        double* out) noexcept ARMCMC_NONBLOCKING {
   SumSquaresOf(AdditiveForward<kAdditive>{*data.effects}, data, theta, noise_mean, out);
 }
 
 template <class Model>
-void SumSquaresPlain(const ModeData& data, const ThetaTile& theta, double noise_mean, double* out) noexcept {
+void SumSquaresPlain(const ModeData& data, const ThetaTile& theta, double noise_mean,
+                     double* out) noexcept ARMCMC_NONBLOCKING {
   SumSquaresOf(PlainForward<Model>{data}, data, theta, noise_mean, out);
 }
 
-using SumSquaresFn = void (*)(const ModeData&, const ThetaTile&, double, double*) noexcept;
+using SumSquaresFn = void (*)(const ModeData&, const ThetaTile&, double, double*) noexcept ARMCMC_NONBLOCKING;
 
+template <class List>
+struct SumSquaresTable;
 template <class... Models>
-SumSquaresFn SumSquaresFor(ModelList<Models...>, int model) noexcept {
-  static constexpr SumSquaresFn kTable[] = {&SumSquaresPlain<Models>...};
-  return kTable[model];
-}
+struct SumSquaresTable<ModelList<Models...>> {
+  static constexpr SumSquaresFn kOf[] = {&SumSquaresPlain<Models>...};
+};
+constexpr SumSquaresFn kSumSquaresAdditive[] = {&SumSquaresAdditive<0>, &SumSquaresAdditive<1>, &SumSquaresAdditive<2>,
+                                                &SumSquaresAdditive<3>, &SumSquaresAdditive<4>, &SumSquaresAdditive<5>};
+static_assert(std::size(kSumSquaresAdditive) == kMaxAdditive + 1);
 
 void Score(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta, const double* log_scale,
-           PredictionTile* scratch, double* out) noexcept {
-  static constexpr SumSquaresFn kAdditive[] = {&SumSquaresAdditive<0>, &SumSquaresAdditive<1>, &SumSquaresAdditive<2>,
-                                               &SumSquaresAdditive<3>, &SumSquaresAdditive<4>, &SumSquaresAdditive<5>};
-  static_assert(std::size(kAdditive) == kMaxAdditive + 1);
+           PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
   const bool gaussian = noise.settings().kind == NoiseKind::kGaussian;
   if (!gaussian || (data.effects != nullptr && !data.effects->additive_only())) {
     Predict(model, data, theta, scratch);
     LogLikelihood(noise, data, *scratch, log_scale, out);
     return;
   }
-  const SumSquaresFn sum_squares =
-      data.effects != nullptr ? kAdditive[data.effects->num_additive] : SumSquaresFor(AllModels{}, model);
+  const SumSquaresFn sum_squares = data.effects != nullptr ? kSumSquaresAdditive[data.effects->num_additive]
+                                                           : SumSquaresTable<AllModels>::kOf[model];
   sum_squares(data, theta, noise.settings().mean, out);
   const V samples = Simd::Set(static_cast<double>(data.num_samples));
   const V constant = Simd::Set(noise.log_constant());

@@ -3,7 +3,7 @@
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-double LargestInside(const double* value, const double* inside, int count) noexcept {
+double LargestInside(const double* value, const double* inside, int count) noexcept ARMCMC_NONBLOCKING {
   const V none = Simd::Set(-HUGE_VAL);
   V largest = none;
   for (int k = 0; k < count; k += Simd::kLanes) {
@@ -22,7 +22,7 @@ V PriorFromMemory(const PriorTerms& prior, int k) noexcept {
                    Simd::Set(prior.memory_share[0]) * Simd::Load(prior.memory[0] + k));
 }
 
-void Weigh(const PriorTerms& prior, const double* proposal, int count, double* weight) noexcept {
+void Weigh(const PriorTerms& prior, const double* proposal, int count, double* weight) noexcept ARMCMC_NONBLOCKING {
   for (int k = 0; k < count; k += Simd::kLanes) {
     const V initial = Simd::Load(prior.initial + k);
     const V p = Simd::Fma(Simd::Set(prior.initial_share), initial, PriorFromMemory(prior, k));
@@ -33,7 +33,8 @@ void Weigh(const PriorTerms& prior, const double* proposal, int count, double* w
   }
 }
 
-void SharePrior(const PriorTerms& prior, const double* weight, int count, double* first_share, double* sums) noexcept {
+void SharePrior(const PriorTerms& prior, const double* weight, int count, double* first_share,
+                double* sums) noexcept ARMCMC_NONBLOCKING {
   Sums<2> s;
   for (int k = 0; k < count; k += 8)
     for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
@@ -50,7 +51,7 @@ void SharePrior(const PriorTerms& prior, const double* weight, int count, double
   for (int i = 0; i < 2; ++i) sums[i] = s.Total(i);
 }
 
-int LargestProduct(const double* a, const double* b, int count) noexcept {
+int LargestProduct(const double* a, const double* b, int count) noexcept ARMCMC_NONBLOCKING {
   V largest = Simd::Set(-1.0);
   V where = V{};
   V index = V{};

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <string>
 
 #include "tools/gap/gap_rig.hpp"
 
@@ -80,7 +81,8 @@ TEST_P(Onset, IsFoundToAFewSamples) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ScanGates, Onset, ::testing::Values("force_bias", "viscous_friction", "coulomb_friction"));
+INSTANTIATE_TEST_SUITE_P(ScanGates, Onset, ::testing::Values("force_bias", "viscous_friction", "coulomb_friction"),
+                         [](const auto& at) { return std::string(at.param); });
 
 TEST(ScanGates, AnEffectThatIsSeenInFewBlocksHasNoGate) {
   const Bench bench(Measure({}, 2000, kNoise, 3).recording);

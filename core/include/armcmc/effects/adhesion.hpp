@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -21,7 +22,8 @@ struct Adhesion {
       .shapes = {{{"distance", "m", 0.2, &effect_unit::Length, 1e-9, 1e3}}},
   };
 
-  static void Feature(const EffectInput& in, const double* shape, double*, double* feature) noexcept {
+  static void Feature(const EffectInput& in, const double* shape, double*,
+                      double* feature) noexcept ARMCMC_NONBLOCKING {
     feature[0] = in.v < 0.0 && in.x >= 0.0 ? -std::exp(-in.x / shape[0]) : 0.0;
   }
 };

@@ -8,6 +8,7 @@
 #include "armcmc/effects/registry.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
@@ -34,10 +35,10 @@ class Composition {
   /// @return false when a feature is not finite: nothing is remembered.
   /// @pre !empty(), pack.Validate() == kOk.
   /// @rt No heap, no lock, no throw. O(samples).
-  [[nodiscard]] bool Prepare(const DataPack& pack, EffectPack* out) noexcept;
+  [[nodiscard]] bool Prepare(const DataPack& pack, EffectPack* out) noexcept ARMCMC_NONBLOCKING;
 
   /// What the sampler scores. `effects` must outlive `data`.
-  static void Fill(const DataPack& pack, const EffectPack& effects, ModeData* data) noexcept;
+  static void Fill(const DataPack& pack, const EffectPack& effects, ModeData* data) noexcept ARMCMC_NONBLOCKING;
 
   /// Forgets the packs before.
   void Reset() noexcept { memory_[0].seq = memory_[1].seq = -1; }
@@ -59,10 +60,10 @@ class Composition {
     EffectPack pack;
   };
 
-  void Assign(EffectPack* pack) const noexcept;
-  [[nodiscard]] int HistoryFor(double dt) const noexcept;
-  static void CopyRows(const EffectPack& from, int first, int count, EffectPack* to) noexcept;
-  void FillRow(const EffectInput& in, int row, Memory* memory) const noexcept;
+  void Assign(EffectPack* pack) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int HistoryFor(double dt) const noexcept ARMCMC_NONBLOCKING;
+  static void CopyRows(const EffectPack& from, int first, int count, EffectPack* to) noexcept ARMCMC_NONBLOCKING;
+  void FillRow(const EffectInput& in, int row, Memory* memory) const noexcept ARMCMC_NONBLOCKING;
 
   ModelInfo info_;
   EstimatorSettings sampled_;

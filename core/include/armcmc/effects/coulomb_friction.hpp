@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -21,7 +22,8 @@ struct CoulombFriction {
       .shapes = {{{"speed", "m/s", 0.02, &effect_unit::Speed, 1e-9, 1e3}}},
   };
 
-  static void Feature(const EffectInput& in, const double* shape, double*, double* feature) noexcept {
+  static void Feature(const EffectInput& in, const double* shape, double*,
+                      double* feature) noexcept ARMCMC_NONBLOCKING {
     feature[0] = std::tanh(in.v / shape[0]);
   }
 };

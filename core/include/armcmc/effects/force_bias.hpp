@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -19,7 +20,9 @@ struct ForceBias {
       .shapes = {},
   };
 
-  static void Feature(const EffectInput&, const double*, double*, double* feature) noexcept { feature[0] = 1.0; }
+  static void Feature(const EffectInput&, const double*, double*, double* feature) noexcept ARMCMC_NONBLOCKING {
+    feature[0] = 1.0;
+  }
 };
 
 }  // namespace armcmc

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -19,7 +20,8 @@ struct ForceDrift {
       .shapes = {{{"origin", "s", 0.0, &effect_unit::One, -1e12, 1e12}}},
   };
 
-  static void Feature(const EffectInput& in, const double* shape, double*, double* feature) noexcept {
+  static void Feature(const EffectInput& in, const double* shape, double*,
+                      double* feature) noexcept ARMCMC_NONBLOCKING {
     feature[0] = in.t - shape[0];
   }
 };

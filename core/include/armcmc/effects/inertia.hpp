@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -22,7 +23,8 @@ struct Inertia {
       .shapes = {{{"smoothing", "s", 0.0, &effect_unit::One, 0.0, 1.0}}},
   };
 
-  static void Feature(const EffectInput& in, const double* shape, double* memory, double* feature) noexcept {
+  static void Feature(const EffectInput& in, const double* shape, double* memory,
+                      double* feature) noexcept ARMCMC_NONBLOCKING {
     const double raw = in.first ? 0.0 : (in.v - memory[0]) / in.dt;
     memory[0] = in.v;
     memory[1] = in.first ? 0.0 : memory[1] + (raw - memory[1]) * in.dt / (in.dt + shape[0]);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -24,7 +25,8 @@ struct PeriodicDisturbance {
       .shapes = {{{"frequency", "Hz", 10.0, &effect_unit::One, 1e-6, 1e6}}},
   };
 
-  static void Feature(const EffectInput& in, const double* shape, double*, double* feature) noexcept {
+  static void Feature(const EffectInput& in, const double* shape, double*,
+                      double* feature) noexcept ARMCMC_NONBLOCKING {
     const double phase = 2.0 * std::numbers::pi * shape[0] * in.t;
     feature[0] = std::cos(phase);
     feature[1] = std::sin(phase);

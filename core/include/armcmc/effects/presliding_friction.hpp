@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -24,7 +25,8 @@ struct PreslidingFriction {
       .shapes = {{{"distance", "m", 0.05, &effect_unit::Length, 1e-9, 1e3}}},
   };
 
-  static void Feature(const EffectInput& in, const double* shape, double* memory, double* feature) noexcept {
+  static void Feature(const EffectInput& in, const double* shape, double* memory,
+                      double* feature) noexcept ARMCMC_NONBLOCKING {
     if (in.first) {
       memory[0] = 0.0;
     } else {

@@ -16,16 +16,18 @@
 #include "armcmc/effects/stiffness_drift.hpp"
 #include "armcmc/effects/stress_relaxation.hpp"
 #include "armcmc/effects/viscous_friction.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
 /// How the samples of an effect become numbers that do not depend on the candidate; null where there are none.
-using EffectFeatureFn = void (*)(const EffectInput&, const double* shape, double* memory, double* feature) noexcept;
+using EffectFeatureFn = void (*)(const EffectInput&, const double* shape, double* memory,
+                                 double* feature) noexcept ARMCMC_NONBLOCKING;
 
 namespace effect_detail {
 
 template <class E>
-void Elapsed(const EffectInput& in, const double* shape, double*, double* feature) noexcept {
+void Elapsed(const EffectInput& in, const double* shape, double*, double* feature) noexcept ARMCMC_NONBLOCKING {
   feature[0] = E::Elapsed(in, shape);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -20,7 +21,9 @@ struct StiffnessDrift {
   };
 
   /// t - origin, the factor of the rate; s.
-  static double Elapsed(const EffectInput& in, const double* shape) noexcept { return in.t - shape[0]; }
+  static double Elapsed(const EffectInput& in, const double* shape) noexcept ARMCMC_NONBLOCKING {
+    return in.t - shape[0];
+  }
 
   template <class S>
   static typename S::V Stiffness(typename S::V stiffness, typename S::V rate, typename S::V elapsed) noexcept {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -24,7 +25,8 @@ struct StressRelaxation {
       .shapes = {{{"time_constant", "s", 0.3, &effect_unit::One, 1e-6, 1e6}}},
   };
 
-  static void Feature(const EffectInput& in, const double* shape, double* memory, double* feature) noexcept {
+  static void Feature(const EffectInput& in, const double* shape, double* memory,
+                      double* feature) noexcept ARMCMC_NONBLOCKING {
     const double depth = std::fmax(in.x, 0.0);
     // memory: depth of the sample before, and the force of the branch over its stiffness.
     if (in.first) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -19,7 +20,9 @@ struct ViscousFriction {
       .shapes = {},
   };
 
-  static void Feature(const EffectInput& in, const double*, double*, double* feature) noexcept { feature[0] = in.v; }
+  static void Feature(const EffectInput& in, const double*, double*, double* feature) noexcept ARMCMC_NONBLOCKING {
+    feature[0] = in.v;
+  }
 };
 
 }  // namespace armcmc

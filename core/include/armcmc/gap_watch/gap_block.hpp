@@ -4,6 +4,7 @@
 
 #include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/gap_watch/gap_evidence.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
@@ -45,19 +46,20 @@ class GapBlock {
  public:
   GapBlock(const GapFamily& family, int num_columns) noexcept : family_(family), columns_(num_columns) {}
 
-  void Clear() noexcept;
+  void Clear() noexcept ARMCMC_NONBLOCKING;
   /// First pass: errors and slopes of pack k alone. @param tau  Place in the block, [-1, 1].
   /// @param changed  Whether the parameters may have stepped before this pack.
-  void AddFit(int k, const GapRows& rows, double tau, bool changed) noexcept;
+  void AddFit(int k, const GapRows& rows, double tau, bool changed) noexcept ARMCMC_NONBLOCKING;
   /// Second pass: with regions, and d_k against those of the packs before when these are neighbours.
   void AddRegions(int k, const GapRows& rows, double tau, bool changed, const RegionTemplates& regions,
-                  bool continues) noexcept;
+                  bool continues) noexcept ARMCMC_NONBLOCKING;
   /// Least squares with a weak prior (precision in units of the noise) on every direction: where to linearise next.
   /// @param[out] shift  Of every pack.
-  void Fit(const std::array<double, kGapColumns>& precision, std::array<GapShift, kGapBlockPacks>* shift) noexcept;
+  void Fit(const std::array<double, kGapColumns>& precision,
+           std::array<GapShift, kGapBlockPacks>* shift) noexcept ARMCMC_NONBLOCKING;
   /// Scores of all checks; zero where a block says too little.
   /// @param tolerance  See GapWatchSettings.
-  void Score(double tolerance, std::array<CheckScore, kMaxGapChecks>* scores) noexcept;
+  void Score(double tolerance, std::array<CheckScore, kMaxGapChecks>* scores) noexcept ARMCMC_NONBLOCKING;
 
   /// After Score(): squared error that a check explains, and all of it beyond the noise; in units of the noise.
   [[nodiscard]] double explained(int check) const noexcept { return explained_[static_cast<std::size_t>(check)]; }
@@ -81,22 +83,22 @@ class GapBlock {
   };
   using Vector = std::array<double, kGapNuisance>;
 
-  void AddPrecision(const std::array<double, kGapColumns>& precision) noexcept;
-  void SumNormalMatrix() noexcept;
+  void AddPrecision(const std::array<double, kGapColumns>& precision) noexcept ARMCMC_NONBLOCKING;
+  void SumNormalMatrix() noexcept ARMCMC_NONBLOCKING;
   /// Cholesky factor; directions that the block cannot tell apart from the ones before are left out.
-  void Factor() noexcept;
-  void SolveLower(Vector* x) const noexcept;  ///< L x = b
-  void SolveUpper(Vector* x) const noexcept;  ///< L' x = b
-  [[nodiscard]] GapShift ShiftOf(const PackSums& pack, const Vector& solution) const noexcept;
-  void SolveErrors(Vector* solution) const noexcept;
+  void Factor() noexcept ARMCMC_NONBLOCKING;
+  void SolveLower(Vector* x) const noexcept ARMCMC_NONBLOCKING;  ///< L x = b
+  void SolveUpper(Vector* x) const noexcept ARMCMC_NONBLOCKING;  ///< L' x = b
+  [[nodiscard]] GapShift ShiftOf(const PackSums& pack, const Vector& solution) const noexcept ARMCMC_NONBLOCKING;
+  void SolveErrors(Vector* solution) const noexcept ARMCMC_NONBLOCKING;
   /// Correlation of neighbouring packs' means that is allowed for.
-  [[nodiscard]] double CarryOver() const noexcept;
+  [[nodiscard]] double CarryOver() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] CheckScore ScoreRegion(int region, const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
-                                       double* explained) const noexcept;
-  [[nodiscard]] CheckScore ScoreEcho(int lag, double tolerance, double* explained) const noexcept;
+                                       double* explained) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] CheckScore ScoreEcho(int lag, double tolerance, double* explained) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] CheckScore ScoreWander(const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
-                                       double* explained) const noexcept;
-  void Detrend(const GapRows& rows, std::array<double, kMaxPackSamples>* out) const noexcept;
+                                       double* explained) const noexcept ARMCMC_NONBLOCKING;
+  void Detrend(const GapRows& rows, std::array<double, kMaxPackSamples>* out) const noexcept ARMCMC_NONBLOCKING;
 
   const GapFamily& family_;
   int columns_;

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "armcmc/data_pack.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
@@ -40,7 +41,7 @@ struct GapFamily {
   /// @param modes       Mode of every sample.
   /// @param prediction  Output of the model at every sample, in units of the noise.
   void (*fill)(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double* prediction,
-               RegionMemory* memory, RegionTemplates* out) noexcept;
+               RegionMemory* memory, RegionTemplates* out) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] int num_checks() const noexcept { return num_regions + kNumSerialChecks; }
   [[nodiscard]] std::string_view check(int index) const noexcept {
@@ -49,6 +50,6 @@ struct GapFamily {
   }
 };
 
-[[nodiscard]] const GapFamily& FamilyOf(PlantKind plant) noexcept;
+[[nodiscard]] const GapFamily& FamilyOf(PlantKind plant) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

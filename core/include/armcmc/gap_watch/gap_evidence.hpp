@@ -3,8 +3,12 @@
 #include <array>
 
 #include "armcmc/gap_watch/gap_checks.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
+
+class SnapshotReader;
+class SnapshotWriter;
 
 /// One check of one block.
 struct CheckScore {
@@ -30,12 +34,14 @@ class GapEvidence {
   GapEvidence(int num_checks, double rate) noexcept : num_checks_(num_checks), rate_(rate) {}
 
   /// One block. @rt bounded. @param hours  Data in the block.
-  void Add(const std::array<CheckScore, kMaxGapChecks>& scores, double hours) noexcept;
-  void Reset() noexcept;
+  void Add(const std::array<CheckScore, kMaxGapChecks>& scores, double hours) noexcept ARMCMC_NONBLOCKING;
+  void Reset() noexcept ARMCMC_NONBLOCKING;
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
-  [[nodiscard]] double total() const noexcept;  ///< Capital; 1 is the alarm.
+  [[nodiscard]] double total() const noexcept ARMCMC_NONBLOCKING;  ///< Capital; 1 is the alarm.
   [[nodiscard]] double stakes() const noexcept { return stakes_; }
-  [[nodiscard]] double of(int check) const noexcept;  ///< Capital of one check.
+  [[nodiscard]] double of(int check) const noexcept ARMCMC_NONBLOCKING;  ///< Capital of one check.
 
  private:
   static constexpr std::array<double, 3> kSizes{1.0, 2.0, 3.0};

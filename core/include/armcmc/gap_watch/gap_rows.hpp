@@ -8,6 +8,7 @@
 #include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
@@ -33,21 +34,22 @@ class GapLineariser {
   /// Parameters of all modes together: columns of GapRows.
   [[nodiscard]] int num_columns() const noexcept { return info().num_modes * info().num_parameters; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return composition_.info(); }
-  [[nodiscard]] const ParameterSettings& parameter(int column) const noexcept;
+  [[nodiscard]] const ParameterSettings& parameter(int column) const noexcept ARMCMC_NONBLOCKING;
   /// The parameters of `reference` moved by `shift`, kept inside their bounds.
-  [[nodiscard]] GapReference Moved(const GapReference& reference, const GapShift& shift) const noexcept;
+  [[nodiscard]] GapReference Moved(const GapReference& reference,
+                                   const GapShift& shift) const noexcept ARMCMC_NONBLOCKING;
 
   /// @param modes  Mode of every sample.
   /// @return false when a prediction is not finite. @rt No heap, no lock, no throw. O(samples).
   [[nodiscard]] bool Linearise(const DataPack& pack, const GapReference& at, GapRows* rows,
-                               std::array<int, kMaxPackSamples>* modes) noexcept;
+                               std::array<int, kMaxPackSamples>* modes) noexcept ARMCMC_NONBLOCKING;
   /// Forgets the packs before.
   void Reset() noexcept { composition_.Reset(); }
 
  private:
-  void FillTheta(const std::array<double, kMaxParams>& theta) noexcept;
+  void FillTheta(const std::array<double, kMaxParams>& theta) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
-                              GapRows* rows) noexcept;
+                              GapRows* rows) noexcept ARMCMC_NONBLOCKING;
 
   const EstimatorSettings& settings_;
   int model_;

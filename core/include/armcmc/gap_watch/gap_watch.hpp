@@ -11,9 +11,13 @@
 #include "armcmc/gap_watch/gap_rows.hpp"
 #include "armcmc/gap_watch/gap_settings.hpp"
 #include "armcmc/gap_watch/gap_state.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
+
+class SnapshotReader;
+class SnapshotWriter;
 
 /// Watches for a persistent gap between a model and its plant, while the estimator runs.
 ///
@@ -37,9 +41,12 @@ class GapWatch {
   /// One pack, in the order of the estimator. @param changed  The estimator dropped its past at this pack.
   /// @pre pack.Validate() == kOk, and the pack is of the model's plant.
   /// @rt No heap, no lock, no throw. O(samples).
-  void Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept;
-  void Reset() noexcept;
+  void Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept ARMCMC_NONBLOCKING;
+  void Reset() noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] const GapState& state() const noexcept { return state_; }
+  /// The evidence of the blocks that were judged, and the alarm. The block under way is not kept.
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
   /// Of the last block.
   [[nodiscard]] const std::array<CheckScore, kMaxGapChecks>& scores() const noexcept { return scores_; }
 
@@ -56,14 +63,14 @@ class GapWatch {
   };
 
   /// @return true when a pack of the block is complete.
-  [[nodiscard]] bool Record(const DataPack& pack, bool changed) noexcept;
-  void Analyse() noexcept;
-  void BeginAnalysis(const GapReference& estimate) noexcept;
+  [[nodiscard]] bool Record(const DataPack& pack, bool changed) noexcept ARMCMC_NONBLOCKING;
+  void Analyse() noexcept ARMCMC_NONBLOCKING;
+  void BeginAnalysis(const GapReference& estimate) noexcept ARMCMC_NONBLOCKING;
   /// The first change of the block, and which packs around it are left out.
-  void PlaceChange() noexcept;
-  void AnalysePack(int k, bool second_pass) noexcept;
-  void FitTrajectory() noexcept;
-  void Judge() noexcept;
+  void PlaceChange() noexcept ARMCMC_NONBLOCKING;
+  void AnalysePack(int k, bool second_pass) noexcept ARMCMC_NONBLOCKING;
+  void FitTrajectory() noexcept ARMCMC_NONBLOCKING;
+  void Judge() noexcept ARMCMC_NONBLOCKING;
 
   const GapWatchSettings& settings_;
   const GapFamily& family_;

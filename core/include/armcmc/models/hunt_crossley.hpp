@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "armcmc/model.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -13,7 +14,7 @@ namespace armcmc {
 /// x penetration m, v its rate m/s, f N; K N/m^p, B N s/m^(p+1), p dimensionless.
 /// Mode 0 is contact; free motion carries no information on theta and is the passive mode.
 struct HuntCrossley {
-  static int ModeOf(const DataPack& pack, int n) noexcept {
+  static int ModeOf(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING {
     return pack.u[static_cast<std::size_t>(n)][0] >= 0.0 ? 0 : 1;
   }
 
@@ -36,7 +37,8 @@ struct HuntCrossley {
   };
 
   /// Features: 0 log2 x (x^p = 2^(p log2 x), so that one exp2 is all a candidate costs), 1 v.
-  static void Prepare(const DataPack& pack, const PlantConstants&, int mode, ModeData* data) noexcept {
+  static void Prepare(const DataPack& pack, const PlantConstants&, int mode,
+                      ModeData* data) noexcept ARMCMC_NONBLOCKING {
     constexpr double kLog2OfZero = -1000.0;  // x = 0: x^p underflows to 0 for every p >= 1
     int m = 0;
     for (int n = 0; n < pack.num_samples; ++n) {

@@ -4,6 +4,7 @@
 
 #include "armcmc/models/hunt_crossley.hpp"
 #include "armcmc/models/soft_actuator.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -11,7 +12,7 @@ template <class... Models>
 struct ModelList {
   static constexpr int kSize = sizeof...(Models);
   static constexpr std::array<const ModelInfo*, sizeof...(Models)> kInfos{&Models::kInfo...};
-  using PrepareFn = void (*)(const DataPack&, const PlantConstants&, int, ModeData*) noexcept;
+  using PrepareFn = void (*)(const DataPack&, const PlantConstants&, int, ModeData*) noexcept ARMCMC_NONBLOCKING;
   static constexpr std::array<PrepareFn, sizeof...(Models)> kPrepare{&Models::Prepare...};
 };
 

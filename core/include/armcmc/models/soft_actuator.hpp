@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "armcmc/model.hpp"
+#include "armcmc/nonblocking.hpp"
 
 namespace armcmc {
 
@@ -14,13 +15,14 @@ namespace armcmc {
 /// p Pa, pdot Pa/s. g is the gain at atmospheric pressure: theta1 and theta2 p_atm are nearly equal and opposite,
 /// so that the paper's pair (theta1, theta2) is almost perfectly correlated and g is not.
 struct SoftActuator {
-  static int ModeOf(const DataPack& pack, int n) noexcept {
+  static int ModeOf(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING {
     const auto& u = pack.u[static_cast<std::size_t>(n)];
     if (u[0] != 0.0) return 0;
     return u[1] != 0.0 ? 1 : 2;
   }
 
-  static void Report(const double* theta, const PlantConstants& constants, double* reported) noexcept {
+  static void Report(const double* theta, const PlantConstants& constants,
+                     double* reported) noexcept ARMCMC_NONBLOCKING {
     reported[0] = theta[0];
     reported[1] = theta[1];
     reported[2] = theta[0] - theta[1] * constants.p_atm;
@@ -50,7 +52,8 @@ struct SoftActuator {
   }
 
   /// Features: 0 pdot, 1 pdot (p - p_atm).
-  static void Prepare(const DataPack& pack, const PlantConstants& constants, int mode, ModeData* data) noexcept {
+  static void Prepare(const DataPack& pack, const PlantConstants& constants, int mode,
+                      ModeData* data) noexcept ARMCMC_NONBLOCKING {
     int m = 0;
     for (int n = 0; n < pack.num_samples; ++n) {
       if (ModeOf(pack, n) != mode) continue;

@@ -53,12 +53,12 @@ class AdjustStage {
   /// deadline.
   /// @return true when a result was handed over; false when the ring is empty or execute has to come first.
   /// @rt No heap, no lock, no throw, no system call. Bounded by the adjust budget plus the ring's capacity.
-  [[nodiscard]] bool Step() noexcept;
+  [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
 
  private:
-  void DropUnkeepable() noexcept;
-  void CountDropped(const StepInfo& info, Stage waiting_for, Nanos now_ns, Nanos lacked_ns) noexcept;
-  void NoteStatus(const StepInfo& info) noexcept;
+  void DropUnkeepable() noexcept ARMCMC_NONBLOCKING;
+  void CountDropped(const StepInfo& info, Stage waiting_for, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
+  void NoteStatus(const StepInfo& info) noexcept ARMCMC_NONBLOCKING;
 
   Nanos budget_ns_, reserve_ns_;
   StepEngine* engine_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "armcmc/nonblocking.hpp"
+#include "armcmc/rt/system_call.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc::rt {
@@ -14,14 +15,12 @@ inline constexpr Nanos kNanosPerSecond = 1'000'000'000;
 inline constexpr Nanos kNanosPerMilli = 1'000'000;
 inline constexpr Nanos kNanosPerMicro = 1'000;
 
-#if defined(__clang__) && __clang_major__ >= 20
-#pragma clang diagnostic push
-#pragma clang diagnostic ignored "-Wfunction-effects"  // clock_gettime is served by the vDSO: no system call
-#endif
+ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no system call
 
-/// CLOCK_MONOTONIC, ns. The only clock that deadlines, releases and latencies are measured on.
-/// @rt No system call (vDSO).
-[[nodiscard]] inline Nanos MonotonicNow() noexcept ARMCMC_NONBLOCKING {
+    /// CLOCK_MONOTONIC, ns. The only clock that deadlines, releases and latencies are measured on.
+    /// @rt No system call (vDSO).
+    [[nodiscard]] inline Nanos
+    MonotonicNow() noexcept ARMCMC_NONBLOCKING {
   timespec t{};
   clock_gettime(CLOCK_MONOTONIC, &t);
   return static_cast<Nanos>(t.tv_sec) * kNanosPerSecond + static_cast<Nanos>(t.tv_nsec);
@@ -34,9 +33,7 @@ inline constexpr Nanos kNanosPerMicro = 1'000;
   return static_cast<Nanos>(t.tv_sec) * kNanosPerSecond + static_cast<Nanos>(t.tv_nsec);
 }
 
-#if defined(__clang__) && __clang_major__ >= 20
-#pragma clang diagnostic pop
-#endif
+ARMCMC_TRUST_NONBLOCKING_END
 
 /// CLOCK_REALTIME in microseconds: the `utime` of LCM messages.
 [[nodiscard]] inline std::int64_t RealtimeMicros() noexcept ARMCMC_NONBLOCKING {
@@ -44,8 +41,8 @@ inline constexpr Nanos kNanosPerMicro = 1'000;
 }
 
 /// The monotonic clock in the form that core takes.
-[[nodiscard]] inline ClockRef MonotonicClock() noexcept {
-  return {[](const void*) noexcept -> Nanos { return MonotonicNow(); }, nullptr};
+[[nodiscard]] inline ClockRef MonotonicClock() noexcept ARMCMC_NONBLOCKING {
+  return {[](const void*) noexcept ARMCMC_NONBLOCKING -> Nanos { return MonotonicNow(); }, nullptr};
 }
 
 [[nodiscard]] constexpr timespec ToTimespec(Nanos t_ns) noexcept {
@@ -56,10 +53,14 @@ inline constexpr Nanos kNanosPerMicro = 1'000;
 ///
 /// Not std::this_thread::sleep_until: libstdc++ 12 makes a relative sleep of it, so that a preemption between
 /// the clock read and the call is added to the wake-up.
-inline void SleepUntil(Nanos t_ns) noexcept {
+ARMCMC_TRUST_NONBLOCKING_BEGIN  // a thread waits here for its release
+    inline void
+    SleepUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING {
   const timespec t = ToTimespec(t_ns);
+  const SystemCall wait;
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
   }
 }
+ARMCMC_TRUST_NONBLOCKING_END
 
 }  // namespace armcmc::rt

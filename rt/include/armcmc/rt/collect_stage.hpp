@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
 #include "armcmc/rt/event_log.hpp"
 #include "armcmc/rt/hand_over.hpp"
@@ -23,19 +24,19 @@ class CollectStage {
   void SetRecord(RecordRing* record) noexcept { record_ = record; }
 
   /// @return true when a pack was handed on. @rt No heap, no lock, no throw, no system call. O(pack).
-  [[nodiscard]] bool Step(const Datagram& datagram) noexcept;
+  [[nodiscard]] bool Step(const Datagram& datagram) noexcept ARMCMC_NONBLOCKING;
 
   /// Begins to wait for the plant. Call once, right before the loop.
-  void Begin(Nanos now_ns) noexcept;
+  void Begin(Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
   /// When Tick() is to be called unless a pack comes before.
   [[nodiscard]] Nanos next_tick_ns() const noexcept { return next_tick_ns_; }
   /// A period passed without a pack. @rt O(1).
   void Tick(Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
 
  private:
-  void PublishSequenceCounts() noexcept;
-  void Reject(RejectCause cause, Nanos now_ns) noexcept;
-  void NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept;
+  void PublishSequenceCounts() noexcept ARMCMC_NONBLOCKING;
+  void Reject(RejectCause cause, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
+  void NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
 
   Nanos period_ns_, deadline_ns_;
   PackCodec codec_;

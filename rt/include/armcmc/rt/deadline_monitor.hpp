@@ -16,7 +16,7 @@ namespace armcmc::rt {
 /// Why a deadline was missed. Values equal estimator_status_t.MISS_*.
 enum class MissCause : std::uint8_t { kNone = 0, kOwn = 1, kMachine = 2, kLateData = 3 };
 inline constexpr std::size_t kNumMissCauses = 4;
-[[nodiscard]] std::string_view ToString(MissCause cause) noexcept;
+[[nodiscard]] std::string_view ToString(MissCause cause) noexcept ARMCMC_NONBLOCKING;
 
 /// Time stamps of one step, CLOCK_MONOTONIC.
 struct StepTimes {
@@ -70,14 +70,14 @@ class DeadlineMonitor {
   MissCause RecordDropped(const StepTimes& times, Stage waiting_for, Nanos now_ns,
                           Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
 
-  [[nodiscard]] std::int64_t misses(MissCause cause) const noexcept;
+  [[nodiscard]] std::int64_t misses(MissCause cause) const noexcept ARMCMC_NONBLOCKING;
   /// Steps in which a stage took more than its budget (adjust: its budget; the others: the execute reserve).
   [[nodiscard]] std::int64_t stage_overruns(Stage stage) const noexcept { return overruns_[IndexOf(stage)].Get(); }
   [[nodiscard]] const LogHistogram& stage_times(Stage stage) const noexcept { return stage_times_[IndexOf(stage)]; }
   [[nodiscard]] const LogHistogram& end_to_end() const noexcept { return end_to_end_; }
 
  private:
-  [[nodiscard]] Nanos LongestStall(const StepTimes& times, Stage last, Nanos end_ns) const noexcept;
+  [[nodiscard]] Nanos LongestStall(const StepTimes& times, Stage last, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
 
   std::array<const WakeUpRing*, kNumStages> witness_{};
   std::array<Nanos, kNumStages> budget_ns_;

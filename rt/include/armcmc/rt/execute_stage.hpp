@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/event_log.hpp"
@@ -19,14 +20,14 @@ class ExecuteStage {
 
   /// @return true when a step was finished; false when there is no new result.
   /// @rt No heap, no lock, no throw, no system call. O(draws).
-  [[nodiscard]] bool Step() noexcept;
+  [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
 
   /// Draws and effective sample size of every posterior that was updated. @pre the stage has ended.
   [[nodiscard]] const LogHistogram& draws() const noexcept { return draws_; }
   [[nodiscard]] const LogHistogram& ess() const noexcept { return ess_; }
 
  private:
-  void CountSampling(const Estimate& estimate) noexcept;
+  void CountSampling(const Estimate& estimate) noexcept ARMCMC_NONBLOCKING;
 
   StepEngine* engine_;
   ResultHandOver* results_;

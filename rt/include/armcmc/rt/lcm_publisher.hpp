@@ -9,8 +9,10 @@
 
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/posterior_t.hpp"
 #include "armcmc/rt/lcm_url.hpp"
+#include "armcmc/rt/system_call.hpp"
 
 namespace armcmc::rt {
 
@@ -22,21 +24,32 @@ class LcmPublisher {
   LcmPublisher(const LcmUrl& url, const std::string& prefix);
 
   // Each returns false when the message could not be encoded or sent.
-  [[nodiscard]] bool Publish(const estimate_t& message) noexcept { return Send(estimate_channel_, message); }
-  [[nodiscard]] bool Publish(const posterior_t& message) noexcept { return Send(posterior_channel_, message); }
-  [[nodiscard]] bool Publish(const estimator_status_t& message) noexcept { return Send(status_channel_, message); }
+  [[nodiscard]] bool Publish(const estimate_t& message) noexcept ARMCMC_NONBLOCKING {
+    return Send(estimate_channel_, message);
+  }
+  [[nodiscard]] bool Publish(const posterior_t& message) noexcept ARMCMC_NONBLOCKING {
+    return Send(posterior_channel_, message);
+  }
+  [[nodiscard]] bool Publish(const estimator_status_t& message) noexcept ARMCMC_NONBLOCKING {
+    return Send(status_channel_, message);
+  }
 
  private:
   struct Destroy {
     void operator()(lcm_t* lcm) const noexcept { lcm_destroy(lcm); }
   };
 
+  // The publish thread is the one that sends, below every stage. encode() looks up the fingerprint in a static variable
+  // that its first call computes.
+  ARMCMC_TRUST_NONBLOCKING_BEGIN
   template <typename Message>
-  [[nodiscard]] bool Send(const std::string& channel, const Message& message) noexcept {
+  [[nodiscard]] bool Send(const std::string& channel, const Message& message) noexcept ARMCMC_NONBLOCKING {
     const int size = message.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));
     if (size < 0) return false;
+    const SystemCall send;
     return lcm_publish(lcm_.get(), channel.c_str(), buffer_.data(), static_cast<unsigned>(size)) == 0;
   }
+  ARMCMC_TRUST_NONBLOCKING_END
 
   std::unique_ptr<lcm_t, Destroy> lcm_;
   std::string estimate_channel_, posterior_channel_, status_channel_;

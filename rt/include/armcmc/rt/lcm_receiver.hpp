@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/lcm_url.hpp"
 #include "armcmc/types.hpp"
 
@@ -27,7 +28,7 @@ enum class DatagramKind : std::uint8_t { kOurs, kForeign, kFragment, kMalformed 
 /// @param[out] payload  Set for kOurs only.
 /// @rt O(length of channel).
 [[nodiscard]] DatagramKind ParseDatagram(std::span<const std::uint8_t> bytes, const std::string& channel,
-                                         std::span<const std::uint8_t>* payload) noexcept;
+                                         std::span<const std::uint8_t>* payload) noexcept ARMCMC_NONBLOCKING;
 
 /// Receives one LCM channel on a UDP multicast socket of its own.
 ///
@@ -51,17 +52,17 @@ class LcmReceiver {
   LcmReceiver& operator=(const LcmReceiver&) = delete;
 
   /// Blocks until a datagram is there, until the time, or until Wake(). @return true when there may be a datagram.
-  [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept;
+  [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING;
 
   /// Reads one datagram without waiting; skips at most kMaxSkipped others first.
   /// @return true when *datagram holds a message of the channel.
-  [[nodiscard]] bool TryReceive(Datagram* datagram) noexcept;
+  [[nodiscard]] bool TryReceive(Datagram* datagram) noexcept ARMCMC_NONBLOCKING;
 
   /// Throws away what the kernel holds; at most as many datagrams as its buffer can hold.
-  void Drain() noexcept;
+  void Drain() noexcept ARMCMC_NONBLOCKING;
 
   /// Ends the present wait, or the next one.
-  void Wake() noexcept;
+  void Wake() noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
   /// Kernel receive buffer as read back, bytes (the kernel doubles what it grants).
@@ -71,7 +72,7 @@ class LcmReceiver {
   static constexpr int kMaxSkipped = 64;
 
   void Close() noexcept;
-  [[nodiscard]] bool ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept;
+  [[nodiscard]] bool ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept ARMCMC_NONBLOCKING;
 
   std::string channel_;
   int socket_ = -1;

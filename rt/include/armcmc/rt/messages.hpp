@@ -5,6 +5,7 @@
 
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/posterior_t.hpp"
 #include "armcmc/rt/counters.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
@@ -15,11 +16,12 @@
 namespace armcmc::rt {
 
 /// Fills estimate_t from the output of a step. Sets every field.
-void FillEstimate(const StepOutput& output, const StepEngine& engine, std::int64_t utime, estimate_t* message) noexcept;
+void FillEstimate(const StepOutput& output, const StepEngine& engine, std::int64_t utime,
+                  estimate_t* message) noexcept ARMCMC_NONBLOCKING;
 
 /// Fills posterior_t: the marginals of the reported mode. Sets every field.
 void FillPosterior(const StepOutput& output, const StepEngine& engine, std::int64_t utime,
-                   posterior_t* message) noexcept;
+                   posterior_t* message) noexcept ARMCMC_NONBLOCKING;
 
 /// What a status message needs beyond the counters.
 struct StatusContext {
@@ -34,6 +36,6 @@ struct StatusContext {
 
 /// Fills estimator_status_t. Sets every field; the times of the stages are zero without a step.
 void FillStatus(const StatusContext& context, const RtSettings& settings, const Counters& counters,
-                const DeadlineMonitor& monitor, estimator_status_t* message) noexcept;
+                const DeadlineMonitor& monitor, estimator_status_t* message) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc::rt

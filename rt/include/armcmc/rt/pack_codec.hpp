@@ -29,8 +29,8 @@ inline constexpr std::size_t kNumRejectCauses = 9;
 /// The three groups in which estimator_status_t counts them.
 enum class RejectGroup : std::uint8_t { kSize = 0, kType = 1, kValue = 2 };
 
-[[nodiscard]] std::string_view ToString(RejectCause cause) noexcept;
-[[nodiscard]] RejectGroup GroupOf(RejectCause cause) noexcept;
+[[nodiscard]] std::string_view ToString(RejectCause cause) noexcept ARMCMC_NONBLOCKING;
+[[nodiscard]] RejectGroup GroupOf(RejectCause cause) noexcept ARMCMC_NONBLOCKING;
 
 /// Decodes and checks packs from the bus.
 class PackCodec {
@@ -45,7 +45,7 @@ class PackCodec {
   /// @param payload  Starts with the 8-byte fingerprint.
   /// @return kNone when CopyTo() may be used.
   /// @rt No heap, no lock, no throw. O(n_samples x n_inputs) after a decode of fixed size.
-  [[nodiscard]] RejectCause Decode(std::span<const std::uint8_t> payload) noexcept;
+  [[nodiscard]] RejectCause Decode(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING;
 
   /// true when the last message was a pack of ours, whatever was wrong with its values: its number may be looked at.
   [[nodiscard]] bool decoded() const noexcept { return decoded_; }
@@ -55,6 +55,8 @@ class PackCodec {
   void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
 
  private:
+  [[nodiscard]] bool DecodeMessage(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING;
+
   [[nodiscard]] RejectCause Check() const noexcept ARMCMC_NONBLOCKING;
 
   data_pack_t message_{};

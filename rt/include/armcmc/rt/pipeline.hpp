@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/adjust_stage.hpp"
 #include "armcmc/rt/collect_stage.hpp"
 #include "armcmc/rt/counters.hpp"
@@ -27,7 +28,7 @@
 namespace armcmc::rt {
 
 /// Heap calls of the calling thread so far; see allocation_counter.hpp.
-using HeapProbe = std::uint64_t (*)() noexcept;
+using HeapProbe = std::uint64_t (*)() noexcept ARMCMC_NONBLOCKING;
 
 struct PipelineOptions {
   std::int64_t max_steps = 0;      ///< Stop after so many steps; 0: never.
@@ -56,9 +57,11 @@ class Pipeline {
   /// @throws PrivilegeError in RtMode::kEnforce; nothing runs then.
   void Start();
   /// Ends the pipeline within one step. Async-signal-safe, from any thread.
-  void RequestStop() noexcept;
+  void RequestStop() noexcept ARMCMC_NONBLOCKING;
   /// true after RequestStop() or when max_steps are done.
   [[nodiscard]] bool stopping() const noexcept { return stop_.load(std::memory_order_acquire); }
+  /// Flags a fault of another thread in the next status message. Any time, from any thread.
+  void RaiseFault(std::int32_t flags) noexcept { counters_.faults.Raise(flags); }
   /// Waits for all threads; finished steps are published first. Follows RequestStop().
   void Join() noexcept;
 
@@ -90,12 +93,14 @@ class Pipeline {
   void Place();
   void StartThread(RtThread* thread, const char* name, const ThreadSettings& settings, RtThread::Entry entry);
 
-  void CollectLoop() noexcept;
-  void AdjustLoop() noexcept;
-  void ExecuteLoop() noexcept;
-  void PublishLoop() noexcept;
-  void CountHeapCalls(Stage stage, std::uint64_t baseline) noexcept;
-  [[nodiscard]] std::uint64_t HeapCalls() const noexcept;
+  void WarmUpEngine() noexcept;
+  // Everything between two waits is checked to be non-blocking; the waits are in Waiter, LcmReceiver and SleepUntil().
+  void CollectLoop() noexcept ARMCMC_NONBLOCKING;
+  void AdjustLoop() noexcept ARMCMC_NONBLOCKING;
+  void ExecuteLoop() noexcept ARMCMC_NONBLOCKING;
+  void PublishLoop() noexcept ARMCMC_NONBLOCKING;
+  void CountHeapCalls(Stage stage, std::uint64_t baseline) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] std::uint64_t HeapCalls() const noexcept ARMCMC_NONBLOCKING;
 
   RtSettings settings_;
   PipelineOptions options_;

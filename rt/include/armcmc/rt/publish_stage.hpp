@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/event_log.hpp"
@@ -35,9 +36,9 @@ class PublishStage {
   void SetDegraded(std::int32_t flags) noexcept { degraded_flags_.store(flags, std::memory_order_relaxed); }
 
   /// Sends the messages of all finished steps. @return their number, at most kOutputRingCapacity.
-  int PublishSteps() noexcept;
+  int PublishSteps() noexcept ARMCMC_NONBLOCKING;
   /// Sends a status without a step: nothing came, or nothing was finished.
-  void PublishIdleStatus() noexcept;
+  void PublishIdleStatus() noexcept ARMCMC_NONBLOCKING;
 
   /// Number of the pack at which the gap watch raised its alarm; 0: it has not.
   [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return gap_alarm_; }
@@ -45,9 +46,9 @@ class PublishStage {
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return last_; }
 
  private:
-  void PublishStatus(const StepOutput* output) noexcept;
-  void NoteGap(const GapState& gap) noexcept;
-  void Note(bool sent) noexcept;
+  void PublishStatus(const StepOutput* output) noexcept ARMCMC_NONBLOCKING;
+  void NoteGap(const GapState& gap) noexcept ARMCMC_NONBLOCKING;
+  void Note(bool sent) noexcept ARMCMC_NONBLOCKING;
 
   const RtSettings& settings_;
   const StepEngine* engine_;

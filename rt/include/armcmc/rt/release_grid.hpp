@@ -56,7 +56,7 @@ class ReleaseGrid {
   [[nodiscard]] Nanos next_due_ns() const noexcept { return (proposed_ ? arrival_ns_ : due_ns_) + period_ns_; }
 
  private:
-  void ClearWindow() noexcept;
+  void ClearWindow() noexcept ARMCMC_NONBLOCKING;
 
   Nanos period_ns_;
   Nanos due_ns_ = 0;      // grid point of the newest pack

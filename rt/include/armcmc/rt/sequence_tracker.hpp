@@ -54,8 +54,8 @@ class SequenceTracker {
   [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
 
  private:
-  Result Restart(std::int64_t seq, std::int64_t run_id) noexcept;
-  Result Old(std::int64_t seq) noexcept;
+  Result Restart(std::int64_t seq, std::int64_t run_id) noexcept ARMCMC_NONBLOCKING;
+  Result Old(std::int64_t seq) noexcept ARMCMC_NONBLOCKING;
 
   static constexpr int kWindow = 64;
 

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/latest_value.hpp"
+#include "armcmc/rt/snapshot_hand_over.hpp"
 #include "armcmc/status.hpp"
 #include "armcmc/types.hpp"
 
@@ -20,18 +25,19 @@ class StepEngine {
  public:
   virtual ~StepEngine() = default;
 
-  [[nodiscard]] virtual PlantKind plant() const noexcept = 0;
-  [[nodiscard]] virtual int num_inputs() const noexcept = 0;
-  [[nodiscard]] virtual int num_modes() const noexcept = 0;
-  [[nodiscard]] virtual int num_reported() const noexcept = 0;
-  [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept = 0;
+  [[nodiscard]] virtual PlantKind plant() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual int num_inputs() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual int num_modes() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual int num_reported() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING = 0;
 
   /// Computes the posterior after `pack` into a slot; stops before deadline_ns. @rt No heap, no lock, no throw.
-  virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept = 0;
+  virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock,
+                        int slot) noexcept ARMCMC_NONBLOCKING = 0;
   /// Summarises a slot. @rt No heap, no lock, no throw.
-  virtual void Execute(int slot, Estimate* estimate) noexcept = 0;
-  /// Forgets everything.
-  virtual void Reset() noexcept = 0;
+  virtual void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING = 0;
+  /// Comes back to what it was at the start. Ends the warm-up.
+  virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
 /// The estimator of core as a StepEngine.
@@ -41,20 +47,31 @@ class EstimatorEngine final : public StepEngine {
   explicit EstimatorEngine(const EstimatorSettings& settings);
   ~EstimatorEngine() override;
 
-  [[nodiscard]] PlantKind plant() const noexcept override;
-  [[nodiscard]] int num_inputs() const noexcept override;
-  [[nodiscard]] int num_modes() const noexcept override;
-  [[nodiscard]] int num_reported() const noexcept override;
-  [[nodiscard]] ReportedQuantity reported(int index) const noexcept override;
-  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept override;
-  void Execute(int slot, Estimate* estimate) noexcept override;
-  void Reset() noexcept override;
+  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override;
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept ARMCMC_NONBLOCKING override;
+  void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;
+  void Reset() noexcept ARMCMC_NONBLOCKING override;
+
+  /// Hands what is learnt to another thread after every step. Before the pipeline starts.
+  /// @param snapshots  Of Estimator::kSnapshotBytes; outlives the engine.
+  void SetSnapshots(SnapshotHandOver* snapshots) noexcept { snapshots_ = snapshots; }
+  /// Goes on from what an engine of the same SnapshotIdentity() has saved; kept, so that Reset(), which ends the
+  /// warm-up, comes back to it. Before the pipeline starts.
+  /// @return false when it is damaged: starts afresh.
+  [[nodiscard]] bool Resume(std::span<const std::byte> adjusted, std::span<const std::byte> executed);
 
   [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
 
  private:
   Estimator estimator_;
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
+  SnapshotHandOver* snapshots_ = nullptr;
+  bool warm_ = false;  // what the warm-up learns is handed to nobody
+  std::vector<std::byte> resumed_adjusted_, resumed_executed_;
 };
 
 }  // namespace armcmc::rt

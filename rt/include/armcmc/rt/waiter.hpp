@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc::rt {
@@ -20,10 +21,10 @@ class Waiter {
   Waiter& operator=(const Waiter&) = delete;
 
   /// Wakes the waiting thread, or lets its next wait return at once.
-  void Post() noexcept;
+  void Post() noexcept ARMCMC_NONBLOCKING;
 
   /// Blocks until a Post() or until the time is reached. @return true for a Post().
-  [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept;
+  [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING;
 
  private:
   sem_t semaphore_;

@@ -58,12 +58,14 @@ class Witness {
   [[nodiscard]] const WakeUpRing& wake_ups() const noexcept { return wake_ups_; }
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return thread_.placement(); }
   /// Worst delay since the last call, ns.
-  [[nodiscard]] Nanos TakeWorst() noexcept { return worst_ns_.exchange(0, std::memory_order_relaxed); }
+  [[nodiscard]] Nanos TakeWorst() noexcept ARMCMC_NONBLOCKING {
+    return worst_ns_.exchange(0, std::memory_order_relaxed);
+  }
   /// Every delay. @pre stopped.
   [[nodiscard]] const LogHistogram& delays() const noexcept { return delays_; }
 
  private:
-  void Run() noexcept;
+  void Run() noexcept ARMCMC_NONBLOCKING;
 
   int cpu_;
   WakeUpRing wake_ups_;

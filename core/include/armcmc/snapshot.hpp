@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc {
+
+/// Writes plain values one after the other into memory of fixed size. Running out of it is noticed, not an error of
+/// memory. Byte order and layout are the machine's own: a snapshot is read where it was written.
+class SnapshotWriter {
+ public:
+  explicit SnapshotWriter(std::span<std::byte> out) noexcept : out_(out) {}
+
+  template <class T>
+  void Put(const T& value) noexcept ARMCMC_NONBLOCKING {
+    PutRow(&value, 1);
+  }
+  void PutFlag(bool flag) noexcept ARMCMC_NONBLOCKING { Put(static_cast<std::uint8_t>(flag ? 1 : 0)); }
+
+  template <class T>
+  void PutRow(const T* values, std::size_t count) noexcept ARMCMC_NONBLOCKING {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    const std::size_t bytes = count * sizeof(T);
+    if (bytes > out_.size() - size_) {
+      fits_ = false;
+      return;
+    }
+    std::memcpy(out_.data() + size_, values, bytes);
+    size_ += bytes;
+  }
+
+  /// Bytes written, or 0 when the memory was too small for all.
+  [[nodiscard]] std::size_t size() const noexcept { return fits_ ? size_ : 0; }
+
+ private:
+  std::span<std::byte> out_;
+  std::size_t size_ = 0;
+  bool fits_ = true;
+};
+
+/// Reads what a SnapshotWriter wrote, and believes nothing: after the first value that is missing, not finite or out of
+/// its range, good() is false for ever and every value reads as zero.
+class SnapshotReader {
+ public:
+  explicit SnapshotReader(std::span<const std::byte> in) noexcept : in_(in) {}
+
+  [[nodiscard]] std::int64_t Integer(std::int64_t least, std::int64_t most) noexcept ARMCMC_NONBLOCKING {
+    std::int64_t value = 0;
+    Take(&value, 1);
+    Require(value >= least && value <= most);
+    return good_ ? value : least;
+  }
+  [[nodiscard]] bool Flag() noexcept ARMCMC_NONBLOCKING {
+    std::uint8_t value = 0;
+    Take(&value, 1);
+    Require(value <= 1);
+    return good_ && value == 1;
+  }
+  /// Finite values only.
+  void Row(double* values, std::size_t count) noexcept ARMCMC_NONBLOCKING {
+    Take(values, count);
+    for (std::size_t i = 0; i < count; ++i) Require(std::isfinite(values[i]));
+    if (!good_) std::memset(values, 0, count * sizeof(double));
+  }
+  [[nodiscard]] double Number() noexcept ARMCMC_NONBLOCKING {
+    double value = 0.0;
+    Row(&value, 1);
+    return value;
+  }
+
+  void Require(bool condition) noexcept ARMCMC_NONBLOCKING { good_ = good_ && condition; }
+  [[nodiscard]] bool good() const noexcept { return good_; }
+  /// Whether everything was read, and nothing was wrong.
+  [[nodiscard]] bool finished() const noexcept { return good_ && at_ == in_.size(); }
+
+ private:
+  template <class T>
+  void Take(T* values, std::size_t count) noexcept ARMCMC_NONBLOCKING {
+    const std::size_t bytes = count * sizeof(T);
+    Require(bytes <= in_.size() - at_);
+    if (!good_) return;
+    std::memcpy(values, in_.data() + at_, bytes);
+    at_ += bytes;
+  }
+
+  std::span<const std::byte> in_;
+  std::size_t at_ = 0;
+  bool good_ = true;
+};
+
+/// A number for everything in the settings that gives a posterior its meaning: model, parameters, priors, bounds,
+/// noise, constants, effects. A snapshot of other settings must not be restored. (Draws, seed and forgetting may
+/// differ.)
+[[nodiscard]] std::uint64_t SnapshotIdentity(const EstimatorSettings& settings) noexcept;
+
+}  // namespace armcmc

@@ -1,0 +1,32 @@
+#include "armcmc/estimate.hpp"
+
+#include <bit>
+
+#include "armcmc/snapshot.hpp"
+
+namespace armcmc {
+
+// A MarginalSummary is nothing but numbers.
+using MarginalNumbers = std::array<double, sizeof(MarginalSummary) / sizeof(double)>;
+
+void ModeEstimate::Save(int num_reported, SnapshotWriter* out) const noexcept {
+  out->PutFlag(known);
+  out->Put(noise_std);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(num_reported); ++i) {
+    const auto numbers = std::bit_cast<MarginalNumbers>(marginal[i]);
+    out->PutRow(numbers.data(), numbers.size());
+  }
+}
+
+void ModeEstimate::Restore(int num_reported, SnapshotReader* in) noexcept {
+  *this = ModeEstimate{};
+  known = in->Flag();
+  noise_std = in->Number();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(num_reported); ++i) {
+    MarginalNumbers numbers{};
+    in->Row(numbers.data(), numbers.size());
+    marginal[i] = std::bit_cast<MarginalSummary>(numbers);
+  }
+}
+
+}  // namespace armcmc

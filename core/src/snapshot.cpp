@@ -1,0 +1,60 @@
+#include "armcmc/snapshot.hpp"
+
+#include <string>
+
+namespace armcmc {
+namespace {
+
+/// Changed whenever Save() writes something else.
+constexpr std::int64_t kLayout = 1;
+
+/// FNV-1a, 64 bits.
+class Hash {
+ public:
+  void Bytes(const void* data, std::size_t size) noexcept {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
+  }
+  void Add(const std::string& text) noexcept { Bytes(text.c_str(), text.size() + 1); }
+  void Add(double number) noexcept { Bytes(&number, sizeof number); }
+  void Add(int number) noexcept { Bytes(&number, sizeof number); }
+  void Add(const ParameterSettings& p) noexcept {
+    Add(p.name);
+    Add(static_cast<int>(p.prior));
+    for (const double v : {p.mean, p.sd, p.lower, p.upper}) Add(v);
+  }
+  [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace
+
+std::uint64_t SnapshotIdentity(const EstimatorSettings& s) noexcept {
+  Hash hash;
+  hash.Bytes(&kLayout, sizeof kLayout);
+  hash.Add(s.model);
+  hash.Add(s.num_parameters);
+  for (int i = 0; i < s.num_parameters; ++i) hash.Add(s.parameters[static_cast<std::size_t>(i)]);
+  for (const NoiseSettings& n : s.noise) {
+    hash.Add(static_cast<int>(n.kind));
+    hash.Add(n.estimate_std ? 1 : 0);
+    for (const double v : {n.std, n.mean, n.std_log_sd, n.dof, n.outlier_weight, n.outlier_scale}) hash.Add(v);
+  }
+  const PlantConstants& c = s.constants;
+  for (const double v : {c.p_atm, c.p_supply, c.q1, c.q2, c.q3}) hash.Add(v);
+  hash.Add(s.num_effects);
+  for (int i = 0; i < s.num_effects; ++i) {
+    const EffectSettings& e = s.effects[static_cast<std::size_t>(i)];
+    hash.Add(e.name);
+    hash.Add(static_cast<int>(e.gate));
+    hash.Add(e.from_s);
+    hash.Add(e.until_s);
+    for (const ParameterSettings& a : e.amplitudes) hash.Add(a);
+    for (const double v : e.shapes) hash.Add(v);
+  }
+  return hash.value();
+}
+
+}  // namespace armcmc

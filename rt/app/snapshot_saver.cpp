@@ -1,0 +1,100 @@
+#include "snapshot_saver.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "armcmc/rt/clock.hpp"
+
+namespace armcmc::app {
+namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(50);
+constexpr auto kInterval = std::chrono::seconds(1);
+
+}  // namespace
+
+SnapshotSaver::SnapshotSaver(std::string path, Snapshot start, rt::SnapshotHandOver* parts, Say say,
+                             OnFailure on_failure)
+    : path_(std::move(path)),
+      snapshot_(std::move(start)),
+      resumed_from_(snapshot_.seq),
+      parts_(parts),
+      say_(std::move(say)),
+      on_failure_(std::move(on_failure)) {}
+
+void SnapshotSaver::Take() {
+  if (const rt::SnapshotPart* part = parts_->adjusted.Take(); part != nullptr) {
+    snapshot_.adjusted.assign(part->used().begin(), part->used().end());
+    snapshot_.seq = part->seq;
+    fresh_ = true;
+  }
+  if (const rt::SnapshotPart* part = parts_->executed.Take(); part != nullptr) {
+    snapshot_.executed.assign(part->used().begin(), part->used().end());
+    fresh_ = true;
+  }
+}
+
+void SnapshotSaver::Save() {
+  Take();
+  if (!fresh_ || snapshot_.adjusted.empty() || snapshot_.executed.empty()) return;
+  snapshot_.utime = rt::RealtimeMicros();
+  const std::string reason = ReplaceFile(path_, EncodeSnapshot(snapshot_));
+  if (reason.empty()) {
+    fresh_ = false;
+    written_.fetch_add(1, std::memory_order_relaxed);
+    if (told_) say_("the snapshot " + path_ + " can be written again");
+    told_ = false;
+    return;
+  }
+  failed_.fetch_add(1, std::memory_order_relaxed);
+  on_failure_();
+  if (!told_) say_("the snapshot " + path_ + " cannot be written: " + reason + "; going on without, and trying again");
+  told_ = true;
+}
+
+void SnapshotSaver::Start() {
+  thread_ = std::thread([this] {
+    auto due = std::chrono::steady_clock::now() + kInterval;
+    while (!stop_.load(std::memory_order_acquire)) {
+      std::this_thread::sleep_for(kPause);
+      if (std::chrono::steady_clock::now() < due) continue;
+      Save();
+      due = std::chrono::steady_clock::now() + kInterval;
+    }
+  });
+}
+
+void SnapshotSaver::Stop() {
+  if (!thread_.joinable()) return;
+  stop_.store(true, std::memory_order_release);
+  thread_.join();
+  Save();
+}
+
+Snapshot LoadSnapshot(const std::string& path, std::uint64_t identity, std::int64_t now_utime,
+                      const std::function<bool(const Snapshot&)>& use, const SnapshotSaver::Say& say) {
+  Snapshot snapshot;
+  Snapshot nothing;
+  nothing.identity = identity;
+  if (!std::filesystem::exists(path)) {
+    say("no snapshot " + path + " yet: starting afresh");
+    return nothing;
+  }
+  std::vector<std::byte> bytes;
+  std::string reason = ReadFile(path, &bytes);
+  if (!reason.empty()) {
+    reason = "cannot be read: " + reason;
+  } else {
+    reason = DecodeSnapshot(bytes, identity, &snapshot);
+    if (reason.empty() && !use(snapshot)) reason = "is damaged: its content makes no sense";
+  }
+  if (!reason.empty()) {
+    say("the snapshot " + path + " is refused, it " + reason + "; starting afresh");
+    return nothing;
+  }
+  say("going on from pack " + std::to_string(snapshot.seq) + " in the snapshot " + path + ", saved " +
+      std::to_string((now_utime - snapshot.utime) / 1'000'000) + " s ago");
+  return snapshot;
+}
+
+}  // namespace armcmc::app

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/rt/latest_value.hpp"
+
+namespace armcmc::rt {
+
+/// What one stage carries from pack to pack, on its way to the thread that writes it to the disk.
+struct SnapshotPart {
+  std::int64_t seq = 0;          ///< Pack after which it was taken.
+  std::size_t size = 0;          ///< Used bytes.
+  std::vector<std::byte> bytes;  ///< Of fixed size after construction.
+  [[nodiscard]] std::span<const std::byte> used() const noexcept { return {bytes.data(), size}; }
+};
+
+/// Newest snapshot of one stage: the stage writes it after every step, another thread takes the newest whole one.
+/// Nobody waits for anybody.
+class SnapshotChannel {
+ public:
+  explicit SnapshotChannel(std::size_t bytes) {
+    for (SnapshotPart& part : parts_) part.bytes.resize(bytes);
+  }
+
+  /// Stage only. @param save  Writes into the span and returns the bytes used, 0 when they do not fit.
+  /// @rt Wait-free, when `save` is.
+  template <class Save>
+  void Write(std::int64_t seq, const Save& save) noexcept ARMCMC_NONBLOCKING {
+    SnapshotPart& part = parts_[static_cast<std::size_t>(latest_.write_slot())];
+    part.size = save(std::span<std::byte>(part.bytes));
+    part.seq = seq;
+    if (part.size > 0) (void)latest_.Publish();
+  }
+
+  /// The other thread only. @return the newest part, or nullptr when it has been read; valid until the next call.
+  [[nodiscard]] const SnapshotPart* Take() noexcept {
+    return latest_.Acquire() ? &parts_[static_cast<std::size_t>(latest_.read_slot())] : nullptr;
+  }
+
+ private:
+  LatestValue latest_;
+  std::array<SnapshotPart, LatestValue::kSlots> parts_;
+};
+
+/// Both stages that learn.
+struct SnapshotHandOver {
+  explicit SnapshotHandOver(std::size_t bytes) : adjusted(bytes), executed(bytes) {}
+  SnapshotChannel adjusted, executed;
+};
+
+}  // namespace armcmc::rt

@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "armcmc/estimate_t.hpp"
+#include "integration/live_pair.hpp"
+
+namespace armcmc::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Resume : public LivePair {
+ protected:
+  [[nodiscard]] std::string File() const { return dir_ / "learnt.snapshot"; }
+
+  /// Estimates that came after the first `before`.
+  std::vector<estimate_t> Since(std::size_t before) {
+    const auto all = recorder_->estimates();
+    return {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()};
+  }
+};
+
+TEST_F(Resume, AfterKill9TheEstimatorGoesOnFromWhatItHadLearnt) {
+  auto first = StartEstimator({"--resume", File()});
+  EXPECT_TRUE(first->WaitForErr("starting afresh", 5s)) << first->err();
+  auto plant = StartPlant("9");
+  ASSERT_TRUE(recorder_->WaitForEstimates(35)) << first->err();
+  first->Signal(SIGKILL);
+  EXPECT_EQ(first->Wait(5s).signal, SIGKILL);
+  const std::size_t before = recorder_->estimates().size();
+  const estimate_t learnt = recorder_->estimates().back();
+  ASSERT_TRUE(std::filesystem::exists(File()));
+
+  auto second = StartEstimator({"--resume", File()});
+  ASSERT_TRUE(recorder_->WaitForEstimates(before + 10)) << second->err();
+  EXPECT_TRUE(second->WaitForErr("going on from pack", 1s)) << second->err();
+  const auto since = Since(before);
+  EXPECT_EQ(since.front().known, 1) << "from its first word on";
+  const auto judged = std::find_if(since.begin(), since.end(),
+                                   [](const estimate_t& e) { return e.decision != estimate_t::DECISION_HOLD; });
+  ASSERT_NE(judged, since.end());
+  EXPECT_EQ(judged->decision, estimate_t::DECISION_REINFORCEMENT) << "who knows nothing starts with a modification";
+  EXPECT_LE(judged->q75[0] - judged->q25[0], 2.0 * (learnt.q75[0] - learnt.q25[0]));
+  EXPECT_EQ(plant->Wait(30s).code, 0) << plant->err();
+  const nlohmann::json report = Finish(second.get());
+  EXPECT_GT(report["snapshot"]["resumed_from_pack"], 0);
+  EXPECT_GT(report["snapshot"]["written"], 0);
+  EXPECT_EQ(report["snapshot"]["failed"], 0);
+  for (const char* stage : {"collect", "adjust", "execute"}) {
+    if (!report["allocations"][stage].is_null()) EXPECT_EQ(report["allocations"][stage], 0) << stage;
+  }
+}
+
+TEST_F(Resume, ADamagedSnapshotAndOneOfAnotherModelAreRefusedAndTheRunGoesOn) {
+  std::ofstream(File()) << "not a snapshot";
+  auto first = StartEstimator({"--resume", File()});
+  EXPECT_TRUE(first->WaitForErr("is refused, it is no snapshot of an estimator; starting afresh", 5s)) << first->err();
+  auto plant = StartPlant("4");
+  ASSERT_TRUE(recorder_->WaitForEstimates(15)) << first->err();
+  first->Signal(SIGINT);
+  EXPECT_EQ(first->Wait(10s).code, 0) << first->err();
+
+  auto other = StartEstimator({"--resume", File(), "--model", "soft_actuator"});
+  EXPECT_TRUE(other->WaitForErr("is refused, it belongs to another model", 5s)) << other->err();
+  other->Signal(SIGINT);
+  EXPECT_EQ(other->Wait(10s).code, 0) << other->err();
+  EXPECT_EQ(plant->Wait(30s).code, 0);
+}
+
+TEST_F(Resume, ADiskThatRefusesIsPublishedAndCountedAndNothingElseHappens) {
+  const auto folder = dir_ / "gone";
+  std::filesystem::create_directories(folder);
+  auto estimator = StartEstimator({"--resume", (folder / "learnt.snapshot").string()});
+  std::filesystem::remove_all(folder);
+  auto plant = StartPlant("3");
+  ASSERT_TRUE(recorder_->WaitForEstimates(20)) << estimator->err();
+  EXPECT_TRUE(estimator->WaitForErr("cannot be written", 5s)) << estimator->err();
+  EXPECT_TRUE(recorder_->WaitUntil([this] {
+    const auto all = recorder_->statuses();
+    return std::any_of(all.begin(), all.end(), [](const estimator_status_t& s) {
+      return (s.fault_flags & estimator_status_t::FAULT_SNAPSHOT) != 0;
+    });
+  }));
+  EXPECT_EQ(plant->Wait(30s).code, 0) << plant->err();
+  const nlohmann::json report = Finish(estimator.get());
+  EXPECT_GT(report["snapshot"]["failed"], 0);
+  EXPECT_EQ(report["packs"]["lost"], 0);
+}
+
+}  // namespace
+}  // namespace armcmc::test

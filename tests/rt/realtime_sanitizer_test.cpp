@@ -1,0 +1,74 @@
+// Faults planted into a stage are caught at run time.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "armcmc/rt/adjust_stage.hpp"
+#include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/waiter.hpp"
+#include "fake_engine.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+#if !defined(ARMCMC_RTSAN_RUNS)
+#error "these tests are for the preset rtsan"
+#endif
+
+class RealtimeSanitizer : public ::testing::Test {
+ protected:
+  void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+
+  /// One pack through the adjust stage, as its thread calls it.
+  void Step(test::Planted planted) {
+    engine_.planted = planted;
+    PackSlot* slot = ring_->Claim();
+    slot->pack.seq = 1;
+    slot->pack.num_samples = 1;
+    slot->times = {};
+    slot->times.deadline_ns = MonotonicNow() + kNanosPerSecond;
+    ring_->Commit();
+    (void)stage_.Step();
+  }
+
+  RtSettings settings_;
+  test::FakeEngine engine_;
+  std::unique_ptr<PackRing> ring_ = std::make_unique<PackRing>();
+  std::unique_ptr<ResultHandOver> results_ = std::make_unique<ResultHandOver>();
+  std::unique_ptr<DeadlineMonitor> monitor_ = std::make_unique<DeadlineMonitor>(settings_);
+  std::unique_ptr<Counters> counters_ = std::make_unique<Counters>();
+  EventLog events_;
+  AdjustStage stage_{settings_, &engine_, ring_.get(), results_.get(), monitor_.get(), counters_.get(), &events_};
+};
+
+TEST_F(RealtimeSanitizer, LetsAStepThatDoesNothingWrongPass) {
+  Step(test::Planted::kNothing);
+  EXPECT_EQ(engine_.adjusted.load(), 1);
+}
+
+TEST_F(RealtimeSanitizer, CatchesAnAllocationInAStage) {
+  EXPECT_DEATH(Step(test::Planted::kAllocation), "RealtimeSanitizer: unsafe-library-call(.|\n)*malloc");
+}
+
+TEST_F(RealtimeSanitizer, CatchesALockInAStage) {
+  EXPECT_DEATH(Step(test::Planted::kLock), "RealtimeSanitizer: unsafe-library-call(.|\n)*pthread_mutex_lock");
+}
+
+TEST_F(RealtimeSanitizer, CatchesASystemCallInAStage) {
+  EXPECT_DEATH(Step(test::Planted::kSystemCall), "RealtimeSanitizer: unsafe-library-call(.|\n)*nanosleep");
+}
+
+TEST_F(RealtimeSanitizer, KnowsTheWaitsThatAreMeantAndNothingBeyondTheirScope) {
+  struct Thread {
+    static void Run() noexcept ARMCMC_NONBLOCKING {
+      SleepUntil(1);
+      test::PlantedFault(test::Planted::kSystemCall);
+    }
+    static void Wait() noexcept ARMCMC_NONBLOCKING { SleepUntil(1); }
+  };
+  Thread::Wait();
+  EXPECT_DEATH(Thread::Run(), "RealtimeSanitizer: unsafe-library-call(.|\n)*nanosleep");
+}
+
+}  // namespace
+}  // namespace armcmc::rt

@@ -1,0 +1,224 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/rt/snapshot_hand_over.hpp"
+#include "armcmc/rt/step_engine.hpp"
+#include "armcmc/rt/warm_up.hpp"
+#include "armcmc/snapshot.hpp"
+#include "snapshot_saver.hpp"
+#include "support/paths.hpp"
+
+namespace armcmc::app {
+namespace {
+
+constexpr std::uint64_t kIdentity = 42;
+
+std::vector<std::byte> Bytes(std::size_t size, int value) {
+  return std::vector<std::byte>(size, static_cast<std::byte>(value));
+}
+
+Snapshot Example() {
+  Snapshot s;
+  s.identity = kIdentity;
+  s.seq = 17;
+  s.utime = 1'000'000;
+  s.adjusted = Bytes(1000, 1);
+  s.executed = Bytes(500, 2);
+  return s;
+}
+
+std::string Refusal(std::vector<std::byte> bytes, std::uint64_t identity = kIdentity) {
+  Snapshot s;
+  return DecodeSnapshot(bytes, identity, &s);
+}
+
+TEST(SnapshotFile, ReadsWhatWasWritten) {
+  Snapshot s;
+  ASSERT_EQ(DecodeSnapshot(EncodeSnapshot(Example()), kIdentity, &s), "");
+  EXPECT_EQ(s.seq, 17);
+  EXPECT_EQ(s.utime, 1'000'000);
+  EXPECT_EQ(s.adjusted, Example().adjusted);
+  EXPECT_EQ(s.executed, Example().executed);
+}
+
+TEST(SnapshotFile, RefusesWhatItDoesNotKnowAndSaysWhy) {
+  const auto good = EncodeSnapshot(Example());
+  EXPECT_EQ(Refusal({}), "is empty");
+  EXPECT_EQ(Refusal(Bytes(2000, 7)), "is no snapshot of an estimator");
+  auto foreign = good;
+  foreign[8] = std::byte{2};
+  EXPECT_EQ(Refusal(foreign), "has version 2, expected 1");
+  EXPECT_EQ(Refusal(good, kIdentity + 1), "belongs to another model, or to other priors, bounds or noise");
+}
+
+TEST(SnapshotFile, RefusesEveryTruncationAndEveryChangedBit) {
+  const auto good = EncodeSnapshot(Example());
+  for (std::size_t size = 0; size < good.size(); ++size)
+    EXPECT_NE(Refusal({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}), "") << size;
+  auto longer = good;
+  longer.push_back(std::byte{0});
+  EXPECT_NE(Refusal(longer), "");
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    auto damaged = good;
+    damaged[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+    ASSERT_NE(Refusal(damaged), "") << bit;
+  }
+}
+
+class SnapshotSaverTest : public ::testing::Test {
+ protected:
+  void Learn(std::int64_t seq, int value) {
+    const auto save = [value](std::span<std::byte> out) noexcept {
+      std::fill(out.begin(), out.end(), static_cast<std::byte>(value));
+      return out.size();
+    };
+    parts_.adjusted.Write(seq, save);
+    parts_.executed.Write(seq, save);
+  }
+  std::unique_ptr<SnapshotSaver> Make(Snapshot start = {}) {
+    start.identity = kIdentity;
+    return std::make_unique<SnapshotSaver>(
+        Path(), std::move(start), &parts_, [this](const std::string& line) { said_.push_back(line); },
+        [this] { ++faults_; });
+  }
+  [[nodiscard]] std::string Path() const { return dir_ / "learnt.snapshot"; }
+  Snapshot Load(bool usable = true) {
+    return LoadSnapshot(
+        Path(), kIdentity, 10'000'000, [usable](const Snapshot&) { return usable; },
+        [this](const std::string& line) { said_.push_back(line); });
+  }
+
+  test::ScratchDir dir_;
+  rt::SnapshotHandOver parts_{64};
+  std::vector<std::string> said_;
+  int faults_ = 0;
+};
+
+TEST_F(SnapshotSaverTest, WritesTheNewestAndNothingTwice) {
+  auto saver = Make();
+  saver->Save();
+  EXPECT_FALSE(std::filesystem::exists(Path())) << "nothing was learnt";
+  Learn(1, 1);
+  Learn(2, 2);
+  saver->Save();
+  saver->Save();
+  EXPECT_EQ(saver->written(), 1);
+  const Snapshot s = Load();
+  EXPECT_EQ(s.seq, 2);
+  EXPECT_EQ(s.adjusted, Bytes(64, 2));
+  EXPECT_FALSE(std::filesystem::exists(Path() + ".tmp"));
+}
+
+TEST_F(SnapshotSaverTest, KeepsAPartOfWhichNothingNewCame) {
+  auto saver = Make(Example());
+  parts_.executed.Write(18, [](std::span<std::byte> out) noexcept { return out.size(); });
+  saver->Save();
+  const Snapshot s = Load();
+  EXPECT_EQ(s.adjusted, Example().adjusted);
+  EXPECT_EQ(s.executed.size(), 64U);
+}
+
+TEST_F(SnapshotSaverTest, WritesWhatIsDueAtItsEnd) {
+  auto saver = Make();
+  saver->Start();
+  Learn(5, 5);
+  saver->Stop();
+  EXPECT_EQ(Load().seq, 5);
+}
+
+TEST_F(SnapshotSaverTest, AFullDiskIsCountedToldOnceAndTheOldFileStays) {
+  auto saver = Make();
+  Learn(1, 1);
+  saver->Save();
+  // As on a full disk, a write fails half way: a process that ignores the signal gets an error instead.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{40, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  Learn(2, 2);
+  saver->Save();
+  saver->Save();
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_EQ(saver->failed(), 2);
+  EXPECT_EQ(faults_, 2);
+  ASSERT_EQ(said_.size(), 1U);
+  EXPECT_NE(said_[0].find("cannot be written: File too large"), std::string::npos) << said_[0];
+  EXPECT_EQ(Load().seq, 1) << "whole, and the old one";
+  EXPECT_FALSE(std::filesystem::exists(Path() + ".tmp"));
+
+  saver->Save();
+  EXPECT_EQ(Load().seq, 2) << "what could not be written is not forgotten";
+}
+
+TEST_F(SnapshotSaverTest, AFolderThatIsGoneIsNoEnd) {
+  auto saver = Make();
+  std::filesystem::remove_all(dir_.path());
+  Learn(1, 1);
+  saver->Save();
+  EXPECT_EQ(saver->failed(), 1);
+  std::filesystem::create_directories(dir_.path());
+  saver->Save();
+  EXPECT_EQ(saver->written(), 1);
+}
+
+TEST_F(SnapshotSaverTest, SaysInOneLineWhatBecomesOfTheFile) {
+  EXPECT_EQ(Load().seq, 0);
+  ASSERT_EQ(ReplaceFile(Path(), EncodeSnapshot(Example())), "");
+  EXPECT_EQ(Load().seq, 17);
+  EXPECT_EQ(Load(false).seq, 0);
+  ASSERT_EQ(ReplaceFile(Path(), Bytes(100, 3)), "");
+  EXPECT_EQ(Load().seq, 0);
+  const std::string file = Path();
+  ASSERT_EQ(said_.size(), 4U);
+  EXPECT_EQ(said_[0], "no snapshot " + file + " yet: starting afresh");
+  EXPECT_EQ(said_[1], "going on from pack 17 in the snapshot " + file + ", saved 9 s ago");
+  EXPECT_EQ(said_[2],
+            "the snapshot " + file + " is refused, it is damaged: its content makes no sense; starting afresh");
+  EXPECT_EQ(said_[3], "the snapshot " + file + " is refused, it is no snapshot of an estimator; starting afresh");
+}
+
+/// The engine of the pipeline: what its warm-up learns reaches nobody, and ends where it was resumed.
+TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
+  const EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  auto parts = std::make_unique<rt::SnapshotHandOver>(Estimator::kSnapshotBytes);
+  rt::EstimatorEngine engine(settings);
+  engine.SetSnapshots(parts.get());
+  rt::WarmUp(&engine);
+  EXPECT_EQ(parts->adjusted.Take(), nullptr);
+  EXPECT_EQ(parts->executed.Take(), nullptr);
+
+  const auto estimate = std::make_unique<Estimate>();
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_EQ(engine.Adjust(rt::SyntheticPack(engine.plant(), 2, 10 + i), 0, ClockRef{}, 0), Status::kOk);
+    engine.Execute(0, estimate.get());
+  }
+  const rt::SnapshotPart* adjusted = parts->adjusted.Take();
+  const rt::SnapshotPart* executed = parts->executed.Take();
+  ASSERT_TRUE(adjusted != nullptr && executed != nullptr);
+  EXPECT_EQ(adjusted->seq, 14);
+
+  rt::EstimatorEngine second(settings);
+  ASSERT_TRUE(second.Resume(adjusted->used(), executed->used()));
+  rt::WarmUp(&second);
+  const auto resumed = std::make_unique<Estimate>();
+  ASSERT_EQ(second.Adjust(rt::SyntheticPack(second.plant(), 2, 14), 0, ClockRef{}, 0), Status::kOk);
+  second.Execute(0, resumed.get());
+  ASSERT_EQ(engine.Adjust(rt::SyntheticPack(engine.plant(), 2, 14), 0, ClockRef{}, 0), Status::kOk);
+  engine.Execute(0, estimate.get());
+  EXPECT_EQ(resumed->modes[0].decision, Decision::kReinforcement);
+  EXPECT_EQ(resumed->modes[0].log_evidence, estimate->modes[0].log_evidence);
+  EXPECT_EQ(resumed->modes[0].marginal[0].ar_ap, estimate->modes[0].marginal[0].ar_ap);
+}
+
+}  // namespace
+}  // namespace armcmc::app
