@@ -1,10 +1,12 @@
 #include "armcmc/rt/disturbed_engine.hpp"
 
+#include "armcmc/rt/warm_up.hpp"
+
 namespace armcmc::rt {
 namespace {
 
-/// A wrong plant, told often enough that the posterior has nearly no width left.
-constexpr double kWrongScale = 1.6;
+/// A wrong plant without noise, told often enough that the posterior has nearly no width left.
+constexpr double kWrongScale = 0.5;
 constexpr int kRepeats = 8;
 
 }  // namespace
@@ -16,9 +18,15 @@ Status DisturbedEngine::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef
   if (injection_->Squeezes(pack.seq)) deadline_ns = clock.Now();
   Status status = Status::kOk;
   if (injection_->Collapses(pack.seq)) {
-    wrong_ = pack;
-    for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) wrong_.y[n] *= kWrongScale;
-    for (int i = 0; i < kRepeats; ++i) status = engine_->Adjust(wrong_, deadline_ns, clock, slot);
+    for (int i = 0; i < kRepeats; ++i) {
+      wrong_ = SyntheticPack(plant(), num_inputs(), i);
+      wrong_.seq = pack.seq;
+      wrong_.run_id = pack.run_id;
+      wrong_.t_last_ns = pack.t_last_ns;
+      wrong_.t_last_s = pack.t_last_s;
+      for (std::size_t n = 0; n < static_cast<std::size_t>(wrong_.num_samples); ++n) wrong_.y[n] *= kWrongScale;
+      status = engine_->Adjust(wrong_, deadline_ns, clock, slot);
+    }
   } else {
     status = engine_->Adjust(pack, deadline_ns, clock, slot);
   }

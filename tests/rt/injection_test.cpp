@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "armcmc/rt/disturbed_engine.hpp"
+#include "armcmc/rt/warm_up.hpp"
 #include "fake_engine.hpp"
 
 namespace armcmc::rt {
@@ -75,12 +76,12 @@ TEST(DisturbedEngine, TellsAWrongPlantAgainAndAgainToCollapseThePosterior) {
   DataPack pack;
   pack.seq = 2;
   pack.num_samples = 1;
-  pack.y[0] = 10.0;
   (void)disturbed.Adjust(pack, MonotonicNow() + kNanosPerSecond, MonotonicClock(), 0);
   EXPECT_GT(engine.adjusted.load(), 4);
   Estimate estimate;
   disturbed.Execute(0, &estimate);
-  EXPECT_GT(estimate.y_pred, 12.0);
+  const DataPack right = SyntheticPack(PlantKind::kHuntCrossley, 2, 7);
+  EXPECT_DOUBLE_EQ(estimate.y_pred, 0.5 * right.y[static_cast<std::size_t>(right.num_samples - 1)]);
 }
 
 }  // namespace
