@@ -165,7 +165,7 @@ void WriteReport(const Scenario& scenario, const PlantOptions& options, const Li
   json["estimator"] = EstimatorJson(result);
   json["faults"] = ordered_json::array();
   for (const Fault& fault : options.faults.faults())
-    json["faults"].push_back({{"name", ToString(fault.kind)}, {"pack", fault.pack}, {"late_ms", fault.late_ms}});
+    json["faults"].push_back({{"name", ToString(fault.kind)}, {"pack", fault.pack}, {"amount_ms", fault.amount_ms}});
   if (!options.log_path.empty()) json["log_lost"] = result.log_lost;
   std::ofstream file(options.report_path);
   file << json.dump(2) << "\n";

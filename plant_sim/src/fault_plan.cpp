@@ -9,12 +9,16 @@ namespace armcmc::plant_sim {
 namespace {
 
 constexpr std::array kKinds = {FaultKind::kNan,  FaultKind::kSize,    FaultKind::kDuplicate, FaultKind::kReorder,
-                               FaultKind::kDrop, FaultKind::kForeign, FaultKind::kGarbage,   FaultKind::kLate};
+                               FaultKind::kDrop, FaultKind::kForeign, FaultKind::kGarbage,   FaultKind::kLate,
+                               FaultKind::kZero, FaultKind::kHuge,    FaultKind::kCorrupt,   FaultKind::kClock};
+
+constexpr bool HasAmount(FaultKind kind) noexcept { return kind == FaultKind::kLate || kind == FaultKind::kClock; }
 
 [[noreturn]] void Reject(const std::string& item) {
   throw std::invalid_argument("\"" + item +
                               "\" is not a fault: expected nan@K, size@K, duplicate@K, reorder@K, drop@K, foreign@K, "
-                              "garbage@K or late@K:MS, with a pack number K >= 1 and milliseconds MS in (0, 60000]");
+                              "garbage@K, zero@K, huge@K, corrupt@K, late@K:MS or clock@K:MS, with a pack number K >= "
+                              "1 and milliseconds MS in (0, 60000]");
 }
 
 template <typename Number>
@@ -38,9 +42,10 @@ Fault ParseItem(const std::string& item) {
     }
   if (!known) Reject(item);
   const std::size_t colon = number.find(':');
-  if ((colon != std::string_view::npos) != (fault.kind == FaultKind::kLate)) Reject(item);
-  if (fault.kind == FaultKind::kLate) {
-    if (!ParseAll(number.substr(colon + 1), &fault.late_ms) || !(fault.late_ms > 0.0 && fault.late_ms <= 60'000.0))
+  if ((colon != std::string_view::npos) != HasAmount(fault.kind)) Reject(item);
+  if (HasAmount(fault.kind)) {
+    if (!ParseAll(number.substr(colon + 1), &fault.amount_ms) ||
+        !(fault.amount_ms > 0.0 && fault.amount_ms <= 60'000.0))
       Reject(item);
     number = number.substr(0, colon);
   }
@@ -60,6 +65,10 @@ std::string_view ToString(FaultKind kind) noexcept {
     case FaultKind::kForeign: return "foreign";
     case FaultKind::kGarbage: return "garbage";
     case FaultKind::kLate: return "late";
+    case FaultKind::kZero: return "zero";
+    case FaultKind::kHuge: return "huge";
+    case FaultKind::kCorrupt: return "corrupt";
+    case FaultKind::kClock: return "clock";
   }
   return "unknown";
 }
@@ -80,7 +89,14 @@ const Fault* FaultPlan::Find(FaultKind kind, std::int64_t pack) const noexcept {
 
 double FaultPlan::LateMs(std::int64_t pack) const noexcept {
   const Fault* fault = Find(FaultKind::kLate, pack);
-  return fault != nullptr ? fault->late_ms : 0.0;
+  return fault != nullptr ? fault->amount_ms : 0.0;
+}
+
+double FaultPlan::ClockMs(std::int64_t pack) const noexcept {
+  double ahead_ms = 0.0;
+  for (const Fault& fault : faults_)
+    if (fault.kind == FaultKind::kClock && fault.pack <= pack) ahead_ms += fault.amount_ms;
+  return ahead_ms;
 }
 
 }  // namespace armcmc::plant_sim

@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 namespace armcmc::plant_sim {
+namespace {
+
+constexpr int kTypeBytes = 8;  // the fingerprint in front of every message
+
+}  // namespace
 
 PackSender::PackSender(const std::string& prefix, FaultPlan faults, MessageSink* sink)
     : pack_channel_(prefix + "PLANT_PACK"),
@@ -35,13 +41,24 @@ void PackSender::Send(const data_pack_t& pack, const plant_truth_t& truth) noexc
   }
 
   const data_pack_t* message = &pack;
-  if (has(FaultKind::kNan) || has(FaultKind::kSize)) {
+  const double ahead_ms = faults_.ClockMs(pack.seq);
+  if (has(FaultKind::kNan) || has(FaultKind::kSize) || has(FaultKind::kZero) || has(FaultKind::kHuge) ||
+      ahead_ms > 0.0) {
     scratch_ = pack;
+    scratch_.t_last_ns += static_cast<std::int64_t>(ahead_ms * 1e6);
+    if (has(FaultKind::kHuge)) scratch_.y[pack.n_samples / 2] = 1e300;
+    if (has(FaultKind::kZero)) {
+      std::fill(std::begin(scratch_.y), std::end(scratch_.y), 0.0);
+      for (auto& row : scratch_.u) std::fill(std::begin(row), std::end(row), 0.0);
+    }
     if (has(FaultKind::kNan)) scratch_.y[pack.n_samples / 2] = std::numeric_limits<double>::quiet_NaN();
     if (has(FaultKind::kSize)) scratch_.n_samples = data_pack_t::MAX_SAMPLES + 1;
     message = &scratch_;
   }
   const int size = message->encode(pack_bytes_.data(), 0, static_cast<int>(pack_bytes_.size()));
+  if (has(FaultKind::kCorrupt)) {
+    for (auto byte = pack_bytes_.begin() + kTypeBytes; byte != pack_bytes_.end(); ++byte) *byte ^= 0xa5;
+  }
   const bool hold = has(FaultKind::kReorder);
   if (!hold && !has(FaultKind::kDrop)) {
     SendPack(pack_bytes_.data(), size, pack.utime);

@@ -5,7 +5,9 @@
 #include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
+#include "armcmc/rt/injection.hpp"
 #include "armcmc/rt/pack_codec.hpp"
+#include "armcmc/rt/watchdog.hpp"
 #include "armcmc/status.hpp"
 
 namespace armcmc::app {
@@ -31,6 +33,10 @@ const char* KindName(std::size_t kind) {
     case EventKind::kPublishFailed: return "failed publications";
     case EventKind::kPlantRestarted: return "restarts of the plant";
     case EventKind::kGapSuspected: return "suspected gaps";
+    case EventKind::kClockJumped: return "jumps of the plant's clock";
+    case EventKind::kBusFlooded: return "floods of the bus";
+    case EventKind::kStageHung: return "hung stages";
+    case EventKind::kInjected: return "injected faults";
     default: return "events";
   }
 }
@@ -62,6 +68,13 @@ std::string EventText(const rt::Event& event) {
     case EventKind::kGapSuspected:
       return "GAP SUSPECTED: the model misses something since pack " + a + ", seen in " +
              std::string(FamilyOf(static_cast<PlantKind>(event.b)).check(event.detail));
+    case EventKind::kClockJumped: return "the plant's clock jumped by " + Millis(event.b) + " at pack " + a;
+    case EventKind::kBusFlooded: return "the bus is flooded: " + Count(event.a, "message") + " of other channels";
+    case EventKind::kStageHung:
+      return "stage " + std::string(rt::ToString(static_cast<rt::Watched>(event.detail))) + " hangs: overdue by " +
+             Millis(event.a);
+    case EventKind::kInjected:
+      return "INJECTED " + std::string(rt::ToString(static_cast<rt::InjectionKind>(event.detail))) + " at pack " + a;
   }
   return "unknown event";
 }

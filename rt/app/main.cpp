@@ -1,18 +1,22 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "armcmc/estimator.hpp"
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/rt/allocation_counter.hpp"
 #include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/disturbed_engine.hpp"
 #include "armcmc/rt/pipeline.hpp"
 #include "armcmc/rt/process_setup.hpp"
 #include "armcmc/rt/snapshot_hand_over.hpp"
@@ -27,6 +31,7 @@
 #include "gap_log.hpp"
 #include "report.hpp"
 #include "rt_config.hpp"
+#include "service_notify.hpp"
 #include "snapshot_saver.hpp"
 #include "summary.hpp"
 
@@ -61,6 +66,7 @@ struct Configuration {
   EstimatorSettings estimator;
   rt::RtSettings rt;
   GapLogSettings gap_log;
+  std::vector<rt::InjectionItem> inject;
 };
 
 Configuration Load(const Options& options) {
@@ -74,6 +80,7 @@ Configuration Load(const Options& options) {
   configuration.estimator = support::ReadEstimatorSettings(root, decides ? options.model : "");
   configuration.rt = ReadRtSettings(root);
   configuration.gap_log = ReadGapLogSettings(root);
+  configuration.inject = ReadInjections(root);
   root.Finish();
   if (!options.lcm_url.empty()) configuration.rt.lcm_url = options.lcm_url;
   if (!options.prefix.empty()) configuration.rt.prefix = options.prefix;
@@ -88,25 +95,37 @@ void WarnWhenDegraded(const rt::Pipeline& pipeline) {
   std::cerr << kName << ": real-time behaviour is degraded (";
   for (std::size_t i = 0; i < names.size(); ++i) std::cerr << (i == 0 ? "" : ", ") << names[i];
   std::cerr << "); every status message says so.\n";
-  if (names.size() > 1 || names.front() != "shared_cpu") std::cerr << rt::PrivilegeRemedy() << '\n';
+  const bool privileges_lack = std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    return name != "shared_cpu" && name != "injected_faults";
+  });
+  if (privileges_lack) std::cerr << rt::PrivilegeRemedy() << '\n';
 }
 
 /// Prints events until the pipeline stops by itself or a signal of the set asks it to.
-void Attend(rt::Pipeline* pipeline, const sigset_t& signals, EventPrinter* printer) {
+/// A service manager hears that all stages are alive, and only then.
+/// @return false when a stage hangs and the configuration wants the process to end then.
+bool Attend(rt::Pipeline* pipeline, const sigset_t& signals, EventPrinter* printer) {
   constexpr timespec kPoll{0, 50'000'000};
+  ServiceNotify service;
+  service.Ready();
   Nanos next_second = rt::MonotonicNow() + rt::kNanosPerSecond;
   bool running = true;
   while (running) {
     if (sigtimedwait(&signals, nullptr, &kPoll) > 0) pipeline->RequestStop();
     running = !pipeline->stopping();
-    if (!running) pipeline->Join();
+    const bool give_up = !pipeline->AllAlive() && pipeline->settings().on_hang == rt::OnHang::kExit;
+    if (pipeline->AllAlive()) service.Alive(rt::MonotonicNow());
+    if (!running || give_up) service.Stopping();
+    if (!running && !give_up) pipeline->Join();
     rt::Event event;
     while (pipeline->TakeEvent(&event)) printer->Print(event);
+    if (give_up) return false;
     if (const Nanos now = rt::MonotonicNow(); now >= next_second || !running) {
       printer->PrintHeldBack(now);
       next_second = now + rt::kNanosPerSecond;
     }
   }
+  return true;
 }
 
 /// A file that cannot be written is found out before the run, not after it.
@@ -150,11 +169,17 @@ int Run(const Options& options) {
 
   const auto snapshots = std::make_unique<rt::SnapshotHandOver>(Estimator::kSnapshotBytes);
   rt::EstimatorEngine engine(configuration.estimator);
+  rt::Injection injection(configuration.inject);
+  rt::DisturbedEngine disturbed(&engine, &injection);
+  const bool injects = !configuration.inject.empty();
   rt::PipelineOptions pipeline_options;
   pipeline_options.max_steps = options.steps;
   if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
   pipeline_options.record_packs = configuration.estimator.gap_watch.enabled;
-  rt::Pipeline pipeline(configuration.rt, &engine, pipeline_options);
+  if (injects) pipeline_options.injection = &injection;
+  rt::StepEngine* computes = &engine;
+  if (injects) computes = &disturbed;
+  rt::Pipeline pipeline(configuration.rt, computes, pipeline_options);
   const auto saver = Resume(options, &engine, snapshots.get(),
                             [&pipeline] { pipeline.RaiseFault(estimator_status_t::FAULT_SNAPSHOT); });
   const Nanos start_ns = rt::MonotonicNow();
@@ -177,7 +202,10 @@ int Run(const Options& options) {
     gap_log->Start();
   }
   if (saver) saver->Start();
-  Attend(&pipeline, signals, &printer);
+  if (!Attend(&pipeline, signals, &printer)) {
+    std::cerr << kName << ": a stage hangs and [rt.watchdog] on_hang = \"exit\": the process ends now.\n";
+    std::_Exit(support::kExitFailure);  // a thread that hangs cannot be joined
+  }
   if (gap_log) gap_log->Stop();
   if (saver) saver->Stop();
   const std::string window = gap_log ? gap_log->path() : "";

@@ -109,6 +109,16 @@ Json Parameters(const Pipeline& p) {
   return modes;
 }
 
+Json Injected(const Injection* injection) {
+  if (injection == nullptr) return nullptr;
+  Json counts = Json::object();
+  for (std::size_t i = 0; i < kNumInjectionKinds; ++i) {
+    const auto kind = static_cast<InjectionKind>(i);
+    if (injection->count(kind) > 0) counts[std::string(ToString(kind))] = injection->count(kind);
+  }
+  return counts;
+}
+
 Json Gap(const GapState& gap, const std::string& window) {
   return {{"watched", gap.watched},
           {"suspected", gap.suspected},
@@ -170,6 +180,8 @@ std::string ReportJson(const Pipeline& p, const std::string& gap_window,
         {"max", draws.max()},
         {"truncated_steps", c.adjust.truncated.Get()}}},
       {"ess", {{"median", ess.Quantile(0.5)}, {"min", ess.min()}}},
+      {"hangs", p.watchdog().hangs()},
+      {"injected", Injected(p.injection())},
       {"numeric_troubles", c.adjust.numeric.Get()},
       {"gap", Gap(p.last_estimate().gap, gap_window)},
       {"snapshot", SnapshotState(snapshot)},

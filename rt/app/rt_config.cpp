@@ -46,6 +46,9 @@ void ReadRt(StrictTable table, rt::RtSettings* settings) {
   // One witness on every CPU that a stage runs on: it has a priority and no CPU of its own.
   StrictTable witness = table.Table("witness");
   settings->witness_priority = static_cast<int>(witness.Integer("priority", settings->witness_priority, 1, 99));
+  StrictTable watchdog = table.Table("watchdog");
+  settings->on_hang =
+      watchdog.Choice("on_hang", "degrade", {"degrade", "exit"}) == "exit" ? rt::OnHang::kExit : rt::OnHang::kDegrade;
 }
 
 void ReadLcm(StrictTable table, rt::RtSettings* settings) {
@@ -74,6 +77,17 @@ rt::RtSettings ReadRtSettings(StrictTable& root) {
     throw root.Error("rt", error.what());
   }
   return settings;
+}
+
+std::vector<rt::InjectionItem> ReadInjections(StrictTable& root) {
+  if (!root.Has("inject")) return {};
+  StrictTable table = root.Table("inject");
+  const std::string plan = table.Text("plan", "");
+  try {
+    return rt::ParseInjections(plan);
+  } catch (const std::invalid_argument& error) {
+    throw table.Error("plan", error.what());
+  }
 }
 
 GapLogSettings ReadGapLogSettings(StrictTable& root) {

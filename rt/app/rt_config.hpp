@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "armcmc/rt/injection.hpp"
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/support/strict_toml.hpp"
 #include "gap_log.hpp"
@@ -10,6 +13,10 @@ namespace armcmc::app {
 /// absent deadline_ms is the period, absent adjust_budget_ms four fifths of the smaller of period and deadline.
 /// @throws support::ConfigError naming file, line, key and range.
 [[nodiscard]] rt::RtSettings ReadRtSettings(support::StrictTable& root);
+
+/// Reads [inject] plan: faults that the process is to make itself, for tests only. Absent: none.
+/// @throws support::ConfigError naming file, line, key and what is allowed.
+[[nodiscard]] std::vector<rt::InjectionItem> ReadInjections(support::StrictTable& root);
 
 /// Reads [gap_log]: where the data around a suspected gap go.
 /// @throws support::ConfigError naming file, line, key and range.

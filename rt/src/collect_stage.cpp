@@ -1,6 +1,7 @@
 #include "armcmc/rt/collect_stage.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/rt/clock.hpp"
@@ -50,6 +51,32 @@ void CollectStage::Reject(RejectCause cause, Nanos now_ns) noexcept {
   }
 }
 
+void CollectStage::NoteClock(bool continues, Nanos now_ns) noexcept {
+  // The plant tells its time twice: on its clock, and since its start. Between two packs both advance by as much.
+  const double clock_ns = static_cast<double>(codec_.t_last_ns()) - static_cast<double>(plant_clock_ns_);
+  const double jump_ns = clock_ns - (codec_.t_last_s() - plant_time_s_) * static_cast<double>(kNanosPerSecond);
+  if (continues && std::fabs(jump_ns) > static_cast<double>(period_ns_)) {
+    counters_->faults.Raise(estimator_status_t::FAULT_CLOCK_JUMP);
+    const double bounded = std::clamp(jump_ns, -9e18, 9e18);
+    events_->Add({now_ns, EventKind::kClockJumped, 0, codec_.seq(), static_cast<std::int64_t>(bounded)});
+  }
+  plant_clock_ns_ = codec_.t_last_ns();
+  plant_time_s_ = codec_.t_last_s();
+}
+
+void CollectStage::NoteForeign(std::int64_t foreign, Nanos now_ns) noexcept ARMCMC_NONBLOCKING {
+  const Nanos window_ns = now_ns - foreign_since_ns_;
+  if (window_ns < std::max(period_ns_, kNanosPerSecond / 10)) return;
+  const std::int64_t heard = foreign - foreign_before_;
+  // A window that a stall made longer holds what had come meanwhile: still a rate.
+  if (foreign_since_ns_ > 0 && heard > kFloodPerSecond * (window_ns / kNanosPerMilli) / 1000) {
+    counters_->faults.Raise(estimator_status_t::FAULT_BUS_FLOOD);
+    events_->Add({now_ns, EventKind::kBusFlooded, 0, heard, window_ns});
+  }
+  foreign_before_ = foreign;
+  foreign_since_ns_ = now_ns;
+}
+
 void CollectStage::NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept {
   if (silence_reported_ && grid_.locked()) {
     events_->Add({now_ns, EventKind::kPlantBack, 0, seq, silent_in_a_row_});
@@ -89,6 +116,7 @@ bool CollectStage::Step(const Datagram& datagram) noexcept {
     }
     point = grid_.Lock(datagram.arrival_ns);
   }
+  NoteClock(sequence.verdict == SequenceVerdict::kNext, start_ns);
   skipped_steps_ = 0;
   heard_ns_ = datagram.arrival_ns;
   traffic_ = false;  // the next tick is counted from this pack on
@@ -112,6 +140,7 @@ bool CollectStage::Step(const Datagram& datagram) noexcept {
   slot->times.arrival_ns = datagram.arrival_ns;
   slot->times.deadline_ns = point.release_ns + deadline_ns_;
   slot->times.start_ns[IndexOf(Stage::kCollect)] = start_ns;
+  if (injection_ != nullptr) injection_->Disturb(Stage::kCollect, codec_.seq());
   slot->times.end_ns[IndexOf(Stage::kCollect)] = MonotonicNow();
   ring_->Commit();
   return true;

@@ -35,6 +35,7 @@ std::string_view ToString(RejectCause cause) noexcept {
     case RejectCause::kSampleInterval: return "dt out of range";
     case RejectCause::kNotFinite: return "NaN or infinite value";
     case RejectCause::kOutOfRange: return "value out of range";
+    case RejectCause::kAllZero: return "every value is zero";
   }
   return "unknown";
 }
@@ -44,6 +45,7 @@ RejectGroup GroupOf(RejectCause cause) noexcept {
     case RejectCause::kFingerprint:
     case RejectCause::kPlantKind: return RejectGroup::kType;
     case RejectCause::kNotFinite:
+    case RejectCause::kAllZero:
     case RejectCause::kOutOfRange: return RejectGroup::kValue;
     default: return RejectGroup::kSize;
   }
@@ -81,17 +83,19 @@ RejectCause PackCodec::Check() const noexcept ARMCMC_NONBLOCKING {
   if (!std::isfinite(m.t_last_s)) return RejectCause::kNotFinite;
   if (m.seq < 1 || m.seq > (std::int64_t{1} << 62) || m.t_last_s < 0.0) return RejectCause::kOutOfRange;
 
-  bool finite = true, in_range = true;
+  bool finite = true, in_range = true, all_zero = m.n_samples > 1;
   const auto look = [&](double value) {
     finite = finite && std::isfinite(value);
     in_range = in_range && std::fabs(value) <= kMaxMagnitude;
+    all_zero = all_zero && value == 0.0;
   };
   for (int n = 0; n < m.n_samples; ++n) {
     look(m.y[n]);
     for (int i = 0; i < num_inputs_; ++i) look(m.u[n][i]);
   }
   if (!finite) return RejectCause::kNotFinite;
-  return in_range ? RejectCause::kNone : RejectCause::kOutOfRange;
+  if (!in_range) return RejectCause::kOutOfRange;
+  return all_zero ? RejectCause::kAllZero : RejectCause::kNone;
 }
 
 void PackCodec::CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING {

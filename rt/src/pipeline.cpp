@@ -16,6 +16,7 @@ std::vector<std::string> DegradedNames(std::int32_t flags) {
   if ((flags & estimator_status_t::DEGRADED_NO_MLOCK) != 0) names.emplace_back("no_mlock");
   if ((flags & estimator_status_t::DEGRADED_SHARED_CPU) != 0) names.emplace_back("shared_cpu");
   if ((flags & estimator_status_t::DEGRADED_NO_WITNESS) != 0) names.emplace_back("no_witness");
+  if ((flags & estimator_status_t::DEGRADED_INJECTED) != 0) names.emplace_back("injected_faults");
   return names;
 }
 
@@ -29,7 +30,15 @@ Pipeline::Pipeline(const RtSettings& settings, StepEngine* engine, const Pipelin
       collect_(settings_, engine->plant(), engine->num_inputs(), &packs_, &counters_, &events_[0]),
       adjust_(settings_, engine, &packs_, &results_, &monitor_, &counters_, &events_[1]),
       execute_(engine, &results_, &outputs_, &monitor_, &counters_, &events_[2]),
-      publish_(settings_, engine, &outputs_, &publisher_, &monitor_, &counters_, &events_[3]) {
+      publish_(settings_, engine, &outputs_, &publisher_, &monitor_, &counters_, &events_[3]),
+      watchdog_(settings_, &events_[4]) {
+  publish_.SetWatchdog(&watchdog_);
+  if (options_.injection != nullptr) {
+    options_.injection->SetEventLogs({&events_[0], &events_[1], &events_[2], &events_[3]});
+    collect_.SetInjection(options_.injection);
+    publish_.SetInjection(options_.injection);
+    degraded_flags_ |= estimator_status_t::DEGRADED_INJECTED;
+  }
   if (!options_.record_packs) return;
   record_ = std::make_unique<RecordRing>();
   collect_.SetRecord(record_.get());
@@ -114,6 +123,7 @@ void Pipeline::StartThreads() {
               [](void* self) noexcept { static_cast<Pipeline*>(self)->PublishLoop(); });
   StartThread(&collect_thread_, "collect", settings_.collect,
               [](void* self) noexcept { static_cast<Pipeline*>(self)->CollectLoop(); });
+  watchdog_.Start();
 }
 
 void Pipeline::RequestStop() noexcept {
@@ -125,6 +135,7 @@ void Pipeline::RequestStop() noexcept {
 }
 
 void Pipeline::Join() noexcept {
+  watchdog_.Stop();
   collect_thread_.Join();
   adjust_thread_.Join();
   execute_thread_.Join();
@@ -150,7 +161,10 @@ void Pipeline::CollectLoop() noexcept {
   const std::uint64_t baseline = HeapCalls();
   while (!stopping()) {
     Datagram datagram;
+    const Nanos wait_ns = std::max<Nanos>(0, collect_.next_tick_ns() - MonotonicNow());
+    watchdog_.Promise(Watched::kCollect, MonotonicNow(), wait_ns);
     if (receiver_.WaitUntil(collect_.next_tick_ns())) {
+      watchdog_.Promise(Watched::kCollect, MonotonicNow(), settings_.period_ns / 2);
       for (int i = 0; i < kMaxPacksPerWait && receiver_.TryReceive(&datagram); ++i) {
         if (collect_.Step(datagram)) adjust_waiter_.Post();
       }
@@ -160,6 +174,7 @@ void Pipeline::CollectLoop() noexcept {
     }
     // Also when others keep the bus busy: only the time decides.
     const Nanos now_ns = MonotonicNow();
+    collect_.NoteForeign(receiver_.counts().foreign, now_ns);
     if (now_ns >= collect_.next_tick_ns()) {
       collect_.Tick(now_ns);
       status_due_.store(true, std::memory_order_release);
@@ -167,6 +182,7 @@ void Pipeline::CollectLoop() noexcept {
     }
     CountHeapCalls(Stage::kCollect, baseline);
   }
+  watchdog_.Dismiss(Watched::kCollect);
 }
 
 void Pipeline::WarmUpEngine() noexcept {
@@ -177,36 +193,49 @@ void Pipeline::WarmUpEngine() noexcept {
 void Pipeline::AdjustLoop() noexcept {
   const std::uint64_t baseline = HeapCalls();
   while (!stopping()) {
+    watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.period_ns);
     (void)adjust_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
-    while (!stopping() && adjust_.Step()) execute_waiter_.Post();
+    watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+    while (!stopping() && adjust_.Step()) {
+      execute_waiter_.Post();
+      watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+    }
     CountHeapCalls(Stage::kAdjust, baseline);
   }
+  watchdog_.Dismiss(Watched::kAdjust);
 }
 
 void Pipeline::ExecuteLoop() noexcept {
   const std::uint64_t baseline = HeapCalls();
   while (!stopping()) {
+    watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns);
     (void)execute_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
+    watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
     while (!stopping() && execute_.Step()) {
+      watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
       publish_waiter_.Post();
       if (packs_.size() > 0) adjust_waiter_.Post();  // it may have waited for us
       if (options_.max_steps > 0 && counters_.execute.steps.Get() >= options_.max_steps) RequestStop();
     }
     CountHeapCalls(Stage::kExecute, baseline);
   }
+  watchdog_.Dismiss(Watched::kExecute);
 }
 
 void Pipeline::PublishLoop() noexcept {
   while (true) {
     // A status is due every period; collect asks for it while the plant is silent. The longer bound is for the case
     // that collect itself hangs.
+    watchdog_.Promise(Watched::kPublish, MonotonicNow(), 2 * settings_.period_ns);
     const bool posted = publish_waiter_.WaitUntil(MonotonicNow() + 2 * settings_.period_ns);
     const bool ended = execute_ended_.load(std::memory_order_acquire);
+    watchdog_.Promise(Watched::kPublish, MonotonicNow(), settings_.period_ns);
     const int published = publish_.PublishSteps();
     const bool due = status_due_.exchange(false, std::memory_order_acq_rel);
     if (published == 0 && (due || !posted)) publish_.PublishIdleStatus();
-    if (ended) return;
+    if (ended) break;
   }
+  watchdog_.Dismiss(Watched::kPublish);
 }
 
 bool Pipeline::TakeEvent(Event* event) noexcept {

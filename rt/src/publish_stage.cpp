@@ -24,9 +24,9 @@ int PublishStage::PublishSteps() noexcept {
     if (output == nullptr) break;
     const std::int64_t utime = RealtimeMicros();
     FillEstimate(*output, *engine_, utime, &estimate_);
-    Note(publisher_->Publish(estimate_));
+    Send(estimate_, output->info.seq);
     FillPosterior(*output, *engine_, utime, &posterior_);
-    Note(publisher_->Publish(posterior_));
+    Send(posterior_, output->info.seq);
     last_ = output->estimate;
     NoteGap(last_.gap);
     PublishStatus(output);
@@ -55,9 +55,10 @@ void PublishStage::PublishStatus(const StepOutput* output) noexcept {
   if (counters_->collect.silent.load(std::memory_order_relaxed)) {
     context.fault_flags |= estimator_status_t::FAULT_PLANT_SILENT;
   }
+  if (watchdog_ != nullptr && watchdog_->TakeHung()) context.fault_flags |= estimator_status_t::FAULT_STAGE_HUNG;
   context.degraded_flags = degraded_flags_.load(std::memory_order_relaxed);
   FillStatus(context, settings_, *counters_, *monitor_, &status_);
-  Note(publisher_->Publish(status_));
+  Send(status_, output != nullptr ? output->info.seq : 0);
 }
 
 }  // namespace armcmc::rt

@@ -21,9 +21,20 @@ TEST(FaultPlan, ReadsEveryKind) {
   EXPECT_FALSE(plan.Has(FaultKind::kNan, 2));
 }
 
+TEST(FaultPlan, AClockThatJumpedStaysAhead) {
+  const FaultPlan plan = FaultPlan::Parse("clock@5:1000,zero@6,huge@7,corrupt@8,clock@9:50");
+  EXPECT_TRUE(plan.Has(FaultKind::kZero, 6));
+  EXPECT_TRUE(plan.Has(FaultKind::kHuge, 7));
+  EXPECT_TRUE(plan.Has(FaultKind::kCorrupt, 8));
+  EXPECT_EQ(plan.ClockMs(4), 0.0);
+  EXPECT_EQ(plan.ClockMs(5), 1000.0);
+  EXPECT_EQ(plan.ClockMs(8), 1000.0);
+  EXPECT_EQ(plan.ClockMs(9), 1050.0);
+}
+
 TEST(FaultPlan, RejectsWhatItDoesNotUnderstand) {
   for (const char* list : {"", "nan", "nan@", "nan@0", "nan@-1", "nan@x", "nan@1:5", "late@1", "late@1:", "late@1:0",
-                           "late@1:nan", "explode@3", "nan@1,", "nan@1,,drop@2", "nan@1 drop@2"})
+                           "late@1:nan", "explode@3", "clock@1", "zero@1:5", "nan@1,", "nan@1,,drop@2", "nan@1 drop@2"})
     EXPECT_THROW(static_cast<void>(FaultPlan::Parse(list)), std::invalid_argument) << list;
 }
 

@@ -56,6 +56,46 @@ TEST_F(CollectStageTest, ALatePackKeepsTheDeadlineOfItsGridPoint) {
   EXPECT_EQ(ring_->Front()->times.arrival_ns, kT + 30);
 }
 
+TEST_F(CollectStageTest, APackOfZerosIsADeadSensorAndIsRejected) {
+  data_pack_t pack = test::ValidPack(1);
+  for (int n = 0; n < pack.n_samples; ++n) pack.y[n] = pack.u[n][0] = pack.u[n][1] = 0.0;
+  EXPECT_FALSE(Send(pack, 0));
+  EXPECT_EQ(counters_->Rejected(RejectGroup::kValue), 1);
+  pack.u[3][0] = 1e-12;  // at rest, and alive
+  EXPECT_TRUE(Send(pack, 0));
+}
+
+TEST_F(CollectStageTest, FlagsAJumpOfThePlantsClockOnce) {
+  Send(test::ValidPack(1), 0);
+  data_pack_t pack = test::ValidPack(2);
+  pack.t_last_ns -= 2 * kT;
+  ASSERT_TRUE(Send(pack, kT)) << "its data are good";
+  EXPECT_EQ(counters_->faults.Take(), estimator_status_t::FAULT_CLOCK_JUMP);
+  pack = test::ValidPack(3);
+  pack.t_last_ns -= 2 * kT;
+  Send(pack, 2 * kT);
+  EXPECT_EQ(counters_->faults.Take(), 0) << "it goes on from there";
+}
+
+TEST_F(CollectStageTest, ALostPackOrANewRunIsNoJumpOfTheClock) {
+  Send(test::ValidPack(1), 0);
+  Send(test::ValidPack(5), 4 * kT);
+  data_pack_t restarted = test::ValidPack(1, /*run_id=*/2);
+  restarted.t_last_ns += 1'000'000 * kT;
+  Send(restarted, 5 * kT);
+  EXPECT_EQ(counters_->faults.Take() & estimator_status_t::FAULT_CLOCK_JUMP, 0);
+}
+
+TEST_F(CollectStageTest, FlagsABusThatIsFloodedByOtherChannels) {
+  stage_->NoteForeign(5'000'000, kT);  // whatever came before
+  stage_->NoteForeign(5'000'000 + 900, 2 * kT);
+  EXPECT_EQ(counters_->faults.Take(), 0) << "9 000 a second";
+  stage_->NoteForeign(5'000'000 + 900 + 1100, 3 * kT);
+  EXPECT_EQ(counters_->faults.Take(), estimator_status_t::FAULT_BUS_FLOOD) << "11 000 a second";
+  stage_->NoteForeign(5'000'000 + 900 + 1100 + 2000, 13 * kT);
+  EXPECT_EQ(counters_->faults.Take(), 0) << "2 000 a second, seen late";
+}
+
 TEST_F(CollectStageTest, CountsBadPacksByCauseAndGoesOn) {
   data_pack_t bad = test::ValidPack(1);
   bad.y[3] = std::nan("");

@@ -32,7 +32,7 @@ TEST(PackCodec, CopiesEveryFieldOfAValidPack) {
   codec.CopyTo(&pack);
   EXPECT_EQ(pack.seq, 7);
   EXPECT_EQ(pack.run_id, 42);
-  EXPECT_EQ(pack.t_last_ns, 7000);
+  EXPECT_EQ(pack.t_last_ns, 700'000'000);
   EXPECT_DOUBLE_EQ(pack.t_last_s, 0.699);
   EXPECT_DOUBLE_EQ(pack.dt, 1e-3);
   EXPECT_EQ(pack.num_samples, 100);

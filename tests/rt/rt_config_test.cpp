@@ -75,6 +75,25 @@ TEST(ReadRtSettings, NamesLineKeyAndRangeOfAMistake) {
             std::string::npos);
 }
 
+TEST(ReadRtSettings, ReadsWhatAHangMeans) {
+  EXPECT_EQ(Read("").on_hang, rt::OnHang::kDegrade);
+  EXPECT_EQ(Read("[rt.watchdog]\non_hang = \"exit\"\n").on_hang, rt::OnHang::kExit);
+}
+
+TEST(ReadInjections, ReadsAPlanAndNamesTheKeyOfAMistake) {
+  StrictTable none = StrictTable::FromText("", "test.toml");
+  EXPECT_TRUE(ReadInjections(none).empty());
+  StrictTable root = StrictTable::FromText("[inject]\nplan = \"hang_adjust@7:30,squeeze@9\"\n", "test.toml");
+  const auto plan = ReadInjections(root);
+  root.Finish();
+  ASSERT_EQ(plan.size(), 2U);
+  EXPECT_EQ(plan[0].kind, rt::InjectionKind::kHangAdjust);
+  EXPECT_EQ(plan[0].pack, 7);
+  EXPECT_EQ(plan[0].amount, 30);
+  StrictTable wrong = StrictTable::FromText("[inject]\nplan = \"explode@1\"\n", "test.toml");
+  EXPECT_THROW((void)ReadInjections(wrong), ConfigError);
+}
+
 TEST(ReadGapLogSettings, ReadsEveryKeyAndRefusesOthers) {
   const auto read = [](const std::string& text) {
     StrictTable root = StrictTable::FromText(text, "test.toml");

@@ -22,8 +22,12 @@ enum class EventKind : std::uint8_t {
   kNumericTrouble,   ///< a: pack number; `detail` is the Status of core.
   kPublishFailed,    ///< a: failures so far.
   kGapSuspected,     ///< a: pack since when, b: PlantKind; `detail` is the check of its GapFamily.
+  kClockJumped,      ///< a: pack number, b: by how much, ns.
+  kBusFlooded,       ///< a: messages of other channels in one period.
+  kStageHung,        ///< a: ns overdue when it was seen; `detail` is the Watched.
+  kInjected,         ///< a: pack number, b: amount; `detail` is the InjectionKind.
 };
-inline constexpr int kNumEventKinds = 12;
+inline constexpr int kNumEventKinds = 16;
 
 struct Event {
   Nanos t_ns = 0;  ///< CLOCK_MONOTONIC.

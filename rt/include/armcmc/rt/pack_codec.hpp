@@ -23,8 +23,9 @@ enum class RejectCause : std::uint8_t {
   kSampleInterval,  ///< dt outside (0, kMaxSampleInterval] or not finite.
   kNotFinite,       ///< NaN or infinity in a value that is used.
   kOutOfRange,      ///< A value beyond kMaxMagnitude, a pack number outside [1, 2^62], a negative plant time.
+  kAllZero,         ///< Two samples or more and every value exactly zero: a dead sensor, no measurement.
 };
-inline constexpr std::size_t kNumRejectCauses = 9;
+inline constexpr std::size_t kNumRejectCauses = 10;
 
 /// The three groups in which estimator_status_t counts them.
 enum class RejectGroup : std::uint8_t { kSize = 0, kType = 1, kValue = 2 };
@@ -51,6 +52,8 @@ class PackCodec {
   [[nodiscard]] bool decoded() const noexcept { return decoded_; }
   [[nodiscard]] std::int64_t seq() const noexcept { return message_.seq; }
   [[nodiscard]] std::int64_t run_id() const noexcept { return message_.run_id; }
+  [[nodiscard]] std::int64_t t_last_ns() const noexcept { return message_.t_last_ns; }
+  [[nodiscard]] double t_last_s() const noexcept { return message_.t_last_s; }
   /// Copies the used rows and columns. @pre the last Decode() returned kNone.
   void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
 

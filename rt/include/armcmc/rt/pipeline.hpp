@@ -16,6 +16,7 @@
 #include "armcmc/rt/event_log.hpp"
 #include "armcmc/rt/execute_stage.hpp"
 #include "armcmc/rt/hand_over.hpp"
+#include "armcmc/rt/injection.hpp"
 #include "armcmc/rt/lcm_publisher.hpp"
 #include "armcmc/rt/lcm_receiver.hpp"
 #include "armcmc/rt/publish_stage.hpp"
@@ -23,6 +24,7 @@
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/rt/step_engine.hpp"
 #include "armcmc/rt/waiter.hpp"
+#include "armcmc/rt/watchdog.hpp"
 #include "armcmc/rt/witness.hpp"
 
 namespace armcmc::rt {
@@ -34,10 +36,11 @@ struct PipelineOptions {
   std::int64_t max_steps = 0;      ///< Stop after so many steps; 0: never.
   HeapProbe heap_probe = nullptr;  ///< nullptr: heap calls of the stages are not counted.
   bool record_packs = false;       ///< Keep copies of the packs for record().
+  Injection* injection = nullptr;  ///< Faults on purpose; every status message says so. Outlives the pipeline.
 };
 
 /// The real-time estimator: three stages on three pinned threads, pack t collected while t-1 is adjusted and t-2
-/// executed, a publisher below them and a witness per CPU above them.
+/// executed, a publisher below them a witness per CPU and a watchdog above them.
 ///
 ///     LCM -> collect -> ring -> adjust -> latest result -> execute -> ring -> publish -> LCM
 ///
@@ -74,6 +77,11 @@ class Pipeline {
   /// Number of the pack at which the gap watch raised its alarm, 0 while it has not. Any time.
   [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return publish_.gap_alarm(); }
 
+  /// false while a thread hangs. Any time.
+  [[nodiscard]] bool AllAlive() const noexcept { return watchdog_.hung() == 0; }
+  [[nodiscard]] const Watchdog& watchdog() const noexcept { return watchdog_; }
+  [[nodiscard]] const Injection* injection() const noexcept { return options_.injection; }
+
   // What a report needs. Counters may be read any time; the rest after Join().
   [[nodiscard]] const RtSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const StepEngine& engine() const noexcept { return *engine_; }
@@ -107,7 +115,7 @@ class Pipeline {
   StepEngine* engine_;
   Counters counters_;
   DeadlineMonitor monitor_;
-  std::array<EventLog, 4> events_;  // collect, adjust, execute, publish: one producer each
+  std::array<EventLog, 5> events_;  // collect, adjust, execute, publish, watchdog: one producer each
   PackRing packs_;
   ResultHandOver results_;
   OutputRing outputs_;
@@ -118,6 +126,7 @@ class Pipeline {
   AdjustStage adjust_;
   ExecuteStage execute_;
   PublishStage publish_;
+  Watchdog watchdog_;
 
   Waiter adjust_waiter_, execute_waiter_, publish_waiter_, warm_waiter_;
   std::atomic<bool> stop_{false};

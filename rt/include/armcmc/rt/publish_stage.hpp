@@ -10,9 +10,11 @@
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/event_log.hpp"
 #include "armcmc/rt/hand_over.hpp"
+#include "armcmc/rt/injection.hpp"
 #include "armcmc/rt/lcm_publisher.hpp"
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/rt/step_engine.hpp"
+#include "armcmc/rt/watchdog.hpp"
 #include "armcmc/rt/witness.hpp"
 
 namespace armcmc::rt {
@@ -32,6 +34,9 @@ class PublishStage {
 
   /// Set before the thread starts.
   void SetWitnesses(std::vector<Witness*> witnesses) { witnesses_ = std::move(witnesses); }
+  /// Set before the thread starts; nullptr: no faults on purpose, no watchdog.
+  void SetInjection(Injection* injection) noexcept { injection_ = injection; }
+  void SetWatchdog(Watchdog* watchdog) noexcept { watchdog_ = watchdog; }
   /// Any time.
   void SetDegraded(std::int32_t flags) noexcept { degraded_flags_.store(flags, std::memory_order_relaxed); }
 
@@ -48,6 +53,11 @@ class PublishStage {
  private:
   void PublishStatus(const StepOutput* output) noexcept ARMCMC_NONBLOCKING;
   void NoteGap(const GapState& gap) noexcept ARMCMC_NONBLOCKING;
+  /// Sends one message and counts what became of it. @param pack  That it belongs to, 0: none.
+  template <typename Message>
+  void Send(const Message& message, std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
+    Note((injection_ == nullptr || !injection_->FailsPublication(pack)) && publisher_->Publish(message));
+  }
   void Note(bool sent) noexcept ARMCMC_NONBLOCKING;
 
   const RtSettings& settings_;
@@ -58,6 +68,8 @@ class PublishStage {
   Counters* counters_;
   EventLog* events_;
   std::vector<Witness*> witnesses_;
+  Injection* injection_ = nullptr;
+  Watchdog* watchdog_ = nullptr;
   std::atomic<std::int32_t> degraded_flags_{0};
   std::atomic<std::int64_t> gap_alarm_{0};
   estimate_t estimate_{};

@@ -13,6 +13,12 @@ enum class RtMode : std::uint8_t {
   kEnforce,     ///< Refuse to start and say what to do.
 };
 
+/// What to do when a stage hangs.
+enum class OnHang : std::uint8_t {
+  kDegrade,  ///< Go on with what still runs, and say so in every status message.
+  kExit,     ///< End the process with an error, so that a supervisor starts a new one.
+};
+
 /// Priority and CPU of one thread.
 struct ThreadSettings {
   int priority = 0;  ///< SCHED_FIFO priority in [1, 99].
@@ -36,6 +42,7 @@ struct RtSettings {
   ThreadSettings execute{75, 0};
   ThreadSettings publish{40, 0};  ///< Below every stage.
   int witness_priority = 90;      ///< Above every stage: what delays the witness is not ours.
+  OnHang on_hang = OnHang::kDegrade;
 
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   std::string prefix;  ///< Put before every channel name, so that many plants share one bus.

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+
+#include "armcmc/rt/injection.hpp"
+#include "armcmc/rt/step_engine.hpp"
+
+namespace armcmc::rt {
+
+/// A StepEngine with the injected faults of adjust and execute around another one.
+class DisturbedEngine final : public StepEngine {
+ public:
+  /// @param engine, injection  Outlive it.
+  DisturbedEngine(StepEngine* engine, Injection* injection) noexcept : engine_(engine), injection_(injection) {}
+
+  [[nodiscard]] PlantKind plant() const noexcept override { return engine_->plant(); }
+  [[nodiscard]] int num_inputs() const noexcept override { return engine_->num_inputs(); }
+  [[nodiscard]] int num_modes() const noexcept override { return engine_->num_modes(); }
+  [[nodiscard]] int num_reported() const noexcept override { return engine_->num_reported(); }
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept override { return engine_->reported(index); }
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept override;
+  void Execute(int slot, Estimate* estimate) noexcept override;
+  void Reset() noexcept override { engine_->Reset(); }
+
+ private:
+  StepEngine* engine_;
+  Injection* injection_;
+  std::array<std::int64_t, LatestValue::kSlots> pack_{};  // what each slot was computed from
+  DataPack wrong_;
+};
+
+}  // namespace armcmc::rt

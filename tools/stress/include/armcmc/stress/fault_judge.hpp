@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "armcmc/estimate_t.hpp"
+#include "armcmc/estimator_status_t.hpp"
+#include "armcmc/stress/fault_layout.hpp"
+
+namespace armcmc::stress {
+
+/// What became of one injected fault.
+struct FaultOutcome {
+  const FaultSpec* fault = nullptr;
+  bool injected = false;  ///< false: it never came to it, the machine had swallowed its pack.
+  bool detected = false;
+  std::int32_t flags = 0;
+  std::int64_t recovered_steps = 0;  ///< Steps after the fault until the first normal one, those of stalls not counted.
+  std::int64_t stalled_steps = 0;    ///< Steps that were not counted: the witness had seen the machine stand still.
+  std::int64_t own_misses = 0;       ///< In its slot.
+};
+
+/// Watches the estimator's messages of one run of the plant after another and judges every slot.
+///
+/// A step is normal when its estimate came, its status raises no flag that was not there before the fault, its
+/// deadline was kept, and its estimate agrees with the one before the fault: inside its 95 % interval or within two
+/// joint standard deviations, with an interval at most four times as wide (unless the fault makes it learn again).
+/// Memory is bounded by the length of a slot.
+class FaultJudge {
+ public:
+  static constexpr std::int64_t kNever = 99;  ///< recovered_steps of what did not become normal in its slot.
+
+  explicit FaultJudge(std::int64_t period_ns) : period_ns_(period_ns) {}
+
+  /// A new run of the plant begins; its packs count from 1. Steps are taken from its first estimate on.
+  void BeginRun(std::vector<Slot> slots);
+  void OnEstimate(const estimate_t& estimate);
+  void OnStatus(const estimator_status_t& status);
+
+  /// The fault of the present slot, made from outside, begins now (after `newest` packs) ...
+  void SignalBegins();
+  /// ... and is over now, after this pack.
+  void SignalEnds(std::int64_t newest);
+  /// What the plant said at its end belongs to the present slot.
+  void LogFailureTold() { evidence_.log_failure_told = true; }
+
+  /// The slot that a pack number of this run lies in; nullptr between them.
+  [[nodiscard]] const Slot* current() const { return next_ < slots_.size() ? &slots_[next_] : nullptr; }
+  [[nodiscard]] bool run_started() const { return started_; }
+  [[nodiscard]] bool finished() const { return next_ >= slots_.size(); }
+  [[nodiscard]] std::vector<FaultOutcome> TakeOutcomes();
+  [[nodiscard]] const estimator_status_t& newest_status() const { return last_status_; }
+
+ private:
+  struct Step {
+    bool has_estimate = false, has_status = false;
+    bool truncated = false, modification = false;
+    std::array<double, 3> value{}, lo{}, hi{}, sd{};
+    std::int32_t flags = 0, miss = 0;
+    std::int64_t witness_ns = 0;
+  };
+
+  void FinishSlot();
+  [[nodiscard]] bool Agrees(const Step& step, bool relearns) const;
+  [[nodiscard]] bool IsNormal(const Step& step, const FaultSpec& fault) const;
+
+  std::int64_t period_ns_;
+  std::vector<Slot> slots_;
+  std::size_t next_ = 0;
+  bool started_ = false, any_estimate_ = false;
+  std::int64_t run_id_ = 0, last_run_id_ = 0;
+  std::map<std::int64_t, Step> steps_;
+  Step reference_, last_step_;
+  estimator_status_t last_status_{};
+  Evidence evidence_;
+  bool has_before_ = false;
+  std::int32_t background_ = 0;  // flags before the fault
+  std::int32_t raised_ = 0;      // flags since
+  bool signalled_ = false;
+  std::int64_t affected_until_ = 0;
+  std::vector<FaultOutcome> outcomes_;
+};
+
+}  // namespace armcmc::stress

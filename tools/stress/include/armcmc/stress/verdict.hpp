@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "armcmc/stress/phase.hpp"
+
+namespace armcmc::stress {
+
+inline constexpr std::int64_t kMostRecoverySteps = 5;
+
+struct Verdict {
+  bool passed = true;
+  std::vector<std::string> reasons;  ///< Why not.
+  [[nodiscard]] std::string Text() const;
+};
+
+/// The faults of all phases together, in the order of the catalogue.
+[[nodiscard]] std::vector<FaultTally> AllFaults(const std::vector<PhaseResult>& phases);
+
+/// Passed: the estimator lived, no own miss that no fault explains, no heap call in a stage, every fault that was
+/// injected was detected and got over within kMostRecoverySteps steps.
+[[nodiscard]] Verdict Judge(const std::vector<PhaseResult>& phases);
+
+}  // namespace armcmc::stress

@@ -1,0 +1,145 @@
+#include "armcmc/stress/fault_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace armcmc::stress {
+
+void FaultJudge::BeginRun(std::vector<Slot> slots) {
+  slots_ = std::move(slots);
+  next_ = 0;
+  started_ = false;
+  last_run_id_ = run_id_;
+  steps_.clear();
+  reference_ = last_step_;
+  evidence_ = {};
+  evidence_.before = evidence_.after = last_status_;
+  has_before_ = true;
+  background_ = raised_ = 0;
+  signalled_ = false;
+  affected_until_ = 0;
+}
+
+void FaultJudge::OnEstimate(const estimate_t& estimate) {
+  if (!started_) {
+    if (any_estimate_ && estimate.run_id == last_run_id_) return;  // of the run before
+    started_ = any_estimate_ = true;
+    run_id_ = estimate.run_id;
+  }
+  if (estimate.run_id != run_id_) return;
+  Step& step = steps_[estimate.seq];
+  step.has_estimate = estimate.known != 0;
+  step.truncated = estimate.truncated != 0;
+  step.modification = estimate.decision == estimate_t::DECISION_MODIFICATION;
+  for (std::size_t i = 0; i < step.value.size(); ++i) {
+    step.value[i] = estimate.ar_map[i];
+    step.lo[i] = estimate.q025[i];
+    step.hi[i] = estimate.q975[i];
+    step.sd[i] = estimate.sd[i];
+  }
+  last_step_ = step;
+  if (const Slot* slot = current(); slot != nullptr && estimate.seq >= slot->begin && estimate.seq < slot->at()) {
+    reference_ = step;
+  }
+}
+
+void FaultJudge::OnStatus(const estimator_status_t& status) {
+  last_status_ = status;
+  if (!started_) {
+    raised_ |= status.fault_flags;
+    return;
+  }
+  while (!finished() && status.last_seq >= slots_[next_].end) FinishSlot();
+  if (finished()) {
+    steps_.clear();
+    return;
+  }
+  const Slot& slot = slots_[next_];
+  steps_.erase(steps_.begin(), steps_.lower_bound(slot.begin - 1));
+  if (status.last_seq + 1 < slot.at() && !signalled_) {
+    evidence_.before = evidence_.after = status;
+    has_before_ = true;
+    if (status.last_seq >= slot.begin) background_ |= status.fault_flags;
+    return;
+  }
+  evidence_.after = status;
+  raised_ |= status.fault_flags;
+  Step& step = steps_[status.last_seq];
+  step.has_status = true;
+  step.flags |= status.fault_flags;
+  step.miss = std::max(step.miss, status.miss_cause);
+  step.witness_ns = std::max(step.witness_ns, status.witness_max_ns);
+}
+
+void FaultJudge::SignalBegins() {
+  evidence_.before = evidence_.after = last_status_;
+  has_before_ = signalled_ = true;
+}
+
+void FaultJudge::SignalEnds(std::int64_t newest) { affected_until_ = newest; }
+
+bool FaultJudge::Agrees(const Step& step, bool relearns) const {
+  if (!reference_.has_estimate) return true;  // nothing was known before
+  for (std::size_t i = 0; i < step.value.size(); ++i) {
+    const bool inside = step.value[i] >= reference_.lo[i] && step.value[i] <= reference_.hi[i];
+    const double joint_sd = std::hypot(step.sd[i], reference_.sd[i]);
+    if (!inside && std::fabs(step.value[i] - reference_.value[i]) > 2.0 * joint_sd) return false;
+    const double width = step.hi[i] - step.lo[i], width_before = reference_.hi[i] - reference_.lo[i];
+    if (!relearns && width > 4.0 * width_before) return false;
+  }
+  return true;
+}
+
+bool FaultJudge::IsNormal(const Step& step, const FaultSpec& fault) const {
+  return step.has_estimate && step.has_status && !step.truncated && (step.flags & ~background_) == 0 &&
+         step.miss == estimator_status_t::MISS_NONE && Agrees(step, fault.relearns);
+}
+
+void FaultJudge::FinishSlot() {
+  const Slot& slot = slots_[next_];
+  const FaultSpec& fault = *slot.fault;
+  FaultOutcome outcome;
+  outcome.fault = &fault;
+  outcome.own_misses = evidence_.after.missed_own - evidence_.before.missed_own;
+  outcome.flags = evidence_.flags = raised_ & ~background_;
+  const bool from_outside = fault.source == FaultSource::kSignal;
+  std::int64_t over = slot.at() + fault.LastsPacks(static_cast<double>(period_ns_) * 1e-6) - 1;
+  if (from_outside) over = affected_until_;
+  if (fault.source == FaultSource::kPlantEnd) over = 0;
+  for (const auto& [seq, step] : steps_) {
+    if (seq > slot.at() && seq < slot.end) evidence_.modification = evidence_.modification || step.modification;
+  }
+  outcome.detected = fault.detected(evidence_);
+  outcome.injected = has_before_ && (!from_outside || signalled_);
+  if (!outcome.detected && !from_outside && fault.source != FaultSource::kPlantEnd) {
+    // Lost on its way, or given up in favour of newer packs before the stage came to it: it did not happen.
+    const auto at = steps_.find(slot.at());
+    const bool computed = at != steps_.end() && at->second.has_estimate;
+    const bool lost = evidence_.Rises(&estimator_status_t::packs_lost);
+    if (lost || (fault.source == FaultSource::kEstimatorPlan && !computed)) outcome.injected = false;
+  }
+  outcome.recovered_steps = kNever;
+  for (std::int64_t seq = over + 1; seq < slot.end; ++seq) {
+    const auto found = steps_.find(seq);
+    const Step step = found != steps_.end() ? found->second : Step{};
+    if (IsNormal(step, fault)) {
+      outcome.recovered_steps = seq - over - outcome.stalled_steps;
+      break;
+    }
+    if (step.miss == estimator_status_t::MISS_MACHINE || step.witness_ns > period_ns_ / 2) ++outcome.stalled_steps;
+  }
+  outcomes_.push_back(outcome);
+  ++next_;
+  reference_ = last_step_;
+  evidence_ = {};
+  evidence_.before = evidence_.after = last_status_;
+  has_before_ = false;
+  background_ = raised_ = 0;
+  signalled_ = false;
+  affected_until_ = 0;
+}
+
+std::vector<FaultOutcome> FaultJudge::TakeOutcomes() { return std::exchange(outcomes_, {}); }
+
+}  // namespace armcmc::stress

@@ -1,0 +1,66 @@
+#include "armcmc/stress/verdict.hpp"
+
+namespace armcmc::stress {
+
+std::string Verdict::Text() const {
+  if (passed) return "passed";
+  std::string text = "failed: ";
+  for (std::size_t i = 0; i < reasons.size(); ++i) text += (i == 0 ? "" : "; ") + reasons[i];
+  return text;
+}
+
+std::vector<FaultTally> AllFaults(const std::vector<PhaseResult>& phases) {
+  std::vector<FaultTally> all;
+  for (const FaultSpec& fault : FaultCatalog()) {
+    FaultTally sum;
+    sum.fault = &fault;
+    for (const PhaseResult& phase : phases) {
+      for (const FaultTally& tally : phase.faults) {
+        if (tally.fault != &fault) continue;
+        sum.injected += tally.injected;
+        sum.detected += tally.detected;
+        sum.swallowed += tally.swallowed;
+        sum.recovered_steps = std::max(sum.recovered_steps, tally.recovered_steps);
+        sum.stalled_steps += tally.stalled_steps;
+        sum.own_misses += tally.own_misses;
+        sum.flags |= tally.flags;
+      }
+    }
+    if (sum.injected + sum.swallowed > 0) all.push_back(sum);
+  }
+  return all;
+}
+
+Verdict Judge(const std::vector<PhaseResult>& phases) {
+  Verdict verdict;
+  const auto fail = [&verdict](const std::string& reason) {
+    verdict.passed = false;
+    verdict.reasons.push_back(reason);
+  };
+  for (const PhaseResult& phase : phases) {
+    const std::string under = " under load " + phase.load;
+    if (!phase.trouble.empty()) {
+      fail(phase.trouble + under);
+      continue;
+    }
+    if (phase.own_misses_outside > 0) {
+      fail(std::to_string(phase.own_misses_outside) + " own misses outside of faults" + under);
+    }
+    for (const auto& [stage, count] : phase.report["allocations"].items())
+      if (count.is_number() && count != 0) fail(count.dump() + " heap calls in " + stage + under);
+  }
+  for (const FaultTally& fault : AllFaults(phases)) {
+    const std::string name = fault.fault->name;
+    if (fault.detected < fault.injected) {
+      fail(name + " detected " + std::to_string(fault.detected) + " of " + std::to_string(fault.injected));
+    }
+    if (fault.recovered_steps > kMostRecoverySteps) {
+      fail(name + (fault.recovered_steps >= FaultJudge::kNever
+                       ? " was not got over in its time"
+                       : " was got over after " + std::to_string(fault.recovered_steps) + " steps"));
+    }
+  }
+  return verdict;
+}
+
+}  // namespace armcmc::stress
