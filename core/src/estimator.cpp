@@ -117,7 +117,7 @@ struct Estimator::Impl {
   PredictionTile band_prediction;
   ThetaTile shown_theta;
   std::array<ModeEstimate, kMaxModes> last_estimates;
-  std::array<ShownEstimates, 2> shown;  ///< After the previous pack, and after the one before it.
+  std::array<ShownEstimates, 2> shown;        ///< After the previous pack, and after the one before it.
   std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
   GapWatch gap_watch;

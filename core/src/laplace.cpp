@@ -32,8 +32,8 @@ double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
 }  // namespace
 
 void LineariseAt(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-               const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
-               ParamVector* gradient, ParamMatrix* hessian) noexcept {
+                 const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
+                 ParamVector* gradient, ParamMatrix* hessian) noexcept {
   const int dim = space.dim;
   const int np = space.num_parameters;
   alignas(64) double log_scale[kTileLanes];

@@ -154,7 +154,8 @@ void EstimatorSettings::Validate() const {
   if (sampler.lambda_q_min > sampler.lambda_q_max)
     throw std::invalid_argument("sampler.lambda_q_min is above sampler.lambda_q_max");
   Open("baseline.rls_forgetting", baseline.rls_forgetting, 0.0, 1.0 + 1e-15);
-  Closed("baseline.particles", baseline.particles, SamplerSettings::kMinDraws, sampler.max_draws);
+  if (method == Method::kParticleFilter)
+    Closed("baseline.particles", baseline.particles, SamplerSettings::kMinDraws, sampler.max_draws);
   Closed("baseline.pf_updates", baseline.pf_updates, 1, kMaxPackSamples);
   Closed("baseline.pf_jitter", baseline.pf_jitter, 0.0, 1.0);
   if (num_effects > 0 && (method == Method::kRls || (method == Method::kParticleFilter && baseline.pf_updates > 1)))

@@ -11,8 +11,8 @@
 namespace armcmc {
 namespace {
 
-constexpr double kNarrow = 0.2;        // prior standard deviations: a drift is looked for once every parameter is known
-constexpr double kChangeShare = 0.5;   // of "one parameter changed" in the prior after a modification
+constexpr double kNarrow = 0.2;       // prior standard deviations: a drift is looked for once every parameter is known
+constexpr double kChangeShare = 0.5;  // of "one parameter changed" in the prior after a modification
 constexpr double kMostNatsAPack = 2.0;
 constexpr double kMaxDriftPacks = 50;  // that a drift is carried over without data
 

@@ -16,18 +16,18 @@ namespace simd {
 struct Kernels;
 }
 
-/// How the parameters of one mode may have moved since the last pack: what the posterior before a pack becomes before it
-/// meets that pack. Three ways, judged by the evidence of the packs:
+/// How the parameters of one mode may have moved since the last pack: what the posterior before a pack becomes before
+/// it meets that pack. Three ways, judged by the evidence of the packs:
 ///
-///   persisted        prior = P(u | D^{t-1})                                                  (the paper's reinforcement)
-///   drifted          prior = N(m, C + tau^2 n I), tau on a grid, n packs since the last one
-///   changed in part  prior = P(u_others | D^{t-1}) P_0(u_j), one parameter j drawn anew
+///   persisted        prior = P(u | D^{t-1})                                                  (the paper's
+///   reinforcement) drifted          prior = N(m, C + tau^2 n I), tau on a grid, n packs since the last one changed in
+///   part  prior = P(u_others | D^{t-1}) P_0(u_j), one parameter j drawn anew
 ///
 /// A drift is believed when its log evidence against "persisted", summed over the packs and kept within +-kDriftNats,
 /// reaches kDriftNats, and until it falls below 0. Noise alone climbs from bottom to top with a probability of about
 /// exp(-2 kDriftNats). A partial change competes with P_0
-/// after a modification, so that one parameter's jump does not lose the others. The pack that holds the jump is a mixture
-/// of two plants and teaches nothing: the pack after it may start again from what was known before both.
+/// after a modification, so that one parameter's jump does not lose the others. The pack that holds the jump is a
+/// mixture of two plants and teaches nothing: the pack after it may start again from what was known before both.
 ///
 /// Evidences are Laplace approximations: they choose the prior; the posterior under it is then sampled exactly.
 class Transition {
@@ -84,8 +84,8 @@ class Transition {
   bool just_modified_ = false;
   std::uint64_t last_pack_ = 0;
   bool drifts_ = false;
-  std::array<double, kDrifts.size()> drift_evidence_{-kDriftNats, -kDriftNats, -kDriftNats};  ///< Starts at the lower bound.
-
+  std::array<double, kDrifts.size()> drift_evidence_{-kDriftNats, -kDriftNats,
+                                                     -kDriftNats};  ///< Starts at the lower bound.
 };
 
 }  // namespace armcmc

@@ -6,13 +6,14 @@
 
 namespace armcmc {
 
-/// Plain MCMC: random-walk Metropolis-Hastings on likelihood x P_0 of each pack alone, as in the paper, without a memory.
+/// Plain MCMC: random-walk Metropolis-Hastings on likelihood x P_0 of each pack alone, as in the paper, without a
+/// memory.
 ///
 ///   u* = u + c L z,  L L' = proposal covariance,  alpha = min(1, target(u*) / target(u))
 ///
 /// As good as a random walk gets: it starts at the mode of the target (a bounded Gauss-Newton fit, so that no draw is
-/// spent on the way there) with the covariance of the Laplace fit times 2.38^2 / dim; during burn-in, the first half, the
-/// scale follows an acceptance of kAcceptance and the covariance that of the chain so far; then both are frozen.
+/// spent on the way there) with the covariance of the Laplace fit times 2.38^2 / dim; during burn-in, the first half,
+/// the scale follows an acceptance of kAcceptance and the covariance that of the chain so far; then both are frozen.
 class MetropolisFilter final : public PackFilter {
  public:
   static constexpr double kAcceptance = 0.3;

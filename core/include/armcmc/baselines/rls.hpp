@@ -19,8 +19,8 @@ namespace armcmc {
 ///
 /// which drops the second and higher powers of (B/K) v. Better than published: a sample has r = (s / f)^2, the variance
 /// that force noise has in log f, and samples below kLeastForce noise scales, whose logarithm says nothing, are left
-/// out. Saturation: after every sample (K, B, p) is held inside the bounds. Noise is taken as Gaussian, whatever its law.
-/// The covariance never grows beyond the prior's. Draws: Gaussian with the final mean and covariance.
+/// out. Saturation: after every sample (K, B, p) is held inside the bounds. Noise is taken as Gaussian, whatever its
+/// law. The covariance never grows beyond the prior's. Draws: Gaussian with the final mean and covariance.
 class RlsFilter final : public PackFilter {
  public:
   static constexpr double kLeastForce = 5.0;
