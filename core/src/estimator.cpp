@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
+#include "armcmc/baselines/pack_filter.hpp"
 #include "armcmc/effects/composition.hpp"
 #include "armcmc/gap_watch/gap_watch.hpp"
 #include "armcmc/mode_sampler.hpp"
@@ -53,8 +54,22 @@ struct Estimator::Impl {
       samplers.emplace_back(std::make_unique<ModeSampler>(kernels, model, settings.sampler, settings.forgetting, space,
                                                           NoiseModel(noise)));
       memories.emplace_back(std::make_unique<ModeMemory>());
+      if (settings.method != Method::kArmcmc)
+        filters.emplace_back(MakeFilter({kernels, model, settings, space, NoiseModel(noise)}));
     }
     workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws);
+    ShowPrior();
+  }
+
+  /// What is on display before the first pack: of a contact the prior's mean, of the valves nothing.
+  void ShowPrior() noexcept {
+    for (ShownEstimates& s : shown) {
+      s = ShownEstimates{};
+      if (info.plant != PlantKind::kHuntCrossley) continue;
+      s.known[0] = true;
+      for (int d = 0; d < info.num_parameters; ++d)
+        s.theta[0][static_cast<std::size_t>(d)] = samplers[0]->space().offset[static_cast<std::size_t>(d)];
+    }
   }
 
   void PrepareMode(const DataPack& pack, const EffectPack& effects, int mode, ModeData* data) const noexcept {
@@ -78,7 +93,18 @@ struct Estimator::Impl {
   const simd::Kernels& kernels;
   int dim = 0;
 
+  /// One step of mode m with the method of the settings.
+  Status AdjustMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
+                    AdjustResult* result) noexcept;
+  /// A baseline with one vector of parameters shows it for every mode.
+  void ShareVector(Estimate* e) noexcept;
+  [[nodiscard]] bool one_vector() const noexcept {
+    return settings.method != Method::kArmcmc && !settings.baseline.recall && info.num_modes > 1;
+  }
+
   // Adjust stage.
+  std::vector<std::unique_ptr<PackFilter>> filters;  ///< Of a baseline, else empty.
+  std::array<bool, kMaxModes> acted{};               ///< In the pack before.
   std::vector<std::unique_ptr<ModeSampler>> samplers;
   std::vector<std::unique_ptr<ModeMemory>> memories;
   std::unique_ptr<SamplerWorkspace> workspace;
@@ -92,7 +118,8 @@ struct Estimator::Impl {
   PredictionTile band_prediction;
   ThetaTile shown_theta;
   std::array<ModeEstimate, kMaxModes> last_estimates;
-  std::array<ShownEstimates, 2> shown;  ///< After the previous pack, and after the one before it.
+  std::array<ShownEstimates, 2> shown;        ///< After the previous pack, and after the one before it.
+  std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
   GapWatch gap_watch;
 
@@ -145,6 +172,7 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
     active[i] = s.adjust_data[i].num_samples >= s.settings.forgetting.min_samples;
     pending += active[i] ? 1 : 0;
   }
+  const int pending_modes = pending;
   Status status = Status::kHeld;
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
@@ -154,20 +182,47 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
     const Nanos mode_deadline =
         clock.read != nullptr ? now + (deadline_ns - now) / pending : std::numeric_limits<Nanos>::max() / 2;
     --pending;
-    ModeMemory& memory = *s.memories[i];
     const Status mode_status =
-        s.samplers[i]->Run(s.adjust_data[i], memory.slot[memory.current], static_cast<std::uint64_t>(pack.seq),
-                           static_cast<std::uint64_t>(m), mode_deadline, clock, limits[i], s.workspace.get(),
-                           &memory.slot[1 - memory.current], &result->modes[i]);
+        s.AdjustMode(i, static_cast<std::uint64_t>(pack.seq), mode_deadline, clock, limits[i], result);
     if (mode_status == Status::kNonFinite) {
       status = Status::kNonFinite;
       continue;
     }
-    memory.current = 1 - memory.current;
     if (status == Status::kHeld || status == Status::kOk) status = mode_status;
   }
+  for (std::size_t m = 0; m < kMaxModes; ++m)
+    // Valves that are shut for a while change no mode; a lost contact does.
+    if (pending_modes > 0 || s.info.num_modes == 1) s.acted[m] = active[m];
   result->status = status;
   return status;
+}
+
+Status Estimator::Impl::AdjustMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
+                                   AdjustResult* result) noexcept {
+  ModeDraws* draws = &result->modes[m];
+  if (!filters.empty()) {
+    if (!acted[m]) filters[m]->Resume();
+    return filters[m]->Run(adjust_data[m], pack, m, deadline_ns, clock, limit, draws);
+  }
+  ModeMemory& memory = *memories[m];
+  const Status status = samplers[m]->Run(adjust_data[m], memory.slot[memory.current], pack, m, deadline_ns, clock,
+                                         limit, workspace.get(), &memory.slot[1 - memory.current], draws);
+  if (status != Status::kNonFinite) memory.current = 1 - memory.current;
+  return status;
+}
+
+void Estimator::Impl::ShareVector(Estimate* e) noexcept {
+  std::size_t newest = kMaxModes;
+  for (std::size_t m = 0; m < static_cast<std::size_t>(info.num_modes); ++m)
+    if (e->modes[m].updated && (newest == kMaxModes || static_cast<int>(m) == e->mode)) newest = m;
+  if (newest == kMaxModes) return;
+  for (std::size_t m = 0; m < static_cast<std::size_t>(info.num_modes); ++m) {
+    if (m == newest) continue;
+    e->modes[m].known = last_estimates[m].known = e->modes[newest].known;
+    e->modes[m].noise_std = last_estimates[m].noise_std = e->modes[newest].noise_std;
+    e->modes[m].marginal = last_estimates[m].marginal = e->modes[newest].marginal;
+    band_theta[m] = band_theta[newest];
+  }
 }
 
 void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
@@ -300,6 +355,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     }
     e->modes[i] = last;
   }
+  if (s.one_vector()) s.ShareVector(e);
   if (e->active && e->modes[static_cast<std::size_t>(e->mode)].known) s.report_mode = e->mode;
   e->report_mode = s.report_mode;
   if (result.status == Status::kBadPack) {
@@ -313,17 +369,28 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   s.shown[1] = s.shown[0];
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
-    s.shown[0].known[i] = e->modes[i].known;
-    for (int d = 0; d < s.info.num_parameters; ++d)
-      s.shown[0].theta[i][static_cast<std::size_t>(d)] = e->modes[i].marginal[static_cast<std::size_t>(d)].ar_map;
+    const ModeEstimate& mode = e->modes[i];
+    s.known_draws[i] = s.known_draws[i] || mode.updated;
+    // A force can be predicted before its parameters are known: from their mean. The mode of a posterior that knows
+    // nothing is an accident. (The valves' gains cannot: their prior mean is zero flow.)
+    const bool contact = s.info.plant == PlantKind::kHuntCrossley;
+    s.shown[0].known[i] = mode.known || (contact && s.known_draws[i]) || (contact && s.shown[1].known[i]);
+    if (!mode.known && !(contact && s.known_draws[i])) continue;
+    for (int d = 0; d < s.info.num_parameters; ++d) {
+      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(d)];
+      s.shown[0].theta[i][static_cast<std::size_t>(d)] = mode.known ? marginal.ar_map : marginal.ar_ap;
+    }
   }
 }
 
 void Estimator::Reset() noexcept {
   Impl& s = *impl_;
+  for (auto& filter : s.filters) filter->Reset();
+  s.acted.fill(false);
   for (auto& memory : s.memories) memory->slot[0].valid = memory->slot[1].valid = false;
   for (auto& estimate : s.last_estimates) estimate = ModeEstimate{};
-  for (auto& shown : s.shown) shown = ShownEstimates{};
+  s.ShowPrior();
+  s.known_draws.fill(false);
   s.predictor.Reset();
   s.composition.Reset();
   s.gap_watch.Reset();

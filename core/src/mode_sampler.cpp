@@ -53,7 +53,8 @@ ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerS
       space_(space),
       noise_(noise),
       normal_table_(MarginalTable::Normal()),
-      student_table_(MarginalTable::StudentT(kStudentDof)) {
+      student_table_(MarginalTable::StudentT(kStudentDof)),
+      transition_(kernels_, model_, space_, noise_, &normal_table_) {
   // P_0 as a proposal: axis aligned, each coordinate with its own law.
   std::array<const MarginalTable*, kMaxParams> laws{};
   for (int d = 0; d < space_.dim; ++d) {
@@ -140,7 +141,7 @@ int ModeSampler::DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noex
   return std::clamp(target, SamplerSettings::kMinDraws, sampler_.max_draws);
 }
 
-Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& previous, std::uint64_t pack, std::uint64_t mode,
+Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::uint64_t pack, std::uint64_t mode,
                         Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* ws, PosteriorMemory* next,
                         ModeDraws* out) noexcept {
   const auto stream_of = [&](Purpose purpose) noexcept {
@@ -149,9 +150,10 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& previous, s
   Mismatch mismatch;
   mismatch.zeta = HUGE_VAL;  // zeta^0: the first pack is a modification
   mismatch.threshold = forgetting_.threshold;
-  if (previous.valid) mismatch = Compare(data, previous, stream_of(kMismatchStream), ws);
-  const bool use_previous = mismatch.decision == Decision::kReinforcement;
-  const double lambda = mismatch.lambda;
+  if (last.valid) mismatch = Compare(data, last, stream_of(kMismatchStream), ws);
+  double lambda = 0.0;  // share of `previous` in the prior; the paper's lambda is mismatch.lambda
+  const PosteriorMemory& previous = transition_.Choose(data, last, pack, &mismatch, &lambda, &ws->laplace);
+  const bool use_previous = lambda > 0.0;
   const int wanted = DrawTarget(mismatch, out);
   const int target = std::clamp(limit, SamplerSettings::kMinDraws, wanted);
   const double lambda_q = std::clamp(lambda, sampler_.lambda_q_min, sampler_.lambda_q_max);
@@ -241,9 +243,9 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& previous, s
   out->decision = mismatch.decision;
   out->zeta = mismatch.zeta;
   out->zeta_threshold = mismatch.threshold;
-  out->lambda = lambda;
+  out->lambda = mismatch.lambda;
   out->num_samples = data.num_samples;
-  FindMode(data, ws, out);
+  FindMode(data, !use_previous, ws, out);
   RunChain(stream_of(kAcceptStream), ws, out);
   Compress(previous, lambda, pilot, stream_of(kNoiseStream), ws, next, out);
   double log_scale = space_.log_noise_scale;
@@ -254,6 +256,8 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& previous, s
     log_scale = space_.Theta(space_.dim - 1, mean);
   }
   next->log_noise_scale = log_scale;
+  if (mismatch.decision == Decision::kModification) out->p_changed = 1.0;
+  transition_.Accept(*next, pack, mismatch.decision);
   out->known = next->informed;
   out->updated = true;
   const double spent = static_cast<double>(clock.Now() - finish_start) / made;

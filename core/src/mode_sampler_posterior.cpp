@@ -48,10 +48,10 @@ double ModeSampler::Weigh(const PosteriorMemory& previous, double lambda, int fi
   return reference;
 }
 
-void ModeSampler::FindMode(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
+void ModeSampler::FindMode(const ModeData& data, bool climb, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
   ParamVector best(space_.dim);
   for (int d = 0; d < space_.dim; ++d) best[d] = out->u[static_cast<std::size_t>(d)][out->mode_index];
-  if (out->decision == Decision::kModification) {
+  if (climb) {
     // The target is likelihood x P_0, which is what the Laplace fit climbs; a uniform prior is flat inside its bounds.
     Gaussian prior{ParamVector::Zero(space_.dim), ParamMatrix::Zero(space_.dim, space_.dim)};
     for (int d = 0; d < space_.dim; ++d)

@@ -153,6 +153,13 @@ void EstimatorSettings::Validate() const {
   Open("sampler.lambda_q_max", sampler.lambda_q_max, 0.0, 1.0);
   if (sampler.lambda_q_min > sampler.lambda_q_max)
     throw std::invalid_argument("sampler.lambda_q_min is above sampler.lambda_q_max");
+  Open("baseline.rls_forgetting", baseline.rls_forgetting, 0.0, 1.0 + 1e-15);
+  if (method == Method::kParticleFilter)
+    Closed("baseline.particles", baseline.particles, SamplerSettings::kMinDraws, sampler.max_draws);
+  Closed("baseline.pf_updates", baseline.pf_updates, 1, kMaxPackSamples);
+  Closed("baseline.pf_jitter", baseline.pf_jitter, 0.0, 1.0);
+  if (num_effects > 0 && (method == Method::kRls || (method == Method::kParticleFilter && baseline.pf_updates > 1)))
+    throw std::invalid_argument("this method takes no effects: remove them or choose method = \"armcmc\"");
   Open("gap_watch.false_alarm_rate", gap_watch.false_alarm_rate, 0.0, 1.0);
   Closed("gap_watch.tolerance", gap_watch.tolerance, 0.0, 1.0);
   Open("constants.p_atm", constants.p_atm, 0.0, HUGE_VAL);

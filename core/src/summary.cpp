@@ -176,7 +176,8 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
     const MeanAndSd chain = Moments(workspace->kernels, visited_value, visits, visited, total);
     m.ar_ap = chain.mean;
     m.sd = chain.sd;
-    m.ar_map = draws.decision == Decision::kModification ? mode[static_cast<std::size_t>(r)] : m.ar_ap;
+    m.ar_map =
+        draws.point_is_mode || draws.decision == Decision::kModification ? mode[static_cast<std::size_t>(r)] : m.ar_ap;
     Distribution(visited_value, visits, visited, total, &m);
   }
   estimate->noise_std = std::exp(space.log_noise_scale);

@@ -26,6 +26,7 @@ struct ModeDraws {
   double acceptance = 0.0, kish_ess = 0.0, log_evidence = 0.0, p_changed = 0.0;
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
+  bool point_is_mode = false;               ///< mode_u is the point estimate whatever the decision (least squares).
   int dim = 0;
   // Structure of arrays, `draws` entries each.
   std::array<double*, kMaxParams> u{};  ///< Standardised coordinates.

@@ -61,7 +61,9 @@ struct Estimate {
   double y_free_run = 0.0;  ///< Output at the last sample predicted from the inputs alone since the start (actuator).
   int num_samples = 0;
   /// Output at every sample of the pack as a user would have seen it predicted: with the point estimates that were on
-  /// display then, those of the pack before the previous one (the paper's timeline). NaN while nothing was known.
+  /// display then, those of the pack before the previous one (the paper's timeline). A contact force is predicted from
+  /// the start, with the posterior's (before the first pack the prior's) mean until the parameters are known; an angle
+  /// is NaN until then.
   std::array<double, kMaxPackSamples> y_shown{};
   std::array<double, kMaxPackSamples> y_shown_free_run{};  ///< The same from the inputs alone since the start.
   GapState gap;                                            ///< Whether the model misses something.

@@ -16,6 +16,7 @@
 #include "armcmc/proposal.hpp"
 #include "armcmc/ridge.hpp"
 #include "armcmc/settings.hpp"
+#include "armcmc/transition.hpp"
 
 namespace armcmc {
 
@@ -103,8 +104,10 @@ class ModeSampler {
   /// Proposal along the ridge of this pack, for a second pilot. @return false when there is none.
   bool BuildRidgeProposal(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda_q,
                           SamplerWorkspace* ws, Proposal* proposal) noexcept ARMCMC_NONBLOCKING;
-  /// Mode of the target: the best draw, climbed to the top after a modification (when AR-MAP reports it).
-  void FindMode(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
+  /// Mode of the target: the best draw, climbed to the top after a modification (when AR-MAP reports it) whose prior
+  /// is P_0 alone.
+  void FindMode(const ModeData& data, bool climb, SamplerWorkspace* ws,
+                ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   void Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
                 SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
@@ -116,6 +119,9 @@ class ModeSampler {
                                  const ModeDraws& draws) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
 
+  ModeSampler(const ModeSampler&) = delete;  // transition_ refers to other members
+  ModeSampler& operator=(const ModeSampler&) = delete;
+
   const simd::Kernels& kernels_;
   int model_;
   SamplerSettings sampler_;
@@ -123,6 +129,7 @@ class ModeSampler {
   ParameterSpace space_;
   NoiseModel noise_;
   MarginalTable normal_table_, student_table_;
+  Transition transition_;
   std::array<MarginalTable, kMaxParams> uniform_tables_;
   DensityBlock initial_block_;  ///< P_0 as a proposal component.
   DensityBlock laplace_fresh_, laplace_persisted_;

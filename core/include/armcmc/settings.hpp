@@ -72,6 +72,26 @@ struct SamplerSettings {
   static constexpr int kMinDraws = 200;
 };
 
+/// Who turns packs into a posterior.
+enum class Method : std::uint8_t {
+  kArmcmc,
+  kRls,             ///< Recursive least squares; the contact law is log-linearised.
+  kParticleFilter,  ///< Random-walk state, tempered updates, systematic resampling.
+  kMetropolis,      ///< Plain random-walk Metropolis-Hastings on each pack alone.
+};
+
+/// Tuning of the baselines: one setting for all scenarios, as for the estimator.
+struct BaselineSettings {
+  /// One vector of parameters for each mode, kept while the other modes act. false, as published: one vector, which
+  /// starts anew when the mode changes.
+  bool recall = false;
+  double rls_forgetting = 0.9997;  ///< Per sample, in (0, 1].
+  bool rls_reset = false;          ///< Contact: the covariance starts anew with every contact; what was learnt stays.
+  int particles = 4096;            ///< [kMinDraws, max_draws].
+  int pf_updates = 1;              ///< Updates a pack, [1, kMaxPackSamples]: the samples are cut into as many runs.
+  double pf_jitter = 0.004;        ///< Random walk of a parameter, prior standard deviations a pack, >= 0.
+};
+
 /// Constants of the plant that are known, not estimated.
 struct PlantConstants {
   double p_atm = 101'325.0;  ///< Pa
@@ -109,6 +129,8 @@ struct EstimatorSettings {
   std::array<NoiseSettings, kMaxModes> noise;  ///< Per mode.
   ForgettingSettings forgetting;
   SamplerSettings sampler;
+  Method method = Method::kArmcmc;
+  BaselineSettings baseline;
   PlantConstants constants;
   std::array<EffectSettings, kMaxEffects> effects;  ///< Contact plant only, each at most once.
   int num_effects = 0;

@@ -130,6 +130,8 @@ json ToJson(const HeatMap& map) {
   if (map.value.size() != columns * rows)
     throw std::invalid_argument("heat map of '" + map.value_title + "': " + std::to_string(map.value.size()) +
                                 " values for " + std::to_string(columns) + " x " + std::to_string(rows) + " cells");
+  if (map.line_x.size() != map.line_y.size())
+    throw std::invalid_argument("heat map of '" + map.value_title + "': the line needs as many x as y");
   const auto ascending = [](const std::vector<double>& edges) {
     return std::all_of(edges.begin(), edges.end(), [](double v) { return std::isfinite(v); }) &&
            std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) == edges.end();
@@ -142,6 +144,8 @@ json ToJson(const HeatMap& map) {
           {"x_edges", AllOf(map.x_edges, 7)},
           {"y_edges", AllOf(map.y_edges, 7)},
           {"value", AllOf(map.value, 4)},
+          {"line_x", AllOf(map.line_x, 6)},
+          {"line_y", AllOf(map.line_y, 6)},
           {"height", map.height}};
 }
 

@@ -65,6 +65,13 @@ function drawHeatMap(host, spec) {
       cell.addEventListener('pointerenter', () => { readout.textContent = words; });
       cell.addEventListener('pointerleave', () => { readout.textContent = ''; });
     });
+    let path = '';
+    (spec.line_y || []).forEach((y, i) => {
+      if (y === null) return;
+      path += (i > 0 && spec.line_y[i - 1] !== null ? 'L' : 'M') + px(spec.line_x[i]).toFixed(1) + ' ' + py(y).toFixed(1);
+    });
+    if (path) svgElement(svg, 'path', {d: path, fill: 'none', stroke: '#111827', 'stroke-width': 1.5,
+      'stroke-dasharray': '7 4', 'pointer-events': 'none'});
     for (const tick of roundTicks(x0, x1, Math.max(3, (box.right - box.left) / 110))) {
       svgElement(svg, 'line', {x1: px(tick), x2: px(tick), y1: box.bottom, y2: box.bottom + 5, stroke: '#c4c8ce'});
       svgElement(svg, 'text', {x: px(tick), y: box.bottom + 18, 'text-anchor': 'middle'}, numberText(tick, 4));

@@ -58,6 +58,23 @@ void ReadSampler(StrictTable table, SamplerSettings* sampler) {
   if (table.Has("seed")) sampler->seed = static_cast<std::uint64_t>(seed);
 }
 
+void ReadMethod(StrictTable& root, EstimatorSettings* settings) {
+  settings->method = ReadWord<Method>(root, "method", settings->method,
+                                      {{"armcmc", Method::kArmcmc},
+                                       {"rls", Method::kRls},
+                                       {"pf", Method::kParticleFilter},
+                                       {"mcmc", Method::kMetropolis}});
+  // Whoever compares methods changes one key: the tuning of the others may stand in the same file.
+  StrictTable table = root.Table("baseline");
+  BaselineSettings& b = settings->baseline;
+  b.recall = table.Boolean("recall", b.recall);
+  b.rls_forgetting = table.Number("rls_forgetting", b.rls_forgetting, kTiny, 1.0);
+  b.rls_reset = table.Boolean("rls_reset", b.rls_reset);
+  b.particles = static_cast<int>(table.Integer("particles", b.particles, SamplerSettings::kMinDraws, kMaxDraws));
+  b.pf_updates = static_cast<int>(table.Integer("pf_updates", b.pf_updates, 1, kMaxPackSamples));
+  b.pf_jitter = table.Number("pf_jitter", b.pf_jitter, 0.0, 1.0);
+}
+
 void ReadGapWatch(StrictTable table, GapWatchSettings* watch) {
   watch->enabled = table.Boolean("enabled", watch->enabled);
   watch->false_alarm_rate = table.Number("false_alarm_rate", watch->false_alarm_rate, kTiny, 1.0 - 1e-9);
@@ -75,6 +92,7 @@ EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& mo
   ReadConstants(model, facts.plant, &settings);
   ReadNoise(root.Table("noise"), facts.modes, &settings);
   ReadEffects(root, &settings);
+  ReadMethod(root, &settings);
   ReadForgetting(root.Table("forgetting"), &settings.forgetting);
   ReadSampler(root.Table("sampler"), &settings.sampler);
   ReadGapWatch(root.Table("gap_watch"), &settings.gap_watch);

@@ -44,6 +44,7 @@ struct HeatMap {
   std::string x_title, y_title, value_title;
   std::vector<double> x_edges, y_edges;  ///< Ascending.
   std::vector<double> value;             ///< (x_edges - 1) (y_edges - 1)
+  std::vector<double> line_x, line_y;    ///< A dashed line on top, of one length; may be empty. Not finite: a gap.
   int height = 320;                      ///< CSS pixels.
 };
 

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "armcmc/baselines/pack_filter.hpp"
+#include "armcmc/linear_algebra.hpp"
+#include "armcmc/marginal_table.hpp"
+
+namespace armcmc {
+
+/// Recursive least squares with exponential forgetting mu per sample, information weights and saturation:
+///
+///   P <- P / mu,   k = P phi / (r + phi' P phi),   z <- z + k (y - phi' z),   P <- P - k phi' P
+///
+/// Actuator: linear as it stands in (g, theta2). The inputs are scaled by the prior's standard deviations, which does
+/// for each of them what the paper's common factor of 1e7 does for both; r = s^2.
+///
+/// Contact: the paper's log-linearisation (equations `hnt`, `hnt3`, `hnt44`),
+///
+///   log f = log K + (B/K) v + p log x,   z = (log K, B/K, p),
+///
+/// which drops the second and higher powers of (B/K) v. Better than published: a sample has r = (s / f)^2, the variance
+/// that force noise has in log f, and samples below kLeastForce noise scales, whose logarithm says nothing, are left
+/// out. Saturation: after every sample (K, B, p) is held inside the bounds. Noise is taken as Gaussian, whatever its
+/// law. The covariance never grows beyond the prior's. Draws: Gaussian with the final mean and covariance.
+class RlsFilter final : public PackFilter {
+ public:
+  static constexpr double kLeastForce = 5.0;
+  static constexpr int kDraws = 2048;
+
+  explicit RlsFilter(const FilterParts& parts);
+  Status Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos deadline_ns, ClockRef clock, int limit,
+             ModeDraws* out) noexcept override;
+  void Resume() noexcept override;
+  void Reset() noexcept override;
+
+ private:
+  void Update(const ParamVector& phi, double y, double r) noexcept;
+  void Saturate() noexcept;
+  /// Standardised coordinates of the sampled parameters for a state z.
+  void ToDraw(const ParamVector& z, double* u) const noexcept;
+
+  FilterParts parts_;
+  bool contact_;
+  MarginalTable normal_table_;
+  int dim_;
+  ParamVector prior_mean_, z_;
+  ParamMatrix prior_, p_;
+  bool known_ = false;
+};
+
+}  // namespace armcmc

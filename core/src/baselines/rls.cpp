@@ -1,0 +1,141 @@
+#include "armcmc/baselines/rls.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/models/registry.hpp"
+#include "armcmc/rng.hpp"
+
+namespace armcmc {
+
+RlsFilter::RlsFilter(const FilterParts& parts)
+    : parts_(parts),
+      contact_(AllModels::kInfos[static_cast<std::size_t>(parts.model)]->plant == PlantKind::kHuntCrossley),
+      normal_table_(MarginalTable::Normal()),
+      dim_(parts.space.num_parameters) {
+  prior_mean_ = ParamVector::Zero(dim_);
+  prior_ = ParamMatrix::Identity(dim_, dim_);
+  if (contact_) {
+    const ParameterSpace& s = parts_.space;
+    const double k = std::fmax(s.offset[0], 1e-3);
+    prior_mean_ << std::log(k), s.offset[1] / k, s.offset[2];
+    prior_.diagonal() << std::pow(s.scale[0] / k, 2), std::pow(s.scale[1] / k, 2), std::pow(s.scale[2], 2);
+  }
+  Reset();
+}
+
+void RlsFilter::Reset() noexcept {
+  z_ = prior_mean_;
+  p_ = prior_;
+  known_ = false;
+}
+
+void RlsFilter::Resume() noexcept {
+  if (!contact_ && !parts_.settings.baseline.recall) {
+    Reset();
+  } else if (contact_ && parts_.settings.baseline.rls_reset) {
+    p_ = prior_;
+  }
+}
+
+void RlsFilter::Update(const ParamVector& phi, double y, double r) noexcept {
+  p_ /= parts_.settings.baseline.rls_forgetting;
+  for (int d = 0; d < dim_; ++d) {
+    // Without excitation the covariance would grow for ever.
+    const double excess = std::sqrt(prior_(d, d) / p_(d, d));
+    if (excess >= 1.0) continue;
+    p_.row(d) *= excess;
+    p_.col(d) *= excess;
+  }
+  const ParamVector pp = p_ * phi;
+  const double s = r + phi.dot(pp);
+  z_ += pp * ((y - phi.dot(z_)) / s);
+  p_ -= pp * pp.transpose() / s;
+  p_ = (0.5 * (p_ + p_.transpose())).eval();
+  for (int d = 0; d < dim_; ++d) p_(d, d) = std::fmax(p_(d, d), 1e-24 * prior_(d, d));
+}
+
+void RlsFilter::Saturate() noexcept {
+  const ParameterSpace& s = parts_.space;
+  if (!contact_) {
+    for (int d = 0; d < dim_; ++d)
+      z_[d] = std::clamp(z_[d], s.lower[static_cast<std::size_t>(d)], s.upper[static_cast<std::size_t>(d)]);
+    return;
+  }
+  const double k = std::clamp(std::exp(std::clamp(z_[0], -20.0, 20.0)), std::fmax(s.Theta(0, s.lower[0]), 1e-3),
+                              s.Theta(0, s.upper[0]));
+  z_[0] = std::log(k);
+  z_[1] = std::clamp(z_[1] * k, s.Theta(1, s.lower[1]), s.Theta(1, s.upper[1])) / k;
+  z_[2] = std::clamp(z_[2], s.Theta(2, s.lower[2]), s.Theta(2, s.upper[2]));
+}
+
+void RlsFilter::ToDraw(const ParamVector& z, double* u) const noexcept {
+  const ParameterSpace& s = parts_.space;
+  std::array<double, kMaxParams> theta{};
+  if (contact_) {
+    theta[0] = std::exp(std::clamp(z[0], -20.0, 20.0));
+    theta[1] = theta[0] * z[1];
+    theta[2] = z[2];
+  }
+  for (int d = 0; d < dim_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const double value = contact_ ? (theta[i] - s.offset[i]) / s.scale[i] : z[d];
+    u[d] = std::clamp(value, s.lower[i], s.upper[i]);
+  }
+  for (int d = dim_; d < s.dim; ++d) u[d] = 0.0;  // the noise scale as it is believed to be
+}
+
+Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos, ClockRef, int,
+                      ModeDraws* out) noexcept {
+  const ParameterSpace& s = parts_.space;
+  const double noise = std::exp(s.log_noise_scale);
+  ParamVector phi(dim_);
+  const ParamVector old_z = z_;
+  const ParamMatrix old_p = p_;
+  for (int n = 0; n < data.num_samples; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    double y = data.target[i] - parts_.noise.settings().mean;
+    double r = noise * noise;
+    if (contact_) {
+      if (y < kLeastForce * noise) continue;
+      r /= y * y;
+      y = std::log(y);
+      phi << 1.0, data.feature[1][i], data.feature[0][i] / 1.4426950408889634;  // log2 x to log x
+    } else {
+      for (int d = 0; d < dim_; ++d) {
+        const auto id = static_cast<std::size_t>(d);
+        phi[d] = s.scale[id] * data.feature[id][i];
+        y -= s.offset[id] * data.feature[id][i];
+      }
+    }
+    Update(phi, y, r);
+    Saturate();
+  }
+  if (!z_.allFinite() || !p_.allFinite()) {
+    z_ = old_z;
+    p_ = old_p;
+    return Status::kNonFinite;
+  }
+  FillStep(data, kDraws, 0, out);
+  out->point_is_mode = true;
+  ToDraw(z_, out->mode_u.data());
+  const ParamMatrix root = p_.llt().matrixL();
+  RandomStream stream(parts_.settings.sampler.seed, pack, mode);
+  std::array<double, kMaxParams> u{};
+  ParamVector draw(dim_);
+  for (int k = 0; k < kDraws; ++k) {
+    for (int d = 0; d < dim_; ++d) draw[d] = normal_table_.Draw(stream.Uniform());
+    const ParamVector at = z_ + root * draw;
+    ToDraw(at.allFinite() ? at : z_, u.data());
+    for (int d = 0; d < s.dim; ++d) out->u[static_cast<std::size_t>(d)][k] = u[static_cast<std::size_t>(d)];
+    out->weight[k] = 1.0 / kDraws;
+    out->visits[k] = 1;
+    out->chain[k] = k;
+  }
+  known_ = known_ || IsInformed(s, *out);
+  out->known = known_;
+  return Status::kOk;
+}
+
+}  // namespace armcmc

@@ -1,0 +1,181 @@
+#include "armcmc/transition.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/density_fit.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kNarrow = 0.2;       // prior standard deviations: a drift is looked for once every parameter is known
+constexpr double kChangeShare = 0.5;  // of "one parameter changed" in the prior after a modification
+constexpr double kMostNatsAPack = 2.0;
+constexpr double kMaxDriftPacks = 50;  // that a drift is carried over without data
+
+double LogDeterminant(const ParamMatrix& m) noexcept {
+  const auto factor = m.ldlt();
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < m.rows(); ++i) sum += std::log(std::fmax(factor.vectorD()[i], 1e-300));
+  return sum;
+}
+
+}  // namespace
+
+Transition::Transition(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
+                       const MarginalTable* normal_table)
+    : kernels_(kernels), model_(model), space_(space), noise_(noise), normal_table_(normal_table) {}
+
+Transition::Hypothesis Transition::Judge(const ModeData& data, const ParamVector& mean, const ParamMatrix& covariance,
+                                         const ParamVector& start, LaplaceScratch* scratch) const noexcept {
+  Hypothesis h;
+  h.mean = mean;
+  h.covariance = covariance;
+  const Gaussian prior{mean, covariance.inverse()};
+  Gaussian fit;
+  const double height = LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, scratch, &fit);
+  h.log_evidence = height + 0.5 * (LogDeterminant(prior.precision) - LogDeterminant(fit.precision));
+  if (!std::isfinite(h.log_evidence)) h.log_evidence = -HUGE_VAL;
+  return h;
+}
+
+void Transition::SetMemory(const PosteriorMemory& previous, const Hypothesis* hypotheses, int count) noexcept {
+  memory_.valid = true;
+  memory_.informed = previous.informed;
+  memory_.num_blocks = count;
+  for (int b = 0; b < count; ++b) {
+    const auto i = static_cast<std::size_t>(b);
+    SetElliptic(hypotheses[b].mean, hypotheses[b].covariance, 1.0, normal_table_, &memory_.block[i]);
+    memory_.weight[i] = 1.0 / count;
+  }
+  memory_.mean = hypotheses[0].mean;
+  memory_.covariance = hypotheses[0].covariance;
+  memory_.log_noise_scale = previous.log_noise_scale;
+}
+
+bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previous, bool reinforcement,
+                              LaplaceScratch* scratch) noexcept {
+  // After a modification the posterior that it made is no base: it may be of a pack that holds the jump.
+  const bool from_stable = just_modified_ && stable_;
+  const ParamVector base = from_stable ? stable_mean_ : previous.mean;
+  const ParamMatrix covariance = from_stable ? stable_covariance_ : previous.covariance;
+  std::array<Hypothesis, PosteriorMemory::kMaxBlocks> best;
+  for (auto& h : best) h.log_evidence = -HUGE_VAL;
+  const auto offer = [&](const Hypothesis& h) noexcept {
+    if (h.log_evidence > best[0].log_evidence) {
+      best[1] = best[0];
+      best[0] = h;
+    } else if (h.log_evidence > best[1].log_evidence) {
+      best[1] = h;
+    }
+  };
+  for (int j = 0; j < space_.num_parameters; ++j) {
+    ParamVector mean = base;
+    ParamMatrix c = covariance;
+    mean[j] = 0.0;
+    c.row(j).setZero();
+    c.col(j).setZero();
+    c(j, j) = 1.0;
+    Hypothesis h = Judge(data, mean, c, base, scratch);
+    h.partial = true;
+    offer(h);
+  }
+  if (from_stable) offer(Judge(data, base, covariance, base, scratch));
+  if (reinforcement) {
+    const double current = Judge(data, previous.mean, previous.covariance, previous.mean, scratch).log_evidence;
+    if (!(best[0].log_evidence > current)) return false;
+  }
+  if (!std::isfinite(best[0].log_evidence)) return false;
+  SetMemory(previous, best.data(), std::isfinite(best[1].log_evidence) ? 2 : 1);
+  return true;
+}
+
+double Transition::WatchDrift(const ModeData& data, const PosteriorMemory& previous, double packs,
+                              LaplaceScratch* scratch) noexcept {
+  const int dim = space_.dim;
+  for (int d = 0; d < space_.num_parameters; ++d) {
+    if (previous.covariance(d, d) < kNarrow * kNarrow) continue;
+    ForgetDrift();
+    return 0.0;
+  }
+  const Gaussian flat{previous.mean, ParamMatrix::Zero(dim, dim)};
+  ParamVector gradient(dim);
+  ParamMatrix information(dim, dim);
+  LineariseAt(kernels_, model_, data, noise_, space_, flat, previous.mean, scratch, &gradient, &information);
+  // Log density of the pack's score under N(m, C + tau^2): 1/2 g' (C'^-1 + H)^-1 g - 1/2 log|I + C' H|.
+  const auto log_evidence = [&](double variance) noexcept {
+    ParamMatrix c = previous.covariance;
+    for (int d = 0; d < space_.num_parameters; ++d) c(d, d) += variance;
+    const ParamMatrix posterior = c.inverse() + information;
+    return 0.5 * gradient.dot(posterior.ldlt().solve(gradient)) - 0.5 * (LogDeterminant(c) + LogDeterminant(posterior));
+  };
+  const double persisted = log_evidence(0.0);
+  double chosen = 0.0;
+  std::array<double, kDrifts.size()> gain{};
+  double most = -HUGE_VAL;
+  for (std::size_t i = 0; i < kDrifts.size(); ++i) {
+    gain[i] = log_evidence(kDrifts[i] * kDrifts[i] * packs) - persisted;
+    if (!std::isfinite(gain[i])) gain[i] = -kMostNatsAPack;
+    most = std::fmax(most, gain[i]);
+  }
+  // A single pack may not decide: that would be a jump, which the mismatch judges.
+  const double surplus = std::fmax(most - kMostNatsAPack, 0.0);
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < kDrifts.size(); ++i) {
+    drift_evidence_[i] += std::fmax(gain[i] - surplus, -kMostNatsAPack);
+    if (drift_evidence_[i] > drift_evidence_[best]) best = i;
+  }
+  // Believed from the upper bound on until the evidence is gone.
+  const double top = drift_evidence_[best];
+  const double excess = std::fmax(top - kDriftNats, 0.0);
+  for (double& e : drift_evidence_) e = std::fmax(e - excess, -kDriftNats);
+  drifts_ = top >= kDriftNats || (drifts_ && top > 0.0);
+  if (drifts_) chosen = kDrifts[best];
+  return chosen;
+}
+
+const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorMemory& previous, std::uint64_t pack,
+                                          Mismatch* mismatch, double* share, LaplaceScratch* scratch) noexcept {
+  if (!previous.valid) {
+    stable_ = just_modified_ = false;
+    ForgetDrift();
+  }
+  *share = mismatch->lambda;
+  if (!previous.valid || !previous.informed) return previous;
+  const bool reinforcement = mismatch->decision == Decision::kReinforcement;
+  if (!reinforcement || (just_modified_ && stable_)) {
+    if (OfferChanges(data, previous, reinforcement, scratch)) {
+      mismatch->decision = Decision::kModification;
+      mismatch->lambda = 0.0;
+      *share = kChangeShare;
+      return memory_;
+    }
+    if (!reinforcement) return previous;
+  }
+  const double packs = pack > last_pack_ ? std::fmin(static_cast<double>(pack - last_pack_), kMaxDriftPacks) : 1.0;
+  const double drift = WatchDrift(data, previous, packs, scratch);
+  if (drift == 0.0) return previous;
+  Hypothesis drifted;
+  drifted.mean = previous.mean;
+  drifted.covariance = previous.covariance;
+  for (int d = 0; d < space_.num_parameters; ++d) drifted.covariance(d, d) += drift * drift * packs;
+  SetMemory(previous, &drifted, 1);
+  return memory_;
+}
+
+void Transition::Accept(const PosteriorMemory& next, std::uint64_t pack, Decision decision) noexcept {
+  last_pack_ = pack;
+  just_modified_ = decision == Decision::kModification;
+  if (just_modified_) {
+    ForgetDrift();
+    return;
+  }
+  stable_ = next.informed;
+  stable_mean_ = next.mean;
+  stable_covariance_ = next.covariance;
+}
+
+}  // namespace armcmc

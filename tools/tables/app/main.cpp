@@ -1,0 +1,145 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "armcmc/support/program.hpp"
+#include "armcmc/support/progress.hpp"
+#include "armcmc/tables/report.hpp"
+
+namespace armcmc::tables {
+namespace {
+
+struct Arguments {
+  std::string data, out;
+  int seeds = 1;
+  bool paper_only = false, likelihoods = false;
+};
+
+/// A folder for simulated recordings, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "armcmc-tables-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  /// Seeds of the tables start at 1001: the baselines were tuned on others.
+  [[nodiscard]] Recording Simulated(const std::string& scenario, PlantKind plant, double p_atm, int seed) const {
+    constexpr std::uint64_t kFirstSeed = 1001;
+    const std::filesystem::path csv = Simulate(scenario, kFirstSeed + static_cast<std::uint64_t>(seed), path_);
+    Recording r = ReadRecording(csv, plant, p_atm);
+    std::filesystem::remove(csv);
+    return r;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Plan {
+  std::string key, title, scenario, file;  // file: of --data, which replaces the scenario
+};
+const std::vector<Plan> kPlans = {
+    {"hunt_crossley", "Hunt-Crossley contact, the paper's experiment", "hunt_crossley_paper", "hunt_crossley.csv"},
+    {"soft_actuator", "Soft bending actuator, the paper's experiment", "soft_actuator_paper", "soft_actuator.csv"},
+    {"soft_actuator_excited", "Soft bending actuator, excited", "soft_actuator_excited", ""},
+    {"hunt_crossley_step", "Contact: K halves at 8 s and recovers at 14.5 s", "hunt_crossley_step", ""},
+    {"hunt_crossley_drift", "Contact: K, B and p drift from 2 s to 18 s", "hunt_crossley_drift", ""},
+    {"hunt_crossley_heavy_tailed", "Contact: Student-t noise of three degrees of freedom", "hunt_crossley_heavy_tailed",
+     ""},
+    {"hunt_crossley_impulsive", "Contact: impulsive noise, one sample in twenty", "hunt_crossley_impulsive", ""},
+    {"hunt_crossley_chatter", "Contact that chatters", "hunt_crossley_chatter", ""}};
+
+Experiment RunPlan(const Plan& plan, const Arguments& a, const ScratchFolder& scratch, Result* result) {
+  const EstimatorSettings settings = ScenarioSettings(plan.scenario);
+  const PlantKind plant = settings.model == "hunt_crossley" ? PlantKind::kHuntCrossley : PlantKind::kSoftActuator;
+  const double p_atm = settings.constants.p_atm;
+  const bool recorded = !a.data.empty() && !plan.file.empty();
+  if (!plan.file.empty())
+    (plant == PlantKind::kHuntCrossley ? result->contact_data : result->actuator_data) =
+        recorded ? plan.file + " of --data" : "the plant's own scenario " + plan.scenario;
+  return RunExperiment(
+      plan.key, plan.title, recorded ? 1 : a.seeds,
+      [&](int seed) {
+        return recorded ? ReadRecording(std::filesystem::path(a.data) / plan.file, plant, p_atm)
+                        : scratch.Simulated(plan.scenario, plant, p_atm, seed);
+      },
+      PaperMethods(settings));
+}
+
+void Write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+int Run(const Arguments& a) {
+  if (!a.data.empty())
+    for (const Plan& plan : kPlans)
+      if (!plan.file.empty() && !std::filesystem::exists(std::filesystem::path(a.data) / plan.file))
+        throw support::InputError("--data " + a.data + ": expected a folder with " + plan.file);
+  std::filesystem::create_directories(a.out);
+  const ScratchFolder scratch;
+  Result result;
+  {
+    support::Progress progress("tables");
+    double done = 0.0;
+    std::vector<Plan> plans = kPlans;
+    // The paper's scenario on fresh noise, when --data gave the one realisation and more seeds are asked for.
+    if (!a.data.empty() && a.seeds > 1)
+      plans.insert(plans.begin() + 1,
+                   {"hunt_crossley_seeds", "Hunt-Crossley contact, the paper's scenario, fresh noise",
+                    "hunt_crossley_paper", ""});
+    if (a.paper_only) std::erase_if(plans, [](const Plan& p) { return p.file.empty(); });
+    for (const Plan& plan : plans) {
+      result.experiments.push_back(RunPlan(plan, a, scratch, &result));
+      progress.Update(done += 1.0 / static_cast<double>(plans.size() + (a.likelihoods ? 4 : 0)));
+    }
+    if (a.likelihoods)
+      result.likelihoods = RunLikelihoods(a.seeds, [&](const std::string& scenario, int seed) {
+        return scratch.Simulated(scenario, PlantKind::kHuntCrossley, 0.0, seed);
+      });
+  }
+  const std::filesystem::path out = a.out;
+  Write(out / "tables.json", ToJson(result).dump(2) + "\n");
+  const std::string text = ToText(result);
+  Write(out / "tables.txt", text);
+  Write(out / "report.html", ToHtml(result));
+  std::cout << text << "\nreport: " << (out / "report.html").string() << '\n';
+  return support::kExitOk;
+}
+
+}  // namespace
+}  // namespace armcmc::tables
+
+int main(int argc, char** argv) {
+  CLI::App app{"The paper's two experiments with every method on the same data: tables, tables.json, report.html."};
+  armcmc::tables::Arguments a;
+  app.add_option("--data", a.data,
+                 "Folder with hunt_crossley.csv (t,x,v,f,f_true) and soft_actuator.csv "
+                 "(t,u_c,u_d,p,pdot,alpha,flow,theta1_true,theta2_true). Default: armcmc-plant simulates them");
+  app.add_option("--out", a.out, "Folder for the results")->required();
+  app.add_option("--seeds", a.seeds, "Noise realisations of every simulated scenario; tables show means")
+      ->check(CLI::Range(1, 1000));
+  app.add_flag("--paper-only", a.paper_only, "Only the paper's two experiments");
+  app.add_flag("--likelihoods", a.likelihoods, "Also the coverage under right and wrong noise laws (16 runs a seed)");
+  app.footer(
+      "Example:\n"
+      "  armcmc-tables --out tables\n"
+      "  armcmc-tables --seeds 20 --likelihoods --out tables");
+  return armcmc::support::RunProgram(app, "armcmc-tables", argc, argv, [&a] { return armcmc::tables::Run(a); });
+}

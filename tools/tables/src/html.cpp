@@ -1,0 +1,173 @@
+#include <cmath>
+#include <sstream>
+
+#include "armcmc/plots/html.hpp"
+#include "armcmc/plots/page.hpp"
+#include "armcmc/tables/report.hpp"
+#include "figures.hpp"
+
+namespace armcmc::tables {
+namespace {
+
+using plots::EscapeHtml;
+using plots::NumberText;
+
+/// A table; the smallest finite value of each marked column, over the rows that compete, is bold.
+class HtmlTable {
+ public:
+  explicit HtmlTable(std::vector<std::string> header) : header_(std::move(header)) {}
+  void Add(const std::string& label, const std::vector<double>& values, bool competes) {
+    rows_.push_back({label, values, competes});
+  }
+  [[nodiscard]] std::string ToString(std::size_t judged) const {
+    std::ostringstream out;
+    out << "<div class=\"scroll\"><table><tr>";
+    for (std::size_t i = 0; i < header_.size(); ++i)
+      out << (i == 0 ? "<th>" : "<th class=\"num\">") << EscapeHtml(header_[i]) << "</th>";
+    out << "</tr>\n";
+    for (const Line& row : rows_) {
+      out << "<tr><td>" << EscapeHtml(row.label) << "</td>";
+      for (std::size_t i = 0; i < row.values.size(); ++i) {
+        const bool best = i < judged && row.competes && row.values[i] <= Best(i);
+        out << "<td class=\"num\">" << (best ? "<b>" : "") << NumberText(row.values[i], 3) << (best ? "</b>" : "")
+            << "</td>";
+      }
+      out << "</tr>\n";
+    }
+    out << "</table></div>\n";
+    return out.str();
+  }
+
+ private:
+  struct Line {
+    std::string label;
+    std::vector<double> values;
+    bool competes;
+  };
+  [[nodiscard]] double Best(std::size_t column) const {
+    double best = HUGE_VAL;
+    for (const Line& row : rows_)
+      if (row.competes && std::isfinite(row.values[column])) best = std::fmin(best, row.values[column]);
+    return best;
+  }
+  std::vector<std::string> header_;
+  std::vector<Line> rows_;
+};
+
+std::string ContactTable(const Experiment& e) {
+  HtmlTable table({"method", "K", "B", "p", "force in contact, mN", "force overall, mN", "against noisy force, L2 in N",
+                   "95 % covers K, %", "B, %", "p, %", "ms a pack", "draws"});
+  for (const Row& row : e.rows) {
+    const ContactScore& s = row.contact;
+    const double none = std::nan("");
+    const auto percent = [&](double v) { return row.has_intervals ? 100.0 * v : none; };
+    table.Add(row.label + (row.online ? "" : " (sees all)"),
+              {s.mae_active_contact[0], s.mae_active_contact[1], s.mae_active_contact[2], s.force_contact_mn,
+               s.force_overall_mn, s.noisy_force_l2_n, percent(s.coverage[2][0]), percent(s.coverage[2][1]),
+               percent(s.coverage[2][2]), s.median_ms, row.has_intervals ? s.mean_draws : none},
+              row.online);
+  }
+  return table.ToString(6);
+}
+
+std::string ActuatorTable(const Experiment& e) {
+  HtmlTable table({"method", "g of u_c, relative", "g of u_d, relative", "theta1, L2", "theta2, L2 in 1e-6",
+                   "angle from the inputs alone, L2 in rad", "angle restarted each pack, L2 in rad", "flow, relative",
+                   "ms a pack"});
+  for (const Row& row : e.rows) {
+    const ActuatorScore& s = row.actuator;
+    table.Add(row.label,
+              {s.g_rel_error[0], s.g_rel_error[1], s.theta1_l2, 1e6 * s.theta2_l2, s.alpha_l2, s.alpha_restarted_l2,
+               s.flow_rel_error, s.median_ms},
+              row.online);
+  }
+  return table.ToString(7);
+}
+
+std::string PaperTable(const std::vector<std::string>& header, const std::vector<PaperRow>& rows) {
+  HtmlTable table(header);
+  for (const PaperRow& row : rows) table.Add(row.label, row.values, false);
+  return table.ToString(0);
+}
+
+void PaperBlocks(const Experiment& e, plots::Page* page) {
+  if (e.key == "hunt_crossley") {
+    page->Html("<div class=\"grid\"><div class=\"card\"><h3>Printed in the paper</h3>" +
+               PaperTable({"method", "K", "B", "p", "\"F_e, mN\""}, PublishedContact()) +
+               "</div><div class=\"card\"><h3>What the authors' stored results are</h3>" +
+               PaperTable({"method", "K", "B", "p", "force in contact, mN", "overall, mN", "noisy, L2 in N"},
+                          StoredContact()) +
+               "</div></div>\n");
+  } else if (e.key == "soft_actuator") {
+    page->Html(
+        "<div class=\"grid\"><div class=\"card\"><h3>Printed in the paper</h3>" +
+        PaperTable({"method", "theta1, L2", "theta2, L2 in 1e-6", "angle, L2"}, PublishedActuator()) +
+        "</div><div class=\"card\"><h3>What the authors' stored results are</h3>" +
+        PaperTable({"method", "theta1, L2", "theta2, L2 in 1e-6", "angle, L2", "flow, relative"}, StoredActuator()) +
+        "</div></div>\n");
+  }
+}
+
+std::string LikelihoodTable(const Result& result) {
+  HtmlTable table(
+      {"noise / believed", "50 % covers K", "B", "p", "90 % K", "B", "p", "95 % K", "B", "p", "force in contact, mN"});
+  for (const LikelihoodCell& cell : result.likelihoods) {
+    std::vector<double> values;
+    for (const auto& level : cell.row.contact.coverage)
+      for (const double c : level) values.push_back(100.0 * c);
+    values.push_back(cell.row.contact.force_contact_mn);
+    table.Add(cell.noise + " / " + cell.believed, values, false);
+  }
+  return table.ToString(0);
+}
+
+void Lead(const Result& result, plots::Page* page) {
+  const std::vector<std::string> lost = LostRows(result);
+  std::ostringstream out;
+  out << "<p class=\"lead\">Every method of the paper on the same packs, in one process, from the same prior. Contact "
+         "data: "
+      << EscapeHtml(result.contact_data) << "; actuator data: " << EscapeHtml(result.actuator_data)
+      << ". An estimate is shown one period after its pack has ended, as in the paper. The best online value of a "
+         "column is "
+         "bold.</p>\n";
+  if (lost.empty()) {
+    out << "<p>AR-MAP is ahead of every other online method on every row.</p>\n";
+  } else {
+    out << "<div class=\"note\"><p>Rows that AR-MAP loses:</p><ul class=\"plain\">";
+    for (const std::string& row : lost) out << "<li>" << EscapeHtml(row) << "</li>";
+    out << "</ul></div>\n";
+  }
+  page->Html(out.str());
+}
+
+}  // namespace
+
+std::string ToHtml(const Result& result) {
+  plots::Page page("ARMCMC: the paper's experiments, all methods");
+  page.Html("<h1>The paper's two experiments, every method, one run</h1>\n");
+  Lead(result, &page);
+  for (const Experiment& e : result.experiments) {
+    page.Html("<section class=\"card\"><h2>" + EscapeHtml(e.title) + "</h2>\n");
+    PaperBlocks(e, &page);
+    page.Html(
+        "<h3>Ours" + std::string(e.seeds > 1 ? ", mean over " + std::to_string(e.seeds) + " noise seeds" : "") +
+        (e.plant == PlantKind::kHuntCrossley ? ": mean absolute errors in contact while an estimate is shown" : "") +
+        "</h3>\n");
+    page.Html(e.plant == PlantKind::kHuntCrossley ? ContactTable(e) : ActuatorTable(e));
+    if (e.key == "hunt_crossley") page.Html("<p class=\"soft\">" + EscapeHtml(ContactNote()) + "</p>\n");
+    if (e.key == "soft_actuator") page.Html("<p class=\"soft\">" + EscapeHtml(ActuatorNote()) + "</p>\n");
+    AddFigures(e, &page);
+    page.Html("</section>\n");
+  }
+  if (!result.likelihoods.empty())
+    page.Html(
+        "<section class=\"card\"><h2>Right and wrong likelihoods</h2><p>Coverage of ARMCMC's intervals in percent "
+        "when the estimator believes in a noise law, right or wrong.</p>" +
+        LikelihoodTable(result) + "</section>\n");
+  page.Html("<section class=\"card\"><h2>Number of draws</h2>\n");
+  AddDrawNumbers(&page);
+  page.Html("</section>\n");
+  return page.ToString();
+}
+
+}  // namespace armcmc::tables

@@ -1,0 +1,92 @@
+#include <cmath>
+
+#include "armcmc/tables/report.hpp"
+
+namespace armcmc::tables {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json Number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(); }
+
+ordered_json Parameters(const std::array<double, 3>& v) {
+  return {{"K", Number(v[0])}, {"B", Number(v[1])}, {"p", Number(v[2])}};
+}
+
+ordered_json ContactJson(const Row& row, int seeds) {
+  const ContactScore& s = row.contact;
+  ordered_json out;
+  out["label"] = row.label;
+  out["online"] = row.online;
+  out["mae_contact"] = Parameters(s.mae_contact);
+  out["mae_active_contact"] = Parameters(s.mae_active_contact);
+  out["clean_force_mae_mN"] = {{"contact", s.force_contact_mn}, {"overall", s.force_overall_mn}};
+  out["noisy_force_l2_N"] = s.noisy_force_l2_n;
+  if (row.has_intervals) {
+    const std::array<const char*, 3> names{"50", "90", "95"};
+    for (std::size_t l = 0; l < names.size(); ++l) {
+      out[std::string("coverage") + names[l]] = Parameters(s.coverage[l]);
+      out[std::string("width") + names[l]] = Parameters(s.width[l]);
+      if (seeds > 1) out[std::string("coverage") + names[l] + "_standard_error"] = Parameters(row.coverage_error[l]);
+    }
+    out["draws"] = s.mean_draws;
+  }
+  if (row.key.starts_with("armcmc")) out["modifications_after_first_pack"] = s.false_modifications;
+  out["adjust_ms"] = {{"median", s.median_ms}, {"max", s.max_ms}};
+  return out;
+}
+
+ordered_json ActuatorJson(const Row& row) {
+  const ActuatorScore& s = row.actuator;
+  return {{"label", row.label},
+          {"online", row.online},
+          {"g_rel_error", {{"u_c", Number(s.g_rel_error[0])}, {"u_d", Number(s.g_rel_error[1])}}},
+          {"theta1_l2", Number(s.theta1_l2)},
+          {"theta2_l2", Number(s.theta2_l2)},
+          {"alpha_l2", Number(s.alpha_l2)},
+          {"alpha_restarted_l2", Number(s.alpha_restarted_l2)},
+          {"flow_rel_error", Number(s.flow_rel_error)},
+          {"coverage95",
+           {{"u_c", {{"g", s.coverage95[0][0]}, {"theta2", s.coverage95[0][1]}}},
+            {"u_d", {{"g", s.coverage95[1][0]}, {"theta2", s.coverage95[1][1]}}}}},
+          {"adjust_ms", {{"median", s.median_ms}, {"max", s.max_ms}}}};
+}
+
+ordered_json PaperJson(const std::vector<PaperRow>& rows, const std::vector<const char*>& names) {
+  ordered_json out;
+  for (const PaperRow& row : rows)
+    for (std::size_t i = 0; i < names.size(); ++i) out[row.key][names[i]] = Number(row.values[i]);
+  return out;
+}
+
+}  // namespace
+
+ordered_json ToJson(const Result& result) {
+  ordered_json out;
+  out["schema"] = 1;
+  out["data"] = {{"hunt_crossley", result.contact_data}, {"soft_actuator", result.actuator_data}};
+  for (const Experiment& e : result.experiments) {
+    ordered_json& entry = out[e.key];
+    entry["title"] = e.title;
+    entry["seeds"] = e.seeds;
+    for (const Row& row : e.rows)
+      entry["methods"][row.key] = e.plant == PlantKind::kHuntCrossley ? ContactJson(row, e.seeds) : ActuatorJson(row);
+    if (e.key == "hunt_crossley") {
+      entry["published"] = PaperJson(PublishedContact(), {"mae_K", "mae_B", "mae_p", "printed_F_e_mN"});
+      entry["authors_stored"] = PaperJson(StoredContact(), {"mae_K", "mae_B", "mae_p", "clean_force_mae_mN_contact",
+                                                            "clean_force_mae_mN_overall", "noisy_force_l2_N"});
+      entry["note"] = ContactNote();
+    } else if (e.key == "soft_actuator") {
+      entry["published"] = PaperJson(PublishedActuator(), {"theta1_l2", "theta2_l2_1e-6", "alpha_l2"});
+      entry["authors_stored"] =
+          PaperJson(StoredActuator(), {"theta1_l2", "theta2_l2_1e-6", "alpha_l2", "flow_rel_error"});
+      entry["note"] = ActuatorNote();
+    }
+  }
+  for (const LikelihoodCell& cell : result.likelihoods)
+    out["likelihoods"][cell.noise][cell.believed] = ContactJson(cell.row, 2);
+  out["rows_lost"] = LostRows(result);
+  return out;
+}
+
+}  // namespace armcmc::tables

@@ -1,0 +1,57 @@
+#include "armcmc/tables/method.hpp"
+
+namespace armcmc::tables {
+
+std::vector<MethodSpec> PaperMethods(const EstimatorSettings& base) {
+  std::vector<MethodSpec> methods;
+  const bool contact = base.model == "hunt_crossley";
+  const auto add = [&](const char* key, const char* label, Method method) -> MethodSpec& {
+    MethodSpec spec{key, label, base, 100, true};
+    spec.settings.method = method;
+    spec.settings.gap_watch.enabled = false;
+    methods.push_back(spec);
+    return methods.back();
+  };
+  add("armcmc", "ARMCMC", Method::kArmcmc);
+  if (contact) {
+    const auto fix_draws = [](MethodSpec* spec, int draws) {
+      spec->settings.sampler.rule = DrawRule::kFixed;
+      spec->settings.sampler.fixed_draws = draws;
+    };
+    fix_draws(&add("mcmc_1", "MCMC-1", Method::kMetropolis), 5000);
+    MethodSpec& slow = add("mcmc_2", "MCMC-2", Method::kMetropolis);
+    fix_draws(&slow, 15'000);
+    slow.pack_samples = 200;
+  }
+  // Forgetting by 1: nothing is forgotten. Chosen on other noise seeds than those of the tables.
+  add("rls", "RLS", Method::kRls);
+  add("rls_no_forgetting", "RLS without forgetting", Method::kRls).settings.baseline.rls_forgetting = 1.0;
+  add("pf", "particle filter", Method::kParticleFilter);
+  if (!contact) {
+    add("rls_per_mode", "RLS, one for each valve", Method::kRls).settings.baseline.recall = true;
+    add("pf_per_mode", "particle filter, one for each valve", Method::kParticleFilter).settings.baseline.recall = true;
+  } else {
+    add("batch_nls", "batch least squares", Method::kArmcmc).online = false;
+  }
+  return methods;
+}
+
+EstimatorSettings ScenarioSettings(const std::string& scenario) {
+  if (scenario == "soft_actuator_paper") return BuiltinSettings("soft_actuator");
+  if (scenario == "soft_actuator_excited") return BuiltinSettings("soft_actuator_excited");
+  EstimatorSettings s = BuiltinSettings("hunt_crossley");
+  NoiseSettings& noise = s.noise[0];
+  if (scenario == "hunt_crossley_heavy_tailed") {
+    noise.kind = NoiseKind::kStudentT;
+    noise.dof = 3.0;
+  } else if (scenario == "hunt_crossley_laplace") {
+    noise.kind = NoiseKind::kLaplace;
+  } else if (scenario == "hunt_crossley_impulsive") {
+    noise.kind = NoiseKind::kMixture;
+  } else if (scenario == "hunt_crossley_chatter") {
+    noise.std = 0.02;
+  }
+  return s;
+}
+
+}  // namespace armcmc::tables

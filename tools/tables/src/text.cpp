@@ -1,0 +1,129 @@
+#include <cmath>
+#include <sstream>
+
+#include "armcmc/support/text_table.hpp"
+#include "armcmc/tables/report.hpp"
+
+namespace armcmc::tables {
+namespace {
+
+using support::Significant;
+using support::TextTable;
+
+void Put(std::ostringstream* out, const std::string& title, const TextTable& table) {
+  *out << title << '\n' << table.ToString() << '\n';
+}
+
+void ContactTable(const Experiment& e, std::ostringstream* out) {
+  TextTable table({"ours", "K", "B", "p", "force mN, contact", "overall", "noisy L2 N", "95 % covers K", "B", "p",
+                   "ms a pack", "draws"});
+  for (const Row& row : e.rows) {
+    const ContactScore& s = row.contact;
+    const auto percent = [&](double v) { return row.has_intervals ? Significant(100.0 * v, 3) : std::string("-"); };
+    table.AddRow({row.label, Significant(s.mae_active_contact[0], 3), Significant(s.mae_active_contact[1], 3),
+                  Significant(s.mae_active_contact[2], 3), Significant(s.force_contact_mn, 4),
+                  Significant(s.force_overall_mn, 4), Significant(s.noisy_force_l2_n, 5), percent(s.coverage[2][0]),
+                  percent(s.coverage[2][1]), percent(s.coverage[2][2]), Significant(s.median_ms, 3),
+                  row.has_intervals ? Significant(s.mean_draws, 5) : "-"});
+  }
+  Put(out, e.title + ": mean absolute errors in contact while an estimate is shown", table);
+}
+
+void ActuatorTable(const Experiment& e, std::ostringstream* out) {
+  TextTable table({"ours", "g u_c, rel", "g u_d, rel", "theta1 L2", "theta2 L2 1e-6", "angle L2, inputs alone",
+                   "angle L2, restarted", "flow, rel", "ms a pack"});
+  for (const Row& row : e.rows) {
+    const ActuatorScore& s = row.actuator;
+    table.AddRow({row.label, Significant(s.g_rel_error[0], 3), Significant(s.g_rel_error[1], 3),
+                  Significant(s.theta1_l2, 3), Significant(1e6 * s.theta2_l2, 3), Significant(s.alpha_l2, 4),
+                  Significant(s.alpha_restarted_l2, 4), Significant(s.flow_rel_error, 3), Significant(s.median_ms, 3)});
+  }
+  Put(out, e.title, table);
+}
+
+void PaperTable(const std::string& title, const std::vector<std::string>& header, const std::vector<PaperRow>& rows,
+                std::ostringstream* out) {
+  TextTable table(header);
+  for (const PaperRow& row : rows) {
+    std::vector<std::string> cells = {row.label};
+    for (const double v : row.values) cells.push_back(Significant(v, 5));
+    table.AddRow(cells);
+  }
+  Put(out, title, table);
+}
+
+void LikelihoodTable(const Result& result, std::ostringstream* out) {
+  TextTable table({"noise", "believed", "50 % covers K", "B", "p", "90 % K", "B", "p", "95 % K", "B", "p", "force mN"});
+  for (const LikelihoodCell& cell : result.likelihoods) {
+    std::vector<std::string> cells = {cell.noise, cell.believed};
+    for (std::size_t l = 0; l < kLevels.size(); ++l)
+      for (std::size_t d = 0; d < 3; ++d)
+        cells.push_back(Significant(100.0 * cell.row.contact.coverage[l][d], 3) + " +- " +
+                        Significant(100.0 * cell.row.coverage_error[l][d], 2));
+    cells.push_back(Significant(cell.row.contact.force_contact_mn, 4));
+    table.AddRow(cells);
+  }
+  Put(out, "Right and wrong likelihoods: coverage in percent, standard errors over the seeds", table);
+}
+
+}  // namespace
+
+std::string ToText(const Result& result) {
+  std::ostringstream out;
+  for (const Experiment& e : result.experiments) {
+    if (e.key == "hunt_crossley") {
+      PaperTable("Hunt-Crossley, printed in the paper", {"printed", "K", "B", "p", "\"F_e mN\""}, PublishedContact(),
+                 &out);
+      PaperTable("Hunt-Crossley, what the authors' stored results are",
+                 {"stored", "K", "B", "p", "force mN, contact", "overall", "noisy L2 N"}, StoredContact(), &out);
+    } else if (e.key == "soft_actuator") {
+      PaperTable("Soft actuator, printed in the paper", {"printed", "theta1 L2", "theta2 L2 1e-6", "angle L2"},
+                 PublishedActuator(), &out);
+      PaperTable("Soft actuator, what the authors' stored results are",
+                 {"stored", "theta1 L2", "theta2 L2 1e-6", "angle L2", "flow, rel"}, StoredActuator(), &out);
+    }
+    if (e.plant == PlantKind::kHuntCrossley)
+      ContactTable(e, &out);
+    else
+      ActuatorTable(e, &out);
+    if (e.key == "hunt_crossley") out << ContactNote() << "\n\n";
+    if (e.key == "soft_actuator") out << ActuatorNote() << "\n\n";
+  }
+  if (!result.likelihoods.empty()) LikelihoodTable(result, &out);
+  const std::vector<std::string> lost = LostRows(result);
+  out << (lost.empty() ? "AR-MAP is ahead of every other online method on every row.\n" : "Rows that AR-MAP loses:\n");
+  for (const std::string& row : lost) out << "  " << row << '\n';
+  return out.str();
+}
+
+std::vector<std::string> LostRows(const Result& result) {
+  std::vector<std::string> lost;
+  for (const Experiment& e : result.experiments) {
+    const bool contact = e.plant == PlantKind::kHuntCrossley;
+    const auto values = [contact](const Row& row) {
+      const ContactScore& c = row.contact;
+      const ActuatorScore& a = row.actuator;
+      using Named = std::vector<std::pair<std::string, double>>;
+      if (contact)
+        return Named{{"K", c.mae_active_contact[0]},
+                     {"B", c.mae_active_contact[1]},
+                     {"p", c.mae_active_contact[2]},
+                     {"force in contact", c.force_contact_mn},
+                     {"force overall", c.force_overall_mn}};
+      return Named{{"g of u_c", a.g_rel_error[0]}, {"g of u_d", a.g_rel_error[1]}, {"theta1", a.theta1_l2},
+                   {"theta2", a.theta2_l2},        {"angle", a.alpha_l2},          {"flow", a.flow_rel_error}};
+    };
+    const auto ours = values(e.Find("armcmc_map"));
+    for (const Row& row : e.rows) {
+      if (!row.online || row.key.starts_with("armcmc")) continue;
+      const auto theirs = values(row);
+      for (std::size_t i = 0; i < ours.size(); ++i)
+        if (!(ours[i].second < theirs[i].second))
+          lost.push_back(e.key + ", " + ours[i].first + ": " + row.label + " " + Significant(theirs[i].second, 4) +
+                         ", AR-MAP " + Significant(ours[i].second, 4));
+    }
+  }
+  return lost;
+}
+
+}  // namespace armcmc::tables
