@@ -13,9 +13,9 @@ public final class Main {
     new Spy(arguments[0]);
     if (!arguments[1].equals("true")) return;
     SwingUtilities.invokeLater(() -> {
-      EstimatePlugin.open(arguments[2] + Channels.ESTIMATE);
-      PosteriorPlugin.open(arguments[2] + Channels.POSTERIOR);
-      StatusPlugin.open(arguments[2] + Channels.STATUS);
+      EstimatePlugin.open(arguments[2] + Channels.ESTIMATE, null);
+      PosteriorPlugin.open(arguments[2] + Channels.POSTERIOR, null);
+      StatusPlugin.open(arguments[2] + Channels.STATUS, null);
     });
   }
 }

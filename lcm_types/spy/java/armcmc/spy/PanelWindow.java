@@ -22,10 +22,11 @@ final class PanelWindow {
 
   private PanelWindow() {}
 
-  /** Opens the panel of a channel, or brings it to the front where it is open. */
-  static void open(String channel, MessageSink model, Painter painter) {
+  /** Opens the panel of a channel, or brings it to the front where it is open. @param frame to be filled, or null */
+  static void open(String channel, JFrame frame, MessageSink model, Painter painter) {
     JFrame there = OPEN.get(channel);
     if (there != null) {
+      if (frame != null) frame.dispose();
       there.setVisible(true);
       there.toFront();
       return;
@@ -39,11 +40,13 @@ final class PanelWindow {
       JOptionPane.showMessageDialog(null, "Cannot listen to the bus: " + problem.getMessage(), channel, JOptionPane.ERROR_MESSAGE);
       return;
     }
-    OPEN.put(channel, window(channel, new LivePanel(painter, model, clock), feed));
+    OPEN.put(channel, fill(frame == null ? new JFrame() : frame, channel, new LivePanel(painter, model, clock), feed));
   }
 
-  private static JFrame window(String channel, LivePanel panel, Feed feed) {
-    JFrame frame = new JFrame(channel + " - ARMCMC");
+  private static JFrame fill(JFrame frame, String channel, LivePanel panel, Feed feed) {
+    frame.setTitle(channel + " - ARMCMC");
+    frame.getContentPane().removeAll();
+    frame.setLayout(new BorderLayout());
     frame.setDefaultCloseOperation(JFrame.DISPOSE_ON_CLOSE);
     JLabel complaint = new JLabel(" ");
     complaint.setVisible(false);
@@ -63,8 +66,9 @@ final class PanelWindow {
     });
     Dimension screen = frame.getToolkit().getScreenSize();
     frame.setSize(Math.min(1200, screen.width), Math.min(820, screen.height));
-    frame.setLocationByPlatform(true);
+    if (!frame.isVisible()) frame.setLocationByPlatform(true);
     frame.setVisible(true);
+    frame.revalidate();
     return frame;
   }
 }

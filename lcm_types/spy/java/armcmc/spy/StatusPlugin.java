@@ -5,6 +5,7 @@ import armcmc.spy.draw.StatusPainter;
 import armcmc.spy.model.StatusModel;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
+import javax.swing.JFrame;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
@@ -13,11 +14,12 @@ public class StatusPlugin implements SpyPlugin {
   @Override public boolean canHandle(long fingerprint) { return fingerprint == estimator_status_t.LCM_FINGERPRINT; }
 
   @Override public Action getAction(JDesktopPane pane, ChannelData channel) {
-    return new PanelAction("ARMCMC status", channel, StatusPlugin::open);
+    return new PanelAction("ARMCMC status", pane, channel, StatusPlugin::open);
   }
 
-  static void open(String channel) {
+  /** @param frame window to use, or null for a new one */
+  static void open(String channel, JFrame frame) {
     StatusModel model = new StatusModel();
-    PanelWindow.open(channel, model, new StatusPainter(model, channel));
+    PanelWindow.open(channel, frame, model, new StatusPainter(model, channel));
   }
 }
