@@ -130,7 +130,6 @@ void AddData(const WatchState& state, std::vector<TextLine>* lines) {
     gap.Add(s.gap_suspected != 0 ? "   " : "   nearest: ", Ink::kDim).Add(GapPlace(s), Ink::kDim);
   }
   lines->push_back(gap);
-  lines->emplace_back();
 }
 
 }  // namespace armcmc::watch
