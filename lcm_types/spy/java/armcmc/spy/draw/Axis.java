@@ -18,7 +18,11 @@ final class Axis {
 
   static Axis linear(double lo, double hi) { return new Axis(lo, hi, false); }
 
-  static Axis logarithmic(double lo, double hi) { return new Axis(lo, hi, true); }
+  /** @throws IllegalArgumentException unless 0 < lo < hi */
+  static Axis logarithmic(double lo, double hi) {
+    if (!(lo > 0 && hi > lo && hi < Double.POSITIVE_INFINITY)) throw new IllegalArgumentException(lo + " .. " + hi);
+    return new Axis(lo, hi, true);
+  }
 
   double at(double value) {
     if (log) return Math.log(Math.max(value, 1e-300) / lo) / Math.log(hi / lo);

@@ -20,7 +20,7 @@ final class StatusCharts {
   void stages(Rectangle r) {
     Rectangle inner = pen.card(r, "Stage times");
     estimator_status_t s = model.status();
-    double deadline = 1e-6 * s.deadline_ns;
+    double deadline = 1e-6 * Math.max(1, s.deadline_ns);
     double top = Math.pow(10, Math.ceil(Math.log10(Math.max(2 * deadline, 2 * highest(model.endToEnd)))));
     double least = model.collect.quantile(0.02, now - StatusModel.WINDOW);
     double bottom = Double.isFinite(least) && least > 0 ? Math.pow(10, Math.floor(Math.log10(least))) : 1e-3;
