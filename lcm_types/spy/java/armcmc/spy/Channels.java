@@ -1,0 +1,20 @@
+package armcmc.spy;
+
+/** The channels of one estimator and its plant: five names behind one prefix. */
+public final class Channels {
+  public static final String PACK = "PLANT_PACK";
+  public static final String TRUTH = "PLANT_TRUTH";
+  public static final String ESTIMATE = "EST_ESTIMATE";
+  public static final String POSTERIOR = "EST_POSTERIOR";
+  public static final String STATUS = "EST_STATUS";
+
+  private Channels() {}
+
+  /** What stands before the known name of a channel; empty when the channel has another name. */
+  public static String prefix(String channel) {
+    for (String name : new String[] {PACK, TRUTH, ESTIMATE, POSTERIOR, STATUS}) {
+      if (channel.endsWith(name)) return channel.substring(0, channel.length() - name.length());
+    }
+    return "";
+  }
+}
