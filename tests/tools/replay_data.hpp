@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <lcm/lcm-cpp.hpp>
@@ -72,6 +73,9 @@ class LogWriter {
     event.data = data.data();
     log_.writeEvent(&event);
   }
+
+  /// What was written so far can be read.
+  void Flush() { std::fflush(log_.getFilePtr()); }
 
  private:
   lcm::LogFile log_;
