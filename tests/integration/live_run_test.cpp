@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -115,6 +117,35 @@ TEST_F(LiveRun, TwentySecondsMeetEveryDeadlineAndReplayToTheBit) {
   ASSERT_EQ(offline.code, 0) << offline.err;
   Table from_csv = Replay({"--data", dir_ / "offline.csv", "--draws-from", Log()});
   ExpectEqualToTheBit(live, from_csv);
+}
+
+TEST_F(LiveRun, ALogOfLcmLoggerIsVerifiedToTheBit) {
+  const std::filesystem::path logger = "/usr/bin/lcm-logger";
+  if (!std::filesystem::exists(logger)) GTEST_SKIP() << "needs lcm-logger: apt-get install liblcm-bin";
+  const std::string log = dir_ / "logger.lcm";
+  Process recording(logger, {"--lcm-url=" + bus_->url(), log});
+  // It says nothing when it is ready: traffic in its file does.
+  auto estimator = StartEstimator();
+  ASSERT_TRUE(recorder_->WaitUntil([&log] {
+    std::error_code none;
+    return std::filesystem::exists(log, none) && std::filesystem::file_size(log, none) > 0;
+  })) << recording.err();
+  auto plant = StartPlant("20");
+  ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
+  ASSERT_TRUE(recorder_->WaitForEstimates(200)) << estimator->err();
+  // It drops what it has not written when it is stopped; the health of the estimator goes on behind the estimates.
+  const auto size = std::filesystem::file_size(log);
+  ASSERT_TRUE(recorder_->WaitUntil([&log, size] { return std::filesystem::file_size(log) > size; }));
+  Finish(estimator.get());
+  recording.Signal(SIGINT);
+  recording.Wait(std::chrono::seconds(10));
+
+  const std::vector<std::string> verify = {"--data", log, "--config",
+                                           (SourceDir() / "rt/config/hunt_crossley.toml").string(), "--verify"};
+  const Outcome o = RunProgram(Program("armcmc-replay"), verify);
+  EXPECT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_NE(o.out.find("verified: 400 recorded estimates and posteriors are equal to the bit"), std::string::npos)
+      << o.out;
 }
 
 }  // namespace

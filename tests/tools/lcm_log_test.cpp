@@ -125,6 +125,77 @@ TEST_F(LcmLog, JunkBetweenEventsIsSkipped) {
   EXPECT_EQ(r.damage.missing_events, 0);
 }
 
+TEST_F(LcmLog, ADamagedNumberCostsNothingAndIsCounted) {
+  Write(10);
+  std::string bytes = Bytes();
+  bytes[3 * kEventSize + 4] = 0x40;  // highest byte
+  bytes[6 * kEventSize + 11] ^= 1;   // lowest byte: 6 -> 7
+  bytes[9 * kEventSize + 5] = 1;     // of the last event
+  Put(bytes);
+  const Result r = Read();
+  EXPECT_EQ(r.events, AllBut(10, {}));
+  EXPECT_EQ(r.damage.wrong_numbers, 3);
+  EXPECT_EQ(r.damage.missing_events, 0);
+  EXPECT_EQ(r.damage.resyncs, 0u);
+}
+
+TEST_F(LcmLog, TwoLogsInOneFileAreNoDamage) {
+  Write(4);
+  const std::string bytes = Bytes();
+  Put(bytes + bytes);
+  LcmLogReader reader(path_);
+  LcmLogEvent event;
+  int n = 0;
+  while (reader.Next(&event)) ++n;
+  EXPECT_EQ(n, 8);
+  EXPECT_FALSE(reader.damage().any());
+}
+
+TEST_F(LcmLog, ACutAnywhereKeepsEveryEventInFrontOfIt) {
+  Write(4);
+  const std::string clean = Bytes();
+  for (std::size_t size = kEventSize; size < clean.size(); ++size) {
+    Put(clean.substr(0, size));
+    const Result r = Read();
+    EXPECT_EQ(r.events.size(), size / kEventSize) << size;
+    EXPECT_EQ(r.damage.cut_off, size % kEventSize != 0) << size;
+    EXPECT_EQ(r.damage.skipped_bytes, size % kEventSize) << size;
+  }
+}
+
+// Sync word, number, time, both lengths, channel and data of one event, every bit of every byte.
+TEST_F(LcmLog, EveryFlippedBitCostsAtMostItsEventAndTheLossIsCounted) {
+  constexpr int kEvents = 6;
+  Write(kEvents);
+  const std::string clean = Bytes();
+  for (std::size_t at = 2 * kEventSize; at < 3 * kEventSize; ++at) {
+    for (const int bit : {0, 2, 5, 7}) {
+      std::string bytes = clean;
+      bytes[at] = static_cast<char>(static_cast<unsigned char>(bytes[at]) ^ (1U << bit));
+      Put(bytes);
+      LcmLogReader reader(path_);
+      LcmLogEvent event;
+      int n = 0;
+      while (reader.Next(&event)) ++n;
+      const LcmLogDamage& damage = reader.damage();
+      EXPECT_GE(n, kEvents - 1) << at << ' ' << bit;
+      EXPECT_EQ(n + damage.missing_events, kEvents) << at << ' ' << bit;
+      EXPECT_LE(damage.skipped_bytes, kEventSize) << at << ' ' << bit;
+      EXPECT_FALSE(damage.cut_off) << at << ' ' << bit;
+      // Time, name and data have no check; the other fields have.
+      const std::size_t field = at - 2 * kEventSize;
+      EXPECT_EQ(damage.any(), field < 12 || (field >= 20 && field < 28) || n < kEvents) << at << ' ' << bit;
+    }
+  }
+}
+
+TEST_F(LcmLog, DamageIsSaidInWords) {
+  EXPECT_EQ(ToString(LcmLogDamage{}), "");
+  EXPECT_EQ(ToString(LcmLogDamage{2, 1310, 1, 3, true}),
+            "2 places skipped (1310 bytes), 1 event missing, 3 events with a wrong number, cut off at its end");
+  EXPECT_EQ(ToString(LcmLogDamage{0, 17, 0, 0, true}), "cut off at its end (17 bytes)");
+}
+
 TEST_F(LcmLog, ASyncWordInTheDataIsData) {
   {
     lcm::LogFile log(path_, "w");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <lcm/lcm-cpp.hpp>
@@ -65,15 +66,26 @@ class LogWriter {
   void Write(const std::string& channel, const Message& message) {
     std::vector<char> data(static_cast<std::size_t>(message.getEncodedSize()));
     message.encode(data.data(), 0, static_cast<int>(data.size()));
+    WriteBytes(channel, &data);
+  }
+  /// An event that is no message of ours.
+  void WriteRaw(const std::string& channel, const std::string& text) {
+    std::vector<char> data(text.begin(), text.end());
+    WriteBytes(channel, &data);
+  }
+  /// What was written so far can be read.
+  void Flush() { std::fflush(log_.getFilePtr()); }
+
+ private:
+  void WriteBytes(const std::string& channel, std::vector<char>* data) {
     lcm::LogEvent event{};
     event.timestamp = ++utime_;
     event.channel = channel;
-    event.datalen = static_cast<std::int32_t>(data.size());
-    event.data = data.data();
+    event.datalen = static_cast<std::int32_t>(data->size());
+    event.data = data->data();
     log_.writeEvent(&event);
   }
 
- private:
   lcm::LogFile log_;
   std::int64_t utime_ = 0;
 };

@@ -73,6 +73,26 @@ TEST_F(ReplayProgram, AModelFileAddsItsEffectsToTheEstimates) {
   ExpectBadInput(arguments, "model.toml:4");
 }
 
+TEST_F(ReplayProgram, ADamagedLogIsReadAsFarAsItGoesAndTheLossIsSaid) {
+  {
+    LogWriter log(dir_ / "run.lcm");
+    for (int k = 1; k <= 6; ++k) log.Write("PLANT_PACK", ContactPack(k));
+  }
+  std::string bytes = Text("run.lcm");
+  const std::size_t event = bytes.size() / 6;
+  bytes[2 * event + 2] = 0;                  // sync word of the third pack
+  bytes = bytes.substr(0, 5 * event + 100);  // the sixth is cut
+  std::ofstream(dir_ / "run.lcm", std::ios::binary) << bytes;
+  const Outcome o = Run({"--config", dir_ / "own.toml", "--data", dir_ / "run.lcm", "--out", dir_ / "out.csv",
+                         "--report", dir_ / "report.json"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("4 packs"));
+  EXPECT_THAT(o.out, HasSubstr("lost 1,"));
+  EXPECT_THAT(o.out, HasSubstr("the log is damaged: 1 place skipped (" + std::to_string(event + 100) +
+                               " bytes), 1 event missing, cut off at its end"));
+  EXPECT_THAT(Text("report.json"), HasSubstr("\"bytes_skipped\": " + std::to_string(event + 100)));
+}
+
 TEST_F(ReplayProgram, HelpTeachesWithAnExample) {
   const Outcome help = Run({"--help"});
   EXPECT_EQ(help.code, 0);

@@ -49,8 +49,26 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
   return out.str();
 }
 
+std::string VerificationText(const Verification& v, const PackSource& source) {
+  std::ostringstream out;
+  if (v.undecodable > 0) out << v.undecodable << " messages of the estimator are of no type that this version knows\n";
+  if (v.without_pack > 0) out << v.without_pack << " recorded estimates have no pack in the log\n";
+  if (v.equal()) {
+    out << "verified: " << v.compared << " recorded estimates and posteriors are equal to the bit\n";
+  } else if (v.compared == 0) {
+    out << "NOT VERIFIED: no recorded estimate belongs to a pack of the log\n";
+  } else {
+    out << "NOT EQUAL: " << v.different << " of " << v.compared << " recorded messages differ; first, "
+        << v.first_difference << '\n';
+    if (source.counts().lost > 0 || source.damage().any() || v.without_pack > 0)
+      out << "packs are missing in the log: from the first of them on the two runs have learnt from different data\n";
+    out << "the same configuration, model (--model) and seed (--seed) as in the live run are needed\n";
+  }
+  return out.str();
+}
+
 void WriteReport(const std::filesystem::path& path, const Estimator& estimator, const PackSource& source,
-                 const ReplaySummary& summary) {
+                 const ReplaySummary& summary, const std::optional<Verification>& verification) {
   using nlohmann::ordered_json;
   const PackCounts counts = source.counts();
   ordered_json report;
@@ -85,6 +103,20 @@ void WriteReport(const std::filesystem::path& path, const Estimator& estimator, 
       {"watched", gap.watched},           {"suspected", gap.suspected},         {"where", gap.where},
       {"log_evidence", gap.log_evidence}, {"log_threshold", gap.log_threshold}, {"share_of_excess_error", gap.share},
       {"since_pack", gap.since_seq},      {"alarm_pack", gap.alarm_seq},        {"blocks", gap.num_blocks}};
+  const support::LcmLogDamage damage = source.damage();
+  report["log_damage"] = {{"places_skipped", damage.resyncs},
+                          {"bytes_skipped", damage.skipped_bytes},
+                          {"events_missing", damage.missing_events},
+                          {"wrong_numbers", damage.wrong_numbers},
+                          {"cut_off", damage.cut_off}};
+  if (verification) {
+    report["verified"] = {{"equal", verification->equal()},
+                          {"compared", verification->compared},
+                          {"different", verification->different},
+                          {"undecodable", verification->undecodable},
+                          {"without_pack", verification->without_pack},
+                          {"first_difference", verification->first_difference}};
+  }
   report["data_s"] = summary.data_s;
   report["compute_s"] = summary.compute_s;
   report["instruction_set"] = InstructionSet();

@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "armcmc/data_pack_t.hpp"
 #include "armcmc/rt/pack_codec.hpp"
 #include "armcmc/rt/sequence_tracker.hpp"
 #include "armcmc/support/program.hpp"
@@ -24,6 +25,21 @@ void RequireChannel(const std::filesystem::path& path, const std::string& channe
 }
 
 }  // namespace
+
+PlantKind PlantOfLog(const std::filesystem::path& path, const std::string& prefix) {
+  const std::string channel = prefix + "PLANT_PACK";
+  RequireChannel(path, channel);
+  support::LcmLogReader log(path);
+  support::LcmLogEvent event;
+  data_pack_t pack{};
+  while (log.Next(&event)) {
+    if (event.channel != channel) continue;
+    if (pack.decode(event.data.data(), 0, static_cast<int>(event.data.size())) < 0) continue;
+    if (pack.plant_kind == data_pack_t::PLANT_HUNT_CROSSLEY) return PlantKind::kHuntCrossley;
+    if (pack.plant_kind == data_pack_t::PLANT_SOFT_ACTUATOR) return PlantKind::kSoftActuator;
+  }
+  throw support::InputError(path.string() + ": no event of " + channel + " is a pack of a known type and plant");
+}
 
 struct LcmSource::Checks {
   rt::PackCodec codec;
@@ -76,11 +92,7 @@ PackCounts LcmSource::counts() const {
 
 std::vector<std::string> LcmSource::notes() const {
   std::vector<std::string> notes;
-  const support::LcmLogDamage& damage = log_.damage();
-  if (damage.any())
-    notes.push_back("the log is damaged: " + std::to_string(damage.resyncs) + " places skipped, " +
-                    std::to_string(damage.missing_events) + " events missing" +
-                    (damage.cut_off ? ", cut off at its end" : ""));
+  if (log_.damage().any()) notes.push_back("the log is damaged: " + ToString(log_.damage()));
   if (record_)
     notes.push_back("draws are cut where " + std::to_string(record_->size()) + " recorded estimates were" +
                     (unused_ > 0 ? "; " + std::to_string(unused_) + " packs that have none are left out" : ""));

@@ -28,7 +28,7 @@ std::unique_ptr<PackSource> OpenSource(const SourceRequest& request) {
                                           : DrawRecord::FromCsv(request.draws_from, request.mode_names);
     if (record->empty())
       throw support::InputError(request.draws_from.string() + ": holds no estimate to take the draws from");
-  } else if (is_log) {
+  } else if (is_log && request.repeat_draws) {
     record = DrawRecord::FromLog(request.data, request.prefix);
     if (record->empty()) record.reset();
   }

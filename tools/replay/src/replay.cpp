@@ -25,7 +25,9 @@ ReplaySummary Replay(PackSource* source, Estimator* estimator,
       continue;
     }
     estimator->Execute(*result, estimate.get());
-    compute += Clock::now() - start;
+    const Clock::duration took = Clock::now() - start;
+    compute += took;
+    summary.pack_compute_s.push_back(std::chrono::duration<double>(took).count());
     ++summary.packs;
     summary.data_s += recorded->pack.num_samples * recorded->pack.dt;
     bool updated = false, modified = false, truncated = false;

@@ -18,6 +18,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kSync = {0xED, 0xA1, 0xDA, 0x01};
 constexpr std::size_t kHeaderSize = 28;
 constexpr std::int64_t kMaxChannelLength = 63;  // of LCM itself
+constexpr std::int64_t kMaxJump = 1000;         // events that may be missing at one place
 
 std::int64_t BigEndian(const std::uint8_t* bytes, int count) {
   std::uint64_t value = 0;
@@ -25,7 +26,21 @@ std::int64_t BigEndian(const std::uint8_t* bytes, int count) {
   return static_cast<std::int64_t>(value);
 }
 
+std::string Counted(std::int64_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+
 }  // namespace
+
+std::string ToString(const LcmLogDamage& damage) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  const auto bytes = static_cast<std::int64_t>(damage.skipped_bytes);
+  if (damage.resyncs > 0)
+    add(Counted(static_cast<std::int64_t>(damage.resyncs), "place") + " skipped (" + Counted(bytes, "byte") + ")");
+  if (damage.missing_events > 0) add(Counted(damage.missing_events, "event") + " missing");
+  if (damage.wrong_numbers > 0) add(Counted(damage.wrong_numbers, "event") + " with a wrong number");
+  if (damage.cut_off) add("cut off at its end" + (damage.resyncs == 0 ? " (" + Counted(bytes, "byte") + ")" : ""));
+  return text;
+}
 
 LcmLogReader::LcmLogReader(const std::filesystem::path& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -78,20 +93,53 @@ bool LcmLogReader::Parse(std::size_t at, LcmLogEvent* event, std::size_t* end) c
   return true;
 }
 
+// True when the file ends within a header.
+bool LcmLogReader::HeaderIsCut(std::size_t at) const {
+  const std::size_t left = bytes_.size() - at;
+  return left < kHeaderSize &&
+         std::equal(bytes_.begin() + static_cast<std::ptrdiff_t>(at),
+                    bytes_.begin() + static_cast<std::ptrdiff_t>(at + std::min(left, kSync.size())), kSync.begin());
+}
+
 bool LcmLogReader::EventStartsWithin(std::size_t from, std::size_t to, std::int64_t after_number) const {
   for (std::size_t at = FindSync(from, to); at < to; at = FindSync(at + 1, to)) {
     LcmLogEvent inner;
     std::size_t end = 0;
     // Its number goes on from here: the sync word may also be part of somebody's data.
-    if (Parse(at, &inner, &end) && inner.number > after_number && inner.number <= after_number + 1000) return true;
+    if (Parse(at, &inner, &end) && inner.number > after_number && inner.number <= after_number + kMaxJump) return true;
   }
   return false;
+}
+
+// A number is believed when it follows, or when the next event agrees with it; a small jump also without that.
+bool LcmLogReader::NumberFits(const LcmLogEvent& event, std::size_t end) const {
+  if (event.number == next_number_) return true;
+  LcmLogEvent next;
+  std::size_t next_end = 0;
+  if (end < bytes_.size() && Parse(end, &next, &next_end)) {
+    if (next.number == next_number_ + 1) return false;
+    if (next.number == event.number + 1) return true;
+  }
+  return event.number > next_number_ && event.number <= next_number_ + kMaxJump;
+}
+
+void LcmLogReader::Count(LcmLogEvent* event, std::size_t end) {
+  if (!NumberFits(*event, end)) {
+    ++damage_.wrong_numbers;
+    event->number = next_number_;
+  }
+  damage_.missing_events += std::max<std::int64_t>(event->number - next_number_, 0);
+  next_number_ = event->number + 1;
 }
 
 bool LcmLogReader::Next(LcmLogEvent* event) {
   const std::size_t start = at_;
   bool skipped = false;
   while (at_ < bytes_.size()) {
+    if (HeaderIsCut(at_)) {
+      damage_.cut_off = true;
+      break;
+    }
     std::size_t end = 0;
     bool good = Parse(at_, event, &end);
     if (good && end != bytes_.size()) {
@@ -104,8 +152,7 @@ bool LcmLogReader::Next(LcmLogEvent* event) {
       }
     }
     if (good) {
-      if (event->number > next_number_) damage_.missing_events += event->number - next_number_;
-      next_number_ = event->number + 1;
+      Count(event, end);
       damage_.skipped_bytes += at_ - start;
       at_ = end;
       return true;
@@ -114,7 +161,6 @@ bool LcmLogReader::Next(LcmLogEvent* event) {
     skipped = true;
     at_ = FindSync(at_ + 1, bytes_.size());
   }
-  if (at_ < bytes_.size() && !damage_.cut_off) damage_.cut_off = true;
   damage_.skipped_bytes += bytes_.size() - start;
   at_ = bytes_.size();
   return false;

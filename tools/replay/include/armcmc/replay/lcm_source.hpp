@@ -9,6 +9,9 @@
 
 namespace armcmc::replay {
 
+/// Plant of the first pack of an LCM log. @throws support::InputError when it holds no pack.
+[[nodiscard]] PlantKind PlantOfLog(const std::filesystem::path& path, const std::string& prefix);
+
 /// Packs from the PLANT_PACK events of an LCM log, checked and sequenced by the code of the real-time process.
 ///
 /// With a draw record, packs that the recorded run made no estimate from are left out: it was not running
@@ -22,6 +25,7 @@ class LcmSource final : public PackSource {
   [[nodiscard]] PackCounts counts() const override;
   [[nodiscard]] std::vector<std::string> notes() const override;
   [[nodiscard]] double progress() const override { return log_.progress(); }
+  [[nodiscard]] support::LcmLogDamage damage() const override { return log_.damage(); }
 
  private:
   struct Checks;  // codec and sequence tracker of the real-time process

@@ -9,6 +9,7 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/support/lcm_log.hpp"
 
 namespace armcmc::replay {
 
@@ -39,6 +40,8 @@ class PackSource {
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
   /// Share read so far, in [0, 1].
   [[nodiscard]] virtual double progress() const = 0;
+  /// What an LCM log has lost. Complete at the end.
+  [[nodiscard]] virtual support::LcmLogDamage damage() const { return {}; }
 };
 
 /// What to replay.
@@ -50,6 +53,7 @@ struct SourceRequest {
   bool skip_bad = false;             ///< CSV: count and skip bad rows.
   std::string prefix;                ///< LCM: of the channel names.
   std::filesystem::path draws_from;  ///< Estimates of the run to repeat, CSV or LCM log; empty: those in the data.
+  bool repeat_draws = true;          ///< false: another computation than the recorded one; no number of draws is taken.
   std::vector<std::string> mode_names;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "armcmc/estimate.hpp"
 #include "armcmc/estimator.hpp"
@@ -14,11 +15,12 @@ struct ReplaySummary {
   std::int64_t packs = 0;  ///< Used.
   std::int64_t held = 0;   ///< Of those, packs that said nothing about any parameter.
   std::int64_t modifications = 0;
-  std::int64_t truncated = 0;  ///< Cut at the recorded number of draws.
-  std::int64_t refused = 0;    ///< By the estimator; nothing was learnt from them.
-  double data_s = 0.0;         ///< Time that the packs span.
-  double compute_s = 0.0;      ///< Time that adjust and execute took.
-  Estimate last;               ///< After the last pack.
+  std::int64_t truncated = 0;          ///< Cut at the recorded number of draws.
+  std::int64_t refused = 0;            ///< By the estimator; nothing was learnt from them.
+  double data_s = 0.0;                 ///< Time that the packs span.
+  double compute_s = 0.0;              ///< Time that adjust and execute took.
+  std::vector<double> pack_compute_s;  ///< The same of every pack used.
+  Estimate last;                       ///< After the last pack.
 };
 
 /// Drives an estimator over a recording: no thread, no deadline, the same result every time.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace armcmc::support {
@@ -21,15 +22,20 @@ struct LcmLogDamage {
   std::size_t resyncs = 0;  ///< Places where bytes had to be skipped to find the next event.
   std::size_t skipped_bytes = 0;
   std::int64_t missing_events = 0;  ///< By the numbers of the events around the gaps.
+  std::int64_t wrong_numbers = 0;   ///< Events whose number does not fit their place; they are read all the same.
   bool cut_off = false;             ///< The last event is incomplete, as after a kill or a full disk.
-  [[nodiscard]] bool any() const { return resyncs > 0 || missing_events > 0 || cut_off; }
+  [[nodiscard]] bool any() const { return resyncs > 0 || missing_events > 0 || wrong_numbers > 0 || cut_off; }
 };
+
+/// The damage in words: "2 places skipped (1310 bytes), 2 events missing, cut off at its end"; empty without damage.
+[[nodiscard]] std::string ToString(const LcmLogDamage& damage);
 
 /// Reads the events of an LCM log in file order, over damaged places.
 ///
 /// The format is that of lcm-logger: sync word 0xEDA1DA01, number, utime, lengths, channel, data, big endian.
 /// An event whose length leads to no following event, while one starts inside it, has a damaged length: it is
-/// dropped and the events that it would have swallowed are read. (The library's own reader stops at a damaged
+/// dropped and the events that it would have swallowed are read. A damaged number is replaced by the one that its place
+/// in the file gives it. (The library's own reader stops at a damaged
 /// header as if the file ended there, and loses what a damaged length spans.) A damaged payload cannot be
 /// seen here: the format has no checksum.
 class LcmLogReader {
@@ -49,7 +55,10 @@ class LcmLogReader {
 
  private:
   [[nodiscard]] bool Parse(std::size_t at, LcmLogEvent* event, std::size_t* end) const;
+  [[nodiscard]] bool HeaderIsCut(std::size_t at) const;
   [[nodiscard]] std::size_t FindSync(std::size_t from, std::size_t to) const;
+  [[nodiscard]] bool NumberFits(const LcmLogEvent& event, std::size_t end) const;
+  void Count(LcmLogEvent* event, std::size_t end);
   [[nodiscard]] bool EventStartsWithin(std::size_t from, std::size_t to, std::int64_t after_number) const;
 
   std::span<const std::uint8_t> bytes_;  // the mapped file

@@ -1,0 +1,297 @@
+#include "armcmc/log_export/csv_export.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "armcmc/estimate_t.hpp"
+#include "armcmc/estimator_status_t.hpp"
+#include "armcmc/log_export/meaning.hpp"
+#include "armcmc/posterior_t.hpp"
+#include "armcmc/support/program.hpp"
+#include "support/paths.hpp"
+#include "support/process.hpp"
+#include "tools/replay_data.hpp"
+
+namespace armcmc::log_export {
+namespace {
+
+using replay::ContactPack;
+using replay::LogWriter;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using Rows = std::vector<std::map<std::string, std::string>>;
+
+std::string TextOf(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> Cells(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line + ",");
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+Rows ReadRows(const std::filesystem::path& path) {
+  std::istringstream text(TextOf(path));
+  std::string line;
+  std::getline(text, line);
+  const std::vector<std::string> names = Cells(line);
+  Rows rows;
+  while (std::getline(text, line)) {
+    const std::vector<std::string> cells = Cells(line);
+    EXPECT_EQ(cells.size(), names.size()) << line;
+    auto& row = rows.emplace_back();
+    for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells.at(i);
+  }
+  return rows;
+}
+
+double Number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
+
+estimate_t ContactEstimate(std::int64_t seq) {
+  estimate_t e{};
+  e.seq = seq;
+  e.run_id = 77;
+  e.plant_kind = 1;
+  e.n_params = 3;
+  e.n_modes = 1;
+  const char* const names[] = {"K", "B", "p"};
+  const char* const units[] = {"N/m^p", "N s/m^(p+1)", "-"};
+  for (int i = 0; i < 3; ++i) {
+    std::memcpy(e.param_name[i], names[i], std::strlen(names[i]));
+    std::memcpy(e.param_unit[i], units[i], std::strlen(units[i]));
+    e.ar_map[i] = 0.1 * static_cast<double>(seq) + i;
+  }
+  e.draws_by_mode[0] = 1'000;
+  e.zeta = seq == 1 ? std::numeric_limits<double>::infinity() : 0.5;
+  return e;
+}
+
+class CsvExport : public ::testing::Test {
+ protected:
+  CsvExport() { request_.log = dir_ / "run.lcm", request_.out = dir_ / "tables"; }
+  ExportSummary Export() {
+    return ExportLog(request_, [](double) {});
+  }
+  Rows Table(const std::string& channel) { return ReadRows(request_.out / (channel + ".csv")); }
+  test::Outcome Program(std::vector<std::string> more) {
+    more.insert(more.begin(), {"--data", request_.log, "--out", request_.out});
+    return test::RunProgram(test::Program("armcmc-export"), more);
+  }
+  test::ScratchDir dir_;
+  ExportRequest request_;
+};
+
+TEST(Meaning, EveryNumberOfEveryTypeHasItsPlaceInTheTable) {
+  for (const MessageType& type : ReleasedTypes()) {
+    ASSERT_TRUE(Meanings().contains(type.name)) << type.name << ": add it to lcm_types/columns.toml";
+    const TypeMeaning& meaning = Meanings().at(type.name);
+    for (const MessageField& field : type.fields) {
+      ASSERT_TRUE(meaning.fields.contains(field.name))
+          << type.name << "." << field.name << ": add it to lcm_types/columns.toml";
+      EXPECT_EQ(meaning.fields.at(field.name).axes.size(), field.dims.size()) << type.name << "." << field.name;
+    }
+    for (const auto& [name, unused] : meaning.fields) EXPECT_NE(type.Find(name), nullptr) << type.name << "." << name;
+    for (const std::string& name : meaning.repeat) EXPECT_NE(type.Find(name), nullptr) << type.name << "." << name;
+  }
+}
+
+TEST(Meaning, UnitsHaveNoSlashWhichPlotJugglerTakesForAFolder) {
+  EXPECT_EQ(ColumnUnit("N/m^p"), "N m^-p");
+  EXPECT_EQ(ColumnUnit("N s/m^(p+1)"), "N s m^-(p+1)");
+  EXPECT_EQ(ColumnUnit("m/s"), "m s^-1");
+  EXPECT_EQ(ColumnUnit("sqrt(Pa) s/Pa^2"), "sqrt(Pa) s Pa^-2");
+  EXPECT_EQ(ColumnUnit("1/s"), "s^-1");
+  EXPECT_EQ(ColumnUnit("-"), "");
+  EXPECT_EQ(ColumnUnit("us"), "us");
+}
+
+TEST_F(CsvExport, EstimatesHaveTheNamesAndUnitsOfTheirParameters) {
+  {
+    LogWriter log(request_.log);
+    for (int k = 1; k <= 3; ++k) log.Write("EST_ESTIMATE", ContactEstimate(k));
+  }
+  const ExportSummary summary = Export();
+  ASSERT_EQ(summary.tables.size(), 1u);
+  EXPECT_EQ(summary.tables[0].rows, 3);
+  const Rows rows = Table("EST_ESTIMATE");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(TextOf(request_.out / "EST_ESTIMATE.csv").substr(0, 6), "t [s],");
+  EXPECT_EQ(rows[0].at("t [s]"), "0");
+  EXPECT_NEAR(Number(rows[2].at("t [s]")), 2e-6, 1e-12) << "the log writer counts microseconds";
+  EXPECT_EQ(Number(rows[2].at("ar_map.K [N m^-p]")), ContactEstimate(3).ar_map[0]) << "to the bit";
+  EXPECT_EQ(Number(rows[2].at("ar_map.B [N s m^-(p+1)]")), ContactEstimate(3).ar_map[1]);
+  EXPECT_EQ(Number(rows[2].at("ar_map.p")), ContactEstimate(3).ar_map[2]);
+  EXPECT_EQ(rows[1].at("draws_by_mode.contact"), "1000");
+  EXPECT_EQ(rows[0].at("zeta"), "inf");
+  EXPECT_EQ(rows[0].at("run_id"), "77");
+  EXPECT_TRUE(rows[0].contains("y_pred [N]"));
+  EXPECT_FALSE(rows[0].contains("ar_map.parameter3")) << "entries past n_params are left out";
+  EXPECT_EQ(TextOf(request_.out / "EST_ESTIMATE.csv").find('/'), std::string::npos);
+}
+
+TEST_F(CsvExport, SamplesOfAPackHaveARowAndATimeEach) {
+  {
+    LogWriter log(request_.log);
+    log.Write("EST_STATUS", estimator_status_t{});
+    for (int k = 1; k <= 2; ++k) log.Write("PLANT_PACK", ContactPack(k));
+  }
+  EXPECT_EQ(Export().tables.at(1).rows, 200);
+  const Rows rows = Table("PLANT_PACK");
+  ASSERT_EQ(rows.size(), 200u);
+  EXPECT_NEAR(Number(rows[99].at("t [s]")), 1e-6, 1e-12) << "the first pack is in the log 1 us after the status";
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    EXPECT_NEAR(Number(rows[i].at("t [s]")) - Number(rows[i - 1].at("t [s]")), 0.001, 1e-12) << i;
+  EXPECT_EQ(Number(rows[150].at("x [m]")), replay::ContactAt(151).x);
+  EXPECT_EQ(Number(rows[150].at("v [m s^-1]")), replay::ContactAt(151).v);
+  EXPECT_EQ(Number(rows[150].at("f [N]")), replay::ContactAt(151).f);
+  EXPECT_EQ(rows[150].at("seq"), "2");
+}
+
+TEST_F(CsvExport, PosteriorsAreWideOrLong) {
+  {
+    LogWriter log(request_.log);
+    log.Write("EST_ESTIMATE", ContactEstimate(1));
+    posterior_t p{};
+    p.plant_kind = 1, p.n_params = 3, p.n_bins = 4, p.seq = 1;
+    log.Write("EST_POSTERIOR", p);  // nothing is known yet
+    p.known = 1, p.seq = 2;
+    p.lo[1] = 2.0, p.hi[1] = 4.0;
+    p.density[1][3] = 0.75;
+    log.Write("EST_POSTERIOR", p);
+  }
+  Export();
+  Rows rows = Table("EST_POSTERIOR");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].at("density.B.3 [(N s m^-(p+1))^-1]"), "0.75");
+  EXPECT_EQ(rows[1].at("hi.B [N s m^-(p+1)]"), "4");
+  request_.long_histograms = true;
+  Export();
+  rows = Table("EST_POSTERIOR");
+  ASSERT_EQ(rows.size(), 12u) << "three parameters, four bins";
+  const auto& row = rows[7];
+  EXPECT_EQ(row.at("parameter"), "B");
+  EXPECT_EQ(row.at("unit"), "N s m^-(p+1)");
+  EXPECT_EQ(row.at("bin"), "3");
+  EXPECT_EQ(row.at("from"), "3.5");
+  EXPECT_EQ(row.at("to"), "4");
+  EXPECT_EQ(row.at("density"), "0.75");
+}
+
+TEST_F(CsvExport, EveryPlantHasTablesOfItsOwn) {
+  {
+    LogWriter log(request_.log);
+    log.Write("A_EST_ESTIMATE", ContactEstimate(1));
+    estimate_t other = ContactEstimate(1);
+    std::memcpy(other.param_name[0], "k0", 2);
+    log.Write("B_EST_ESTIMATE", other);
+    log.Write("B_PLANT_PACK", ContactPack(1));
+  }
+  EXPECT_EQ(Export().tables.size(), 3u);
+  EXPECT_TRUE(Table("A_EST_ESTIMATE")[0].contains("ar_map.K [N m^-p]"));
+  EXPECT_TRUE(Table("B_EST_ESTIMATE")[0].contains("ar_map.k0 [N m^-p]"));
+  request_.prefix = "B_";
+  EXPECT_EQ(Export().tables.size(), 2u);
+  request_.channels = {"EST_ESTIMATE"};
+  const ExportSummary summary = Export();
+  ASSERT_EQ(summary.tables.size(), 1u);
+  EXPECT_EQ(summary.tables[0].channel.name, "B_EST_ESTIMATE");
+  EXPECT_EQ(summary.left_out, 2);
+}
+
+TEST_F(CsvExport, ForeignChannelsAndDamageAreCountedAndSaid) {
+  {
+    LogWriter log(request_.log);
+    log.Write("PLANT_PACK", ContactPack(1));
+    log.Write("PLANT_PACK", ContactEstimate(1));  // another type on our channel
+    log.Write("PLANT_PACK", ContactPack(2));
+    log.WriteRaw("CAMERA", "no type of ours");
+    log.WriteRaw("CAMERA", "x");
+    log.Write("EST_ESTIMATE", ContactEstimate(2));
+  }
+  std::string bytes = TextOf(request_.log);
+  std::ofstream(request_.log, std::ios::binary) << bytes.substr(0, bytes.size() - 10);
+  const test::Outcome o = Program({});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("foreign: CAMERA, 2 events of type 6e6f207479706520"));
+  EXPECT_THAT(o.out, HasSubstr("the log is damaged: cut off at its end (1526 bytes)"));
+  const Rows rows = Table("PLANT_PACK");
+  EXPECT_EQ(rows.size(), 200u);
+  std::string line = o.out.substr(o.out.find("\nPLANT_PACK"));
+  std::istringstream words(line);
+  std::vector<std::string> cells{std::istream_iterator<std::string>(words), {}};
+  cells.resize(5);
+  EXPECT_THAT(cells, ElementsAre("PLANT_PACK", "data_pack_t", "2", "200", "1"));
+}
+
+TEST_F(CsvExport, BadInputIsOneLine) {
+  {
+    LogWriter log(request_.log);
+    log.Write("PLANT_PACK", ContactPack(1));
+  }
+  test::Outcome o = Program({"--channels", "EST_ESTIMATE,PLANT_PACK"});
+  EXPECT_EQ(o.code, 2);
+  EXPECT_THAT(o.err, HasSubstr("holds nothing readable on channel EST_ESTIMATE; it has PLANT_PACK"));
+  o = Program({"--histograms", "tall"});
+  EXPECT_EQ(o.code, 2);
+  request_.log = dir_ / "none.lcm";
+  o = Program({});
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+}
+
+/// The log of golden_log.txt.
+void WriteGoldenLog(const std::filesystem::path& path) {
+  std::ifstream text(test::SourceDir() / "tests/tools/export/golden_log.txt");
+  std::string line, bytes;
+  std::getline(text, line);  // a comment
+  for (std::string word; text >> word;) {
+    if (word[0] == 'z') {
+      bytes.append(std::stoul(word.substr(1)), '\0');
+    } else {
+      for (std::size_t i = 0; i < word.size(); i += 2)
+        bytes.push_back(static_cast<char>(std::stoi(word.substr(i, 2), nullptr, 16)));
+    }
+  }
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+// Logs outlive versions: these bytes were written by the first one.
+TEST_F(CsvExport, ALogOfTheFirstReleasedTypesStaysReadable) {
+  WriteGoldenLog(request_.log);
+  const ExportSummary summary = Export();
+  EXPECT_EQ(summary.tables.size(), 5u);
+  EXPECT_TRUE(summary.foreign.empty());
+  EXPECT_FALSE(summary.damage.any());
+  const Rows packs = Table("PLANT_PACK"), truth = Table("PLANT_TRUTH"), estimates = Table("EST_ESTIMATE"),
+             posteriors = Table("EST_POSTERIOR"), statuses = Table("EST_STATUS");
+  ASSERT_EQ(packs.size(), 3u);
+  EXPECT_EQ(packs[2].at("x [m]"), "0.5");
+  EXPECT_EQ(packs[2].at("f [N]"), "3.5");
+  EXPECT_EQ(truth[0].at("theta_true.B [N s m^-(p+1)]"), "2.3");
+  EXPECT_EQ(truth[2].at("f_true [N]"), "3.25");
+  EXPECT_EQ(estimates[0].at("ar_map.p"), "2.25");
+  EXPECT_EQ(estimates[0].at("draws"), "14979");
+  EXPECT_EQ(estimates[0].at("zeta"), "inf");
+  EXPECT_EQ(posteriors[0].at("density.p.2"), "1");
+  EXPECT_EQ(statuses[0].at("rejected_type"), "7");
+  EXPECT_EQ(statuses[0].at("gap_where"), "v < 0");
+  EXPECT_NEAR(Number(statuses[0].at("t [s]")), 0.0501, 1e-9);
+}
+
+}  // namespace
+}  // namespace armcmc::log_export

@@ -1,0 +1,44 @@
+#include "model_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/models/registry.hpp"
+
+namespace armcmc::calibrate {
+namespace {
+
+/// What a model's Predict asks of its arithmetic, for one candidate.
+struct Scalar {
+  using V = double;
+  static V Set(double a) { return a; }
+  static V Exp2(double a) { return std::exp2(a); }
+  static V Fma(double a, double b, double c) { return a * b + c; }
+};
+
+template <class... Models>
+double PredictBy(ModelList<Models...>, int model, const double* theta, const ModeData& data, int n) {
+  using Fn = double (*)(const double*, const ModeData&, int) noexcept;
+  static constexpr Fn kPredict[] = {&Models::template Predict<Scalar>...};
+  return kPredict[model](theta, data, n);
+}
+
+}  // namespace
+
+ModelErrors::ModelErrors(const EstimatorSettings& settings) : settings_(settings), model_(FindModel(settings.model)) {}
+
+void ModelErrors::Of(const DataPack& pack, const std::array<ModeEstimate, kMaxModes>& estimates, int mode,
+                     std::vector<double>* errors) {
+  errors->clear();
+  const auto m = static_cast<std::size_t>(mode);
+  if (!estimates[m].known) return;
+  std::array<double, kMaxParams> theta{};
+  const int parameters = AllModels::kInfos[static_cast<std::size_t>(model_)]->num_parameters;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(parameters); ++d) theta[d] = estimates[m].marginal[d].ar_ap;
+  AllModels::kPrepare[static_cast<std::size_t>(model_)](pack, settings_.constants, mode, &data_);
+  for (int n = 0; n < data_.num_samples; ++n)
+    errors->push_back(data_.target[static_cast<std::size_t>(n)] - settings_.noise[m].mean -
+                      PredictBy(AllModels{}, model_, theta.data(), data_, n));
+}
+
+}  // namespace armcmc::calibrate

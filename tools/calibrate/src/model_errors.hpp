@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/estimate.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc::calibrate {
+
+/// Errors of a pack in the unit of the regression target under given estimates.
+class ModelErrors {
+ public:
+  /// @pre no effects.
+  explicit ModelErrors(const EstimatorSettings& settings);
+
+  /// Target minus prediction with the mean of the draws, of every sample of a mode that is known; the noise's mean is
+  /// taken off.
+  void Of(const DataPack& pack, const std::array<ModeEstimate, kMaxModes>& estimates, int mode,
+          std::vector<double>* errors);
+
+ private:
+  EstimatorSettings settings_;
+  int model_;
+  ModeData data_;
+};
+
+}  // namespace armcmc::calibrate

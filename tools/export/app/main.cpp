@@ -1,0 +1,80 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+#include "armcmc/log_export/csv_export.hpp"
+#include "armcmc/support/program.hpp"
+#include "armcmc/support/progress.hpp"
+#include "armcmc/support/text_table.hpp"
+
+namespace armcmc::log_export {
+namespace {
+
+struct Arguments {
+  ExportRequest request;
+  std::string histograms = "wide";
+};
+
+void Declare(CLI::App* app, Arguments* a) {
+  app->add_option("--data", a->request.log, "LCM log, as lcm-logger writes it")->required();
+  app->add_option("--out", a->request.out, "Folder for the tables, one CSV a channel")->required();
+  app->add_option("--channels", a->request.channels,
+                  "Only these channels, comma separated, with or without their prefix (EST_ESTIMATE)")
+      ->delimiter(',');
+  app->add_option("--prefix", a->request.prefix, "Only channels that begin with this");
+  app->add_option("--histograms", a->histograms,
+                  "Posteriors: wide, a row a message (PlotJuggler), or long, a row a bin (pandas)")
+      ->check(CLI::IsMember({"wide", "long"}))
+      ->capture_default_str();
+  app->footer(
+      "Turns a log into tables that PlotJuggler and pandas read. The first column is the time in seconds since the "
+      "first\n"
+      "event of the log; headers carry units: \"ar_map.K [N m^-p]\". Samples of packs have a row each.\n\n"
+      "Example:\n"
+      "  armcmc-export --data run.lcm --out tables --channels EST_ESTIMATE,PLANT_PACK\n"
+      "  python3 -c \"import pandas; print(pandas.read_csv('tables/EST_ESTIMATE.csv', index_col='t "
+      "[s]').describe())\"");
+}
+
+std::string Hex(std::int64_t fingerprint) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fingerprint));
+  return text;
+}
+
+void Print(const ExportSummary& summary) {
+  support::TextTable table({"channel", "type", "messages", "rows", "undecodable", "file"});
+  for (const ExportedTable& t : summary.tables)
+    table.AddRow({t.channel.name, t.channel.type->name, std::to_string(t.channel.messages), std::to_string(t.rows),
+                  std::to_string(t.channel.undecodable), t.file.string()});
+  std::cout << table.ToString();
+  for (const ChannelScan& channel : summary.foreign)
+    std::cout << "foreign: " << channel.name << ", " << channel.undecodable << " events of type "
+              << Hex(channel.fingerprint) << " (no released type of ours)\n";
+  if (summary.left_out > 0) std::cout << summary.left_out << " channels were not asked for\n";
+  if (summary.damage.any()) std::cout << "the log is damaged: " << ToString(summary.damage) << '\n';
+}
+
+int Run(const Arguments& arguments) {
+  ExportRequest request = arguments.request;
+  request.long_histograms = arguments.histograms == "long";
+  ExportSummary summary;
+  {
+    support::Progress progress("export");
+    summary = ExportLog(request, [&](double share) { progress.Update(share); });
+  }
+  Print(summary);
+  return support::kExitOk;
+}
+
+}  // namespace
+}  // namespace armcmc::log_export
+
+int main(int argc, char** argv) {
+  CLI::App app{"Turns an LCM log into CSV tables, one a channel."};
+  armcmc::log_export::Arguments arguments;
+  armcmc::log_export::Declare(&app, &arguments);
+  return armcmc::support::RunProgram(app, "armcmc-export", argc, argv,
+                                     [&] { return armcmc::log_export::Run(arguments); });
+}

@@ -1,0 +1,128 @@
+#include "armcmc/log_export/columns.hpp"
+
+#include <algorithm>
+
+#include "armcmc/log_export/meaning.hpp"
+
+namespace armcmc::log_export {
+namespace {
+
+std::string NameOr(const std::vector<std::string>& names, std::size_t i, const char* otherwise) {
+  return i < names.size() && !names[i].empty() ? names[i] : otherwise + std::to_string(i);
+}
+
+std::string UnitOr(const std::vector<std::string>& units, std::size_t i) {
+  return i < units.size() ? ColumnUnit(units[i]) : "";
+}
+
+std::string Inverse(const std::string& unit) {
+  return unit.empty() ? std::string() : std::string("(").append(unit).append(")^-1");
+}
+
+/// Builds the columns of one type, field by field.
+class Builder {
+ public:
+  Builder(const PlantScan& plant, const TypeMeaning& meaning)
+      : plant_(plant), words_(WordsOf(plant.plant_kind)), meaning_(meaning) {}
+
+  void Add(const MessageField& field, std::vector<Column>* columns) const {
+    const auto found = meaning_.fields.find(field.name);
+    const FieldMeaning what = found == meaning_.fields.end() ? FieldMeaning{} : found->second;
+    const bool per_sample = !what.axes.empty() && what.axes[0] == Axis::kSample;
+    const bool repeated =
+        std::find(meaning_.repeat.begin(), meaning_.repeat.end(), field.name) != meaning_.repeat.end();
+    if (meaning_.row_per_sample && !per_sample && !repeated) return;
+    const bool text = !what.axes.empty() && what.axes.back() == Axis::kText;
+    if (text && field.dims.size() > 1) return;  // names of parameters: they stand in the headers
+    Column column;
+    column.field = &field;
+    column.text = text;
+    Walk(what, field, 0, field.name, ColumnUnit(what.unit), column, columns);
+  }
+
+ private:
+  [[nodiscard]] std::size_t Used(Axis axis, int size) const {
+    const auto limit = [size](int used) { return static_cast<std::size_t>(used > 0 ? std::min(used, size) : size); };
+    switch (axis) {
+      case Axis::kParameter: return limit(plant_.num_parameters);
+      case Axis::kMode: return limit(plant_.num_modes);
+      case Axis::kInput: return limit(plant_.num_inputs);
+      case Axis::kSample:
+      case Axis::kText: return 1;
+      case Axis::kBin: break;
+    }
+    return limit(0);
+  }
+
+  /// One dimension after the other; the last one emits the column.
+  void Walk(const FieldMeaning& what, const MessageField& field, std::size_t dim, const std::string& name,
+            const std::string& unit, const Column& so_far, std::vector<Column>* columns) const {
+    if (dim == field.dims.size()) {
+      Column column = so_far;
+      const std::string shown = Resolved(unit);
+      column.header = name;
+      if (!shown.empty()) column.header.append(" [").append(shown).append("]");
+      columns->push_back(column);
+      return;
+    }
+    std::size_t stride = 1;
+    for (std::size_t d = dim + 1; d < field.dims.size(); ++d) stride *= static_cast<std::size_t>(field.dims[d]);
+    const Axis axis = dim < what.axes.size() ? what.axes[dim] : Axis::kBin;
+    for (std::size_t i = 0; i < Used(axis, field.dims[dim]); ++i) {
+      Column next = so_far;
+      std::string next_name = name, next_unit = unit;
+      next.index += i * stride;
+      switch (axis) {
+        case Axis::kSample:
+          next.sample_stride = stride;
+          if (what.unit == "output") next_name = field.name == "y_true" ? words_.output + "_true" : words_.output;
+          break;
+        case Axis::kInput:
+          next_name = NameOr(words_.inputs, i, "u");
+          next_unit = UnitOr(words_.input_units, i);
+          break;
+        case Axis::kParameter:
+          next_name.append(".").append(ParameterName(plant_, i));
+          if (what.unit == "parameter") next_unit = ParameterUnit(plant_, i);
+          if (what.unit == "1/parameter") next_unit = Inverse(ParameterUnit(plant_, i));
+          break;
+        case Axis::kMode: next_name.append(".").append(NameOr(words_.modes, i, "mode")); break;
+        case Axis::kBin: next_name.append(".").append(std::to_string(i)); break;
+        case Axis::kText: break;
+      }
+      Walk(what, field, dim + 1, next_name, next_unit, next, columns);
+    }
+  }
+
+  [[nodiscard]] std::string Resolved(const std::string& unit) const {
+    if (unit == "output") return ColumnUnit(words_.output_unit);
+    if (unit == "target") return ColumnUnit(words_.target_unit);
+    return unit;
+  }
+
+  const PlantScan& plant_;
+  const PlantWords& words_;
+  const TypeMeaning& meaning_;
+};
+
+}  // namespace
+
+std::string ParameterName(const PlantScan& plant, std::size_t i) {
+  const auto& names = plant.parameters.empty() ? WordsOf(plant.plant_kind).parameters : plant.parameters;
+  return NameOr(names, i, "parameter");
+}
+
+std::string ParameterUnit(const PlantScan& plant, std::size_t i) {
+  return UnitOr(plant.parameters.empty() ? WordsOf(plant.plant_kind).parameter_units : plant.units, i);
+}
+
+std::vector<Column> ColumnsOf(const ChannelScan& channel, const PlantScan& plant) {
+  static const TypeMeaning kNothingKnown;
+  const auto found = Meanings().find(channel.type->name);
+  const Builder builder(plant, found == Meanings().end() ? kNothingKnown : found->second);
+  std::vector<Column> columns;
+  for (const MessageField& field : channel.type->fields) builder.Add(field, &columns);
+  return columns;
+}
+
+}  // namespace armcmc::log_export

@@ -1,0 +1,117 @@
+#include "armcmc/log_export/meaning.hpp"
+
+#include <array>
+#include <cctype>
+#include <sstream>
+#include <utility>
+
+#include "armcmc/support/strict_toml.hpp"
+
+namespace armcmc::embedded {
+std::string_view ColumnTable() noexcept;
+}
+
+namespace armcmc::log_export {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Axis>, 6> kAxes = {{{"parameter", Axis::kParameter},
+                                                                     {"mode", Axis::kMode},
+                                                                     {"sample", Axis::kSample},
+                                                                     {"input", Axis::kInput},
+                                                                     {"bin", Axis::kBin},
+                                                                     {"text", Axis::kText}}};
+
+std::vector<std::string> Words(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+FieldMeaning ReadField(support::StrictTable& fields, const std::string& name) {
+  const std::string text = fields.RequiredText(name);
+  const std::size_t bar = text.find('|');
+  FieldMeaning meaning;
+  const std::vector<std::string> unit = Words(text.substr(0, bar));
+  for (const std::string& word : unit) meaning.unit += (meaning.unit.empty() ? "" : " ") + word;
+  if (bar == std::string::npos) return meaning;
+  for (const std::string& word : Words(text.substr(bar + 1))) {
+    bool known = false;
+    for (const auto& [axis, value] : kAxes)
+      if (axis == word) meaning.axes.push_back(value), known = true;
+    if (!known) throw fields.Error(name, "unknown axis " + word);
+  }
+  return meaning;
+}
+
+const PlantWords kContact = {
+    "f", "N", "N", {"x", "v"}, {"m", "m/s"}, {"K", "B", "p"}, {"N/m^p", "N s/m^(p+1)", "-"}, {"contact"}};
+const PlantWords kActuator = {"alpha",
+                              "rad",
+                              "sqrt(Pa)",
+                              {"u_c", "u_d", "p", "pdot"},
+                              {"-", "-", "Pa", "Pa/s"},
+                              {"g", "theta2"},
+                              {"sqrt(Pa) s/Pa", "sqrt(Pa) s/Pa^2"},
+                              {"u_c", "u_d"}};
+const PlantWords kUnknownPlant = {"y", "", "", {}, {}, {}, {}, {}};
+
+}  // namespace
+
+std::map<std::string, TypeMeaning> ReadMeanings(std::string_view toml) {
+  auto root = support::StrictTable::FromText(toml, "columns.toml");
+  root.RequiredInteger("schema", 1, 1);
+  std::map<std::string, TypeMeaning> meanings;
+  for (const std::string& type : root.Keys()) {
+    if (type == "schema") continue;
+    support::StrictTable table = root.Table(type);
+    TypeMeaning& meaning = meanings[type];
+    meaning.channel = table.RequiredText("channel");
+    meaning.row_per_sample = table.Choice("rows", "message", {"message", "sample"}) == "sample";
+    meaning.repeat = Words(table.Text("repeat", ""));
+    support::StrictTable fields = table.Table("fields");
+    for (const std::string& field : fields.Keys()) meaning.fields[field] = ReadField(fields, field);
+  }
+  root.Finish();
+  return meanings;
+}
+
+const std::map<std::string, TypeMeaning>& Meanings() {
+  static const std::map<std::string, TypeMeaning> meanings = ReadMeanings(embedded::ColumnTable());
+  return meanings;
+}
+
+const PlantWords& WordsOf(int plant_kind) {
+  switch (plant_kind) {
+    case 1: return kContact;
+    case 2: return kActuator;
+    default: return kUnknownPlant;
+  }
+}
+
+std::string ColumnUnit(std::string_view unit) {
+  if (unit == "-") return "";
+  std::string text;
+  if (unit.substr(0, 2) == "1/") unit.remove_prefix(1);
+  for (std::size_t at = 0; at < unit.size(); ++at) {
+    if (unit[at] != '/') {
+      text.push_back(unit[at]);
+      continue;
+    }
+    if (!text.empty()) text.push_back(' ');
+    // The divisor is one symbol, with an exponent or without.
+    std::size_t end = at + 1;
+    while (end < unit.size() && (std::isalpha(static_cast<unsigned char>(unit[end])) != 0)) ++end;
+    text.append(unit.substr(at + 1, end - at - 1));
+    if (end < unit.size() && unit[end] == '^') {
+      text.append("^-");
+      at = end;
+    } else {
+      text.append("^-1");
+      at = end - 1;
+    }
+  }
+  return text;
+}
+
+}  // namespace armcmc::log_export

@@ -1,0 +1,74 @@
+#include "arguments.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "armcmc/replay/lcm_source.hpp"
+#include "armcmc/support/program.hpp"
+
+namespace armcmc::replay {
+
+using support::InputError;
+
+void Declare(CLI::App* app, Arguments* a) {
+  app->add_option("--config", a->config,
+                  "Configuration, by path or by name (hunt_crossley); for an LCM log, left out: that of its plant");
+  app->add_option(
+      "--data", a->data,
+      "Recording: a CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha) or an LCM log");
+  app->add_option("--out", a->out, "CSV of estimates to write, one row a pack; with --compare: the report, HTML");
+  app->add_option("--model", a->model,
+                  "Built-in model or model file (.toml) instead of the model of the configuration");
+  app->add_option("--seed", a->seed, "Seed instead of that of the configuration");
+  app->add_option(
+      "--draws-from", a->draws_from,
+      "Repeat the numbers of draws of this run: an estimate CSV or an LCM log (a log given as --data is its "
+      "own record)");
+  app->add_flag(
+      "--verify", a->verify,
+      "Compare with the estimates and posteriors that the log (--data) recorded, bit by bit; exit 1 when they "
+      "differ");
+  app->add_option("--compare", a->compare, "Estimate once more with this configuration and report both (--out, HTML)");
+  app->add_option("--compare-model", a->compare_model, "Model of the second run, with or without --compare");
+  app->add_option(
+      "--calibrate", a->calibrate,
+      "From a recording of normal operation: configuration to write, with threshold, noise law, noise scale "
+      "and rho; the evidence goes to a report beside it (.html)");
+  app->add_option("--false-modifications", a->false_modifications,
+                  "With --calibrate: share of packs that may be taken for a change although nothing changed")
+      ->check(CLI::Range(1e-6, 0.2))
+      ->capture_default_str();
+  app->add_option("--predictions", a->predictions, "CSV of the predicted output of every sample to write");
+  app->add_option("--report", a->report, "JSON summary to write");
+  app->add_option("--prefix", a->prefix, "Prefix of the LCM channel names");
+  app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows of a CSV instead of stopping");
+  app->footer(
+      "Runs the estimator over a recording: no threads, no deadline, the same result every time. Equal to a live run "
+      "to\n"
+      "the bit for the same packs, seed and numbers of draws.\n\n"
+      "Example:\n"
+      "  armcmc-plant --scenario hunt_crossley_paper --duration 20 --csv contact.csv\n"
+      "  armcmc-replay --config hunt_crossley --data contact.csv --out estimates.csv\n"
+      "  armcmc-replay --data run.lcm --verify\n"
+      "  armcmc-replay --data run.lcm --config hunt_crossley --compare other.toml --out report.html\n"
+      "  armcmc-replay --data normal.lcm --config hunt_crossley --calibrate calibrated.toml\n"
+      "Exit status: 0 ok, 1 the runs differ (--verify) or another failure, 2 bad usage or input.");
+}
+
+void Complete(Arguments* a) {
+  if (a->data.empty()) throw InputError(a->config.empty() ? "--config and --data are required" : "--data is required");
+  const bool is_log = IsLcmLog(a->data);
+  if (a->config.empty()) {
+    if (!is_log) throw InputError("--config is required for a CSV: which plant is it?");
+    a->config = PlantOfLog(a->data, a->prefix) == PlantKind::kHuntCrossley ? "hunt_crossley" : "soft_actuator";
+    std::cout << "configuration: " << a->config << ", by the plant of the log\n";
+  }
+  if (a->verify && !is_log) throw InputError("--verify needs an LCM log as --data: a CSV holds no estimates");
+  if (a->verify && !a->draws_from.empty()) throw InputError("--verify takes the draws from --data; drop --draws-from");
+  const int jobs = (a->verify ? 1 : 0) + (a->compares() ? 1 : 0) + (a->calibrate.empty() ? 0 : 1);
+  if (jobs > 1) throw InputError("--verify, --compare and --calibrate exclude each other");
+  if (a->compares() && a->out.empty()) throw InputError("--out is required: the report of --compare");
+  if (jobs == 0 && a->out.empty()) throw InputError("--out is required");
+}
+
+}  // namespace armcmc::replay
