@@ -38,7 +38,11 @@ XyChart Both(const RunTrace& a, const RunTrace& b, const std::string& y_title, s
   return chart;
 }
 
-std::string Cell(double value) { return "<td class=\"num\">" + NumberText(value, 5) + "</td>"; }
+/// Counts as they are, other numbers to five digits.
+std::string Cell(double value) {
+  const bool count = value == std::round(value) && std::fabs(value) < 1e9;
+  return "<td class=\"num\">" + (count ? plots::FixedText(value, 0) : NumberText(value, 5)) + "</td>";
+}
 
 void AddSettings(const RunTrace& a, const RunTrace& b, plots::Page* page) {
   page->Html("<section class=\"card\" id=\"settings\"><h2>What was set differently</h2>\n");
