@@ -162,7 +162,13 @@ TEST_F(CalibrationProgram, TheReportIsDrawn) {
 TEST_F(CalibrationProgram, ATooShortRecordingIsRefused) {
   const Outcome o = Calibrate(Record("kind = \"gaussian\"\nstd = 0.1", 9, "4"));
   EXPECT_EQ(o.code, 2);
-  EXPECT_THAT(o.err, HasSubstr("too short to calibrate from"));
+  EXPECT_THAT(o.err, HasSubstr("packs, expected at least 40"));
+}
+
+TEST_F(CalibrationProgram, ARecordingWithoutNoiseIsRefused) {
+  const Outcome o = Calibrate(Record("kind = \"gaussian\"\nstd = 1e-14", 9, "10"));
+  EXPECT_EQ(o.code, 2);
+  EXPECT_THAT(o.err, HasSubstr("holds no noise"));
 }
 
 }  // namespace

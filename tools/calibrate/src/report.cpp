@@ -71,7 +71,7 @@ plots::XyChart ErrorChart(const ModeNoise& noise, const std::string& unit) {
 void AddNoise(const ModeNoise& noise, const std::string& unit, plots::Page* page) {
   page->Html("<section class=\"card\"><h2>Noise, mode " + EscapeHtml(noise.mode) + "</h2>\n");
   if (!noise.calibrated) {
-    page->Html("<p>Too few packs (" + std::to_string(noise.packs) + "): it stays as it was.</p></section>\n");
+    page->Html("<p>It stays as it was: " + EscapeHtml(noise.why_not) + ".</p></section>\n");
     return;
   }
   page->Html("<p class=\"soft\">" + std::to_string(noise.samples) + " errors in " + std::to_string(noise.packs) +
