@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <string>
@@ -179,6 +179,7 @@ TEST_F(CsvExport, PosteriorsAreWideOrLong) {
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[1].at("density.B.3 [(N s m^-(p+1))^-1]"), "0.75");
   EXPECT_EQ(rows[1].at("hi.B [N s m^-(p+1)]"), "4");
+  EXPECT_FALSE(rows[1].contains("density.B.4 [(N s m^-(p+1))^-1]")) << "bins past n_bins are left out";
   request_.long_histograms = true;
   Export();
   rows = Table("EST_POSTERIOR");

@@ -22,12 +22,14 @@ constexpr std::size_t kSettlePacks = 10;  // of a mode, before its estimates are
 constexpr double kNever = 1e4;            // noise scales; beyond any score, small enough to be subtracted again
 constexpr int kDraws = 3'000;             // in the runs that only need the mean
 constexpr std::array kRhos = {0.0, 0.002, 0.005, 0.01, 0.02, 0.05};
+constexpr double kRounding = 1e-9;  // of the target: errors below it are no noise
 constexpr std::size_t kPlotErrors = 20'000;
 
 /// What one run of the estimator leaves.
 struct Run {
-  std::array<PackErrors, kMaxModes> fitted;      ///< Errors under the estimate after the pack.
-  std::vector<std::pair<double, double>> ahead;  ///< Of every pack: sum of log densities before it, and samples.
+  std::array<PackErrors, kMaxModes> fitted;       ///< Errors under the estimate after the pack.
+  std::array<double, kMaxModes> target_square{};  ///< Largest mean square of the target of a pack.
+  std::vector<std::pair<double, double>> ahead;   ///< Of every pack: sum of log densities before it, and samples.
   std::vector<ThresholdSample> scores;
 };
 
@@ -59,7 +61,8 @@ class Runner {
         if (std::isfinite(e.modes[i].zeta))
           run.scores.push_back({e.t_last_s, ThresholdScore(settings.forgetting, e.modes[i], e.num_samples)});
         if (++informative[i] <= kSettlePacks) continue;
-        Errors(&errors, recorded, e, e.modes, m, &pack_errors);
+        const double square = Errors(&errors, recorded, e, e.modes, m, &pack_errors);
+        run.target_square[i] = std::max(run.target_square[i], square);
         run.fitted[i].push_back(pack_errors);
         Errors(&errors, recorded, e, before, m, &pack_errors);
         for (const double error : pack_errors) ahead += laws[i].LogDensity(error, settings.noise[i].std);
@@ -75,13 +78,17 @@ class Runner {
 
  private:
   /// Without effects from the model; with them from the prediction on display, which is the contact force.
-  void Errors(ModelErrors* model, const replay::RecordedPack& recorded, const Estimate& e,
-              const std::array<ModeEstimate, kMaxModes>& estimates, int mode, std::vector<double>* errors) const {
+  double Errors(ModelErrors* model, const replay::RecordedPack& recorded, const Estimate& e,
+                const std::array<ModeEstimate, kMaxModes>& estimates, int mode, std::vector<double>* errors) const {
     if (request_.settings.num_effects == 0) return model->Of(recorded.pack, estimates, mode, errors);
     errors->clear();
-    for (std::size_t n = 0; n < static_cast<std::size_t>(e.num_samples); ++n)
+    double square = 0.0;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(e.num_samples); ++n) {
+      square += recorded.pack.y[n] * recorded.pack.y[n] / e.num_samples;
       if (std::isfinite(e.y_shown[n]))
         errors->push_back(recorded.pack.y[n] - e.y_shown[n] - request_.settings.noise[0].mean);
+    }
+    return square;
   }
 
   const CalibrationRequest& request_;
@@ -97,14 +104,20 @@ std::vector<double> Flat(const PackErrors& errors, std::size_t most) {
   return some;
 }
 
-ModeNoise NoiseOf(const PackErrors& errors, const NoiseSettings& start, std::string mode) {
+ModeNoise NoiseOf(const PackErrors& errors, double target_square, const NoiseSettings& start, std::string mode) {
   ModeNoise noise;
   noise.mode = std::move(mode);
   noise.packs = errors.size();
   for (const auto& pack : errors) noise.samples += pack.size();
   noise.errors = Flat(errors, kPlotErrors);
-  const bool any = std::any_of(noise.errors.begin(), noise.errors.end(), [](double e) { return e != 0.0; });
-  if (noise.packs < kMinPacks || !any) return noise;
+  double square = 0.0;
+  for (const double e : noise.errors) square += e * e / static_cast<double>(noise.errors.size());
+  if (noise.packs < kMinPacks) {
+    noise.why_not = "only " + std::to_string(noise.packs) + " packs, expected at least " + std::to_string(kMinPacks);
+  } else if (!(square > kRounding * kRounding * target_square)) {
+    noise.why_not = "the recording holds no noise, the errors are those of rounding";
+  }
+  if (!noise.why_not.empty()) return noise;
   noise.calibrated = true;
   noise.laws = CompareLaws(errors, start);
   noise.chosen = SimplestGoodLaw(noise.laws);
@@ -122,7 +135,7 @@ void CalibrateNoise(Runner* run, Calibration* c) {
     for (int m = 0; m < names.num_modes(); ++m) {
       const auto i = static_cast<std::size_t>(m);
       NoiseSettings& noise = c->settings.noise[i];
-      c->noise.push_back(NoiseOf(result.fitted[i], noise, std::string(names.mode_name(m))));
+      c->noise.push_back(NoiseOf(result.fitted[i], result.target_square[i], noise, std::string(names.mode_name(m))));
       const ModeNoise& found = c->noise.back();
       if (!found.calibrated) continue;
       const NoiseSettings& next = found.laws[found.chosen].noise;
@@ -134,8 +147,7 @@ void CalibrateNoise(Runner* run, Calibration* c) {
   c->noise_runs = std::min(c->noise_runs, kMaxNoiseRuns);
   for (const ModeNoise& noise : c->noise) {
     if (!noise.calibrated) {
-      c->notes.push_back("mode " + noise.mode + ": only " + std::to_string(noise.packs) + " packs, expected at least " +
-                         std::to_string(kMinPacks) + "; its noise stays as it was");
+      c->notes.push_back("mode " + noise.mode + ": " + noise.why_not + "; its noise stays as it was");
     } else if (std::fabs(noise.correlation) > 0.2) {
       c->notes.push_back("mode " + noise.mode + ": an error says something about the next (correlation " +
                          support::ExactNumber(std::round(100.0 * noise.correlation) / 100.0) +
@@ -207,8 +219,8 @@ Calibration Calibrate(const CalibrationRequest& request) {
   c.settings.forgetting.threshold = kNever;
   CalibrateNoise(&run, &c);
   if (std::none_of(c.noise.begin(), c.noise.end(), [](const ModeNoise& n) { return n.calibrated; }))
-    throw support::InputError("the recording is too short to calibrate from: no mode has " + std::to_string(kMinPacks) +
-                              " packs after the first " + std::to_string(kSettlePacks));
+    throw support::InputError("the recording cannot be calibrated from: mode " + c.noise.front().mode + ": " +
+                              c.noise.front().why_not + " after the first " + std::to_string(kSettlePacks));
   if (tries_rho) {
     CalibrateRho(&run, &c);
   } else {

@@ -27,18 +27,22 @@ double PredictBy(ModelList<Models...>, int model, const double* theta, const Mod
 
 ModelErrors::ModelErrors(const EstimatorSettings& settings) : settings_(settings), model_(FindModel(settings.model)) {}
 
-void ModelErrors::Of(const DataPack& pack, const std::array<ModeEstimate, kMaxModes>& estimates, int mode,
-                     std::vector<double>* errors) {
+double ModelErrors::Of(const DataPack& pack, const std::array<ModeEstimate, kMaxModes>& estimates, int mode,
+                       std::vector<double>* errors) {
   errors->clear();
   const auto m = static_cast<std::size_t>(mode);
-  if (!estimates[m].known) return;
+  if (!estimates[m].known) return 0.0;
   std::array<double, kMaxParams> theta{};
   const int parameters = AllModels::kInfos[static_cast<std::size_t>(model_)]->num_parameters;
   for (std::size_t d = 0; d < static_cast<std::size_t>(parameters); ++d) theta[d] = estimates[m].marginal[d].ar_ap;
   AllModels::kPrepare[static_cast<std::size_t>(model_)](pack, settings_.constants, mode, &data_);
-  for (int n = 0; n < data_.num_samples; ++n)
-    errors->push_back(data_.target[static_cast<std::size_t>(n)] - settings_.noise[m].mean -
-                      PredictBy(AllModels{}, model_, theta.data(), data_, n));
+  double square = 0.0;
+  for (int n = 0; n < data_.num_samples; ++n) {
+    const double target = data_.target[static_cast<std::size_t>(n)];
+    square += target * target;
+    errors->push_back(target - settings_.noise[m].mean - PredictBy(AllModels{}, model_, theta.data(), data_, n));
+  }
+  return data_.num_samples > 0 ? square / data_.num_samples : 0.0;
 }
 
 }  // namespace armcmc::calibrate

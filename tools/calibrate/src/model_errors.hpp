@@ -18,8 +18,9 @@ class ModelErrors {
 
   /// Target minus prediction with the mean of the draws, of every sample of a mode that is known; the noise's mean is
   /// taken off.
-  void Of(const DataPack& pack, const std::array<ModeEstimate, kMaxModes>& estimates, int mode,
-          std::vector<double>* errors);
+  /// @return Mean square of the target; 0 without samples.
+  double Of(const DataPack& pack, const std::array<ModeEstimate, kMaxModes>& estimates, int mode,
+            std::vector<double>* errors);
 
  private:
   EstimatorSettings settings_;

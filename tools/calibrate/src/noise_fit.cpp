@@ -9,7 +9,7 @@
 namespace armcmc::calibrate {
 namespace {
 
-constexpr std::size_t kMaxErrors = 60'000;  // more say nothing new on four numbers
+constexpr std::size_t kMaxErrors = 20'000;  // more say nothing new on four numbers
 constexpr std::size_t kPacksPerBlock = 5;
 
 double MeanSquare(const std::vector<double>& errors) {
@@ -26,10 +26,10 @@ double MedianAbsolute(const std::vector<double>& errors) {
   return *middle > 0.0 ? *middle : std::sqrt(MeanSquare(errors));
 }
 
-/// Scale of the t law with dof degrees of freedom, and the log-likelihood that it reaches.
+/// Scale of the t law with dof degrees of freedom from a start, and the log-likelihood that it reaches.
 double FitScale(double dof, const std::vector<double>& errors, double* scale) {
-  constexpr int kIterations = 60;
-  double s2 = std::pow(1.5 * MedianAbsolute(errors), 2);
+  constexpr int kIterations = 25;
+  double s2 = *scale * *scale;
   for (int i = 0; i < kIterations; ++i) {
     double sum = 0.0;
     for (const double e : errors) sum += (dof + 1.0) / (dof + e * e / s2) * e * e;
@@ -45,7 +45,7 @@ double FitScale(double dof, const std::vector<double>& errors, double* scale) {
 
 void FitStudentT(const std::vector<double>& errors, NoiseSettings* noise) {
   constexpr double kGolden = 0.6180339887498949;
-  double lo = 0.0, hi = std::log(200.0), scale = 0.0;
+  double lo = 0.0, hi = std::log(200.0), scale = 1.5 * MedianAbsolute(errors);
   const auto value = [&](double log_dof) { return FitScale(std::exp(log_dof), errors, &scale); };
   double a = hi - kGolden * (hi - lo), b = lo + kGolden * (hi - lo), at_a = value(a), at_b = value(b);
   for (int i = 0; i < 16; ++i) {
@@ -56,12 +56,13 @@ void FitStudentT(const std::vector<double>& errors, NoiseSettings* noise) {
     }
   }
   noise->dof = std::exp(0.5 * (lo + hi));
-  FitScale(noise->dof, errors, &noise->std);
+  FitScale(noise->dof, errors, &scale);
+  noise->std = scale;
 }
 
 /// EM from the weight and scales in `noise`. @return mean log density without its constant.
 double RunMixture(const std::vector<double>& errors, NoiseSettings* noise) {
-  constexpr int kIterations = 150;
+  constexpr int kIterations = 80;
   double w = noise->outlier_weight, s = noise->std, c = noise->outlier_scale, log_density = 0.0;
   const auto n = static_cast<double>(errors.size());
   for (int i = 0; i < kIterations; ++i) {

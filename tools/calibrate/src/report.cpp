@@ -36,7 +36,7 @@ plots::XyChart ErrorChart(const ModeNoise& noise, const std::string& unit) {
   for (const double e : noise.errors) count[std::min(kBins - 1, static_cast<std::size_t>((e + reach) / width))] += 1.0;
   plots::XyChart chart;
   chart.x_title = "error, " + unit;
-  chart.y_title = "density, 1/(" + unit + ")";
+  chart.y_title = "density, 1/" + unit;
   chart.log_y = true;
   plots::Series seen{"measured", Role::kMeasured, {}, {}, {}, {}};
   for (std::size_t b = 0; b < kBins; ++b) {
@@ -71,7 +71,7 @@ plots::XyChart ErrorChart(const ModeNoise& noise, const std::string& unit) {
 void AddNoise(const ModeNoise& noise, const std::string& unit, plots::Page* page) {
   page->Html("<section class=\"card\"><h2>Noise, mode " + EscapeHtml(noise.mode) + "</h2>\n");
   if (!noise.calibrated) {
-    page->Html("<p>Too few packs (" + std::to_string(noise.packs) + "): it stays as it was.</p></section>\n");
+    page->Html("<p>It stays as it was: " + EscapeHtml(noise.why_not) + ".</p></section>\n");
     return;
   }
   page->Html("<p class=\"soft\">" + std::to_string(noise.samples) + " errors in " + std::to_string(noise.packs) +
@@ -122,7 +122,7 @@ void AddThreshold(const Calibration& c, plots::Page* page) {
   plots::XyChart over_time, tail;
   over_time.x_title = "time, s";
   over_time.y_title = "score";
-  plots::Series scores{"score of a pack", Role::kMeasured, {}, {}, {}, {}};
+  plots::Series scores{"score of a pack", Role::kAfter, {}, {}, {}, {}};
   std::vector<double> sorted;
   for (const ThresholdSample& sample : c.scores) {
     scores.x.push_back(sample.t);
@@ -130,7 +130,13 @@ void AddThreshold(const Calibration& c, plots::Page* page) {
     sorted.push_back(sample.score);
   }
   over_time.series.push_back(scores);
-  over_time.rules.push_back({c.threshold.threshold, "threshold"});
+  if (!scores.x.empty())
+    over_time.series.push_back({"threshold",
+                                Role::kBefore,
+                                {scores.x.front(), scores.x.back()},
+                                {c.threshold.threshold, c.threshold.threshold},
+                                {},
+                                {}});
   page->Chart(over_time,
               "The threshold at which each pack would just have been taken for a change: the mismatch in noise scales, "
               "less what chance explains. Nothing changed in this recording.");
@@ -143,7 +149,11 @@ void AddThreshold(const Calibration& c, plots::Page* page) {
     share.x.push_back(sorted[i]);
     share.y.push_back(static_cast<double>(sorted.size() - i) / static_cast<double>(sorted.size()));
   }
-  tail.series = {share, {"chosen", Role::kAfter, {c.threshold.threshold}, {c.false_modifications}, {}, {}}};
+  // Where nothing reaches the threshold, half a pack stands for it.
+  const double reached = c.threshold.extrapolated
+                             ? c.false_modifications
+                             : std::max(c.threshold.measured_rate, 0.5 / static_cast<double>(sorted.size()));
+  tail.series = {share, {"chosen", Role::kAfter, {c.threshold.threshold}, {reached}, {}, {}}};
   tail.rules.push_back({c.false_modifications, "asked for"});
   page->Chart(tail, "Share of packs that a threshold would have taken for a change.");
   page->Html("</section>\n");

@@ -22,8 +22,8 @@ std::string Inverse(const std::string& unit) {
 /// Builds the columns of one type, field by field.
 class Builder {
  public:
-  Builder(const PlantScan& plant, const TypeMeaning& meaning)
-      : plant_(plant), words_(WordsOf(plant.plant_kind)), meaning_(meaning) {}
+  Builder(const ChannelScan& channel, const PlantScan& plant, const TypeMeaning& meaning)
+      : channel_(channel), plant_(plant), words_(WordsOf(plant.plant_kind)), meaning_(meaning) {}
 
   void Add(const MessageField& field, std::vector<Column>* columns) const {
     const auto found = meaning_.fields.find(field.name);
@@ -44,14 +44,14 @@ class Builder {
   [[nodiscard]] std::size_t Used(Axis axis, int size) const {
     const auto limit = [size](int used) { return static_cast<std::size_t>(used > 0 ? std::min(used, size) : size); };
     switch (axis) {
-      case Axis::kParameter: return limit(plant_.num_parameters);
+      case Axis::kParameter: return limit(channel_.num_parameters);
       case Axis::kMode: return limit(plant_.num_modes);
       case Axis::kInput: return limit(plant_.num_inputs);
       case Axis::kSample:
       case Axis::kText: return 1;
       case Axis::kBin: break;
     }
-    return limit(0);
+    return limit(channel_.num_bins);
   }
 
   /// One dimension after the other; the last one emits the column.
@@ -100,6 +100,7 @@ class Builder {
     return unit;
   }
 
+  const ChannelScan& channel_;
   const PlantScan& plant_;
   const PlantWords& words_;
   const TypeMeaning& meaning_;
@@ -119,7 +120,7 @@ std::string ParameterUnit(const PlantScan& plant, std::size_t i) {
 std::vector<Column> ColumnsOf(const ChannelScan& channel, const PlantScan& plant) {
   static const TypeMeaning kNothingKnown;
   const auto found = Meanings().find(channel.type->name);
-  const Builder builder(plant, found == Meanings().end() ? kNothingKnown : found->second);
+  const Builder builder(channel, plant, found == Meanings().end() ? kNothingKnown : found->second);
   std::vector<Column> columns;
   for (const MessageField& field : channel.type->fields) builder.Add(field, &columns);
   return columns;

@@ -49,12 +49,14 @@ void NotePack(Bytes data, const MessageType& type, double t, PlantScan* plant) {
   plant->start.try_emplace(run, t - time.t_last);
 }
 
-void Note(const support::LcmLogEvent& event, const MessageType& type, double t, PlantScan* plant) {
+void Note(const support::LcmLogEvent& event, const MessageType& type, double t, ChannelScan* channel,
+          PlantScan* plant) {
   const auto largest = [&](const char* field, int* value) {
     *value = static_cast<int>(std::max<std::int64_t>(*value, Integer(event.data, type, field, 0)));
   };
   if (plant->plant_kind == 0) largest("plant_kind", &plant->plant_kind);
-  largest("n_params", &plant->num_parameters);
+  largest("n_params", &channel->num_parameters);
+  largest("n_bins", &channel->num_bins);
   largest("n_modes", &plant->num_modes);
   largest("n_inputs", &plant->num_inputs);
   NoteNames(event.data, type, plant);
@@ -83,7 +85,7 @@ LogScan ScanLog(const std::filesystem::path& path, const std::function<void(doub
     }
     ++channel.messages;
     const double t = 1e-6 * static_cast<double>(event.utime - scan.first_utime);
-    Note(event, *type, t, &scan.plants[channel.prefix]);
+    Note(event, *type, t, &channel, &scan.plants[channel.prefix]);
     on_progress(log.progress());
   }
   scan.damage = log.damage();

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   return support::RunProgram(app, "armcmc-replay", argc, argv, [&] {
     replay::Complete(&arguments);
     if (!arguments.calibrate.empty()) return replay::RunCalibration(arguments);
+    if (arguments.compares()) return replay::RunComparison(arguments);
     return replay::RunEstimates(arguments);
   });
 }

@@ -23,7 +23,8 @@ struct CalibrationRequest {
 /// The noise of one mode.
 struct ModeNoise {
   std::string mode;
-  bool calibrated = false;  ///< Enough packs of this mode were there.
+  bool calibrated = false;
+  std::string why_not;  ///< Too few packs, or no noise.
   std::size_t packs = 0, samples = 0;
   std::vector<LawScore> laws;
   std::size_t chosen = 0;

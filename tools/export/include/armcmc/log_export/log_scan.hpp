@@ -16,17 +16,18 @@ namespace armcmc::log_export {
 /// What a log holds on one channel.
 struct ChannelScan {
   std::string name;
-  const MessageType* type = nullptr;  ///< Of its first message that is one of ours; nullptr: a foreign channel.
-  std::string prefix;                 ///< In front of the channel's own name: which plant it belongs to.
-  std::int64_t messages = 0;          ///< Of that type.
-  std::int64_t undecodable = 0;       ///< Of another type, or of none of ours.
-  std::int64_t fingerprint = 0;       ///< Of the first message, whatever it was.
+  const MessageType* type = nullptr;     ///< Of its first message that is one of ours; nullptr: a foreign channel.
+  std::string prefix;                    ///< In front of the channel's own name: which plant it belongs to.
+  std::int64_t messages = 0;             ///< Of that type.
+  std::int64_t undecodable = 0;          ///< Of another type, or of none of ours.
+  std::int64_t fingerprint = 0;          ///< Of the first message, whatever it was.
+  int num_parameters = 0, num_bins = 0;  ///< Largest n_params and n_bins of its messages; 0: they have none.
 };
 
 /// What the messages of one prefix say about their plant.
 struct PlantScan {
   int plant_kind = 0;
-  int num_parameters = 0, num_modes = 0, num_inputs = 0;
+  int num_modes = 0, num_inputs = 0;
   std::vector<std::string> parameters, units;  ///< As the estimates name them.
   struct PackTime {
     double t_last = 0.0, dt = 0.0;  ///< s, plant time of the last sample, and sample interval.
