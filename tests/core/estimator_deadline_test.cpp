@@ -17,7 +17,7 @@ struct SteppingClock {
   mutable Nanos now_ns = 1'000'000'000;
   Nanos step_ns;
   [[nodiscard]] ClockRef Ref() const noexcept {
-    return {[](const void* context) noexcept {
+    return {[](const void* context) noexcept ARMCMC_NONBLOCKING {
               const auto* clock = static_cast<const SteppingClock*>(context);
               return clock->now_ns += clock->step_ns;
             },

@@ -54,7 +54,8 @@ TEST_F(Resume, AfterKill9TheEstimatorGoesOnFromWhatItHadLearnt) {
   EXPECT_GT(report["snapshot"]["written"], 0);
   EXPECT_EQ(report["snapshot"]["failed"], 0);
   for (const char* stage : {"collect", "adjust", "execute"}) {
-    if (!report["allocations"][stage].is_null()) EXPECT_EQ(report["allocations"][stage], 0) << stage;
+    const nlohmann::json& calls = report["allocations"][stage];
+    EXPECT_TRUE(calls.is_null() || calls == 0) << stage << ": " << calls;
   }
 }
 
@@ -67,10 +68,12 @@ TEST_F(Resume, ADamagedSnapshotAndOneOfAnotherModelAreRefusedAndTheRunGoesOn) {
   first->Signal(SIGINT);
   EXPECT_EQ(first->Wait(10s).code, 0) << first->err();
 
-  auto other = StartEstimator({"--resume", File(), "--model", "soft_actuator"});
-  EXPECT_TRUE(other->WaitForErr("is refused, it belongs to another model", 5s)) << other->err();
-  other->Signal(SIGINT);
-  EXPECT_EQ(other->Wait(10s).code, 0) << other->err();
+  Process other(Program("armcmc-estimator"), {"--config", (SourceDir() / "rt/config/soft_actuator.toml").string(),
+                                              "--lcm-url", bus_->url(), "--resume", File()});
+  EXPECT_TRUE(other.WaitForErr("is refused, it belongs to another model", 5s)) << other.err();
+  EXPECT_TRUE(other.running());
+  other.Signal(SIGINT);
+  EXPECT_EQ(other.Wait(10s).code, 0) << other.err();
   EXPECT_EQ(plant->Wait(30s).code, 0);
 }
 

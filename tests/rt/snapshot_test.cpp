@@ -2,10 +2,12 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "armcmc/data_pack.hpp"
@@ -71,6 +73,33 @@ TEST(SnapshotFile, RefusesEveryTruncationAndEveryChangedBit) {
     damaged[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
     ASSERT_NE(Refusal(damaged), "") << bit;
   }
+}
+
+TEST(SnapshotChannel, HandsOverWholePartsFromOneThreadToAnother) {
+  constexpr std::int64_t kParts = 20'000;
+  rt::SnapshotChannel channel(512);
+  std::thread stage([&channel] {
+    for (std::int64_t seq = 1; seq <= kParts; ++seq)
+      channel.Write(seq, [seq](std::span<std::byte> out) noexcept {
+        std::fill(out.begin(), out.end(), static_cast<std::byte>(seq & 0xff));
+        return out.size();
+      });
+  });
+  std::int64_t last = 0;
+  int torn = 0, old = 0;
+  while (last < kParts) {  // the newest is never lost
+    const rt::SnapshotPart* part = channel.Take();
+    if (part == nullptr) {
+      std::this_thread::yield();
+      continue;
+    }
+    old += part->seq <= last ? 1 : 0;
+    last = part->seq;
+    for (const std::byte b : part->used()) torn += b != static_cast<std::byte>(last & 0xff) ? 1 : 0;
+  }
+  stage.join();
+  EXPECT_EQ(torn, 0);
+  EXPECT_EQ(old, 0);
 }
 
 class SnapshotSaverTest : public ::testing::Test {
