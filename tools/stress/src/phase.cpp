@@ -32,7 +32,8 @@ void Tally(const std::vector<FaultOutcome>& outcomes, std::vector<FaultTally>* t
   for (const FaultOutcome& outcome : outcomes) {
     auto found =
         std::find_if(tallies->begin(), tallies->end(), [&](const auto& t) { return t.fault == outcome.fault; });
-    if (found == tallies->end()) found = tallies->insert(tallies->end(), {outcome.fault, 0, 0, 0, 0, 0, 0, 0});
+    if (found == tallies->end()) found = tallies->emplace(tallies->end());
+    found->fault = outcome.fault;
     found->Add(outcome);
   }
 }
@@ -59,6 +60,7 @@ void FaultTally::Add(const FaultOutcome& outcome) {
   }
   ++injected;
   detected += outcome.detected ? 1 : 0;
+  if (outcome.recovered_steps > recovered_steps) hindrance = outcome.hindrance;
   recovered_steps = std::max(recovered_steps, outcome.recovered_steps);
   stalled_steps += outcome.stalled_steps;
   flags |= outcome.flags;

@@ -91,7 +91,8 @@ void PlantRuns::BeginSignal(const FaultSpec& fault) {
                                 context_.options->work / "flood.log");
   }
   active_ = &fault;
-  active_until_ns_ = rt::MonotonicNow() + ToNanos(fault.LastsMs(context_.options->period_ms));
+  active_since_ns_ = rt::MonotonicNow();
+  active_until_ns_ = active_since_ns_ + ToNanos(fault.LastsMs(context_.options->period_ms));
 }
 
 void PlantRuns::EndSignal(const FaultSpec& fault) {

@@ -52,7 +52,7 @@ class PlantRuns {
   bool log_failure_told_ = false;
   const FaultSpec* active_ = nullptr;  // a signal that is on
   const Slot* handled_ = nullptr;      // the slot whose signal was sent
-  std::int64_t active_until_ns_ = 0;
+  std::int64_t active_since_ns_ = 0, active_until_ns_ = 0;
   bool estimator_died_ = false;
 };
 
