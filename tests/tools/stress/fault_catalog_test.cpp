@@ -48,8 +48,8 @@ TEST(FaultSpec, ItsPlanItemHasTheAmountThatItsKindNeeds) {
 
 TEST(FlagNames, NamesEveryBit) {
   EXPECT_EQ(FlagNames(0), "");
-  EXPECT_EQ(FlagNames(estimator_status_t::FAULT_BAD_DATA | estimator_status_t::FAULT_STAGE_HUNG),
-            "bad_data|stage_hung");
+  const std::int32_t bad_data = estimator_status_t::FAULT_BAD_DATA, hung = estimator_status_t::FAULT_STAGE_HUNG;
+  EXPECT_EQ(FlagNames(bad_data | hung), "bad_data|stage_hung");
 }
 
 }  // namespace
