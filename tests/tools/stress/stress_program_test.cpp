@@ -38,6 +38,22 @@ TEST(StressProgram, DetectsEveryFaultOfAShortRun) {
   EXPECT_GT(std::filesystem::file_size(page), 10'000U);
 }
 
+TEST(StressProgram, WithoutFaultsOnePlantRunsForTheWholeTime) {
+  ARMCMC_REQUIRE_MULTICAST();
+  const ScratchDir dir;
+  const std::string report = dir / "stress.json";
+  const Outcome run = RunProgram(Program("armcmc-stress"), {"--minutes", "0.1", "--load", "none", "--inject", "none",
+                                                            "--report", report, "--work", dir / "work"});
+  std::ifstream file(report);
+  ASSERT_TRUE(file) << run.err;
+  const nlohmann::json json = nlohmann::json::parse(file);
+  EXPECT_TRUE(json["faults"].empty());
+  EXPECT_EQ(json["phases"][0]["plant"]["restarts"], 0);
+  EXPECT_GT(json["phases"][0]["steps"], 30);
+  EXPECT_TRUE(json["phases"][0]["rt"]["degraded"].empty() ||
+              json["phases"][0]["rt"]["degraded"][0] != "injected_faults");
+}
+
 TEST(StressProgram, NamesWhatItDoesNotKnow) {
   const Outcome fault = RunProgram(Program("armcmc-stress"), {"--inject", "explode"});
   EXPECT_EQ(fault.code, 2);

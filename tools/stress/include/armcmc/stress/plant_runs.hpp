@@ -31,6 +31,8 @@ class PlantRuns {
 
   /// A run with every fault of the layout, ended as a full disk of its log wants it.
   void RunWithFaults();
+  /// A run without faults, of so many ms.
+  void RunQuietly(double ms);
   /// A short run; it shows that the estimator goes on after the end of the plant before it, and dies itself.
   void RunShortly();
   [[nodiscard]] bool estimator_died() const { return estimator_died_; }
