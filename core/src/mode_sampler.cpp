@@ -261,7 +261,10 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   out->known = next->informed;
   out->updated = true;
   const double spent = static_cast<double>(clock.Now() - finish_start) / made;
-  finish_ns_per_draw_ = std::fmax(0.9 * finish_ns_per_draw_, spent);
+  // A stall of the machine in here says nothing about the next pack: it may double the prediction at most, while work
+  // that has become slower for good is followed within a few packs.
+  const double believed = finish_ns_per_draw_ > 0.0 ? std::fmin(spent, 2.0 * finish_ns_per_draw_) : spent;
+  finish_ns_per_draw_ = std::fmax(0.9 * finish_ns_per_draw_, believed);
   return out->truncated ? Status::kTruncated : Status::kOk;
 }
 

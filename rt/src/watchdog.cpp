@@ -35,10 +35,11 @@ Watchdog::Watchdog(const RtSettings& settings, EventLog* events) noexcept
 
 void Watchdog::Check(Nanos due_ns, Nanos now_ns) noexcept ARMCMC_NONBLOCKING {
   const bool on_time = now_ns - due_ns <= check_period_ns_;
+  if (!on_time) grace_until_ns_ = now_ns + slack_ns_;
   std::uint32_t overdue = 0;
   for (std::size_t i = 0; i < kNumWatched; ++i) {
     const Nanos promise = due_[i].load(std::memory_order_relaxed);
-    if (promise != 0 && now_ns > promise) overdue |= 1U << i;
+    if (promise != 0 && now_ns > std::max(promise, grace_until_ns_)) overdue |= 1U << i;
   }
   const std::uint32_t before = hung_.load(std::memory_order_relaxed);
   // One that hangs stays so until it is heard of; one more is found only by a check on time.

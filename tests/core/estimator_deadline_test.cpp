@@ -121,5 +121,39 @@ TEST(Deadline, DrawLimitsBelowTheLeastAreRaisedToIt) {
   test::ExpectUsable(e.modes[0], rig.estimator.settings());
 }
 
+/// A clock that moves on by 1 us whenever it is read, and stands still for a second at one of its readings.
+struct StallingClock {
+  mutable Nanos now_ns = 1'000'000'000;
+  mutable int readings = 0;
+  int stall_at = -1;
+  [[nodiscard]] ClockRef Ref() const noexcept {
+    return {[](const void* context) noexcept {
+              const auto* clock = static_cast<const StallingClock*>(context);
+              return clock->now_ns += clock->readings++ == clock->stall_at ? 1'000'000'000 : 1'000;
+            },
+            this};
+  }
+};
+
+TEST(Deadline, AStallOfTheMachineDoesNotCutThePacksAfterIt) {
+  constexpr Nanos kBudget = 1'000'000;  // ten times what a pack takes on this clock
+  StallingClock counting;
+  Rig calm;
+  for (std::int64_t seq = 10; seq <= 12; ++seq)
+    calm.Step(Contact{}.Pack(seq), counting.now_ns + kBudget, counting.Ref());
+  // At every reading of the third pack in turn: also at those where the end of a step is measured.
+  for (int reading = counting.readings / 3 * 2; reading < counting.readings; ++reading) {
+    Rig rig;
+    StallingClock clock;
+    clock.stall_at = reading;
+    for (std::int64_t seq = 10; seq <= 15; ++seq) {
+      rig.Step(Contact{}.Pack(seq), clock.now_ns + kBudget, clock.Ref());
+      if (seq > 12) {
+        EXPECT_NE(rig.status, Status::kTruncated) << "pack " << seq << ", stall at reading " << reading;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace armcmc

@@ -29,9 +29,7 @@ class LivePair : public ::testing::Test {
   [[nodiscard]] std::string Report() const { return dir_ / "estimator.json"; }
 
   std::unique_ptr<Process> StartEstimator(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"--config",  (SourceDir() / "rt/config/hunt_crossley.toml").string(),
-                                          "--lcm-url", bus_->url(),
-                                          "--report",  Report()};
+    std::vector<std::string> arguments = {"--config", config_, "--lcm-url", bus_->url(), "--report", Report()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto process = std::make_unique<Process>(Program("armcmc-estimator"), arguments);
     // It publishes its health from the start, also while no plant is there.
@@ -61,6 +59,7 @@ class LivePair : public ::testing::Test {
     return nlohmann::json::parse(file);
   }
 
+  std::string config_ = SourceDir() / "rt/config/hunt_crossley.toml";
   ScratchDir dir_;
   std::unique_ptr<TestBus> bus_;
   std::unique_ptr<BusRecorder> recorder_;

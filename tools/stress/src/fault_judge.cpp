@@ -44,7 +44,20 @@ void FaultJudge::OnEstimate(const estimate_t& estimate) {
   }
 }
 
+std::int64_t FaultJudge::NotOurs(const estimator_status_t& status) const {
+  const bool disturbed = status.miss_cause == estimator_status_t::MISS_MACHINE ||
+                         status.miss_cause == estimator_status_t::MISS_LATE_DATA ||
+                         (status.fault_flags & estimator_status_t::FAULT_PLANT_SILENT) != 0 ||
+                         status.witness_max_ns > period_ns_ / 2;
+  // Packs given up to the machine leave no step of their own; steps made and not heard of are ours to have missed.
+  const std::int64_t machine = status.missed_machine - last_status_.missed_machine;
+  const std::int64_t unheard = std::max<std::int64_t>(status.step - last_status_.step - 1, 0);
+  return std::max<std::int64_t>(disturbed ? 1 : 0, machine) + unheard;
+}
+
 void FaultJudge::OnStatus(const estimator_status_t& status) {
+  const std::int64_t not_ours = NotOurs(status);
+  const std::int64_t dropped = status.packs_dropped - last_status_.packs_dropped;
   last_status_ = status;
   if (!started_) {
     raised_ |= status.fault_flags;
@@ -69,7 +82,8 @@ void FaultJudge::OnStatus(const estimator_status_t& status) {
   step.has_status = true;
   step.flags |= status.fault_flags;
   step.miss = std::max(step.miss, status.miss_cause);
-  step.witness_ns = std::max(step.witness_ns, status.witness_max_ns);
+  step.not_ours += not_ours;
+  step.dropped += dropped;
 }
 
 void FaultJudge::SignalBegins() {
@@ -91,9 +105,13 @@ bool FaultJudge::Agrees(const Step& step, bool relearns) const {
   return true;
 }
 
-bool FaultJudge::IsNormal(const Step& step, const FaultSpec& fault) const {
-  return step.has_estimate && step.has_status && !step.truncated && (step.flags & ~background_) == 0 &&
-         step.miss == estimator_status_t::MISS_NONE && Agrees(step, fault.relearns);
+const char* FaultJudge::Hindrance(const Step& step, const FaultSpec& fault) const {
+  if (!step.has_estimate) return "no estimate";
+  if (!step.has_status) return "no status";
+  if (step.truncated) return "truncated";
+  if ((step.flags & ~background_) != 0) return "fault flags";
+  if (step.miss != estimator_status_t::MISS_NONE) return "missed deadline";
+  return Agrees(step, fault.relearns) ? nullptr : "estimate apart";
 }
 
 void FaultJudge::FinishSlot() {
@@ -111,7 +129,9 @@ void FaultJudge::FinishSlot() {
     if (seq > slot.at() && seq < slot.end) evidence_.modification = evidence_.modification || step.modification;
   }
   outcome.detected = fault.detected(evidence_);
-  outcome.injected = has_before_ && (!from_outside || signalled_);
+  // Nothing heard since: this program stood still itself, and cannot judge.
+  const bool heard = evidence_.after.t_status_ns > evidence_.before.t_status_ns;
+  outcome.injected = has_before_ && heard && (!from_outside || signalled_);
   if (!outcome.detected && !from_outside && fault.source != FaultSource::kPlantEnd) {
     // Lost on its way, or given up in favour of newer packs before the stage came to it: it did not happen.
     const auto at = steps_.find(slot.at());
@@ -123,12 +143,16 @@ void FaultJudge::FinishSlot() {
   for (std::int64_t seq = over + 1; seq < slot.end; ++seq) {
     const auto found = steps_.find(seq);
     const Step step = found != steps_.end() ? found->second : Step{};
-    if (IsNormal(step, fault)) {
-      outcome.recovered_steps = seq - over - outcome.stalled_steps;
+    const char* hindrance = Hindrance(step, fault);
+    if (hindrance == nullptr) {
+      outcome.recovered_steps = seq - over - outcome.stalled_steps;  // of those before it
       break;
     }
-    if (step.miss == estimator_status_t::MISS_MACHINE || step.witness_ns > period_ns_ / 2) ++outcome.stalled_steps;
+    outcome.hindrance = hindrance;
+    // The backlog of a process that stood still is part of the fault.
+    outcome.stalled_steps += from_outside ? std::max(step.not_ours, step.dropped) : step.not_ours;
   }
+  if (outcome.recovered_steps != kNever) outcome.recovered_steps = std::max<std::int64_t>(1, outcome.recovered_steps);
   outcomes_.push_back(outcome);
   ++next_;
   reference_ = last_step_;

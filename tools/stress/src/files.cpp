@@ -18,7 +18,7 @@ std::string ScenarioText(const StressOptions& options) {
   text << std::showpoint << "schema = 1\nplant = \"hunt_crossley\"\nduration_s = 3600.0\nsample_interval_s = "
        << options.period_ms * 1e-3 / options.samples << "\npack_period_s = " << options.period_ms * 1e-3
        << "\n[parameters]\nK = 4.0\nB = 2.3\np = 1.7\n[motion]\ntracking = \"prescribed\"\nprogram = \"sine\"\n"
-          "depth = 1.2\npace = 1.0\n[noise.f]\nkind = \"gaussian\"\nstd = "
+          "depth = 3.0\npace = 1.0\n[noise.f]\nkind = \"gaussian\"\nstd = "
        << kNoiseStd << '\n';
   return text.str();
 }

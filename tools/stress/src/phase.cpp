@@ -32,7 +32,8 @@ void Tally(const std::vector<FaultOutcome>& outcomes, std::vector<FaultTally>* t
   for (const FaultOutcome& outcome : outcomes) {
     auto found =
         std::find_if(tallies->begin(), tallies->end(), [&](const auto& t) { return t.fault == outcome.fault; });
-    if (found == tallies->end()) found = tallies->insert(tallies->end(), {outcome.fault, 0, 0, 0, 0, 0, 0, 0});
+    if (found == tallies->end()) found = tallies->emplace(tallies->end());
+    found->fault = outcome.fault;
     found->Add(outcome);
   }
 }
@@ -59,6 +60,7 @@ void FaultTally::Add(const FaultOutcome& outcome) {
   }
   ++injected;
   detected += outcome.detected ? 1 : 0;
+  if (outcome.recovered_steps > recovered_steps) hindrance = outcome.hindrance;
   recovered_steps = std::max(recovered_steps, outcome.recovered_steps);
   stalled_steps += outcome.stalled_steps;
   flags |= outcome.flags;
@@ -106,11 +108,18 @@ PhaseResult RunPhase(const StressOptions& options, const std::string& load_name,
   };
   PlantRuns runs({&options, options.lcm_url, scenario, &bus, &judge, &estimator, tick}, layout);
   const double one_run = static_cast<double>(layout.last_pack) * options.period_ms * 1e-3;
-  do {
-    runs.RunWithFaults();
+  if (options.faults.empty()) {
+    // The plant's scenario ends after an hour.
+    for (double left = seconds; !runs.estimator_died() && left > 1.0; left = seconds - SecondsSince(start_ns) - 1.0) {
+      runs.RunQuietly(1e3 * std::min(left, 3500.0));
+    }
+  } else {
+    do {
+      runs.RunWithFaults();
+      runs.RunShortly();
+    } while (!runs.estimator_died() && SecondsSince(start_ns) + one_run + EndsSeconds(options) < seconds);
     runs.RunShortly();
-  } while (!runs.estimator_died() && SecondsSince(start_ns) + one_run + EndsSeconds(options) < seconds);
-  runs.RunShortly();
+  }
   tick();
   result.rss_end_kb = estimator.rss_kb();
   estimator.Signal(SIGINT);

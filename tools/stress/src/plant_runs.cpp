@@ -91,7 +91,8 @@ void PlantRuns::BeginSignal(const FaultSpec& fault) {
                                 context_.options->work / "flood.log");
   }
   active_ = &fault;
-  active_until_ns_ = rt::MonotonicNow() + ToNanos(fault.LastsMs(context_.options->period_ms));
+  active_since_ns_ = rt::MonotonicNow();
+  active_until_ns_ = active_since_ns_ + ToNanos(fault.LastsMs(context_.options->period_ms));
 }
 
 void PlantRuns::EndSignal(const FaultSpec& fault) {
@@ -112,6 +113,7 @@ void PlantRuns::EndSignal(const FaultSpec& fault) {
 
 void PlantRuns::Pause(double ms) {
   for (const Nanos end_ns = rt::MonotonicNow() + ToNanos(ms); rt::MonotonicNow() < end_ns;) {
+    if (!context_.estimator->running()) return;
     context_.bus->Poll(kPollMs, context_.judge);
     context_.tick();
   }
@@ -128,6 +130,14 @@ void PlantRuns::RunWithFaults() {
     log_failure_told_ = plant_->exit_code() == 1 && plant_->output().find("disk full") != std::string::npos;
   }
   Pause(3.0 * context_.options->period_ms);
+}
+
+void PlantRuns::RunQuietly(double ms) {
+  Start("", {}, false);
+  Pause(ms);
+  plant_->Signal(SIGTERM);
+  plant_->Wait(10'000);
+  estimator_died_ = !context_.estimator->running();
 }
 
 void PlantRuns::RunShortly() {

@@ -67,6 +67,7 @@ class Watchdog {
   EventLog* events_;
   std::array<std::atomic<Nanos>, kNumWatched> due_{};  // 0: not watched
   std::uint32_t suspects_ = 0;                         // overdue at the last check
+  Nanos grace_until_ns_ = 0;                           // after a late check: time for all to be heard of again
   std::atomic<std::uint32_t> hung_{0};
   std::atomic<std::int64_t> hangs_{0};
   std::atomic<bool> unread_{false};

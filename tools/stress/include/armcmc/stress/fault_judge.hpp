@@ -18,8 +18,10 @@ struct FaultOutcome {
   bool detected = false;
   std::int32_t flags = 0;
   std::int64_t recovered_steps = 0;  ///< Steps after the fault until the first normal one, those of stalls not counted.
-  std::int64_t stalled_steps = 0;    ///< Steps that were not counted: the witness had seen the machine stand still.
-  std::int64_t own_misses = 0;       ///< In its slot.
+  std::int64_t stalled_steps =
+      0;  ///< Steps that were not counted: the machine stood still, data came late, or we did not hear.
+  std::int64_t own_misses = 0;  ///< In its slot.
+  const char* hindrance = "";   ///< What was not normal at the last step that was not.
 };
 
 /// Watches the estimator's messages of one run of the plant after another and judges every slot.
@@ -59,12 +61,15 @@ class FaultJudge {
     bool truncated = false, modification = false;
     std::array<double, 3> value{}, lo{}, hi{}, sd{};
     std::int32_t flags = 0, miss = 0;
-    std::int64_t witness_ns = 0;
+    std::int64_t dropped = 0;   // packs given up in favour of this one
+    std::int64_t not_ours = 0;  // steps up to this one that the machine, or late data, or our own ears swallowed
   };
 
   void FinishSlot();
+  [[nodiscard]] std::int64_t NotOurs(const estimator_status_t& status) const;
   [[nodiscard]] bool Agrees(const Step& step, bool relearns) const;
-  [[nodiscard]] bool IsNormal(const Step& step, const FaultSpec& fault) const;
+  /// nullptr for a normal step, else what it lacks.
+  [[nodiscard]] const char* Hindrance(const Step& step, const FaultSpec& fault) const;
 
   std::int64_t period_ns_;
   std::vector<Slot> slots_;

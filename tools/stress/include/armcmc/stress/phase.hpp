@@ -20,6 +20,7 @@ struct FaultTally {
   std::int64_t stalled_steps = 0;
   std::int64_t own_misses = 0;
   std::int32_t flags = 0;
+  const char* hindrance = "";  ///< Of the slowest recovery.
 
   void Add(const FaultOutcome& outcome);
 };

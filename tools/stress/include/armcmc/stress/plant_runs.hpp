@@ -31,6 +31,8 @@ class PlantRuns {
 
   /// A run with every fault of the layout, ended as a full disk of its log wants it.
   void RunWithFaults();
+  /// A run without faults, of so many ms.
+  void RunQuietly(double ms);
   /// A short run; it shows that the estimator goes on after the end of the plant before it, and dies itself.
   void RunShortly();
   [[nodiscard]] bool estimator_died() const { return estimator_died_; }
@@ -52,7 +54,7 @@ class PlantRuns {
   bool log_failure_told_ = false;
   const FaultSpec* active_ = nullptr;  // a signal that is on
   const Slot* handled_ = nullptr;      // the slot whose signal was sent
-  std::int64_t active_until_ns_ = 0;
+  std::int64_t active_since_ns_ = 0, active_until_ns_ = 0;
   bool estimator_died_ = false;
 };
 

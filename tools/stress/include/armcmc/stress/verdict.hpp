@@ -9,6 +9,9 @@ namespace armcmc::stress {
 
 inline constexpr std::int64_t kMostRecoverySteps = 5;
 
+/// Own misses that no fault explains and that are let pass: none, and one in a thousand steps below 10 ms.
+[[nodiscard]] std::int64_t AllowedOwnMisses(const PhaseResult& phase);
+
 struct Verdict {
   bool passed = true;
   std::vector<std::string> reasons;  ///< Why not.
@@ -18,7 +21,7 @@ struct Verdict {
 /// The faults of all phases together, in the order of the catalogue.
 [[nodiscard]] std::vector<FaultTally> AllFaults(const std::vector<PhaseResult>& phases);
 
-/// Passed: the estimator lived, no own miss that no fault explains, no heap call in a stage, every fault that was
+/// Passed: the estimator lived, no more own misses than allowed, no heap call in a stage, every fault that was
 /// injected was detected and got over within kMostRecoverySteps steps.
 [[nodiscard]] Verdict Judge(const std::vector<PhaseResult>& phases);
 

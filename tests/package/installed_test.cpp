@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "support/paths.hpp"
+#include "support/process.hpp"
+
+namespace armcmc::test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+fs::path BuildDir() { return Program("x").parent_path().parent_path(); }
+
+Outcome Shell(const std::string& command) { return RunProgram("/bin/sh", {"-c", command}, 300s); }
+
+/// A program outside of the source tree that uses the libraries as a stranger does.
+void WriteConsumer(const fs::path& folder) {
+  fs::create_directories(folder);
+  std::ofstream(folder / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\n"
+                                              "project(consumer LANGUAGES CXX)\n"
+                                              "find_package(armcmc 0.1 REQUIRED)\n"
+                                              "add_executable(consumer main.cpp)\n"
+                                              "target_link_libraries(consumer PRIVATE armcmc::core armcmc::rt)\n";
+  std::ofstream(folder / "main.cpp") << "#include <armcmc/data_pack_t.hpp>\n"
+                                        "#include <armcmc/estimator.hpp>\n"
+                                        "#include <armcmc/rt/watchdog.hpp>\n"
+                                        "#include <cstdio>\n"
+                                        "int main() {\n"
+                                        "  armcmc::Estimator estimator(armcmc::BuiltinSettings(\"hunt_crossley\"));\n"
+                                        "  armcmc::data_pack_t pack{};\n"
+                                        "  std::printf(\"%d %d\\n\", estimator.num_inputs(), pack.getEncodedSize());\n"
+                                        "  return 0;\n"
+                                        "}\n";
+}
+
+TEST(Installed, AnOutsideProjectFindsBuildsAndRuns) {
+  const ScratchDir dir;
+  const std::string prefix = dir / "prefix", source = dir / "consumer", build = dir / "consumer-build";
+  const Outcome install = Shell("cmake --install " + BuildDir().string() + " --prefix " + prefix);
+  ASSERT_EQ(install.code, 0) << install.err;
+  WriteConsumer(source);
+  const Outcome configure = Shell("cmake -G Ninja -S " + source + " -B " + build + " -DCMAKE_PREFIX_PATH=" + prefix);
+  ASSERT_EQ(configure.code, 0) << configure.err;
+  const Outcome compile = Shell("cmake --build " + build);
+  ASSERT_EQ(compile.code, 0) << compile.out;
+  const Outcome run = RunProgram(fs::path(build) / "consumer", {});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.out.substr(0, 2), "2 ") << "inputs of a contact: " << run.out;
+  const Outcome estimator = RunProgram(fs::path(prefix) / "bin/armcmc-estimator", {"--version"});
+  EXPECT_EQ(estimator.code, 0) << estimator.err;
+}
+
+TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
+  if (!fs::exists("/usr/bin/dpkg-deb")) GTEST_SKIP() << "dpkg-deb is not installed";
+  const ScratchDir dir;
+  const Outcome pack =
+      Shell("cpack -G DEB --config " + (BuildDir() / "CPackConfig.cmake").string() + " -B " + dir.path().string());
+  ASSERT_EQ(pack.code, 0) << pack.out << pack.err;
+  const std::string deb = dir / "armcmc_*.deb";
+  const Outcome contents = Shell("dpkg-deb -c " + deb);
+  ASSERT_EQ(contents.code, 0) << contents.err;
+  for (const char* path :
+       {"./usr/bin/armcmc-estimator", "./usr/bin/armcmc-plant", "./usr/bin/armcmc-stress", "./usr/bin/armcmc-rtcheck",
+        "./usr/share/man/man1/armcmc-estimator.1", "./usr/lib/systemd/system/armcmc-estimator.service",
+        "./usr/lib/sysctl.d/60-armcmc.conf", "./usr/share/armcmc/config/hunt_crossley.toml",
+        "./usr/share/armcmc/scenarios/hunt_crossley_paper.toml", "./usr/share/armcmc/lcm_types/armcmc_data_pack_t.lcm",
+        "./usr/share/doc/armcmc/tuning.md", "./usr/include/armcmc/estimator.hpp"}) {
+    EXPECT_NE(contents.out.find(path), std::string::npos) << path << " is missing in\n" << contents.out;
+  }
+  EXPECT_NE(Shell("dpkg-deb -f " + deb + " Depends").out.find("liblcm1"), std::string::npos);
+  const std::string root = dir / "root";
+  ASSERT_EQ(Shell("dpkg-deb -x " + deb + " " + root).code, 0);
+  const Outcome plant = RunProgram(fs::path(root) / "usr/bin/armcmc-plant",
+                                   {"--scenario", "hunt_crossley_paper", "--duration", "1", "--csv", dir / "x.csv"});
+  EXPECT_EQ(plant.code, 0) << "it finds its scenarios where it lies: " << plant.err;
+  const Outcome man = Shell("man --warnings -l " + root + "/usr/share/man/man1/armcmc-plant.1 2>&1 >/dev/null");
+  if (man.code == 0) {
+    EXPECT_EQ(man.out, "") << "the manual page is good roff";
+  }
+}
+
+TEST(Installed, SystemdAcceptsTheService) {
+  if (!fs::exists("/usr/bin/systemd-analyze")) GTEST_SKIP() << "systemd-analyze is not installed";
+  const ScratchDir dir;
+  std::ifstream source(SourceDir() / "rt/deploy/armcmc-estimator.service");
+  std::string text{std::istreambuf_iterator<char>(source), std::istreambuf_iterator<char>()};
+  // The program need not be installed for its unit to be checked.
+  const std::string program = "/usr/bin/armcmc-estimator";
+  text.replace(text.find(program), program.size(), Program("armcmc-estimator").string());
+  const std::string unit = dir / "armcmc-estimator.service";
+  std::ofstream(unit) << text;
+  const Outcome verify = Shell("systemd-analyze verify --man=no " + unit);
+  EXPECT_EQ(verify.code, 0) << verify.err;
+  EXPECT_EQ(verify.err.find("armcmc-estimator.service:"), std::string::npos) << verify.err;
+}
+
+}  // namespace
+}  // namespace armcmc::test

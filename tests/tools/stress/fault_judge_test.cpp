@@ -1,0 +1,158 @@
+#include "armcmc/stress/fault_judge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace armcmc::stress {
+namespace {
+
+constexpr std::int64_t kT = 100'000'000;
+constexpr std::int64_t kFirst = 20;  // begin of the slot; the fault is at kFirst + 3
+
+/// A run of the estimator, told step by step.
+class FaultJudgeTest : public ::testing::Test {
+ protected:
+  FaultJudgeTest() {
+    estimate_.run_id = 7;
+    estimate_.known = 1;
+    for (int i = 0; i < 3; ++i) {
+      estimate_.ar_map[i] = 4.0;
+      estimate_.q025[i] = 3.9;
+      estimate_.q975[i] = 4.1;
+      estimate_.sd[i] = 0.05;
+    }
+  }
+
+  void Begin(const std::string& fault, std::int64_t packs = 10) {
+    judge_.BeginRun({{SelectFaults(fault).front(), kFirst, kFirst + packs}});
+    for (std::int64_t seq = 1; seq < kFirst + Slot::kQuietBefore; ++seq) Step(seq);
+  }
+  /// One pack with its estimate and its status.
+  void Step(std::int64_t seq, std::int32_t flags = 0, std::int32_t miss = estimator_status_t::MISS_NONE) {
+    estimate_.seq = seq;
+    judge_.OnEstimate(estimate_);
+    Status(seq, flags, miss);
+  }
+  void Status(std::int64_t seq, std::int32_t flags = 0, std::int32_t miss = estimator_status_t::MISS_NONE) {
+    status_.last_seq = seq;
+    ++status_.step;
+    status_.t_status_ns += kT;
+    status_.fault_flags = flags;
+    status_.miss_cause = miss;
+    judge_.OnStatus(status_);
+  }
+  FaultOutcome Outcome() {
+    const auto outcomes = judge_.TakeOutcomes();
+    EXPECT_EQ(outcomes.size(), 1U);
+    return outcomes.empty() ? FaultOutcome{} : outcomes.front();
+  }
+
+  FaultJudge judge_{kT};
+  estimate_t estimate_{};
+  estimator_status_t status_{};
+};
+
+TEST_F(FaultJudgeTest, AFaultThatIsCountedAndFlaggedAndOverAtOnce) {
+  Begin("nan");
+  ++status_.rejected_value;
+  ++status_.packs_rejected;
+  Step(24, estimator_status_t::FAULT_BAD_DATA);  // pack 23 was rejected
+  for (std::int64_t seq = 25; seq <= 30; ++seq) Step(seq);
+  const FaultOutcome outcome = Outcome();
+  EXPECT_TRUE(outcome.injected);
+  EXPECT_TRUE(outcome.detected);
+  EXPECT_EQ(outcome.flags, estimator_status_t::FAULT_BAD_DATA);
+  EXPECT_EQ(outcome.recovered_steps, 2) << "the step that told of it, and a normal one";
+}
+
+TEST_F(FaultJudgeTest, AFaultThatNobodyNoticedIsNotDetected) {
+  Begin("nan");
+  for (std::int64_t seq = 23; seq <= 30; ++seq) Step(seq);
+  const FaultOutcome outcome = Outcome();
+  EXPECT_TRUE(outcome.injected);
+  EXPECT_FALSE(outcome.detected);
+}
+
+TEST_F(FaultJudgeTest, APackThatTheBusLostWasNotAFault) {
+  Begin("nan");
+  ++status_.packs_lost;
+  for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq);
+  EXPECT_FALSE(Outcome().injected);
+}
+
+TEST_F(FaultJudgeTest, AnEstimateThatStaysApartHasLostWhatWasLearnt) {
+  Begin("nan");
+  ++status_.rejected_value;
+  estimate_.ar_map[1] = 5.0;
+  for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq, seq == 24 ? estimator_status_t::FAULT_BAD_DATA : 0);
+  const FaultOutcome outcome = Outcome();
+  EXPECT_EQ(outcome.recovered_steps, FaultJudge::kNever);
+  EXPECT_STREQ(outcome.hindrance, "estimate apart");
+}
+
+TEST_F(FaultJudgeTest, AnIntervalThatHasGrownHasLostWhatWasLearnt) {
+  Begin("nan");
+  estimate_.q025[2] = 3.0;
+  for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq);
+  EXPECT_EQ(Outcome().recovered_steps, FaultJudge::kNever);
+}
+
+TEST_F(FaultJudgeTest, CountsTheStepsThatARecoveryTakes) {
+  Begin("overload");
+  ++status_.truncated_steps;
+  Step(23, estimator_status_t::FAULT_TRUNCATED);
+  estimate_.truncated = 1;
+  for (std::int64_t seq = 24; seq <= 26; ++seq) Step(seq, estimator_status_t::FAULT_TRUNCATED);
+  estimate_.truncated = 0;
+  for (std::int64_t seq = 27; seq <= 30; ++seq) Step(seq);
+  EXPECT_EQ(Outcome().recovered_steps, 4);
+}
+
+TEST_F(FaultJudgeTest, StepsThatTheMachineTookAreNotCounted) {
+  Begin("overload");
+  ++status_.truncated_steps;
+  Step(23, estimator_status_t::FAULT_TRUNCATED);
+  for (std::int64_t seq = 24; seq <= 26; ++seq) {
+    ++status_.missed_machine;
+    Step(seq, 0, estimator_status_t::MISS_MACHINE);
+  }
+  for (std::int64_t seq = 27; seq <= 30; ++seq) Step(seq);
+  const FaultOutcome outcome = Outcome();
+  EXPECT_EQ(outcome.recovered_steps, 1);
+  EXPECT_EQ(outcome.stalled_steps, 3);
+}
+
+TEST_F(FaultJudgeTest, OwnMissesOfTheSlotAreCounted) {
+  Begin("overrun_adjust");
+  status_.missed_own += 2;
+  Step(23, 0, estimator_status_t::MISS_OWN);
+  for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq);
+  const FaultOutcome outcome = Outcome();
+  EXPECT_TRUE(outcome.detected);
+  EXPECT_EQ(outcome.own_misses, 2);
+}
+
+TEST_F(FaultJudgeTest, ASignalThatWasNeverSentIsNoFault) {
+  Begin("bus_flood");
+  for (std::int64_t seq = 23; seq <= 30; ++seq) Step(seq);
+  EXPECT_FALSE(Outcome().injected);
+}
+
+TEST_F(FaultJudgeTest, ANewRunOfThePlantIsJudgedFromItsFirstPackOn) {
+  Begin("nan");
+  judge_.BeginRun({{SelectFaults("plant_death").front(), 1 - Slot::kQuietBefore, 9}});
+  Status(22, estimator_status_t::FAULT_PLANT_SILENT);
+  Step(22);  // an old estimate that comes late starts nothing
+  EXPECT_FALSE(judge_.run_started());
+  ++status_.plant_restarts;
+  estimate_.run_id = 8;
+  Step(1, estimator_status_t::FAULT_PLANT_RESTARTED);
+  for (std::int64_t seq = 2; seq <= 9; ++seq) Step(seq);
+  const FaultOutcome outcome = Outcome();
+  EXPECT_TRUE(outcome.detected);
+  EXPECT_EQ(outcome.recovered_steps, 2);
+}
+
+}  // namespace
+}  // namespace armcmc::stress

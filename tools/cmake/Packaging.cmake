@@ -1,0 +1,61 @@
+# Installed: libraries with headers for find_package(armcmc), man pages, the service. `cpack -G DEB` makes a package.
+include(CMakePackageConfigHelpers)
+set(armcmc_cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/armcmc")
+
+set(armcmc_libraries armcmc_warnings armcmc_core armcmc_lcm_types)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/core/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(DIRECTORY "${PROJECT_BINARY_DIR}/lcm_types/gen/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+  FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/lcm_types/" DESTINATION "${CMAKE_INSTALL_DATADIR}/armcmc/lcm_types"
+  FILES_MATCHING PATTERN "*.lcm")
+if(TARGET armcmc_rt)
+  list(APPEND armcmc_libraries armcmc_rt)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/rt/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+endif()
+install(TARGETS ${armcmc_libraries} EXPORT armcmcTargets
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(EXPORT armcmcTargets NAMESPACE armcmc:: DESTINATION "${armcmc_cmake_dir}")
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/armcmcConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" INSTALL_DESTINATION "${armcmc_cmake_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/armcmcConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" "${PROJECT_BINARY_DIR}/armcmcConfigVersion.cmake"
+  "${CMAKE_CURRENT_LIST_DIR}/FindLCM.cmake" DESTINATION "${armcmc_cmake_dir}")
+
+# What a program says about itself with --help is its manual page.
+foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-gap armcmc-plant armcmc-replay armcmc-rtcheck
+    armcmc-stress armcmc-tables)
+  if(TARGET ${program} AND NOT program STREQUAL "armcmc-bench")
+    set(page "${PROJECT_BINARY_DIR}/man/${program}.1")
+    add_custom_command(OUTPUT "${page}"
+      COMMAND "${PROJECT_SOURCE_DIR}/tools/cmake/man-page" "$<TARGET_FILE:${program}>" "${page}"
+      DEPENDS ${program} "${PROJECT_SOURCE_DIR}/tools/cmake/man-page" VERBATIM)
+    list(APPEND armcmc_man_pages "${page}")
+  endif()
+endforeach()
+if(armcmc_man_pages)
+  add_custom_target(armcmc_man ALL DEPENDS ${armcmc_man_pages})
+  install(FILES ${armcmc_man_pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+endif()
+
+if(TARGET armcmc-estimator)
+  install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/armcmc-estimator.service" DESTINATION lib/systemd/system)
+  install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/60-armcmc.conf" DESTINATION lib/sysctl.d)
+  install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/armcmc.limits.conf" "${PROJECT_SOURCE_DIR}/rt/deploy/armcmc.default"
+    "${PROJECT_SOURCE_DIR}/rt/deploy/10-housekeeping.conf"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/armcmc/deploy")
+  install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/tuning.md" "${PROJECT_SOURCE_DIR}/rt/deploy/misses.md"
+    "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME armcmc)
+set(CPACK_PACKAGE_CONTACT "ARMCMC developers <armcmc@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-bin, iproute2")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "liblcm-dev, libeigen3-dev, stress-ng")
+include(CPack)
