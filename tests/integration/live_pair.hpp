@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -29,9 +30,7 @@ class LivePair : public ::testing::Test {
   [[nodiscard]] std::string Report() const { return dir_ / "estimator.json"; }
 
   std::unique_ptr<Process> StartEstimator(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"--config",  (SourceDir() / "rt/config/hunt_crossley.toml").string(),
-                                          "--lcm-url", bus_->url(),
-                                          "--report",  Report()};
+    std::vector<std::string> arguments = {"--config", config_.string(), "--lcm-url", bus_->url(), "--report", Report()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto process = std::make_unique<Process>(Program("armcmc-estimator"), arguments);
     // It publishes its health from the start, also while no plant is there.
@@ -42,11 +41,8 @@ class LivePair : public ::testing::Test {
   }
 
   std::unique_ptr<Process> StartPlant(const std::string& seconds, std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {
-        "--scenario", (SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml").string(),
-        "--seed",     "7",
-        "--duration", seconds,
-        "--lcm-url",  bus_->url()};
+    std::vector<std::string> arguments = {"--scenario", scenario_.string(), "--seed",   "7", "--duration",
+                                          seconds,      "--lcm-url",        bus_->url()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return std::make_unique<Process>(Program("armcmc-plant"), arguments);
   }
@@ -62,6 +58,8 @@ class LivePair : public ::testing::Test {
   }
 
   ScratchDir dir_;
+  std::filesystem::path config_ = SourceDir() / "rt/config/hunt_crossley.toml";
+  std::filesystem::path scenario_ = SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml";
   std::unique_ptr<TestBus> bus_;
   std::unique_ptr<BusRecorder> recorder_;
 };

@@ -54,8 +54,8 @@ final class StatusCharts {
     if (negative) range.include(-1.15 * model.threshold.quantile(1, since));
     Plot plot = plot(inner, range.axis());
     plot.timeFrame("[noise sd]");
-    plot.horizontal(model.threshold.last(), Palette.BAD, Palette.DASHED);
-    if (negative) plot.horizontal(-model.threshold.last(), Palette.BAD, Palette.DASHED);
+    plot.line(model.threshold, now, Palette.BAD, Palette.DASHED);
+    if (negative) plot.line(model.threshold, -1, now, Palette.BAD, Palette.DASHED);
     plot.line(model.zeta, now, Palette.ESTIMATE, Palette.LINE);
     Legend legend = new Legend(pen, r.x + r.width - 435, r.y + 23);
     legend.line(Palette.ESTIMATE, Palette.LINE, "zeta");
