@@ -47,11 +47,11 @@ final class StatusCharts {
     Range range = new Range();
     range.include(0);
     double since = now - StatusModel.WINDOW;
-    range.include(1.15 * model.threshold.quantile(1, since));
+    range.include(1.15 * model.threshold.quantile(0.9, since));
     range.include(model.zeta.quantile(1, since));
     range.include(model.zeta.quantile(0, since));
     boolean negative = model.zeta.quantile(0, since) < 0;
-    if (negative) range.include(-1.15 * model.threshold.quantile(1, since));
+    if (negative) range.include(-1.15 * model.threshold.quantile(0.9, since));
     Plot plot = plot(inner, range.axis());
     plot.timeFrame("[noise sd]");
     plot.line(model.threshold, now, Palette.BAD, Palette.DASHED);
