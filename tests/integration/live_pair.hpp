@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -40,11 +41,8 @@ class LivePair : public ::testing::Test {
   }
 
   std::unique_ptr<Process> StartPlant(const std::string& seconds, std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {
-        "--scenario", (SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml").string(),
-        "--seed",     "7",
-        "--duration", seconds,
-        "--lcm-url",  bus_->url()};
+    std::vector<std::string> arguments = {"--scenario", scenario_.string(), "--seed",   "7", "--duration",
+                                          seconds,      "--lcm-url",        bus_->url()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return std::make_unique<Process>(Program("armcmc-plant"), arguments);
   }
@@ -61,6 +59,7 @@ class LivePair : public ::testing::Test {
 
   std::string config_ = SourceDir() / "rt/config/hunt_crossley.toml";
   ScratchDir dir_;
+  std::filesystem::path scenario_ = SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml";
   std::unique_ptr<TestBus> bus_;
   std::unique_ptr<BusRecorder> recorder_;
 };

@@ -20,7 +20,7 @@ TEST(Sparkline, LeavesGapsAndDrawsConstantsAtHalfHeight) {
   const std::vector<double> values = {5, std::nan(""), 5};
   EXPECT_EQ(Sparkline(values, Glyphs::kAscii), "+ +");
   EXPECT_EQ(Sparkline(std::vector<double>{}, Glyphs::kAscii), "");
-  EXPECT_EQ(Sparkline(std::vector<double>{std::nan(""), INFINITY}, Glyphs::kUnicode), "  ");
+  EXPECT_EQ(Sparkline(std::vector<double>{std::nan(""), HUGE_VAL}, Glyphs::kUnicode), "  ");
 }
 
 TEST(Bar, IsAlwaysAsWideAsAsked) {

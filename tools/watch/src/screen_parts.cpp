@@ -120,9 +120,10 @@ void AddData(const WatchState& state, std::vector<TextLine>* lines) {
   Count("plant restarts", s.plant_restarts, &bad);
   lines->push_back(bad);
   TextLine gap = Begin("gap");
-  if (s.gap_watched == 0) {
+  // Before the first step nobody knows whether it is on.
+  if (s.gap_watched == 0 && s.step > 0) {
     gap.Add("not watched", Ink::kDim);
-  } else if (s.gap_check < 0) {
+  } else if (s.gap_check < 0 || s.gap_watched == 0) {
     gap.Add("no data judged yet", Ink::kDim);
   } else {
     gap.Add(s.gap_suspected != 0 ? "SUSPECTED" : "no", s.gap_suspected != 0 ? Ink::kBad : Ink::kBold);

@@ -8,11 +8,13 @@ public final class Channels {
   public static final String POSTERIOR = "EST_POSTERIOR";
   public static final String STATUS = "EST_STATUS";
 
+  static final String[] ALL = {PACK, TRUTH, ESTIMATE, POSTERIOR, STATUS};
+
   private Channels() {}
 
   /** What stands before the known name of a channel; empty when the channel has another name. */
   public static String prefix(String channel) {
-    for (String name : new String[] {PACK, TRUTH, ESTIMATE, POSTERIOR, STATUS}) {
+    for (String name : ALL) {
       if (channel.endsWith(name)) return channel.substring(0, channel.length() - name.length());
     }
     return "";

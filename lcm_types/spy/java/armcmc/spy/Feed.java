@@ -7,9 +7,13 @@ import armcmc.plant_truth_t;
 import armcmc.posterior_t;
 import armcmc.spy.model.Gate;
 import armcmc.spy.model.MessageSink;
+import armcmc.spy.model.SenderClock;
 import java.io.IOException;
+import java.util.HashMap;
+import java.util.Map;
 import java.util.concurrent.atomic.AtomicLong;
 import java.util.function.DoubleSupplier;
+import java.util.regex.Pattern;
 import lcm.lcm.LCM;
 import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMSubscriber;
@@ -27,10 +31,8 @@ final class Feed implements LCMSubscriber, AutoCloseable {
   private final MessageSink sink;
   private final DoubleSupplier clock;
   private final AtomicLong undecodable = new AtomicLong();
-  private final Gate estimates = new Gate(INTERVAL);
-  private final Gate posteriors = new Gate(INTERVAL);
-  private final Gate truths = new Gate(INTERVAL);
-  private final Gate packs = new Gate(0);
+  private final Map<String, SenderClock> clocks = new HashMap<>();
+  private final Map<String, Gate> gates = new HashMap<>();
 
   /** @param bus null: nothing is subscribed, messages come by hand. Closed with the feed. */
   Feed(LCM bus, String prefix, MessageSink sink, DoubleSupplier clock) {
@@ -38,7 +40,7 @@ final class Feed implements LCMSubscriber, AutoCloseable {
     this.prefix = prefix;
     this.sink = sink;
     this.clock = clock;
-    if (bus != null) bus.subscribe(java.util.regex.Pattern.quote(prefix) + "(EST_.*|PLANT_PACK|PLANT_TRUTH)", this);
+    if (bus != null) bus.subscribe(Pattern.quote(prefix) + "(" + String.join("|", Channels.ALL) + ")", this);
   }
 
   /** Messages on our channels that hold something else. */
@@ -58,13 +60,20 @@ final class Feed implements LCMSubscriber, AutoCloseable {
     if (bus != null) bus.close();
   }
 
-  private void deliver(String name, LCMDataInputStream data, double now) throws IOException {
+  private void deliver(String name, LCMDataInputStream data, double arrival) throws IOException {
+    // Every type begins with the fingerprint and the time of the sender.
+    data.readLong();
+    double sent = 1e-6 * data.readLong();
+    data.reset();
+    double now = clocks.computeIfAbsent(name, channel -> new SenderClock()).time(sent, arrival);
+    boolean all = name.equals(Channels.STATUS) || name.equals(Channels.PACK);
+    if (!all && !gates.computeIfAbsent(name, channel -> new Gate(INTERVAL)).pass(now)) return;
     switch (name) {
       case Channels.STATUS: sink.accept(new estimator_status_t(data), now); break;
-      case Channels.ESTIMATE: if (estimates.pass(now)) sink.accept(new estimate_t(data), now); break;
-      case Channels.POSTERIOR: if (posteriors.pass(now)) sink.accept(new posterior_t(data), now); break;
-      case Channels.TRUTH: if (truths.pass(now)) sink.accept(new plant_truth_t(data), now); break;
-      case Channels.PACK: if (packs.pass(now)) sink.accept(new data_pack_t(data), now); break;
+      case Channels.ESTIMATE: sink.accept(new estimate_t(data), now); break;
+      case Channels.POSTERIOR: sink.accept(new posterior_t(data), now); break;
+      case Channels.TRUTH: sink.accept(new plant_truth_t(data), now); break;
+      case Channels.PACK: sink.accept(new data_pack_t(data), now); break;
       default:
     }
   }

@@ -65,11 +65,24 @@ public class PluginTest {
     Feed feed = new Feed(null, "", sink, () -> now);
     for (int i = 0; i < 1000; ++i) {
       now = 0.001 * i;
-      feed.messageReceived(null, "EST_POSTERIOR", bytes(Messages.posterior(i)));
+      posterior_t posterior = Messages.posterior(i);
+      posterior.utime = 1000L * i;
+      feed.messageReceived(null, "EST_POSTERIOR", bytes(posterior));
       feed.messageReceived(null, "EST_STATUS", bytes(Messages.status(i)));
     }
     Check.that(taken[0] <= 26 && taken[0] >= 24, taken[0] + " posteriors of 1000 in a second");
     Check.equal(1000, taken[2]);
+  }
+
+  public void aHeapOfLateMessagesIsNotDropped() throws IOException {
+    Feed feed = new Feed(null, "", sink, () -> now);
+    for (int i = 0; i < 10; ++i) {
+      now = i == 0 ? 0 : 1;  // nine of them after a second of standstill
+      posterior_t posterior = Messages.posterior(i);
+      posterior.utime = 100_000L * i;
+      feed.messageReceived(null, "EST_POSTERIOR", bytes(posterior));
+    }
+    Check.equal(10, taken[0]);
   }
 
   public void theFeedCountsStrangers() throws IOException {

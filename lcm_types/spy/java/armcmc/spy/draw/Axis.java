@@ -40,7 +40,7 @@ final class Axis {
       for (double tick = Math.pow(10, Math.ceil(Math.log10(lo) - 1e-9)); tick <= hi * 1.0001; tick *= 10) ticks.add(tick);
       return ticks;
     }
-    double step = niceStep((hi - lo) / Math.max(1, n));
+    double step = step(n);
     long first = (long) Math.ceil(lo / step - 1e-9);
     for (long i = first; i * step <= hi + 1e-9 * step && ticks.size() < 50; ++i) ticks.add(i * step);
     return ticks;
@@ -49,7 +49,7 @@ final class Axis {
   /** A tick in as many digits as it takes to tell it from the next. */
   String text(double tick, int n) {
     if (log) return trim(String.format(Locale.ROOT, "%.6f", tick));
-    double step = niceStep((hi - lo) / Math.max(1, n));
+    double step = step(n);
     double size = Math.max(Math.abs(lo), Math.abs(hi));
     if (size >= 1e6 || size < 1e-3) {
       int digits = (int) Math.max(0, Math.floor(Math.log10(Math.max(Math.abs(tick), step))) - Math.floor(Math.log10(step)));
@@ -57,6 +57,15 @@ final class Axis {
     }
     int decimals = (int) Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     return String.format(Locale.ROOT, "%." + decimals + "f", Math.abs(tick) < step / 2 ? 0.0 : tick);
+  }
+
+  /** Distance of about n round values, of two at least: one alone tells no scale. */
+  private double step(int n) {
+    double step = niceStep((hi - lo) / Math.max(1, n));
+    for (int i = 0; i < 3 && Math.floor(hi / step + 1e-9) - Math.ceil(lo / step - 1e-9) < 1; ++i) {
+      step = niceStep(step / 2.6);  // 5, 2, 1: the next round value below
+    }
+    return step;
   }
 
   /** 1, 2 or 5 times a power of ten, not below. */

@@ -103,6 +103,7 @@ public final class EstimatePainter implements Painter {
     plot.timeFrame(Text.label(name, unit));
     plot.line(measured, end, Palette.MEASURED, Palette.THIN);
     plot.points(predicted.mean, predicted.q025, predicted.q975, end, Palette.ESTIMATE);
+    if (last.decision == estimate_t.DECISION_HOLD) return;  // nothing was predicted
     pen.right("rms error over the pack " + Text.number(last.y_rmse) + ", noise sd " + Text.number(last.noise_std), Pen.NORMAL, Palette.INK,
         r.x + r.width - 16, r.y + 24);
   }

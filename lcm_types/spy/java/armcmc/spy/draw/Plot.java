@@ -76,11 +76,14 @@ final class Plot {
     g.rotate(Math.PI / 2);
   }
 
-  void line(Series series, double origin, Color color, Stroke stroke) {
+  void line(Series series, double origin, Color color, Stroke stroke) { line(series, 1, origin, color, stroke); }
+
+  /** The same, times a factor. */
+  void line(Series series, double factor, double origin, Color color, Stroke stroke) {
     Path2D path = new Path2D.Double();
     double previous = Double.NEGATIVE_INFINITY;
     for (int i = 0; i < series.size(); ++i) {
-      double value = series.value(i);
+      double value = factor * series.value(i);
       if (!Double.isFinite(value) || series.time(i) - origin < x.lo) {
         previous = Double.NEGATIVE_INFINITY;
         continue;

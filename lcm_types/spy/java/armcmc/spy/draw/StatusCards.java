@@ -130,7 +130,8 @@ final class StatusCards {
   private void gap(Rectangle r) {
     Rectangle inner = pen.card(r, "Does the model miss something?");
     if (s.gap_watched == 0) {
-      pen.left("not watched ([gap_watch] enabled = false)", Pen.NORMAL, Palette.MUTED, inner.x, inner.y + 18);
+      // Before the first step nobody knows whether it is on.
+      pen.left(s.step == 0 ? "no data judged yet" : "not watched ([gap_watch] enabled = false)", Pen.NORMAL, Palette.MUTED, inner.x, inner.y + 18);
       return;
     }
     boolean suspected = s.gap_suspected != 0;

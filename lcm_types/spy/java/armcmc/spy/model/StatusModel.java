@@ -51,7 +51,7 @@ public final class StatusModel implements MessageSink {
     estimate = message;
     boolean updated = message.decision != estimate_t.DECISION_HOLD;
     zeta.add(now, updated ? message.zeta : Double.NaN);
-    threshold.add(now, message.zeta_threshold > 0 ? message.zeta_threshold : Double.NaN);
+    threshold.add(now, updated && message.zeta_threshold > 0 ? message.zeta_threshold : Double.NaN);
     lambda.add(now, updated ? message.lambda : Double.NaN);
     acceptance.add(now, updated ? message.acceptance : Double.NaN);
   }

@@ -11,6 +11,15 @@ public class AxisTest {
     Check.equal("3.99", axis.text(ticks.get(0), 3));
   }
 
+  public void noScaleHasOneTickAlone() {
+    for (double lo = 3.99; lo < 4.01; lo += 0.0013) {
+      for (double size = 0.001; size < 1; size *= 1.7) {
+        int ticks = Axis.linear(lo, lo + size).ticks(3).size();
+        Check.that(ticks >= 2 && ticks <= 7, ticks + " ticks from " + lo + " over " + size);
+      }
+    }
+  }
+
   public void aLogarithmicAxisHasPowersOfTen() {
     Axis axis = Axis.logarithmic(0.01, 100);
     Check.equal(5, axis.ticks(4).size());

@@ -33,6 +33,14 @@ public class SeriesTest {
     Check.that(Double.isNaN(series.quantile(0.5, 50)), "nothing is there");
   }
 
+  public void lateMessagesStandWhereTheyWereSent() {
+    SenderClock clock = new SenderClock();
+    Check.near(10, clock.time(1000, 10), 1e-9);
+    Check.near(10.1, clock.time(1000.1, 10.9), 1e-9);  // late
+    Check.near(10.9, clock.time(1001, 10.9), 1e-9);    // faster than the first: no message comes before it is sent
+    Check.near(20, clock.time(5, 20), 1e-9);           // another clock
+  }
+
   public void theGateLetsThroughOneInATime() {
     Gate gate = new Gate(0.04);
     int passed = 0;
