@@ -30,11 +30,10 @@ double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
   return -0.5 * d.dot(Evaluate(prior.precision * d));
 }
 
-}  // namespace
-
-void LineariseAt(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-                 const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
-                 ParamVector* gradient, ParamMatrix* hessian) noexcept {
+/// Gradient and Gauss-Newton Hessian of minus the log posterior at u.
+void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
+               const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
+               ParamVector* gradient, ParamMatrix* hessian) noexcept {
   const int dim = space.dim;
   const int np = space.num_parameters;
   alignas(64) double log_scale[kTileLanes];
@@ -80,6 +79,8 @@ void LineariseAt(const simd::Kernels& kernels, int model, const ModeData& data, 
     for (int j = 0; j < i; ++j) (*hessian)(j, i) = (*hessian)(i, j);
 }
 
+}  // namespace
+
 double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                   const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,
                   Gaussian* fit) noexcept {
@@ -93,7 +94,7 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
   ParamMatrix hessian(dim, dim);
   double best = -HUGE_VAL;
   for (int iteration = 0; iteration < kLaplaceIterations; ++iteration) {
-    LineariseAt(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+    Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
     int lane = 0;
     for (const double damping : kDampings) {
       ParamMatrix damped = hessian;
@@ -124,7 +125,7 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
     u = trial[static_cast<std::size_t>(chosen)];
     if (converged) break;
   }
-  LineariseAt(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+  Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
   fit->mean = u;
   fit->precision = hessian;
   return best;

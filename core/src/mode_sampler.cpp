@@ -152,7 +152,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   mismatch.threshold = forgetting_.threshold;
   if (last.valid) mismatch = Compare(data, last, stream_of(kMismatchStream), ws);
   double lambda = 0.0;  // share of `previous` in the prior; the paper's lambda is mismatch.lambda
-  const PosteriorMemory& previous = transition_.Choose(data, last, pack, &mismatch, &lambda, &ws->laplace);
+  const PosteriorMemory& previous = transition_.Choose(data, last, &mismatch, &lambda, &ws->laplace);
   const bool use_previous = lambda > 0.0;
   const int wanted = DrawTarget(mismatch, out);
   const int target = std::clamp(limit, SamplerSettings::kMinDraws, wanted);
@@ -257,7 +257,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   }
   next->log_noise_scale = log_scale;
   if (mismatch.decision == Decision::kModification) out->p_changed = 1.0;
-  transition_.Accept(*next, pack, mismatch.decision);
+  transition_.Accept(*next, mismatch.decision);
   out->known = next->informed;
   out->updated = true;
   const double spent = static_cast<double>(clock.Now() - finish_start) / made;

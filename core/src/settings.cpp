@@ -190,7 +190,10 @@ EstimatorSettings BuiltinSettings(const std::string& model) {
   for (auto& noise : s.noise) noise.std = info.default_noise_std;
   if (excited) {
     s.gap_watch.tolerance = 0.1;  // the noise of the measured inputs bends the flow a little
-    s.constants.q1 = 0.0704;      // rad/s^2 per Pa, so that tens of kPa bend it by a radian
+    // While the pressure stands still, the noise of the measured pdot makes a pack prefer g = 0 by some 20 nats: that
+    // is no change of the valve.
+    s.forgetting.lambda_max = 1.0 - 1e-12;
+    s.constants.q1 = 0.0704;  // rad/s^2 per Pa, so that tens of kPa bend it by a radian
     for (auto& noise : s.noise) {
       noise.std = 0.25;  // sqrt(Pa): sensor noise of 500 Pa/s on pdot times a gain of 5e-4
       noise.estimate_std = true;

@@ -11,10 +11,7 @@
 namespace armcmc {
 namespace {
 
-constexpr double kNarrow = 0.2;       // prior standard deviations: a drift is looked for once every parameter is known
 constexpr double kChangeShare = 0.5;  // of "one parameter changed" in the prior after a modification
-constexpr double kMostNatsAPack = 2.0;
-constexpr double kMaxDriftPacks = 50;  // that a drift is carried over without data
 
 double LogDeterminant(const ParamMatrix& m) noexcept {
   const auto factor = m.ldlt();
@@ -72,16 +69,15 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
       best[1] = h;
     }
   };
-  for (int j = 0; j < space_.num_parameters; ++j) {
+  // The last coordinate may be the noise scale: a gross outlier is a louder noise before it is another plant.
+  for (int j = 0; j < space_.dim; ++j) {
     ParamVector mean = base;
     ParamMatrix c = covariance;
     mean[j] = 0.0;
     c.row(j).setZero();
     c.col(j).setZero();
     c(j, j) = 1.0;
-    Hypothesis h = Judge(data, mean, c, base, scratch);
-    h.partial = true;
-    offer(h);
+    offer(Judge(data, mean, c, base, scratch));
   }
   if (from_stable) offer(Judge(data, base, covariance, base, scratch));
   if (reinforcement) {
@@ -93,56 +89,9 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
   return true;
 }
 
-double Transition::WatchDrift(const ModeData& data, const PosteriorMemory& previous, double packs,
-                              LaplaceScratch* scratch) noexcept {
-  const int dim = space_.dim;
-  for (int d = 0; d < space_.num_parameters; ++d) {
-    if (previous.covariance(d, d) < kNarrow * kNarrow) continue;
-    ForgetDrift();
-    return 0.0;
-  }
-  const Gaussian flat{previous.mean, ParamMatrix::Zero(dim, dim)};
-  ParamVector gradient(dim);
-  ParamMatrix information(dim, dim);
-  LineariseAt(kernels_, model_, data, noise_, space_, flat, previous.mean, scratch, &gradient, &information);
-  // Log density of the pack's score under N(m, C + tau^2): 1/2 g' (C'^-1 + H)^-1 g - 1/2 log|I + C' H|.
-  const auto log_evidence = [&](double variance) noexcept {
-    ParamMatrix c = previous.covariance;
-    for (int d = 0; d < space_.num_parameters; ++d) c(d, d) += variance;
-    const ParamMatrix posterior = c.inverse() + information;
-    return 0.5 * gradient.dot(posterior.ldlt().solve(gradient)) - 0.5 * (LogDeterminant(c) + LogDeterminant(posterior));
-  };
-  const double persisted = log_evidence(0.0);
-  double chosen = 0.0;
-  std::array<double, kDrifts.size()> gain{};
-  double most = -HUGE_VAL;
-  for (std::size_t i = 0; i < kDrifts.size(); ++i) {
-    gain[i] = log_evidence(kDrifts[i] * kDrifts[i] * packs) - persisted;
-    if (!std::isfinite(gain[i])) gain[i] = -kMostNatsAPack;
-    most = std::fmax(most, gain[i]);
-  }
-  // A single pack may not decide: that would be a jump, which the mismatch judges.
-  const double surplus = std::fmax(most - kMostNatsAPack, 0.0);
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < kDrifts.size(); ++i) {
-    drift_evidence_[i] += std::fmax(gain[i] - surplus, -kMostNatsAPack);
-    if (drift_evidence_[i] > drift_evidence_[best]) best = i;
-  }
-  // Believed from the upper bound on until the evidence is gone.
-  const double top = drift_evidence_[best];
-  const double excess = std::fmax(top - kDriftNats, 0.0);
-  for (double& e : drift_evidence_) e = std::fmax(e - excess, -kDriftNats);
-  drifts_ = top >= kDriftNats || (drifts_ && top > 0.0);
-  if (drifts_) chosen = kDrifts[best];
-  return chosen;
-}
-
-const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorMemory& previous, std::uint64_t pack,
-                                          Mismatch* mismatch, double* share, LaplaceScratch* scratch) noexcept {
-  if (!previous.valid) {
-    stable_ = just_modified_ = false;
-    ForgetDrift();
-  }
+const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorMemory& previous, Mismatch* mismatch,
+                                          double* share, LaplaceScratch* scratch) noexcept {
+  if (!previous.valid) stable_ = just_modified_ = false;
   *share = mismatch->lambda;
   if (!previous.valid || !previous.informed) return previous;
   const bool reinforcement = mismatch->decision == Decision::kReinforcement;
@@ -153,26 +102,13 @@ const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorM
       *share = kChangeShare;
       return memory_;
     }
-    if (!reinforcement) return previous;
   }
-  const double packs = pack > last_pack_ ? std::fmin(static_cast<double>(pack - last_pack_), kMaxDriftPacks) : 1.0;
-  const double drift = WatchDrift(data, previous, packs, scratch);
-  if (drift == 0.0) return previous;
-  Hypothesis drifted;
-  drifted.mean = previous.mean;
-  drifted.covariance = previous.covariance;
-  for (int d = 0; d < space_.num_parameters; ++d) drifted.covariance(d, d) += drift * drift * packs;
-  SetMemory(previous, &drifted, 1);
-  return memory_;
+  return previous;
 }
 
-void Transition::Accept(const PosteriorMemory& next, std::uint64_t pack, Decision decision) noexcept {
-  last_pack_ = pack;
+void Transition::Accept(const PosteriorMemory& next, Decision decision) noexcept {
   just_modified_ = decision == Decision::kModification;
-  if (just_modified_) {
-    ForgetDrift();
-    return;
-  }
+  if (just_modified_) return;
   stable_ = next.informed;
   stable_mean_ = next.mean;
   stable_covariance_ = next.covariance;

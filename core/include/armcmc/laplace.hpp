@@ -24,12 +24,6 @@ struct LaplaceScratch {
   PredictionTile prediction;
 };
 
-/// Gradient and Gauss-Newton Hessian of minus log (likelihood x Gaussian prior) at u.
-/// @rt No heap, no lock, no throw. One batch.
-void LineariseAt(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-                 const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
-                 ParamVector* gradient, ParamMatrix* hessian) noexcept;
-
 /// Mode and curvature of likelihood x Gaussian prior by a bounded number of Gauss-Newton steps:
 ///
 ///   H = J' W J + P,   step = (H + mu diag H)^-1 [J' W e + P (m - u)]

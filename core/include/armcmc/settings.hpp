@@ -86,10 +86,10 @@ struct BaselineSettings {
   /// starts anew when the mode changes.
   bool recall = false;
   double rls_forgetting = 0.9997;  ///< Per sample, in (0, 1].
-  bool rls_reset = false;          ///< Contact: the covariance starts anew with every contact; what was learnt stays.
+  bool rls_reset = true;           ///< Contact: the covariance starts anew with every contact; what was learnt stays.
   int particles = 4096;            ///< [kMinDraws, max_draws].
   int pf_updates = 1;              ///< Updates a pack, [1, kMaxPackSamples]: the samples are cut into as many runs.
-  double pf_jitter = 0.004;        ///< Random walk of a parameter, prior standard deviations a pack, >= 0.
+  double pf_jitter = 0.05;         ///< Random walk of a parameter, prior standard deviations a pack, >= 0.
 };
 
 /// Constants of the plant that are known, not estimated.
