@@ -268,7 +268,7 @@ Parts Divide(const WorkflowRequest& request) {
   if (request.heldout) return {request.data, *request.heldout, 0};
   const auto rows = static_cast<Eigen::Index>(kDiagnosisShare * static_cast<double>(request.data.rows()));
   Parts parts{request.data.Slice(0, rows), request.data, rows};
-  parts.diagnosis.source += " (the first 70 % of its " + std::to_string(request.data.rows()) + " samples)";
+  parts.diagnosis.source += ": first 70 % of " + std::to_string(request.data.rows()) + " samples";
   return parts;
 }
 
