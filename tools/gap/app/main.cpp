@@ -22,7 +22,7 @@ namespace armcmc::gap {
 namespace {
 
 struct Arguments {
-  std::string model = "hunt_crossley", data, heldout, out, steps = "show";
+  std::string model = "hunt_crossley", data, heldout, earlier, out, steps = "show";
   std::vector<std::string> without;
   std::uint64_t seed = 1;
   double period_ms = 100.0;
@@ -35,6 +35,8 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--data", a->data, "CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha)")
       ->required();
   app->add_option("--heldout", a->heldout, "CSV of another run to show the gap on; without it the last 30 % of --data");
+  app->add_option("--earlier", a->earlier,
+                  "CSV of an earlier run with the same effect: names that it leaves open are judged by both runs");
   app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->required();
   app->add_option("--seed", a->seed, "Seed of the bootstrap: the same seed gives the same result")
       ->capture_default_str();
@@ -55,6 +57,9 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-plant --scenario contact_rich --hide-effect random --seed 5 --sealed truth.json --csv run.csv\n"
       "  armcmc-gap --model hunt_crossley --data run.csv --out gap\n"
       "  armcmc-estimator --config hunt_crossley --model gap/model.toml\n"
+      "Where several names remain, gap/experiment.toml is the motion that separates them. Make it, and let both runs "
+      "speak:\n"
+      "  armcmc-gap --model hunt_crossley --data experiment.csv --earlier run.csv --out gap2\n"
       "Exit status: 0 whatever the verdict, 2 bad usage or input, 1 any other failure.");
 }
 
@@ -150,6 +155,7 @@ int Run(const Arguments& a) {
   const std::vector<std::string> columns = ColumnsOf(request.model);
   request.data = ReadRecording(a.data, columns, a.skip_bad);
   if (!a.heldout.empty()) request.heldout = ReadRecording(a.heldout, columns, a.skip_bad);
+  if (!a.earlier.empty()) request.earlier = ReadRecording(a.earlier, columns, a.skip_bad);
   const std::filesystem::path out = a.out;
   Claim(out);
   support::Progress progress("gap");

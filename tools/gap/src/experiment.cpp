@@ -17,12 +17,13 @@ constexpr double kSeconds = 6.0;
 constexpr Eigen::Index kMaxRows = 6000;
 constexpr std::size_t kCompared = 3;  // candidates; more ties are resolved by a second experiment
 constexpr double kEnough = 10.0;      // nats that decide
+constexpr double kLeastWeight = 0.1;  // of a candidate, however improbable
 constexpr double kSmoothing_s = 0.015;
 constexpr double kBand_hz = 14.0;  // of the plant's motions at pace 1
 constexpr int kSteps = 10;
 constexpr double kPaces[] = {1.0, 2.0, 4.0};
-constexpr double kWorth = 2.0;     // times the evidence of a slower motion
-constexpr double kPlenty = 100.0;  // nats that need no quicker motion
+constexpr double kWorth = 1.1;     // times the decisions of a slower motion, that a quicker one must bring
+constexpr double kDecided = 0.95;  // expected share of decisions that needs no quicker motion
 
 double Share(double t, double period) { return t / period - std::floor(t / period); }
 double Tap(double share) { return 0.5 - 0.5 * std::cos(kTwoPi * share); }
@@ -85,31 +86,51 @@ double Separation(const Equation& equation, Signals* s, const Whitener& whitener
   return 0.5 * fitter.Fit(rival.hypothesis, rival.theta, kSteps).squares / whitener.s2;
 }
 
+/// What a motion would bring.
+struct Prospect {
+  double least = HUGE_VAL;  ///< Nats between the closest pair.
+  double decided = 0.0;     ///< Share of the pairs that would be decided, by the probability of either.
+};
+
+Prospect Expect(const Equation& equation, Signals* s, const Whitener& whitener,
+                const std::vector<CandidatePtr>& candidates) {
+  Prospect prospect;
+  double total = 0.0;
+  for (const CandidatePtr& truth : candidates)
+    for (const CandidatePtr& rival : candidates) {
+      if (truth == rival) continue;
+      const double nats = Separation(equation, s, whitener, truth->fit, rival->fit);
+      const double weight = (truth->probability + kLeastWeight) * (rival->probability + kLeastWeight);
+      prospect.least = std::min(prospect.least, nats);
+      prospect.decided += weight * nats / (nats + kEnough);
+      total += weight;
+    }
+  prospect.decided /= total;
+  return prospect;
+}
+
 }  // namespace
 
 Experiment SeparatingExperiment(const Equation& equation, const Look& look,
                                 const std::vector<CandidatePtr>& candidates) {
-  const std::size_t count = std::min(candidates.size(), kCompared);
+  const auto count = static_cast<std::ptrdiff_t>(std::min(candidates.size(), kCompared));
   const double depth = std::max(look.signals.at(Role::kPosition).maxCoeff(), look.signals.scale_of(Role::kPosition));
   Experiment best;
-  best.nats = -1.0;
+  double most = -1.0;
   for (const double pace : kPaces) {
     for (const Program& program : kPrograms) {
       Signals s = Simulate(program, pace, look.signals, depth);
-      double least = HUGE_VAL;
-      for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t j = 0; j < count; ++j)
-          if (i != j && least > 0.0)
-            least = std::min(least,
-                             Separation(equation, &s, look.fitter->whitener(), candidates[i]->fit, candidates[j]->fit));
+      const Prospect prospect =
+          Expect(equation, &s, look.fitter->whitener(), {candidates.begin(), candidates.begin() + count});
       // A quicker motion must be worth its wear.
-      if (least <= (pace > 1.0 ? kWorth : 1.0) * best.nats) continue;
-      best.nats = least;
+      if (prospect.decided <= (pace > 1.0 ? kWorth : 1.0) * most) continue;
+      most = prospect.decided;
+      best.nats = prospect.least;
       best.pace = pace;
       best.program = program.name;
       best.words = program.words;
     }
-    if (best.nats > kPlenty) break;
+    if (most > kDecided) break;
   }
   best.depth = depth;
   char evidence[160];

@@ -104,20 +104,28 @@ Matrix Fitted::Covariance(double s2) const {
 Fitter::Fitter(const Equation& equation, const Signals& signals, Whitener whitener)
     : equation_(&equation), signals_(&signals), whitener_(std::move(whitener)) {}
 
-Fitted Fitter::Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps) const {
+Fitted Fitter::Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps,
+                   const CoordinatePrior* prior) const {
   const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
   Vector theta = start;
   Clamp(coordinates, &theta);
   Prediction prediction = Evaluate(*equation_, *signals_, hypothesis, theta);
   Vector residual = whitener_.Apply(Vector(signals_->output - prediction.y));
-  double squares = residual.squaredNorm();
+  const auto penalty = [&](const Vector& at) {
+    return prior == nullptr ? 0.0 : whitener_.s2 * (at - prior->mean).dot(prior->precision * (at - prior->mean));
+  };
+  double squares = residual.squaredNorm() + penalty(theta);
   double damping = 1e-6;
   for (int step = 0; step < max_steps; ++step) {
     const Matrix columns = whitener_.Apply(prediction.jacobian);
-    const Vector ascent = columns.transpose() * residual;
+    Vector ascent = columns.transpose() * residual;
+    Matrix gram = columns.transpose() * columns;
+    if (prior != nullptr) {
+      ascent += whitener_.s2 * (prior->precision * (prior->mean - theta));
+      gram += whitener_.s2 * prior->precision;
+    }
     const std::vector<Eigen::Index> free = FreeOf(Blocked(coordinates, theta, ascent));
     if (free.empty()) break;
-    const Matrix gram = columns.transpose() * columns;
     bool improved = false;
     double decrease = 0.0;
     for (int i = 0; i < kMaxDampings && !improved; ++i) {
@@ -125,7 +133,7 @@ Fitted Fitter::Fit(const Hypothesis& hypothesis, const Vector& start, int max_st
       Clamp(coordinates, &tried);
       Prediction next = Evaluate(*equation_, *signals_, hypothesis, tried);
       Vector next_residual = whitener_.Apply(Vector(signals_->output - next.y));
-      const double next_squares = next_residual.squaredNorm();
+      const double next_squares = next_residual.squaredNorm() + penalty(tried);
       if (!(next_squares < squares)) {
         damping = std::max(10.0 * damping, 1e-4);
         continue;
@@ -147,7 +155,7 @@ Fitted Fitter::Fit(const Hypothesis& hypothesis, const Vector& start, int max_st
   fitted.predicted = prediction.y;
   fitted.whitened_residual = residual;
   fitted.whitened_jacobian = whitener_.Apply(prediction.jacobian);
-  fitted.squares = squares;
+  fitted.squares = residual.squaredNorm();
   Score(&fitted);
   return fitted;
 }

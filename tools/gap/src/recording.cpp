@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "armcmc/support/csv.hpp"
@@ -37,6 +38,26 @@ void Resample(Recording* recording) {
       column[i] = old[at] + share * (old[at + 1] - old[at]);
     }
   }
+}
+
+/// Speeds in other units than positions, or of the other sign, spoil every effect of both.
+void CompareUnits(const std::string& position, const std::string& velocity, Recording* recording) {
+  constexpr double kAlike = 0.8;  // correlation from which the two belong together
+  const auto has = [&](const std::string& name) {
+    return std::find(recording->names.begin(), recording->names.end(), name) != recording->names.end();
+  };
+  if (!has(position) || !has(velocity)) return;
+  const Vector& x = recording->Column(position);
+  const Eigen::Index inner = x.size() - 2;
+  const Vector rate = (x.tail(inner) - x.head(inner)) / (2.0 * recording->dt);
+  const Vector v = recording->Column(velocity).segment(1, inner);
+  const double product = rate.dot(v), correlation = product / (rate.norm() * v.norm() + 1e-300);
+  const double ratio = v.squaredNorm() / product;
+  if (std::abs(correlation) < kAlike || (ratio > 0.5 && ratio < 2.0)) return;
+  char note[160];
+  std::snprintf(note, sizeof(note), "%s is %.3g times the derivative of %s: check the units and signs of both",
+                velocity.c_str(), ratio, position.c_str());
+  recording->notes.emplace_back(note);
 }
 
 }  // namespace
@@ -90,6 +111,8 @@ Recording ReadRecording(const std::string& path, const std::vector<std::string>&
     recording.notes.push_back(std::to_string(uneven) + " of " + std::to_string(recording.rows()) +
                               " sample intervals are uneven: resampled by interpolation");
   }
+  CompareUnits("x", "v", &recording);
+  CompareUnits("p", "pdot", &recording);
   return recording;
 }
 

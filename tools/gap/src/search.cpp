@@ -251,12 +251,19 @@ Finding Search::Run(bool pairs) const {
           std::max(finding.p_missing, bootstrap_->ProbabilityAbove(gain, 0.1 * limits_.min_gain * rows_));
   finding.tried = singles;
   const double least = std::max(limits_.min_gain, 2.0 * limits_.min_nats / rows_);
+  const Candidates listed = Listed(singles, true), unlisted = Listed(singles, false);
   if (!(gap > least) || finding.p_missing < limits_.p_missing) {
-    JudgeEvents(singles, &finding);
-    return finding;
+    finding.p_none = WeighNothing(singles);
+    const double seen = bootstrap_->ProbabilityAbove(listed.front()->fit.heldout - base_->fit.heldout, 0.0);
+    const bool clear = finding.p_none < limits_.clear_nothing && seen > limits_.p_missing &&
+                       Ratio(listed.front()) > limits_.visible_ratio;
+    if (!clear) {
+      JudgeEvents(singles, &finding);
+      return finding;
+    }
+    finding.p_missing = 1.0 - finding.p_none;
   }
 
-  const Candidates listed = Listed(singles, true), unlisted = Listed(singles, false);
   Candidates good;
   for (const CandidatePtr& candidate : Near(listed, gap))
     if (Adequate(candidate, gap)) good.push_back(candidate);
@@ -307,8 +314,9 @@ Finding Search::Run(bool pairs) const {
     }
   }
   finding.remainder = std::max(2.0 * Judge(finding.best).total() / rows_, 0.0);
-  finding.p_unnamed = bootstrap_->ProbabilityAbove(
-      Judge(finding.best).gain, 0.5 * rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap));
+  // An adequate hypothesis may leave the share; it would take clearly more to call for another name.
+  finding.p_unnamed = bootstrap_->ProbabilityAbove(Judge(finding.best).gain,
+                                                   rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap));
   if (finding.approximate) finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
   if (finding.verdict == Verdict::kUnnamed) finding.p_unnamed = std::max(finding.p_unnamed, 0.5);
   AssignProbabilities(&finding);

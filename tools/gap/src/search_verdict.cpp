@@ -58,6 +58,7 @@ void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
   finding->best = finding->set.front();
   finding->gap = 2.0 * evidence(finding->best) / rows_;
   finding->p_missing = 1.0;
+  for (const CandidatePtr& c : finding->tried) c->probability = 0.0;
   double total = 0.0;
   for (const CandidatePtr& c : finding->set) total += std::exp(evidence(c) - evidence(finding->best));
   for (const CandidatePtr& c : finding->set) c->probability = std::exp(evidence(c) - evidence(finding->best)) / total;
@@ -90,6 +91,7 @@ void Search::AssignProbabilities(Finding* finding) const {
   // One candidate a name; differences that do not decide a verdict do not decide a probability either.
   constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth
   constexpr std::size_t kCompared = 12;
+  for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
   Candidates compared = finding->set;
   for (const CandidatePtr& candidate : OnePerName(finding->tried)) {
     if (compared.size() >= kCompared) break;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -111,6 +112,20 @@ double HeldOut::NoiseFloor(const Trial& after) const {
   const double squares = after.whitened.squaredNorm();
   const double explained = std::clamp(2.0 * whitener.s2 * gain.sum(), 0.0, squares);
   return Rms(after.residual) * std::sqrt(1.0 - explained / squares);
+}
+
+double HeldOut::ClosedElsewhere(const Fitted& before, const Fitted& after) const {
+  constexpr Eigen::Index kKept = kNumBlocks - kNumBlocks / 5;
+  const Whitener& whitener = look_->fitter->whitener();
+  const Vector first = BlockSquares(Try(before).residual), second = BlockSquares(Try(after).residual);
+  std::vector<Eigen::Index> order(kNumBlocks);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return second[a] < second[b]; });
+  order.resize(kKept);
+  const double noise =
+      whitener.s2 * whitener.Gain() * static_cast<double>(tail_.rows()) * kKept / static_cast<double>(kNumBlocks);
+  const double gap = first(order).sum() - noise;
+  return gap > 0.0 ? (first(order).sum() - second(order).sum()) / gap : 0.0;
 }
 
 GapSummary ShowGap(const Equation& equation, const HeldOut& data, const BlockBootstrap& bootstrap, const Fitted& before,

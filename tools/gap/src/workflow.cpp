@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "armcmc/gap/figures.hpp"
+#include "armcmc/gap/joint.hpp"
 #include "armcmc/gap/localise.hpp"
 #include "armcmc/gap/model_writer.hpp"
 #include "armcmc/gap/plant_diagnosis.hpp"
@@ -19,9 +21,8 @@ namespace {
 constexpr double kDiagnosisShare = 0.7;  // of the recording; the rest stays sealed to the end
 constexpr std::size_t kListed = 20;
 constexpr double kUnseenRatio = 0.15;  // gap over noise on the sealed data, below which they can confirm nothing
-constexpr double kWorse = 1.005;       // times the error of the model before, that a named effect must not exceed
-constexpr double kVisibleGap = 0.001;  // share of the noise variance, from which a gap that is not certain raises doubt
-constexpr double kSmallestDoubt = 0.03;  // an effect of a tenth of the noise would not be seen
+constexpr double kLikely = 0.5;
+constexpr double kWorse = 1.005;  // times the error of the model before, that a named effect must not exceed
 
 /// Time of each step, and what is told of it.
 class Clock {
@@ -97,7 +98,14 @@ std::string Sentence(const Result& result, const Finding& finding, const std::st
     return std::string(text);
   };
   switch (result.verdict) {
-    case Verdict::kNone: return "Nothing beyond the noise: the model explains these data.";
+    case Verdict::kNone: {
+      if (result.probability_none >= kLikely) return "Nothing beyond the noise: the model explains these data.";
+      const CandidatePtr weak = *std::max_element(
+          finding.tried.begin(), finding.tried.end(),
+          [](const CandidatePtr& a, const CandidatePtr& b) { return a->probability < b->probability; });
+      return "Nothing that is large enough to be named: what may be missing is far below the noise, most probably " +
+             Joined(Texts(weak), " and ") + " (" + percent(weak->probability) + ").";
+    }
     case Verdict::kNamed:
       return "Missing" + in + ": " + Joined(Texts(finding.best), " and ") +
              (finding.approximate || !finding.best->exact() ? " (the family is right, the formula is approximate)"
@@ -118,10 +126,7 @@ std::string Sentence(const Result& result, const Finding& finding, const std::st
 void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active, Result* result) {
   const Finding& finding = diagnosis.finding;
   result->verdict = finding.verdict;
-  result->probability_none =
-      finding.verdict == Verdict::kNone
-          ? 1.0 - std::max(kSmallestDoubt, finding.gap > kVisibleGap ? 0.5 * finding.p_missing : 0.0)
-          : 1.0 - finding.p_missing;
+  result->probability_none = finding.verdict == Verdict::kNone ? finding.p_none : 1.0 - finding.p_missing;
   result->probability_unnamed = finding.p_unnamed;
   if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active);
   if (finding.verdict == Verdict::kAmbiguous)
@@ -182,6 +187,9 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     if (gap.gap_ratio < kUnseenRatio) return gap.after.rmse < kWorse * gap.before.rmse;
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
+  const auto holds_elsewhere = [&](const Fitted& fit) {
+    return heldout.ClosedElsewhere(finding.base->fit, fit) > limits.confirmed_elsewhere;
+  };
   std::vector<CandidatePtr> kept;
   double lost = 0.0;
   for (const CandidatePtr& member : finding.set) {
@@ -192,6 +200,12 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     const auto other = std::find_if(finding.tried.begin(), finding.tried.end(), [&](const CandidatePtr& c) {
       return c != member && c->names() == member->names() && holds(closed(c->fit));
     });
+    if (other == finding.tried.end() && holds_elsewhere(member->fit)) {
+      result->notes.push_back("the data kept apart hold something else besides, in a few stretches, that " +
+                              Joined(Texts(member), " and ") + " does not explain and the first part does not show");
+      kept.push_back(member);
+      continue;
+    }
     if (other == finding.tried.end()) {
       result->notes.push_back(Joined(Texts(member), " and ") +
                               " explains the first part of the data but not the part kept apart: struck off");
@@ -253,7 +267,9 @@ struct Parts {
 Parts Divide(const WorkflowRequest& request) {
   if (request.heldout) return {request.data, *request.heldout, 0};
   const auto rows = static_cast<Eigen::Index>(kDiagnosisShare * static_cast<double>(request.data.rows()));
-  return {request.data.Slice(0, rows), request.data, rows};
+  Parts parts{request.data.Slice(0, rows), request.data, rows};
+  parts.diagnosis.source += ": first 70 % of " + std::to_string(request.data.rows()) + " samples";
+  return parts;
 }
 
 /// Where the first part of a recording lacks nothing in any equation, all of it is looked at: a load may come late.
@@ -265,6 +281,22 @@ bool BeginsLate(const WorkflowRequest& request, PlantDiagnosis* plant) {
   if (whole.carrying().diagnosis.finding.verdict == Verdict::kNone) return false;
   *plant = std::move(whole);
   return true;
+}
+
+/// What an earlier recording left open, judged by both.
+/// @return the earlier diagnosis, to which the candidates of `plant` refer.
+PlantDiagnosis JoinEarlier(const WorkflowRequest& request, const Recording& recording, PlantDiagnosis* plant) {
+  PlantDiagnosis earlier = DiagnosePlant(request.model, *request.earlier, request.diagnose);
+  if (earlier.carrying().diagnosis.finding.set.empty()) {
+    plant->notes.push_back(request.earlier->source + ": names nothing by itself, and is not used");
+    return earlier;
+  }
+  EquationDiagnosis& same = plant->equations[earlier.carrier];
+  if (!same.suitability.can_name) return earlier;
+  plant->carrier = earlier.carrier;
+  Join(*same.equation, recording, earlier.carrying().diagnosis, request.diagnose.thresholds, &same.diagnosis,
+       &plant->notes);
+  return earlier;
 }
 
 }  // namespace
@@ -287,6 +319,8 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     result.notes.push_back(
         "what is missing begins in the last 30 % of the recording: nothing could be kept sealed, and the gap is shown "
         "on data that were diagnosed, too. Record another run for --heldout");
+  std::optional<PlantDiagnosis> earlier;
+  if (request.earlier) earlier = JoinEarlier(request, parts.diagnosis, &plant);
   const Equation* equation = plant.carrying().equation.get();
   Diagnosis& diagnosis = plant.carrying().diagnosis;
   const std::string in = equation->name().empty() ? "" : " in the " + equation->name();

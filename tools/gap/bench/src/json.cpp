@@ -14,6 +14,7 @@ using nlohmann::json;
 json CaseJson(const Outcome& o) {
   std::string plant = "armcmc-plant", tool = "armcmc-gap --data " + o.what.Name() + ".csv --out " + o.what.Name();
   for (const std::string& argument : PlantProcess::Arguments(o.what)) plant += " " + argument;
+  if (o.what.earlier) tool += " --earlier " + o.what.earlier->Name() + ".csv";
   for (const std::string& name : o.what.without) tool += " --without " + name;
   json effects = json::array();
   for (const TrueEffect& effect : o.truth.effects) {

@@ -36,14 +36,16 @@ std::string Contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// All that the tool is given: a recording, and which effects its catalogue lacks.
-Answer Ask(const std::filesystem::path& recording, const std::vector<std::string>& without) {
+/// All that the tool is given: a recording, after a tie the one before it, and which effects its catalogue lacks.
+Answer Ask(const std::filesystem::path& recording, const std::filesystem::path& earlier,
+           const std::vector<std::string>& without) {
   Answer answer;
   const double start = CpuSeconds();
   try {
     gap::WorkflowRequest request;
     request.model = kModel;
     request.data = gap::ReadRecording(recording, gap::ColumnsOf(kModel), false);
+    if (!earlier.empty()) request.earlier = gap::ReadRecording(earlier, gap::ColumnsOf(kModel), false);
     request.diagnose.without = without;
     answer.result = gap::RunWorkflow(request).result;
     answer.result.figures = {};
@@ -114,9 +116,9 @@ Outcome RunCase(const PlantProcess& plant, const Case& what, bool keep) {
   Outcome outcome;
   outcome.what = what;
   try {
-    if (!plant.Make(what)) return outcome;
+    if (!plant.Make(what) || (what.earlier && !plant.Make(*what.earlier))) return outcome;
     outcome.grade = Grade::kFailed;
-    outcome.answer = Ask(plant.Recording(what), what.without);
+    outcome.answer = Ask(plant.Recording(what), what.earlier ? plant.Recording(*what.earlier) : "", what.without);
     outcome.truth = ReadSealed(plant.Sealed(what));
     if (outcome.answer.error.empty()) Score(plant, &outcome);
   } catch (const std::exception& error) {
@@ -124,6 +126,7 @@ Outcome RunCase(const PlantProcess& plant, const Case& what, bool keep) {
     outcome.answer.error = error.what();
   }
   if (!keep) plant.Remove(what);
+  if (!keep && what.earlier) plant.Remove(*what.earlier);
   return outcome;
 }
 
@@ -176,6 +179,7 @@ Case FollowUp(const PlantProcess& plant, const Outcome& outcome) {
   next.scenario = "scenarios/experiment_" + outcome.what.Name() + ".toml";
   std::ofstream(plant.folder() / next.scenario, std::ios::binary) << text;
   ++next.seed;  // another day, other noise
+  next.earlier = std::make_shared<const Case>(outcome.what);
   return next;
 }
 

@@ -12,7 +12,8 @@ namespace armcmc::gap {
 ///
 /// For each motion and each pair of candidates, one is simulated at its estimate and the other refitted to it; what
 /// stays is the evidence that the motion would bring:  D = min_theta |f_i - f_j(theta)|^2 / (2 s2), whitened. The
-/// motion with the largest smallest D wins.
+/// motion wins that decides most pairs, D / (D + 10 nats) each, weighted by the probabilities of both: a pair that no
+/// motion separates does not keep the others from being separated.
 /// @return words and nats; `scenario_file` is left to the caller.
 [[nodiscard]] Experiment SeparatingExperiment(const Equation& equation, const Look& look,
                                               const std::vector<CandidatePtr>& candidates);

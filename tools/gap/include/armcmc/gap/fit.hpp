@@ -33,6 +33,12 @@ struct Fitted {
   [[nodiscard]] Matrix Covariance(double s2) const;
 };
 
+/// What another recording says of the coordinates: Gaussian, log p = -(theta - mean)' precision (theta - mean) / 2.
+struct CoordinatePrior {
+  Vector mean;
+  Matrix precision;
+};
+
 /// Fits hypotheses to one recording with one noise model.
 class Fitter {
  public:
@@ -43,7 +49,9 @@ class Fitter {
   [[nodiscard]] const Whitener& whitener() const { return whitener_; }
 
   /// Bounded Levenberg-Marquardt from `start`, then scores.
-  [[nodiscard]] Fitted Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps = 12) const;
+  /// @param prior  Of every coordinate; may be null.
+  [[nodiscard]] Fitted Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps = 12,
+                           const CoordinatePrior* prior = nullptr) const;
   /// The best fit of `parent` with one more term: grid over the term's starts by projected score, then Fit.
   [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
 

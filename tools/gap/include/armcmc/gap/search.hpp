@@ -42,6 +42,7 @@ struct Finding {
   std::vector<CandidatePtr> tried;  ///< Singles and pairs, best held-out score first.
   double gap = 0.0;                 ///< Explainable share of the noise variance beyond the base model.
   double p_missing = 0.0;           ///< That anything is missing.
+  double p_none = 1.0;              ///< Of a verdict of none: that nothing is missing, however weak.
   double remainder = 0.0;           ///< Share of the noise variance that `best` leaves explainable.
   double p_unnamed = 0.0;           ///< That `best` leaves something, or that physics without a name explains it.
 };
@@ -56,6 +57,11 @@ class Search {
   /// @param pairs  Whether two effects at once are tried.
   [[nodiscard]] Finding Run(bool pairs) const;
   [[nodiscard]] const Referee& referee() const { return *referee_; }
+  [[nodiscard]] const CandidatePtr& base() const { return base_; }
+  /// Whether a hypothesis leaves nothing worth another name, of a gap of that size.
+  [[nodiscard]] bool Adequate(const CandidatePtr& candidate, double gap) const;
+  /// Nats that a flexible model still finds after a hypothesis: what its formula may err by.
+  [[nodiscard]] double Left(const CandidatePtr& candidate) const { return Judge(candidate).total(); }
 
  private:
   using Candidates = std::vector<CandidatePtr>;
@@ -71,8 +77,9 @@ class Search {
   [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
   [[nodiscard]] const Remainder& Judge(const CandidatePtr& candidate) const;
-  [[nodiscard]] bool Adequate(const CandidatePtr& candidate, double gap) const;
   [[nodiscard]] bool Better(const Fitted& a, const Fitted& b) const;
+  /// Nats below which a lead decides nothing, in a gap of that size.
+  /// @param kin  Both are of the same family: their formulas err alike.
   [[nodiscard]] double Margin(double gap, bool kin) const;
   /// A name that is not sure becomes a set, or none.
   void Hedge(Finding* finding) const;
@@ -80,6 +87,14 @@ class Search {
   [[nodiscard]] double Gain(const CandidatePtr& candidate) const;
   [[nodiscard]] double Closure(const CandidatePtr& candidate) const;
   void AssignProbabilities(Finding* finding) const;
+  /// ln of the Bayes factor of a single effect over nothing. Its size R, rms over noise, is as probable in one decade
+  /// as in another, from what nobody would miss to Thresholds::largest_ratio.
+  [[nodiscard]] double LogOdds(const CandidatePtr& candidate) const;
+  /// Rms of what a hypothesis changes in the prediction over that of the noise.
+  [[nodiscard]] double Ratio(const CandidatePtr& candidate) const;
+  /// Probability that nothing is missing, by LogOdds of every effect, nothing and something being equally probable
+  /// beforehand. Gives the effects theirs.
+  double WeighNothing(const Candidates& singles) const;
   [[nodiscard]] bool FamilyHolds(const CandidatePtr& best, const Candidates& singles) const;
   [[nodiscard]] Candidates OnePerName(const Candidates& candidates) const;
 

@@ -26,6 +26,9 @@ class HeldOut {
   /// Standard deviation of what no model explains: the error of `after` less what a flexible model still predicts of
   /// it.
   [[nodiscard]] double NoiseFloor(const Trial& after) const;
+  /// Share of the gap that `after` closes where nothing else happens: the fifth of the blocks that it leaves most error
+  /// in is put aside, the noise is that of the diagnosis.
+  [[nodiscard]] double ClosedElsewhere(const Fitted& before, const Fitted& after) const;
   [[nodiscard]] const Signals& signals() const { return tail_; }
 
  private:

@@ -20,6 +20,7 @@ struct WorkflowRequest {
   std::string model = "hunt_crossley";  ///< Built-in name.
   Recording data;                       ///< To diagnose; without `heldout`, its end is kept sealed.
   std::optional<Recording> heldout;     ///< To show the gap on.
+  std::optional<Recording> earlier;     ///< What its verdict left open is judged by both recordings, see Join.
   Step until = Step::kShow;
   DiagnoseOptions diagnose;
   /// Called with the name of each step as it begins, and the share of the work before it.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +21,8 @@ struct Case {
   double strength = 1.0;
   std::uint64_t seed = 1;
   std::vector<std::string> without;  ///< Effects that are taken out of the catalogue of the tool.
+  /// The case whose tie this one is to resolve, the tool is given both recordings. Null: none.
+  std::shared_ptr<const Case> earlier{};
 
   /// Unique within a run, good as a file name.
   [[nodiscard]] std::string Name() const;

@@ -1,0 +1,104 @@
+// What one recording leaves open is judged by another.
+
+#include "armcmc/gap/joint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/gap/gap_rig.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+using armcmc::test::HiddenEffect;
+using test::Measure;
+
+HiddenEffect Weak(const std::string& name, double amplitude) {
+  HiddenEffect effect = test::Hidden(name);
+  effect.amplitude[0] = amplitude;
+  return effect;
+}
+
+/// One sine, always in contact: what is constant and what follows the acceleration look the same.
+Recording Sine(const HiddenEffect& effect, double noise_sd, unsigned seed) {
+  constexpr int kRows = 6000;
+  armcmc::test::Series series(kRows);
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const double phase = 2.0 * std::numbers::pi * series.t[i];
+    series.x[i] = 0.6 + 0.3 * std::sin(phase);
+    series.v[i] = 0.6 * std::numbers::pi * std::cos(phase);
+  }
+  armcmc::test::Simulate({effect}, &series);
+  const auto column = [](const std::vector<double>& values) -> Vector {
+    return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  Recording recording = test::MakeRecording(column(series.t), column(series.x), column(series.v),
+                                            column(series.f) + noise_sd * test::Noise(kRows, seed));
+  recording.dt = series.dt;
+  return recording;
+}
+
+bool Holds(const Finding& finding, const std::string& effect) {
+  return std::any_of(finding.set.begin(), finding.set.end(),
+                     [&](const CandidatePtr& member) { return member->names() == std::vector<std::string>{effect}; });
+}
+
+class JoinTest : public ::testing::Test {
+ protected:
+  void Judge(const HiddenEffect& first_effect, const HiddenEffect& second_effect, double second_noise) {
+    options_.pairs = false;
+    first_ = Diagnose(*equation_, Sine(first_effect, 0.01, 3), options_);
+    LeaveOpen({"force_bias", "inertia"});
+    recording_ = Measure({second_effect}, 6000, second_noise, 4).recording;
+    second_ = Diagnose(*equation_, recording_, options_);
+    alone_ = second_.finding.verdict;
+    Join(*equation_, recording_, first_, options_.thresholds, &second_, &notes_);
+  }
+  /// As if the first recording could not tell these apart, whatever its noise.
+  void LeaveOpen(const std::vector<std::string>& effects) {
+    first_.finding.verdict = Verdict::kAmbiguous;
+    first_.finding.set.clear();
+    for (const std::string& effect : effects)
+      for (const CandidatePtr& tried : first_.finding.tried)
+        if (tried->exact() && tried->names() == std::vector<std::string>{effect} && !Holds(first_.finding, effect))
+          first_.finding.set.push_back(tried);
+    ASSERT_EQ(first_.finding.set.size(), effects.size());
+  }
+  void ExpectDecided(const std::string& effect) {
+    EXPECT_EQ(alone_, Verdict::kNone);
+    EXPECT_EQ(second_.finding.verdict, Verdict::kNamed);
+    EXPECT_TRUE(Holds(second_.finding, effect));
+    EXPECT_EQ(notes_.size(), 1u);
+  }
+
+  std::unique_ptr<Equation> equation_ = std::move(MakeEquations("hunt_crossley").front());
+  DiagnoseOptions options_;
+  Recording recording_;
+  Diagnosis first_, second_;
+  Verdict alone_ = Verdict::kNone;
+  std::vector<std::string> notes_;
+};
+
+TEST_F(JoinTest, ABiasTooWeakToBeNamedAgainIsStillToldFromItsRival) {
+  Judge(Weak("force_bias", 0.05), Weak("force_bias", 0.05), 0.7);
+  ExpectDecided("force_bias");
+}
+
+TEST_F(JoinTest, AnInertiaTooWeakToBeNamedAgainIsStillToldFromItsRival) {
+  Judge(Weak("inertia", 0.003), Weak("inertia", 0.003), 1.3);
+  ExpectDecided("inertia");
+}
+
+TEST_F(JoinTest, ARecordingOfAnotherEffectKeepsItsOwnVerdict) {
+  Judge(Weak("force_bias", 0.05), Weak("stress_relaxation", 2.0), 0.02);
+  EXPECT_FALSE(Holds(second_.finding, "force_bias"));
+  EXPECT_FALSE(Holds(second_.finding, "inertia"));
+  ASSERT_EQ(notes_.size(), 1u);
+  EXPECT_NE(notes_[0].find("disagree"), std::string::npos) << notes_[0];
+}
+
+}  // namespace
+}  // namespace armcmc::gap

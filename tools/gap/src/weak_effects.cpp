@@ -1,0 +1,93 @@
+// What data that name nothing still say: how probable an effect is that is too weak to be named.
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "armcmc/gap/search.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+/// Columns of an effect's amplitudes, whitened, that the coordinates before them cannot imitate.
+Matrix AmplitudeColumns(const Fitted& fit, const EffectForm& form) {
+  const Eigen::Index first = fit.theta.size() - form.size();
+  const Matrix basis = OrthonormalBasis(fit.whitened_jacobian.leftCols(first));
+  const Matrix columns = fit.whitened_jacobian.middleCols(first, form.num_amplitudes);
+  return columns - basis * (basis.transpose() * columns);
+}
+
+double LogSumExp(const Vector& terms) {
+  const double top = terms.maxCoeff();
+  return top + std::log((terms.array() - top).exp().sum());
+}
+
+/// ln of  1/L int exp(z rho - rho^2 / 2) d ln R,  rho = R per_ratio: the likelihood ratio of an effect that shows with
+/// z standard deviations, over its absence, with ln R uniform. Where two amplitudes make up the effect (a wave) the
+/// likelihood is averaged over its phase.
+double LogScaleFree(double z, double per_ratio, bool phase, double least, double most) {
+  constexpr int kPoints = 400;
+  Vector terms(kPoints);
+  for (int i = 0; i < kPoints; ++i) {
+    const double rho = per_ratio * least * std::pow(most / least, (i + 0.5) / kPoints);
+    terms[i] = z * rho - 0.5 * rho * rho - (phase ? 0.5 * std::log1p(2.0 * std::numbers::pi * z * rho) : 0.0);
+  }
+  return LogSumExp(terms) - std::log(kPoints);
+}
+
+}  // namespace
+
+double Search::LogOdds(const CandidatePtr& candidate) const {
+  const Fitted& fit = candidate->fit;
+  const EffectForm& form = *fit.hypothesis.terms.back().form;
+  const double evidence = fit.log_evidence - base_->fit.log_evidence;
+  if (!form.linear || form.num_amplitudes == 0) return evidence;
+  const double s2 = fitter_->whitener().s2;
+  const Matrix columns = AmplitudeColumns(fit, form);
+  const Vector strengths = columns.colwise().squaredNorm();
+  if (!(strengths.minCoeff() > 0.0)) return evidence;
+  // The prior of the amplitudes taken back: what is left is the likelihood at the best amplitudes.
+  Matrix information = columns.transpose() * columns / s2;
+  const Eigen::Index first = fit.theta.size() - form.size();
+  double likelihood = evidence;
+  for (Eigen::Index a = 0; a < form.num_amplitudes; ++a) {
+    const Coordinate& c = form.coordinates[static_cast<std::size_t>(a)];
+    likelihood += std::log(c.prior_sd) + 0.5 * std::pow((fit.theta[first + a] - c.prior_mean) / c.prior_sd, 2);
+    information(a, a) += std::pow(c.prior_sd, -2);
+  }
+  likelihood += 0.5 * information.ldlt().vectorD().cwiseMax(1e-300).array().log().sum();
+  const Vector column = columns.col(0);
+  const double noise = std::sqrt(s2 * fitter_->whitener().Gain());
+  const double per_ratio =
+      column.norm() / std::sqrt(s2) * noise * std::sqrt(rows_) / fitter_->whitener().Colour(column).norm();
+  return LogScaleFree(std::sqrt(2.0 * std::max(likelihood, 0.0)), per_ratio, form.num_amplitudes > 1,
+                      limits_.tie_effect, limits_.largest_ratio);
+}
+
+double Search::Ratio(const CandidatePtr& candidate) const {
+  const Whitener& whitener = fitter_->whitener();
+  return (candidate->fit.predicted - base_->fit.predicted).norm() / std::sqrt(rows_ * whitener.s2 * whitener.Gain());
+}
+
+double Search::WeighNothing(const Candidates& singles) const {
+  // A family counts once, however many members it has.
+  std::map<std::string, std::vector<std::pair<CandidatePtr, double>>> families;
+  for (const CandidatePtr& single : singles)
+    if (single->exact() && single->added().back().when.kind == When::Kind::kAlways)
+      families[single->families().front()].emplace_back(single, LogOdds(single));
+  if (families.empty()) return 1.0;
+  const auto weight = [&](std::size_t members) {
+    return -std::log(static_cast<double>(members) * static_cast<double>(families.size()));
+  };
+  std::vector<double> logs{0.0};  // nothing, as probable beforehand as something
+  for (const auto& [family, members] : families)
+    for (const auto& member : members) logs.push_back(member.second + weight(members.size()));
+  const double total = LogSumExp(Eigen::Map<const Vector>(logs.data(), static_cast<Eigen::Index>(logs.size())));
+  for (const auto& [family, members] : families)
+    for (const auto& [single, odds] : members) single->probability = std::exp(odds + weight(members.size()) - total);
+  return std::exp(-total);
+}
+
+}  // namespace armcmc::gap
