@@ -95,9 +95,9 @@ struct Estimator::Impl {
 
   /// One step of mode m with the method of the settings.
   Status AdjustMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
-                    AdjustResult* result) noexcept;
+                    AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
   /// A baseline with one vector of parameters shows it for every mode.
-  void ShareVector(Estimate* e) noexcept;
+  void ShareVector(Estimate* e) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool one_vector() const noexcept {
     return settings.method != Method::kArmcmc && !settings.baseline.recall && info.num_modes > 1;
   }
@@ -399,7 +399,11 @@ void Estimator::Reset() noexcept {
 
 std::size_t Estimator::SaveAdjusted(std::span<std::byte> bytes) const noexcept {
   SnapshotWriter out(bytes);
-  for (const auto& memory : impl_->memories) memory->slot[memory->current].Save(&out);
+  for (std::size_t m = 0; m < impl_->samplers.size(); ++m) {
+    const ModeMemory& memory = *impl_->memories[m];
+    memory.slot[memory.current].Save(&out);
+    impl_->samplers[m]->transition().Save(&out);
+  }
   return out.size();
 }
 
@@ -408,6 +412,7 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
   SnapshotWriter out(bytes);
   out.Put(std::int64_t{s.report_mode});
   for (std::size_t m = 0; m < static_cast<std::size_t>(s.info.num_modes); ++m) {
+    out.PutFlag(s.known_draws[m]);
     s.last_estimates[m].Save(s.info.num_reported, &out);
     // The band is drawn with the first update, and read once something is known.
     for (std::size_t d = 0; s.last_estimates[m].known && d < static_cast<std::size_t>(s.info.num_parameters); ++d)
@@ -424,14 +429,17 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
 bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std::byte> executed) noexcept {
   Impl& s = *impl_;
   Reset();
+  if (!s.filters.empty()) return false;  // a baseline keeps no snapshot
   SnapshotReader posterior(adjusted);
   for (std::size_t m = 0; m < s.memories.size(); ++m) {
     s.memories[m]->current = 0;
     s.memories[m]->slot[0].Restore(s.samplers[m]->space().dim, s.samplers[m]->shared_table(), &posterior);
+    s.samplers[m]->transition().Restore(&posterior);
   }
   SnapshotReader display(executed);
   s.report_mode = static_cast<int>(display.Integer(0, s.info.num_modes - 1));
   for (std::size_t m = 0; m < s.memories.size(); ++m) {
+    s.known_draws[m] = display.Flag();
     s.last_estimates[m].Restore(s.info.num_reported, &display);
     for (std::size_t d = 0; s.last_estimates[m].known && d < static_cast<std::size_t>(s.info.num_parameters); ++d)
       display.Row(s.band_theta[m].value[d].data(), kTileLanes);

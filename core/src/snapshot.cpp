@@ -6,7 +6,7 @@ namespace armcmc {
 namespace {
 
 /// Changed whenever Save() writes something else.
-constexpr std::int64_t kLayout = 1;
+constexpr std::int64_t kLayout = 2;
 
 /// FNV-1a, 64 bits.
 class Hash {

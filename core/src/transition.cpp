@@ -1,11 +1,11 @@
 #include "armcmc/transition.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "armcmc/density_fit.hpp"
+#include "armcmc/linear_algebra.hpp"
+#include "armcmc/snapshot.hpp"
 #include "simd/kernels.hpp"
 
 namespace armcmc {
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kChangeShare = 0.5;  // of "one parameter changed" in the prior after a modification
 
-double LogDeterminant(const ParamMatrix& m) noexcept {
-  const auto factor = m.ldlt();
+double LogDeterminant(const ParamMatrix& m) noexcept ARMCMC_NONBLOCKING {
+  const auto factor = FactorSymmetric(m);
   double sum = 0.0;
   for (Eigen::Index i = 0; i < m.rows(); ++i) sum += std::log(std::fmax(factor.vectorD()[i], 1e-300));
   return sum;
@@ -31,7 +31,7 @@ Transition::Hypothesis Transition::Judge(const ModeData& data, const ParamVector
   Hypothesis h;
   h.mean = mean;
   h.covariance = covariance;
-  const Gaussian prior{mean, covariance.inverse()};
+  const Gaussian prior{mean, Evaluate(covariance.inverse())};
   Gaussian fit;
   const double height = LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, scratch, &fit);
   h.log_evidence = height + 0.5 * (LogDeterminant(prior.precision) - LogDeterminant(fit.precision));
@@ -61,7 +61,7 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
   const ParamMatrix covariance = from_stable ? stable_covariance_ : previous.covariance;
   std::array<Hypothesis, PosteriorMemory::kMaxBlocks> best;
   for (auto& h : best) h.log_evidence = -HUGE_VAL;
-  const auto offer = [&](const Hypothesis& h) noexcept {
+  const auto offer = [&](const Hypothesis& h) noexcept ARMCMC_NONBLOCKING {
     if (h.log_evidence > best[0].log_evidence) {
       best[1] = best[0];
       best[0] = h;
@@ -112,6 +112,27 @@ void Transition::Accept(const PosteriorMemory& next, Decision decision) noexcept
   stable_ = next.informed;
   stable_mean_ = next.mean;
   stable_covariance_ = next.covariance;
+}
+
+void Transition::Save(SnapshotWriter* out) const noexcept {
+  out->PutFlag(just_modified_);
+  out->PutFlag(stable_);
+  if (!stable_) return;
+  out->PutRow(stable_mean_.data(), static_cast<std::size_t>(stable_mean_.size()));
+  out->PutRow(stable_covariance_.data(), static_cast<std::size_t>(stable_covariance_.size()));
+}
+
+void Transition::Restore(SnapshotReader* in) noexcept {
+  just_modified_ = in->Flag();
+  stable_ = in->Flag();
+  if (!stable_) return;
+  const int dim = space_.dim;
+  stable_mean_.resize(dim);
+  stable_covariance_.resize(dim, dim);
+  in->Row(stable_mean_.data(), static_cast<std::size_t>(dim));
+  in->Row(stable_covariance_.data(), static_cast<std::size_t>(dim * dim));
+  for (int d = 0; d < dim; ++d) in->Require(stable_covariance_(d, d) > 0.0);
+  stable_ = in->good();
 }
 
 }  // namespace armcmc

@@ -159,6 +159,9 @@ int Run(const Options& options) {
   const Configuration configuration = Load(options);
   CheckPath("--report", options.report);
   CheckPath("--resume", options.resume);
+  if (!options.resume.empty() && configuration.estimator.method != Method::kArmcmc) {
+    throw support::InputError("--resume: only method = \"armcmc\" keeps what it has learnt; leave --resume out");
+  }
 
   // Blocked before the first thread starts: all inherit it, and sigtimedwait() below is the only one to hear them.
   sigset_t signals;

@@ -80,6 +80,8 @@ class ModeSampler {
   [[nodiscard]] const NoiseModel& noise() const noexcept { return noise_; }
   /// Table of the blocks that have none of their own.
   [[nodiscard]] const MarginalTable& shared_table() const noexcept { return normal_table_; }
+  /// What is trusted across a change: part of what a snapshot holds.
+  [[nodiscard]] Transition& transition() noexcept { return transition_; }
 
  private:
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,

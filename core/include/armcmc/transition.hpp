@@ -6,11 +6,14 @@
 #include "armcmc/laplace.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/posterior_memory.hpp"
 
 namespace armcmc {
 
+class SnapshotReader;
+class SnapshotWriter;
 namespace simd {
 struct Kernels;
 }
@@ -18,10 +21,9 @@ struct Kernels;
 /// How the parameters of one mode may have moved since the last pack: what the posterior before a pack becomes before
 /// it meets that pack.
 ///
-///   persisted        prior = P(u | D^{t-1})                                                  (the paper's
-///   reinforcement) changed in part  prior = P(u_others | D^{t-1}) P_0(u_j), one coordinate j drawn anew: a parameter
-///   or the noise scale changed          prior = P_0                                                             (the
-///   paper's modification)
+///   persisted        prior = P(u | D^{t-1})                   the paper's reinforcement
+///   changed in part  prior = P(u_others | D^{t-1}) P_0(u_j)   one coordinate j drawn anew: a parameter or the noise
+///   changed          prior = P_0                              the paper's modification
 ///
 /// A partial change competes with P_0 after a modification, so that one parameter's jump does not lose the others. The
 /// pack that holds the jump is a mixture of two plants and teaches nothing: the pack after it may start again from what
@@ -40,10 +42,14 @@ class Transition {
   /// @return `previous`, or a memory of this object, valid until the next call.
   /// @rt No heap, no lock, no throw. At most kMaxParams + 2 Laplace fits.
   const PosteriorMemory& Choose(const ModeData& data, const PosteriorMemory& previous, Mismatch* mismatch,
-                                double* share, LaplaceScratch* scratch) noexcept;
+                                double* share, LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
 
   /// After a pack's posterior: what is trusted from now on.
-  void Accept(const PosteriorMemory& next, Decision decision) noexcept;
+  void Accept(const PosteriorMemory& next, Decision decision) noexcept ARMCMC_NONBLOCKING;
+
+  /// What is trusted, for Restore(), which is equal to the bit.
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
  private:
   struct Hypothesis {
@@ -53,10 +59,10 @@ class Transition {
   };
 
   [[nodiscard]] Hypothesis Judge(const ModeData& data, const ParamVector& mean, const ParamMatrix& covariance,
-                                 const ParamVector& start, LaplaceScratch* scratch) const noexcept;
+                                 const ParamVector& start, LaplaceScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
   bool OfferChanges(const ModeData& data, const PosteriorMemory& previous, bool reinforcement,
-                    LaplaceScratch* scratch) noexcept;
-  void SetMemory(const PosteriorMemory& previous, const Hypothesis* hypotheses, int count) noexcept;
+                    LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  void SetMemory(const PosteriorMemory& previous, const Hypothesis* hypotheses, int count) noexcept ARMCMC_NONBLOCKING;
 
   const simd::Kernels& kernels_;
   int model_;

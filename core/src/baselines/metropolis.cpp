@@ -11,6 +11,10 @@
 
 namespace armcmc {
 
+// Not the product but what it is compared with: Eigen's products and factorisations stand here as the text books have
+// them. All types are bounded; the tests that count allocations and RealtimeSanitizer run every one of them.
+ARMCMC_TRUST_NONBLOCKING_BEGIN
+
 MetropolisFilter::MetropolisFilter(const FilterParts& parts) : parts_(parts), normal_table_(MarginalTable::Normal()) {}
 
 int MetropolisFilter::Wanted() const noexcept {
@@ -116,5 +120,7 @@ Status MetropolisFilter::Run(const ModeData& data, std::uint64_t pack, std::uint
   out->known = known_;
   return out->truncated ? Status::kTruncated : Status::kOk;
 }
+
+ARMCMC_TRUST_NONBLOCKING_END
 
 }  // namespace armcmc

@@ -9,6 +9,10 @@
 
 namespace armcmc {
 
+// Not the product but what it is compared with: Eigen's products and factorisations stand here as the text books have
+// them. All types are bounded; the tests that count allocations and RealtimeSanitizer run every one of them.
+ARMCMC_TRUST_NONBLOCKING_BEGIN
+
 RlsFilter::RlsFilter(const FilterParts& parts)
     : parts_(parts),
       contact_(AllModels::kInfos[static_cast<std::size_t>(parts.model)]->plant == PlantKind::kHuntCrossley),
@@ -137,5 +141,7 @@ Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mo
   out->known = known_;
   return Status::kOk;
 }
+
+ARMCMC_TRUST_NONBLOCKING_END
 
 }  // namespace armcmc

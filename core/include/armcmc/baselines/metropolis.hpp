@@ -21,12 +21,12 @@ class MetropolisFilter final : public PackFilter {
 
   explicit MetropolisFilter(const FilterParts& parts);
   Status Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos deadline_ns, ClockRef clock, int limit,
-             ModeDraws* out) noexcept override;
-  void Reset() noexcept override { known_ = false; }
+             ModeDraws* out) noexcept ARMCMC_NONBLOCKING override;
+  void Reset() noexcept ARMCMC_NONBLOCKING override { known_ = false; }
 
  private:
-  [[nodiscard]] double LogTarget(const ModeData& data, const ParamVector& u) noexcept;
-  [[nodiscard]] int Wanted() const noexcept;
+  [[nodiscard]] double LogTarget(const ModeData& data, const ParamVector& u) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int Wanted() const noexcept ARMCMC_NONBLOCKING;
 
   FilterParts parts_;
   MarginalTable normal_table_;

@@ -6,6 +6,7 @@
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/settings.hpp"
 #include "armcmc/status.hpp"
@@ -28,11 +29,11 @@ class PackFilter {
   /// @return kOk, kTruncated (Metropolis only) or kNonFinite (nothing was learnt).
   /// @rt No heap, no lock, no throw, bounded.
   virtual Status Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos deadline_ns, ClockRef clock,
-                     int limit, ModeDraws* out) noexcept = 0;
+                     int limit, ModeDraws* out) noexcept ARMCMC_NONBLOCKING = 0;
   /// The mode comes back after another one acted.
-  virtual void Resume() noexcept {}
+  virtual void Resume() noexcept ARMCMC_NONBLOCKING {}
   /// Forgets everything.
-  virtual void Reset() noexcept = 0;
+  virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
 /// What a filter of one mode is built from. References outlive it.
@@ -48,9 +49,9 @@ struct FilterParts {
 [[nodiscard]] std::unique_ptr<PackFilter> MakeFilter(const FilterParts& parts);
 
 /// Writes what all baselines share: the numbers of the step, and that there was no decision.
-void FillStep(const ModeData& data, int draws, int burn_in, ModeDraws* out) noexcept;
+void FillStep(const ModeData& data, int draws, int burn_in, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
 
 /// Whether weighted draws know any parameter better than its prior, the rule of the ARMCMC estimator.
-[[nodiscard]] bool IsInformed(const ParameterSpace& space, const ModeDraws& draws) noexcept;
+[[nodiscard]] bool IsInformed(const ParameterSpace& space, const ModeDraws& draws) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

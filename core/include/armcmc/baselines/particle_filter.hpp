@@ -21,21 +21,21 @@ class ParticleFilter final : public PackFilter {
 
   explicit ParticleFilter(const FilterParts& parts);
   Status Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos deadline_ns, ClockRef clock, int limit,
-             ModeDraws* out) noexcept override;
-  void Resume() noexcept override;
-  void Reset() noexcept override { started_ = false; }
+             ModeDraws* out) noexcept ARMCMC_NONBLOCKING override;
+  void Resume() noexcept ARMCMC_NONBLOCKING override;
+  void Reset() noexcept ARMCMC_NONBLOCKING override { started_ = false; }
 
  private:
   class Numbers;
-  void Start(Numbers* numbers) noexcept;
-  void Walk(double sd, Numbers* numbers) noexcept;
-  bool Update(const ModeData& data, Numbers* numbers) noexcept;
-  void Score(const ModeData& data) noexcept;
-  [[nodiscard]] double NextStep(double left) const noexcept;
-  void Resample(Numbers* numbers) noexcept;
-  void Move(Numbers* numbers) noexcept;
+  void Start(Numbers* numbers) noexcept ARMCMC_NONBLOCKING;
+  void Walk(double sd, Numbers* numbers) noexcept ARMCMC_NONBLOCKING;
+  bool Update(const ModeData& data, Numbers* numbers) noexcept ARMCMC_NONBLOCKING;
+  void Score(const ModeData& data) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] double NextStep(double left) const noexcept ARMCMC_NONBLOCKING;
+  void Resample(Numbers* numbers) noexcept ARMCMC_NONBLOCKING;
+  void Move(Numbers* numbers) noexcept ARMCMC_NONBLOCKING;
   /// Normalises the weights. @return effective number of particles, 0 when no weight is finite.
-  double Normalise() noexcept;
+  double Normalise() noexcept ARMCMC_NONBLOCKING;
 
   FilterParts parts_;
   MarginalTable normal_table_;

@@ -28,15 +28,15 @@ class RlsFilter final : public PackFilter {
 
   explicit RlsFilter(const FilterParts& parts);
   Status Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos deadline_ns, ClockRef clock, int limit,
-             ModeDraws* out) noexcept override;
-  void Resume() noexcept override;
-  void Reset() noexcept override;
+             ModeDraws* out) noexcept ARMCMC_NONBLOCKING override;
+  void Resume() noexcept ARMCMC_NONBLOCKING override;
+  void Reset() noexcept ARMCMC_NONBLOCKING override;
 
  private:
-  void Update(const ParamVector& phi, double y, double r) noexcept;
-  void Saturate() noexcept;
+  void Update(const ParamVector& phi, double y, double r) noexcept ARMCMC_NONBLOCKING;
+  void Saturate() noexcept ARMCMC_NONBLOCKING;
   /// Standardised coordinates of the sampled parameters for a state z.
-  void ToDraw(const ParamVector& z, double* u) const noexcept;
+  void ToDraw(const ParamVector& z, double* u) const noexcept ARMCMC_NONBLOCKING;
 
   FilterParts parts_;
   bool contact_;

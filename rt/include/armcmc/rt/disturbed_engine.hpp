@@ -13,14 +13,16 @@ class DisturbedEngine final : public StepEngine {
   /// @param engine, injection  Outlive it.
   DisturbedEngine(StepEngine* engine, Injection* injection) noexcept : engine_(engine), injection_(injection) {}
 
-  [[nodiscard]] PlantKind plant() const noexcept override { return engine_->plant(); }
-  [[nodiscard]] int num_inputs() const noexcept override { return engine_->num_inputs(); }
-  [[nodiscard]] int num_modes() const noexcept override { return engine_->num_modes(); }
-  [[nodiscard]] int num_reported() const noexcept override { return engine_->num_reported(); }
-  [[nodiscard]] ReportedQuantity reported(int index) const noexcept override { return engine_->reported(index); }
-  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept override;
-  void Execute(int slot, Estimate* estimate) noexcept override;
-  void Reset() noexcept override { engine_->Reset(); }
+  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override { return engine_->plant(); }
+  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override { return engine_->num_inputs(); }
+  [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override { return engine_->num_modes(); }
+  [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override { return engine_->num_reported(); }
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {
+    return engine_->reported(index);
+  }
+  Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept ARMCMC_NONBLOCKING override;
+  void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;
+  void Reset() noexcept ARMCMC_NONBLOCKING override { engine_->Reset(); }
 
  private:
   StepEngine* engine_;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
 #include "armcmc/rt/event_log.hpp"
 
@@ -45,13 +46,15 @@ class Injection {
   void SetEventLogs(std::array<EventLog*, 4> logs) noexcept { logs_ = logs; }
 
   /// Overruns and hangs of a stage. Blocks or spins as long as the plan says: that is what it is for.
-  void Disturb(Stage stage, std::int64_t pack) noexcept;
-  [[nodiscard]] bool Squeezes(std::int64_t pack) noexcept { return Take(InjectionKind::kSqueeze, pack, 1) != nullptr; }
-  [[nodiscard]] bool Collapses(std::int64_t pack) noexcept {
+  void Disturb(Stage stage, std::int64_t pack) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool Squeezes(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
+    return Take(InjectionKind::kSqueeze, pack, 1) != nullptr;
+  }
+  [[nodiscard]] bool Collapses(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
     return Take(InjectionKind::kCollapse, pack, 1) != nullptr;
   }
   /// @return true when this publication is not to be sent. @param pack  Newest pack, 0 for a status without one.
-  [[nodiscard]] bool FailsPublication(std::int64_t pack) noexcept;
+  [[nodiscard]] bool FailsPublication(std::int64_t pack) noexcept ARMCMC_NONBLOCKING;
 
   /// How often each kind was carried out.
   [[nodiscard]] std::int64_t count(InjectionKind kind) const noexcept {
@@ -59,7 +62,7 @@ class Injection {
   }
 
  private:
-  const InjectionItem* Take(InjectionKind kind, std::int64_t pack, std::size_t log) noexcept;
+  const InjectionItem* Take(InjectionKind kind, std::int64_t pack, std::size_t log) noexcept ARMCMC_NONBLOCKING;
 
   std::vector<InjectionItem> plan_;
   std::array<EventLog*, 4> logs_{};

@@ -7,7 +7,7 @@ namespace armcmc::rt {
 
 /// A plausible pack of a plant family: smooth motion, output of typical parameters, no noise.
 /// @param index  0, 1, 2, ...: consecutive packs of the same motion.
-[[nodiscard]] DataPack SyntheticPack(PlantKind plant, int num_inputs, int index) noexcept;
+[[nodiscard]] DataPack SyntheticPack(PlantKind plant, int num_inputs, int index) noexcept ARMCMC_NONBLOCKING;
 
 /// Runs a few synthetic packs through an engine and resets it, so that code, tables and memory have been touched
 /// before the first release. Call it on the thread that adjusts.
