@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values("force_bias", "force_drift", "coulomb_friction", "presliding_friction", "viscous_friction",
                       "inertia", "sensor_delay", "sensor_lag", "stress_relaxation", "adhesion", "contact_offset",
                       "sensor_saturation", "periodic_disturbance", "stiffness_drift"),
-    [](const auto& at) { return at.param; }, [](const auto& at) { return std::string(at.param); });
+    [](const auto& at) { return at.param; });
 
 }  // namespace
 }  // namespace armcmc::test

@@ -44,8 +44,9 @@ struct HeatMap {
   std::string x_title, y_title, value_title;
   std::vector<double> x_edges, y_edges;  ///< Ascending.
   std::vector<double> value;             ///< (x_edges - 1) (y_edges - 1)
-  std::vector<double> line_x, line_y;    ///< A dashed line on top, of one length; may be empty. Not finite: a gap.
   int height = 320;                      ///< CSS pixels.
+  std::vector<double> line_x{};          ///< Of a dashed line on top; may be empty.
+  std::vector<double> line_y{};          ///< As many. Not finite: a gap.
 };
 
 /// Whether there is anything to draw.
