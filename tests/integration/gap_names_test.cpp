@@ -71,12 +71,12 @@ TEST_P(Catalogue, TruthIsInTheReportedSet) {
   EXPECT_THAT(Reported(result), ::testing::Contains(std::vector<std::string>{GetParam()})) << result["sentence"];
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Effects, Catalogue,
-    ::testing::Values("force_bias", "force_drift", "coulomb_friction", "presliding_friction", "viscous_friction",
-                      "inertia", "sensor_delay", "sensor_lag", "stress_relaxation", "adhesion", "contact_offset",
-                      "sensor_saturation", "periodic_disturbance", "stiffness_drift"),
-    [](const auto& at) { return at.param; });
+INSTANTIATE_TEST_SUITE_P(Effects, Catalogue,
+                         ::testing::Values("force_bias", "force_drift", "coulomb_friction", "presliding_friction",
+                                           "viscous_friction", "inertia", "sensor_delay", "sensor_lag",
+                                           "stress_relaxation", "adhesion", "contact_offset", "sensor_saturation",
+                                           "periodic_disturbance", "stiffness_drift"),
+                         [](const auto& at) { return at.param; });
 
 }  // namespace
 }  // namespace armcmc::test

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "armcmc/mode_sampler.hpp"
 #include "armcmc/models/hunt_crossley.hpp"
 #include "armcmc/summary.hpp"
+#include "armcmc/transition.hpp"
 #include "contact_packs.hpp"
 #include "quadrature.hpp"
 #include "simd/kernels.hpp"
@@ -89,8 +91,25 @@ TEST(Quadrature, AgreesOnFirstPacksWithPoorExcitation) {
   ColdPacks({1.2, 1.0, 0.16, 0.0}, 22).Check(2.0);
 }
 
-/// Packs that meet the memory of an earlier pack: the target is likelihood x (lambda memory + (1 - lambda) P_0), with
-/// the memory's density as the sampler holds it.
+/// Share of a memory's mass that lies inside the bounds of the parameters.
+double MassInside(const PosteriorMemory& memory, const ParameterSpace& space, Normal* normal) {
+  constexpr int kDraws = 20'000;
+  int inside = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    std::array<double, 3> uniforms{}, u{};
+    for (double& v : uniforms) v = std::clamp(0.5 * std::erfc(-(*normal)() / std::sqrt(2.0)), 1e-12, 1.0 - 1e-12);
+    const bool first = memory.num_blocks == 1 || k < kDraws * memory.weight[0];
+    memory.block[first ? 0 : 1].Draw(uniforms.data(), u.data());
+    bool all = true;
+    for (std::size_t d = 0; d < 3; ++d) all = all && u[d] >= space.lower[d] && u[d] <= space.upper[d];
+    inside += all ? 1 : 0;
+  }
+  return static_cast<double>(inside) / kDraws;
+}
+
+/// Packs that meet the memory of an earlier pack: the target is likelihood x (share memory + (1 - share) P_0), with
+/// the memory's density as the sampler holds it. After a modification the memory is that of a change in part, which a
+/// Transition of this test chooses again.
 Agreement WarmPacks(const ContactTruth& after, std::uint64_t seed, int* modifications) {
   const EstimatorSettings s = BuiltinSettings("hunt_crossley");
   const NoiseSettings& noise = s.noise[0];
@@ -116,10 +135,23 @@ Agreement WarmPacks(const ContactTruth& after, std::uint64_t seed, int* modifica
       return sampler.Run(data, previous, static_cast<std::uint64_t>(pack.seq), 0, kNever, {}, kMaxDraws, &workspace,
                          next, &draws);
     };
+    const MarginalTable normal_table = MarginalTable::Normal();
+    const NoiseModel noise_model(noise);
+    Transition transition(simd::Best(), 0, space, noise_model, &normal_table);
     EXPECT_EQ(run(MakeContactPack(1, motion, {}, noise.std, &normal), none, &first), Status::kOk);
+    transition.Accept(first, draws.decision);
     const DataPack pack = MakeContactPack(2, motion, after, noise.std, &normal);
     EXPECT_EQ(run(pack, first, &second), Status::kOk);
     *modifications += draws.decision == Decision::kModification ? 1 : 0;
+    ModeData met;
+    HuntCrossley::Prepare(pack, s.constants, 0, &met);
+    met.weight.fill(1.0);
+    Mismatch mismatch;
+    mismatch.decision = draws.decision;
+    mismatch.lambda = draws.lambda;
+    double share = 0.0;
+    const PosteriorMemory& memory = transition.Choose(met, first, &mismatch, &share, &workspace.laplace);
+    const double inside = MassInside(memory, space, &normal);
     ModeEstimate estimate;
     Summarise(HuntCrossley::kInfo, s.constants, space, draws, &summary, &estimate);
     const MarginalSummary& p = estimate.marginal[2];
@@ -132,10 +164,10 @@ Agreement WarmPacks(const ContactTruth& after, std::uint64_t seed, int* modifica
         if (u[d] < space.lower[d] || u[d] > space.upper[d]) return -HUGE_VAL;
         fresh *= std::exp(-0.5 * u[d] * u[d]);
       }
-      double density = (1.0 - draws.lambda) * fresh;
-      for (int m = 0; m < first.num_blocks; ++m)
-        density += draws.lambda * first.weight[static_cast<std::size_t>(m)] *
-                   first.block[static_cast<std::size_t>(m)].Density(u.data());
+      double density = (1.0 - share) * fresh;
+      for (int m = 0; m < memory.num_blocks; ++m)
+        density += share / inside * memory.weight[static_cast<std::size_t>(m)] *
+                   memory.block[static_cast<std::size_t>(m)].Density(u.data());
       return density > 0.0 ? std::log(density) : -HUGE_VAL;
     };
     const auto truth = ContactQuadrature::Run(pack, noise.std, log_prior, std::fmax(1.0, p.ar_ap - 7.0 * p.sd),
