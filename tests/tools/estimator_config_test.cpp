@@ -120,6 +120,30 @@ seed = 42
   EXPECT_EQ(s.sampler.seed, 42u);
 }
 
+TEST(EstimatorConfig, TheMethodAndTheTuningOfTheBaselinesArrive) {
+  EXPECT_EQ(Read(kHunt).method, Method::kArmcmc);
+  EXPECT_EQ(Read("method = \"rls\"\n" + kHunt).method, Method::kRls);
+  EXPECT_EQ(Read("method = \"mcmc\"\n" + kHunt).method, Method::kMetropolis);
+  const EstimatorSettings s = Read("method = \"pf\"\n" + kHunt + R"(
+[baseline]
+recall = true
+rls_forgetting = 0.99
+rls_reset = false
+particles = 1000
+pf_updates = 5
+pf_jitter = 0.2
+)");
+  EXPECT_EQ(s.method, Method::kParticleFilter);
+  EXPECT_TRUE(s.baseline.recall);
+  EXPECT_EQ(s.baseline.rls_forgetting, 0.99);
+  EXPECT_FALSE(s.baseline.rls_reset);
+  EXPECT_EQ(s.baseline.particles, 1000);
+  EXPECT_EQ(s.baseline.pf_updates, 5);
+  EXPECT_EQ(s.baseline.pf_jitter, 0.2);
+  EXPECT_THAT(ErrorOf("method = \"kalman\"\n" + kHunt), HasSubstr("armcmc"));
+  EXPECT_THAT(ErrorOf(kHunt + "[baseline]\nrls_forgetting = 1.5\n"), HasSubstr("rls_forgetting"));
+}
+
 TEST(EstimatorConfig, ANumberOfDrawsIsFixedAndFits) {
   const EstimatorSettings s = Read(kHunt + "[sampler]\ndraws = 30000\n");
   EXPECT_EQ(s.sampler.rule, DrawRule::kFixed);

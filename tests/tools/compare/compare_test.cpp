@@ -36,6 +36,8 @@ TEST(Differences, EveryKindOfSettingIsSeenAndEqualOnesAreNot) {
             "noise (mode 0): gaussian, 0.1 -> laplace, 0.1");
   EXPECT_EQ(one([](auto* s) { s->forgetting.threshold = 0.5; }), "forgetting.threshold: 1 -> 0.5");
   EXPECT_EQ(one([](auto* s) { s->sampler.rule = DrawRule::kKMin; }), "sampler.draws: 800 -> k_min");
+  EXPECT_EQ(one([](auto* s) { s->method = Method::kParticleFilter; }), "method: armcmc -> pf");
+  EXPECT_EQ(one([](auto* s) { s->baseline.rls_reset = false; }), "baseline.rls_reset: true -> false");
   EXPECT_EQ(one([](auto* s) { s->sampler.seed = 7; }), "sampler.seed: 24301 -> 7");
   EXPECT_EQ(one([](auto* s) { s->parameters[0].upper = 9.0; }),
             "model.parameters.K: 2.5 ± 2 in [0, 8] -> 2.5 ± 2 in [0, 9]");
@@ -100,6 +102,13 @@ TEST_F(CompareProgram, ReportsBothRunsAndWhatWasSetDifferently) {
   EXPECT_THAT(Page(), HasSubstr("<td class=\"mono\">forgetting.rho</td><td>0</td><td>0.02</td>"));
   // The live run had made 300 draws; these are other runs.
   EXPECT_THAT(Page(), HasSubstr("<td class=\"num\">700</td><td class=\"num\">900</td>"));
+}
+
+TEST_F(CompareProgram, AnotherMethodIsComparedToo) {
+  std::ofstream(dir_ / "rls.toml") << "schema = 1\nmethod = \"rls\"\n[model]\nname = \"hunt_crossley\"\n";
+  const test::Outcome outcome = Run({"--compare", dir_ / "rls.toml"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(Page(), HasSubstr("<td class=\"mono\">method</td><td>armcmc</td><td>rls</td>"));
 }
 
 TEST_F(CompareProgram, TheSameConfigurationGivesTheSameRun) {

@@ -70,6 +70,13 @@ const char* NameOf(NoiseKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+const char* NameOf(Method method) {
+  constexpr const char* kNames[] = {"armcmc", "rls", "pf", "mcmc"};
+  return kNames[static_cast<std::size_t>(method)];
+}
+
+const char* YesNo(bool yes) { return yes ? "true" : "false"; }
+
 const char* NameOf(MismatchIndex index) {
   constexpr const char* kNames[] = {"signed_mean", "rms", "log_predictive"};
   return kNames[static_cast<std::size_t>(index)];
@@ -150,6 +157,14 @@ std::vector<SettingDifference> DifferencesOf(const EstimatorSettings& a, const E
     if (of_a != of_b) differences.push_back({key, of_a, of_b});
   };
   add("model.name", a.model, b.model);
+  add("method", NameOf(a.method), NameOf(b.method));
+  const BaselineSettings &v = a.baseline, &w = b.baseline;
+  add("baseline.recall", YesNo(v.recall), YesNo(w.recall));
+  add("baseline.rls_forgetting", Number(v.rls_forgetting), Number(w.rls_forgetting));
+  add("baseline.rls_reset", YesNo(v.rls_reset), YesNo(w.rls_reset));
+  add("baseline.particles", std::to_string(v.particles), std::to_string(w.particles));
+  add("baseline.pf_updates", std::to_string(v.pf_updates), std::to_string(w.pf_updates));
+  add("baseline.pf_jitter", Number(v.pf_jitter), Number(w.pf_jitter));
   add("effects", EffectNames(a), EffectNames(b));
   if (a.model == b.model) {
     for (int i = 0; i < std::min(a.num_parameters, b.num_parameters); ++i) {
