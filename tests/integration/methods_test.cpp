@@ -20,8 +20,10 @@ TEST_P(Methods, RunsLiveWithoutTheHeapAndRepeatsToTheBit) {
   std::ifstream shipped(SourceDir() / "rt/config/hunt_crossley.toml");
   const std::string text{std::istreambuf_iterator<char>(shipped), std::istreambuf_iterator<char>()};
   const std::string path = dir_ / "estimator.toml";
-  std::ofstream(path) << std::regex_replace(text, std::regex("\nmethod = \"armcmc\""),
-                                            "\nmethod = \"" + GetParam() + "\"");
+  const std::string changed =
+      std::regex_replace(text, std::regex("\nmethod = \"armcmc\""), "\nmethod = \"" + GetParam() + "\"");
+  ASSERT_NE(changed, text);
+  std::ofstream(path) << changed;
   config_ = path;
   auto estimator = StartEstimator();
   auto plant = StartPlant("3");
