@@ -127,7 +127,7 @@ struct StallingClock {
   mutable int readings = 0;
   int stall_at = -1;
   [[nodiscard]] ClockRef Ref() const noexcept {
-    return {[](const void* context) noexcept {
+    return {[](const void* context) noexcept ARMCMC_NONBLOCKING {
               const auto* clock = static_cast<const StallingClock*>(context);
               return clock->now_ns += clock->readings++ == clock->stall_at ? 1'000'000'000 : 1'000;
             },
