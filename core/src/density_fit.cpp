@@ -363,7 +363,7 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
     };
     std::array<Bin, kNodes> bins{};
     for (int k = 0; k < draws.size; ++k) {
-      const double position = std::min(std::max(e[k] * per_node + origin, 0.0), kNodes - 1.001);
+      const double position = std::min(std::max(0.0, e[k] * per_node + origin), kNodes - 1.001);
       const auto node = static_cast<int>(position);
       Bin& bin = bins[static_cast<std::size_t>(node)];
       bin.weight += draws.weight[k];

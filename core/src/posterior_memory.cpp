@@ -84,7 +84,7 @@ void PosteriorMemory::Restore(int dim, const MarginalTable& shared, SnapshotRead
   covariance.resize(dim, dim);
   in->Row(mean.data(), static_cast<std::size_t>(dim));
   in->Row(covariance.data(), static_cast<std::size_t>(dim * dim));
-  for (int d = 0; d < dim; ++d) in->Require(covariance(d, d) > 0.0);
+  in->Require(in->good() && IsPositiveDefinite(covariance));
   log_noise_scale = in->Number();
   valid = in->good();
 }

@@ -131,7 +131,7 @@ void Transition::Restore(SnapshotReader* in) noexcept {
   stable_covariance_.resize(dim, dim);
   in->Row(stable_mean_.data(), static_cast<std::size_t>(dim));
   in->Row(stable_covariance_.data(), static_cast<std::size_t>(dim * dim));
-  for (int d = 0; d < dim; ++d) in->Require(stable_covariance_(d, d) > 0.0);
+  in->Require(in->good() && IsPositiveDefinite(stable_covariance_));
   stable_ = in->good();
 }
 

@@ -43,6 +43,13 @@ template <BoundedMatrix Matrix, BoundedMatrix Vector>
   return factor_of_a.solve(b);
 }
 
+/// Whether a symmetric matrix, of which the lower half is read, is a covariance that can be inverted.
+template <BoundedMatrix Matrix>
+[[nodiscard]] bool IsPositiveDefinite(const Matrix& a) noexcept ARMCMC_NONBLOCKING {
+  const Eigen::LDLT<Matrix> factor = a.ldlt();
+  return a.allFinite() && factor.info() == Eigen::Success && (factor.vectorD().array() > 0.0).all();
+}
+
 template <BoundedMatrix Matrix>
 [[nodiscard]] double Determinant(const Matrix& a) noexcept ARMCMC_NONBLOCKING {
   return a.determinant();
