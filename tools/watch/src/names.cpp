@@ -46,22 +46,27 @@ std::string DecisionName(int decision) {
 
 std::vector<std::string> DegradedWords(int flags) {
   using S = estimator_status_t;
-  return Words<5>(flags, {{{S::DEGRADED_NO_FIFO, "no real-time scheduling (SCHED_FIFO)"},
+  return Words<6>(flags, {{{S::DEGRADED_NO_FIFO, "no real-time scheduling (SCHED_FIFO)"},
                            {S::DEGRADED_NO_AFFINITY, "threads not pinned to CPUs"},
                            {S::DEGRADED_NO_MLOCK, "memory not locked"},
                            {S::DEGRADED_SHARED_CPU, "stages share one CPU"},
-                           {S::DEGRADED_NO_WITNESS, "no witness"}}});
+                           {S::DEGRADED_NO_WITNESS, "no witness"},
+                           {S::DEGRADED_INJECTED, "faults on purpose"}}});
 }
 
 std::vector<std::string> FaultWords(int flags) {
   using S = estimator_status_t;
-  return Words<7>(flags, {{{S::FAULT_PLANT_SILENT, "plant is silent"},
-                           {S::FAULT_PLANT_RESTARTED, "plant was restarted"},
-                           {S::FAULT_BAD_DATA, "bad data"},
-                           {S::FAULT_TRUNCATED, "draws cut by the deadline"},
-                           {S::FAULT_PUBLISH, "publishing failed"},
-                           {S::FAULT_BACKLOG, "backlog dropped"},
-                           {S::FAULT_NUMERIC, "numeric trouble"}}});
+  return Words<11>(flags, {{{S::FAULT_PLANT_SILENT, "plant is silent"},
+                            {S::FAULT_PLANT_RESTARTED, "plant was restarted"},
+                            {S::FAULT_BAD_DATA, "bad data"},
+                            {S::FAULT_TRUNCATED, "draws cut by the deadline"},
+                            {S::FAULT_PUBLISH, "publishing failed"},
+                            {S::FAULT_BACKLOG, "backlog dropped"},
+                            {S::FAULT_NUMERIC, "numeric trouble"},
+                            {S::FAULT_CLOCK_JUMP, "the plant's clock jumped"},
+                            {S::FAULT_BUS_FLOOD, "bus flooded"},
+                            {S::FAULT_STAGE_HUNG, "a stage hangs"},
+                            {S::FAULT_SNAPSHOT, "snapshot not written"}}});
 }
 
 std::string FieldText(const std::uint8_t* field, int size) {

@@ -15,7 +15,8 @@ public final class StatusFlags {
     add(words, flags, estimator_status_t.DEGRADED_NO_MLOCK, "memory not locked");
     add(words, flags, estimator_status_t.DEGRADED_SHARED_CPU, "stages share one CPU");
     add(words, flags, estimator_status_t.DEGRADED_NO_WITNESS, "no witness");
-    addUnknown(words, flags, 31);
+    add(words, flags, estimator_status_t.DEGRADED_INJECTED, "faults on purpose");
+    addUnknown(words, flags, 63);
     return words;
   }
 
@@ -28,7 +29,11 @@ public final class StatusFlags {
     add(words, flags, estimator_status_t.FAULT_PUBLISH, "publishing failed");
     add(words, flags, estimator_status_t.FAULT_BACKLOG, "backlog dropped");
     add(words, flags, estimator_status_t.FAULT_NUMERIC, "numeric trouble");
-    addUnknown(words, flags, 127);
+    add(words, flags, estimator_status_t.FAULT_CLOCK_JUMP, "the plant's clock jumped");
+    add(words, flags, estimator_status_t.FAULT_BUS_FLOOD, "bus flooded");
+    add(words, flags, estimator_status_t.FAULT_STAGE_HUNG, "a stage hangs");
+    add(words, flags, estimator_status_t.FAULT_SNAPSHOT, "snapshot not written");
+    addUnknown(words, flags, 2047);
     return words;
   }
 
