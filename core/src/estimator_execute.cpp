@@ -1,0 +1,189 @@
+// The execute stage: estimates, predicted output with its band, the watch for a gap.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator_impl.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+void Estimator::Impl::ShareVector(Estimate* e) noexcept {
+  std::size_t newest = kMaxModes;
+  for (std::size_t m = 0; m < static_cast<std::size_t>(info.num_modes); ++m)
+    if (e->modes[m].updated && (newest == kMaxModes || static_cast<int>(m) == e->mode)) newest = m;
+  if (newest == kMaxModes) return;
+  for (std::size_t m = 0; m < static_cast<std::size_t>(info.num_modes); ++m) {
+    if (m == newest) continue;
+    e->modes[m].known = last_estimates[m].known = e->modes[newest].known;
+    e->modes[m].noise_std = last_estimates[m].noise_std = e->modes[newest].noise_std;
+    e->modes[m].marginal = last_estimates[m].marginal = e->modes[newest].marginal;
+    band_theta[m] = band_theta[newest];
+  }
+}
+
+void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
+  const DataPack& pack = result.pack;
+  if (composition.empty()) {
+    predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
+  } else {
+    PredictShown(result, e);
+  }
+  const auto last = static_cast<std::size_t>(pack.num_samples - 1);
+  e->y_free_run = e->y_shown_free_run[last];
+  e->y_pred = e->y_lo = e->y_hi = 0.0;
+  e->y_rmse = 0.0;
+
+  // Fit of the posterior after the pack to the pack itself, over the modes that it knows; unit of the target.
+  double square = 0.0;
+  int count = 0;
+  for (int m = 0; m < info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const ModeDraws& draws = result.modes[i];
+    if (draws.updated) StoreBandDraws(m, draws);
+    if (!last_estimates[i].known) continue;
+    PrepareMode(pack, result.effects, m, &execute_data);
+    if (execute_data.num_samples == 0) continue;
+    kernels.predict(model, execute_data, band_theta[i], &band_prediction);
+    for (int n = 0; n < execute_data.num_samples; ++n) {
+      double mean = 0.0;
+      for (const double v : band_prediction.value[static_cast<std::size_t>(n)]) mean += v;
+      const double error = execute_data.target[static_cast<std::size_t>(n)] - mean / kBandDraws;
+      square += error * error;
+      ++count;
+    }
+    if (m == e->mode || !composition.empty()) PredictLastSample(pack, m, e);
+  }
+  e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
+  if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
+}
+
+void Estimator::Impl::PredictShown(const AdjustResult& result, Estimate* e) noexcept {
+  const auto samples = static_cast<std::size_t>(result.pack.num_samples);
+  if (!shown[1].known[0]) {
+    std::fill_n(e->y_shown.begin(), samples, kUnknown);
+  } else {
+    for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
+      shown_theta.value[d].fill(shown[1].theta[0][d]);
+    PrepareMode(result.pack, result.effects, 0, &execute_data);
+    kernels.predict(model, execute_data, shown_theta, &band_prediction);
+    for (std::size_t n = 0; n < samples; ++n) e->y_shown[n] = band_prediction.value[n][0];
+  }
+  std::copy_n(e->y_shown.begin(), samples, e->y_shown_free_run.begin());
+}
+
+void Estimator::Impl::StoreBandDraws(int mode, const ModeDraws& draws) noexcept {
+  const auto i = static_cast<std::size_t>(mode);
+  for (int lane = 0; lane < kBandDraws; ++lane) {
+    const int k = BandDraw(draws, lane);
+    for (int d = 0; d < info.num_parameters; ++d)
+      band_theta[i].value[static_cast<std::size_t>(d)][static_cast<std::size_t>(lane)] =
+          samplers[i]->space().Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
+  }
+}
+
+void Estimator::Impl::PredictLastSample(const DataPack& pack, int mode, Estimate* e) noexcept {
+  const auto i = static_cast<std::size_t>(mode);
+  std::array<double, kBandDraws> outputs{};
+  for (std::size_t lane = 0; lane < kBandDraws; ++lane) {
+    if (info.plant == PlantKind::kSoftActuator) {
+      std::array<double, kMaxParams> theta{};
+      for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
+        theta[d] = band_theta[i].value[d][lane];
+      outputs[lane] = predictor.LastAngle(pack, shown[0], mode, theta.data());
+    } else {
+      outputs[lane] = band_prediction.value[static_cast<std::size_t>(execute_data.num_samples - 1)][lane];
+    }
+  }
+  double mean = 0.0;
+  double spread = 0.0;
+  for (const double v : outputs) mean += v / kBandDraws;
+  for (const double v : outputs) spread += (v - mean) * (v - mean) / (kBandDraws - 1);
+  e->y_pred = mean;
+  e->y_lo = mean - 1.96 * std::sqrt(spread);
+  e->y_hi = mean + 1.96 * std::sqrt(spread);
+}
+
+void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
+  GapReference estimate;
+  bool changed = false;
+  for (int m = 0; m < info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const ModeEstimate& mode = e->modes[i];
+    estimate.known[i] = mode.known && mode.noise_std > 0.0;
+    estimate.noise_std[i] = mode.noise_std;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
+      estimate.theta[i][d] = mode.marginal[d].ar_ap;
+    changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
+  }
+  gap_watch.Step(pack, estimate, changed);
+  e->gap = gap_watch.state();
+}
+
+void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
+  Impl& s = *impl_;
+  const DataPack& pack = result.pack;
+  e->seq = pack.seq;
+  e->run_id = pack.run_id;
+  e->t_last_ns = pack.t_last_ns;
+  e->t_last_s = pack.t_last_s;
+  e->num_reported = s.info.num_reported;
+  e->num_modes = s.info.num_modes;
+  e->num_samples = pack.num_samples;
+  e->mode = pack.num_samples > 0 ? s.info.mode_of(pack, pack.num_samples - 1) : s.info.num_modes;
+  e->active = e->mode < s.info.num_modes;
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const ModeDraws& draws = result.modes[i];
+    ModeEstimate& last = s.last_estimates[i];
+    last.updated = false;
+    last.num_samples = draws.num_samples;
+    if (draws.updated) {
+      Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, &s.summary, &last);
+    } else {
+      // Held: the parameters stay, the numbers that describe one step do not.
+      last.decision = Decision::kHold;
+      last.zeta = 0.0;
+      last.lambda = 1.0;
+      last.draws = 0;
+      last.k_min = 0;
+      last.truncated = false;
+      last.ess = last.kish_ess = last.acceptance = last.log_evidence = last.p_changed = 0.0;
+    }
+    e->modes[i] = last;
+  }
+  if (s.one_vector()) s.ShareVector(e);
+  if (e->active && e->modes[static_cast<std::size_t>(e->mode)].known) s.report_mode = e->mode;
+  e->report_mode = s.report_mode;
+  if (result.status == Status::kBadPack) {
+    e->y_pred = e->y_lo = e->y_hi = e->y_free_run = kUnknown;
+    e->y_rmse = 0.0;
+    e->gap = s.gap_watch.state();
+    return;
+  }
+  s.WatchGap(pack, e);
+  s.PredictOutput(result, e);
+  s.shown[1] = s.shown[0];
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const ModeEstimate& mode = e->modes[i];
+    s.known_draws[i] = s.known_draws[i] || mode.updated;
+    // A force can be predicted before its parameters are known: from their mean. The mode of a posterior that knows
+    // nothing is an accident. (The valves' gains cannot: their prior mean is zero flow.)
+    const bool contact = s.info.plant == PlantKind::kHuntCrossley;
+    s.shown[0].known[i] = mode.known || (contact && s.known_draws[i]) || (contact && s.shown[1].known[i]);
+    if (!mode.known && !(contact && s.known_draws[i])) continue;
+    for (int d = 0; d < s.info.num_parameters; ++d) {
+      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(d)];
+      s.shown[0].theta[i][static_cast<std::size_t>(d)] = mode.known ? marginal.ar_map : marginal.ar_ap;
+    }
+  }
+}
+
+}  // namespace armcmc

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "armcmc/adjust_result.hpp"
+#include "armcmc/baselines/pack_filter.hpp"
+#include "armcmc/effects/composition.hpp"
+#include "armcmc/estimator.hpp"
+#include "armcmc/gap_watch/gap_watch.hpp"
+#include "armcmc/mode_sampler.hpp"
+#include "armcmc/output_predictor.hpp"
+#include "armcmc/summary.hpp"
+
+namespace armcmc {
+
+/// Two memories of a mode: one read while the other is written, so that a failed step leaves the posterior untouched.
+struct ModeMemory {
+  PosteriorMemory slot[2];
+  int current = 0;
+};
+
+/// State of the estimator, by the stage that owns it. Adjust is in estimator.cpp, execute in estimator_execute.cpp,
+/// what a restart needs in estimator_snapshot.cpp.
+struct Estimator::Impl {
+  /// @throws std::invalid_argument from settings.Validate().
+  explicit Impl(const EstimatorSettings& s);
+
+  /// What is on display before the first pack: of a contact the prior's mean, of the valves nothing.
+  void ShowPrior() noexcept ARMCMC_NONBLOCKING;
+  void PrepareMode(const DataPack& pack, const EffectPack& effects, int mode,
+                   ModeData* data) const noexcept ARMCMC_NONBLOCKING;
+
+  EstimatorSettings settings;
+  int model;
+  Composition composition;
+  const ModelInfo& info;
+  const simd::Kernels& kernels;
+  int dim = 0;
+
+  /// One step of mode m with the method of the settings.
+  Status AdjustMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
+                    AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
+  /// A baseline with one vector of parameters shows it for every mode.
+  void ShareVector(Estimate* e) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool one_vector() const noexcept {
+    return settings.method != Method::kArmcmc && !settings.baseline.recall && info.num_modes > 1;
+  }
+
+  // Adjust stage.
+  std::vector<std::unique_ptr<PackFilter>> filters;  ///< Of a baseline, else empty.
+  std::array<bool, kMaxModes> acted{};               ///< In the pack before.
+  std::vector<std::unique_ptr<ModeSampler>> samplers;
+  std::vector<std::unique_ptr<ModeMemory>> memories;
+  std::unique_ptr<SamplerWorkspace> workspace;
+  std::array<ModeData, kMaxModes> adjust_data;
+
+  // Execute stage.
+  OutputPredictor predictor;
+  SummaryWorkspace summary;
+  ModeData execute_data;
+  std::array<ThetaTile, kMaxModes> band_theta;  ///< Thinned chain of the last update of each mode.
+  PredictionTile band_prediction;
+  ThetaTile shown_theta;
+  std::array<ModeEstimate, kMaxModes> last_estimates;
+  std::array<ShownEstimates, 2> shown;        ///< After the previous pack, and after the one before it.
+  std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
+  int report_mode = 0;
+  GapWatch gap_watch;
+
+  void WatchGap(const DataPack& pack, Estimate* e) noexcept;
+  /// Output at every sample of the pack with the estimates on display, for a model with effects.
+  void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
+  void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
+  void StoreBandDraws(int mode, const ModeDraws& draws) noexcept;
+  /// Output at the last sample and its band; `band_prediction` holds the predictions of `mode`.
+  void PredictLastSample(const DataPack& pack, int mode, Estimate* e) noexcept;
+  static constexpr int kBandDraws = kTileLanes;  ///< Draws behind the predicted output and its band, one tile.
+  [[nodiscard]] int BandDraw(const ModeDraws& draws, int lane) const noexcept {
+    const int first = draws.burn_in;
+    return draws.chain[first + static_cast<int>((static_cast<std::int64_t>(draws.draws - first) * lane) / kBandDraws)];
+  }
+};
+
+}  // namespace armcmc

@@ -1,0 +1,66 @@
+// What an estimator goes on from after a restart.
+
+#include "armcmc/snapshot.hpp"
+
+#include "estimator_impl.hpp"
+
+namespace armcmc {
+
+std::size_t Estimator::SaveAdjusted(std::span<std::byte> bytes) const noexcept {
+  SnapshotWriter out(bytes);
+  for (std::size_t m = 0; m < impl_->samplers.size(); ++m) {
+    const ModeMemory& memory = *impl_->memories[m];
+    memory.slot[memory.current].Save(&out);
+    impl_->samplers[m]->transition().Save(&out);
+  }
+  return out.size();
+}
+
+std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
+  const Impl& s = *impl_;
+  SnapshotWriter out(bytes);
+  out.Put(std::int64_t{s.report_mode});
+  for (std::size_t m = 0; m < static_cast<std::size_t>(s.info.num_modes); ++m) {
+    out.PutFlag(s.known_draws[m]);
+    s.last_estimates[m].Save(s.info.num_reported, &out);
+    // The band is drawn with the first update, and read once something is known.
+    for (std::size_t d = 0; s.last_estimates[m].known && d < static_cast<std::size_t>(s.info.num_parameters); ++d)
+      out.PutRow(s.band_theta[m].value[d].data(), kTileLanes);
+    for (const ShownEstimates& shown : s.shown) {
+      out.PutFlag(shown.known[m]);
+      out.PutRow(shown.theta[m].data(), static_cast<std::size_t>(s.info.num_parameters));
+    }
+  }
+  s.gap_watch.Save(&out);
+  return out.size();
+}
+
+bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std::byte> executed) noexcept {
+  Impl& s = *impl_;
+  Reset();
+  if (!s.filters.empty()) return false;  // a baseline keeps no snapshot
+  SnapshotReader posterior(adjusted);
+  for (std::size_t m = 0; m < s.memories.size(); ++m) {
+    s.memories[m]->current = 0;
+    s.memories[m]->slot[0].Restore(s.samplers[m]->space().dim, s.samplers[m]->shared_table(), &posterior);
+    s.samplers[m]->transition().Restore(&posterior);
+  }
+  SnapshotReader display(executed);
+  s.report_mode = static_cast<int>(display.Integer(0, s.info.num_modes - 1));
+  for (std::size_t m = 0; m < s.memories.size(); ++m) {
+    s.known_draws[m] = display.Flag();
+    s.last_estimates[m].Restore(s.info.num_reported, &display);
+    for (std::size_t d = 0; s.last_estimates[m].known && d < static_cast<std::size_t>(s.info.num_parameters); ++d)
+      display.Row(s.band_theta[m].value[d].data(), kTileLanes);
+    for (ShownEstimates& shown : s.shown) {
+      shown.known[m] = display.Flag();
+      display.Row(shown.theta[m].data(), static_cast<std::size_t>(s.info.num_parameters));
+    }
+  }
+  s.gap_watch.Restore(&display);
+  if (posterior.finished() && display.finished()) return true;
+  Reset();
+  return false;
+}
+
+}  // namespace armcmc
