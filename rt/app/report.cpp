@@ -63,7 +63,7 @@ Json Witnesses(const Pipeline& p) {
   LogHistogram all;
   for (const auto& witness : p.witnesses()) all.Merge(witness->delays());
   Json json = LatencyMs(all);
-  json["period"] = Ms(static_cast<double>(Witness::kPeriodNs));
+  json["period"] = Ms(static_cast<double>(Witness::PeriodFor(p.settings().deadline_ns)));
   return json;
 }
 

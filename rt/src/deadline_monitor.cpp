@@ -24,16 +24,16 @@ std::string_view ToString(MissCause cause) noexcept {
 DeadlineMonitor::DeadlineMonitor(const RtSettings& settings) noexcept
     : budget_ns_{settings.ExecuteReserveNs(), settings.adjust_budget_ns, settings.ExecuteReserveNs()} {}
 
-Nanos DeadlineMonitor::LongestStall(const StepTimes& times, Stage last, Nanos end_ns) const noexcept {
+Nanos DeadlineMonitor::StalledTime(const StepTimes& times, Stage last, Nanos end_ns) const noexcept {
   // From the arrival on, since before it there was nothing to delay. The wait for a stage counts as that stage's.
   Nanos begin = times.arrival_ns;
-  Nanos longest = 0;
+  Nanos stalled = 0;
   for (std::size_t i = 0; i <= IndexOf(last); ++i) {
     const Nanos end = i == IndexOf(last) ? end_ns : times.end_ns[i];
-    if (witness_[i] != nullptr) longest = std::max(longest, witness_[i]->LongestStall(begin, end, end));
+    if (witness_[i] != nullptr) stalled += witness_[i]->StalledTime(begin, end, end);
     begin = end;
   }
-  return longest;
+  return stalled;
 }
 
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {
@@ -44,7 +44,7 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
   }
   end_to_end_.Add(times.EndToEnd());
   if (times.Slack() >= 0) return MissCause::kNone;
-  const Nanos stall = LongestStall(times, Stage::kExecute, times.end_ns[IndexOf(Stage::kExecute)]);
+  const Nanos stall = StalledTime(times, Stage::kExecute, times.end_ns[IndexOf(Stage::kExecute)]);
   const MissCause cause = Attribute({-times.Slack(), times.lateness_ns, stall});
   finished_late_[static_cast<std::size_t>(cause)].Add();
   return cause;
@@ -52,7 +52,7 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
 
 MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Stage waiting_for, Nanos now_ns,
                                          Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING {
-  const Nanos stall = LongestStall(times, waiting_for, now_ns);
+  const Nanos stall = StalledTime(times, waiting_for, now_ns);
   const MissCause cause = Attribute({std::max<Nanos>(1, lacked_ns), times.lateness_ns, stall});
   given_up_[static_cast<std::size_t>(cause)].Add();
   return cause;

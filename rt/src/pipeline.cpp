@@ -80,7 +80,7 @@ void Pipeline::StartWitnesses() {
   for (std::size_t i = 0; i < kNumStages; ++i) {
     auto found = std::find_if(witnesses_.begin(), witnesses_.end(), [&](const auto& w) { return w->cpu() == cpu[i]; });
     if (found == witnesses_.end()) {
-      witnesses_.push_back(std::make_unique<Witness>(cpu[i]));
+      witnesses_.push_back(std::make_unique<Witness>(cpu[i], Witness::PeriodFor(settings_.deadline_ns)));
       witnesses_.back()->Start(settings_.witness_priority, settings_.mode);
       views.push_back(witnesses_.back().get());
       found = witnesses_.end() - 1;

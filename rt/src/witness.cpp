@@ -16,22 +16,23 @@ void WakeUpRing::Record(Nanos due_ns, Nanos woke_ns, Nanos next_due_ns) noexcept
   head_.store(head + 1, std::memory_order_release);
 }
 
-Nanos WakeUpRing::LongestStall(Nanos begin_ns, Nanos end_ns, Nanos now_ns) const noexcept ARMCMC_NONBLOCKING {
+Nanos WakeUpRing::StalledTime(Nanos begin_ns, Nanos end_ns, Nanos now_ns) const noexcept ARMCMC_NONBLOCKING {
   const auto inside = [&](Nanos due, Nanos woke) {
+    if (woke - due <= kOrdinaryDelayNs) return Nanos{0};
     return std::max<Nanos>(0, std::min(woke, end_ns) - std::max(due, begin_ns));
   };
   const std::uint64_t head = head_.load(std::memory_order_acquire);
   const Nanos next_due = next_due_ns_.load(std::memory_order_relaxed);
-  Nanos longest = next_due > 0 && now_ns > next_due ? inside(next_due, now_ns) : 0;
+  Nanos stalled = next_due > 0 && now_ns > next_due ? inside(next_due, now_ns) : 0;
   // Half of the ring only: the writer may overwrite the oldest entries during the search, never the newest half.
   const std::uint64_t reach = std::min<std::uint64_t>(head, kSize / 2);
   for (std::uint64_t i = 1; i <= reach; ++i) {
     const Entry& entry = entries_[(head - i) % kSize];
     const Nanos woke = entry.woke_ns.load(std::memory_order_relaxed);
     if (woke < begin_ns) break;
-    longest = std::max(longest, inside(entry.due_ns.load(std::memory_order_relaxed), woke));
+    stalled += inside(entry.due_ns.load(std::memory_order_relaxed), woke);
   }
-  return longest;
+  return stalled;
 }
 
 void Witness::Start(int priority, RtMode mode) {
@@ -47,12 +48,12 @@ void Witness::Stop() noexcept {
 }
 
 void Witness::Run() noexcept {
-  Nanos due_ns = MonotonicNow() + kPeriodNs;
+  Nanos due_ns = MonotonicNow() + period_ns_;
   while (!stop_.load(std::memory_order_relaxed)) {
     SleepUntil(due_ns);
     const Nanos woke_ns = MonotonicNow();
     const Nanos delay_ns = std::max<Nanos>(0, woke_ns - due_ns);
-    const Release next = NextRelease(due_ns, woke_ns, kPeriodNs);
+    const Release next = NextRelease(due_ns, woke_ns, period_ns_);
     wake_ups_.Record(due_ns, woke_ns, next.time_ns);
     delays_.Add(delay_ns);
     Nanos worst = worst_ns_.load(std::memory_order_relaxed);

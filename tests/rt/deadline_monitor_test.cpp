@@ -19,7 +19,7 @@ TEST(Attribute, BlamesTheDataOnlyWhenTheyWereLateByWhatTheStepLacked) {
   EXPECT_EQ(Attribute({10, 9, 0}), MissCause::kOwn);
 }
 
-TEST(Attribute, BlamesTheMachineOnlyForAStallAsLongAsWhatTheStepLacked) {
+TEST(Attribute, BlamesTheMachineOnlyForStallsAsLongAsWhatTheStepLacked) {
   EXPECT_EQ(Attribute({10, 0, 10}), MissCause::kMachine);
   EXPECT_EQ(Attribute({10, 0, 9}), MissCause::kOwn);
 }
@@ -83,6 +83,15 @@ TEST_F(DeadlineMonitorTest, AStallOfTheAdjustCpuIsTheMachine) {
   Fill(cpu1_.get(), 1040, 25);
   EXPECT_EQ(monitor_->Record(Step(119)), MissCause::kMachine);
   EXPECT_EQ(monitor_->misses(MissCause::kMachine), 1);
+}
+
+TEST_F(DeadlineMonitorTest, ManyShortStallsAreTheMachineToo) {
+  Fill(cpu0_.get(), 0, 0);
+  for (Nanos due = 1000 * kMs; due < 1300 * kMs; due += 3 * kMs) {
+    cpu1_->Record(due, due + (due < 1080 * kMs ? kMs : kMs / 50), due + 3 * kMs);
+  }
+  EXPECT_EQ(monitor_->Record(Step(119)), MissCause::kMachine) << "20 ms lacked, 27 stalls of 1 ms";
+  EXPECT_EQ(monitor_->Record(Step(129)), MissCause::kOwn) << "30 ms lacked";
 }
 
 TEST_F(DeadlineMonitorTest, AStallOfTheOtherCpuIsNoExcuse) {

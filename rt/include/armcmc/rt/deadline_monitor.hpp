@@ -35,13 +35,14 @@ struct StepTimes {
 struct MissEvidence {
   Nanos lacked_ns = 0;    ///< By how much the deadline was missed; <= 0: it was not.
   Nanos lateness_ns = 0;  ///< How late the pack came on the locked grid.
-  Nanos stall_ns = 0;     ///< Longest stall of a witness on the CPU of the stage that was running.
+  Nanos stall_ns = 0;     ///< Time a witness on the CPU of the stage that was running waited in vain.
 };
 
 /// Exactly one cause per miss.
 ///
-/// Late data, when the pack alone came late by at least what the step lacked; else the machine, when one stall of a
-/// witness alone was as long as that; else our own. In doubt it is our own.
+/// Late data, when the pack alone came late by at least what the step lacked; else the machine, when the stalls that
+/// the witnesses saw alone are as long as that: without them the deadline had been met; else our own. In doubt it is
+/// our own.
 [[nodiscard]] constexpr MissCause Attribute(const MissEvidence& evidence) noexcept {
   if (evidence.lacked_ns <= 0) return MissCause::kNone;
   if (evidence.lateness_ns >= evidence.lacked_ns) return MissCause::kLateData;
@@ -77,7 +78,7 @@ class DeadlineMonitor {
   [[nodiscard]] const LogHistogram& end_to_end() const noexcept { return end_to_end_; }
 
  private:
-  [[nodiscard]] Nanos LongestStall(const StepTimes& times, Stage last, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Nanos StalledTime(const StepTimes& times, Stage last, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
 
   std::array<const WakeUpRing*, kNumStages> witness_{};
   std::array<Nanos, kNumStages> budget_ns_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -18,16 +19,20 @@ namespace armcmc::rt {
 class WakeUpRing {
  public:
   static constexpr std::size_t kSize = 4096;  ///< Four seconds at 1 ms.
+  /// A wake-up that comes later than this is a stall; the latency of every wake-up of a machine in health is below it.
+  static constexpr Nanos kOrdinaryDelayNs = 100'000;
 
   /// @param next_due_ns  When the wake-up after this one is due. @rt Wait-free.
   void Record(Nanos due_ns, Nanos woke_ns, Nanos next_due_ns) noexcept ARMCMC_NONBLOCKING;
 
-  /// Longest single stall inside [begin, end]: the part of [due, woke] of one wake-up that lies in the window.
+  /// Time inside [begin, end] in which the machine stood still: sum over the wake-ups that came later than
+  /// kOrdinaryDelayNs of the part of [due, woke] that lies in the window.
   ///
-  /// A wake-up that is overdue at `now` counts as a stall that lasts until now. Stalls are not added up: a
-  /// hundred ordinary wake-up latencies are no stall of the machine.
-  /// @rt Wait-free, O(wake-ups since begin), at most kSize / 2, which is two seconds.
-  [[nodiscard]] Nanos LongestStall(Nanos begin_ns, Nanos end_ns, Nanos now_ns) const noexcept ARMCMC_NONBLOCKING;
+  /// A wake-up that is overdue at `now` stalls until now. Stalls are added up, since a hypervisor that is short of time
+  /// takes it in many slices of a millisecond or two; a hundred ordinary wake-up latencies are no stall.
+  /// A lower bound: what is taken between a wake-up and the next due time is not seen.
+  /// @rt Wait-free, O(wake-ups since begin), at most kSize / 2, which is 2048 periods of the witness.
+  [[nodiscard]] Nanos StalledTime(Nanos begin_ns, Nanos end_ns, Nanos now_ns) const noexcept ARMCMC_NONBLOCKING;
 
  private:
   struct Entry {
@@ -43,9 +48,12 @@ class WakeUpRing {
 /// the machine that stood still (hypervisor, firmware, kernel), since no thread of ours can delay it.
 class Witness {
  public:
-  static constexpr Nanos kPeriodNs = 1'000'000;
+  /// A quarter of the deadline, so that a step sees several wake-ups, within [100 us, 1 ms].
+  [[nodiscard]] static constexpr Nanos PeriodFor(Nanos deadline_ns) noexcept {
+    return std::clamp<Nanos>(deadline_ns / 4, 100'000, 1'000'000);
+  }
 
-  explicit Witness(int cpu) noexcept : cpu_(cpu) {}
+  Witness(int cpu, Nanos period_ns) noexcept : cpu_(cpu), period_ns_(period_ns) {}
   ~Witness() { Stop(); }
 
   /// @throws PrivilegeError in kEnforce.
@@ -53,6 +61,7 @@ class Witness {
   void Stop() noexcept;
 
   [[nodiscard]] int cpu() const noexcept { return cpu_; }
+  [[nodiscard]] Nanos period_ns() const noexcept { return period_ns_; }
   /// Without its priority or its CPU a late wake-up proves nothing.
   [[nodiscard]] bool trustworthy() const noexcept { return thread_.placement().fifo && thread_.placement().pinned; }
   [[nodiscard]] const WakeUpRing& wake_ups() const noexcept { return wake_ups_; }
@@ -68,6 +77,7 @@ class Witness {
   void Run() noexcept ARMCMC_NONBLOCKING;
 
   int cpu_;
+  Nanos period_ns_;
   WakeUpRing wake_ups_;
   LogHistogram delays_;
   std::atomic<Nanos> worst_ns_{0};
