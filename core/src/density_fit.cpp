@@ -12,7 +12,7 @@ namespace {
 constexpr int kNodes = 97;  // [-6, 6] at 8 nodes per standard deviation
 constexpr double kReach = 6.0;
 constexpr int kProbeDraws = 2048;
-constexpr double kBendMinimumEss = 200.0;  // below, the bends would be noise
+constexpr double kBendMinimumEss = 50.0;  // below, the bends would be noise
 
 struct Moments {
   double sum = 0.0, square = 0.0;

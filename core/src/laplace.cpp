@@ -25,6 +25,12 @@ void Clamp(const ParameterSpace& space, ParamVector* u) noexcept {
     (*u)[d] = std::clamp((*u)[d], space.lower[static_cast<std::size_t>(d)], space.upper[static_cast<std::size_t>(d)]);
 }
 
+/// True when coordinate d lies on a bound and the posterior rises beyond it.
+bool IsPressed(const ParameterSpace& space, const ParamVector& u, const ParamVector& gradient, int d) noexcept {
+  const auto i = static_cast<std::size_t>(d);
+  return (u[d] <= space.lower[i] && gradient[d] > 0.0) || (u[d] >= space.upper[i] && gradient[d] < 0.0);
+}
+
 double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
   const ParamVector d = u - prior.mean;
   return -0.5 * d.dot(Evaluate(prior.precision * d));
@@ -95,6 +101,14 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
   double best = -HUGE_VAL;
   for (int iteration = 0; iteration < kLaplaceIterations; ++iteration) {
     Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+    // The others move as if those that are pressed against their bounds stay there (projected Newton steps).
+    for (int d = 0; d < dim; ++d) {
+      if (!IsPressed(space, u, gradient, d)) continue;
+      gradient[d] = 0.0;
+      hessian.row(d).setZero();
+      hessian.col(d).setZero();
+      hessian(d, d) = 1.0;
+    }
     int lane = 0;
     for (const double damping : kDampings) {
       ParamMatrix damped = hessian;
@@ -126,6 +140,9 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
     if (converged) break;
   }
   Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+  // Pressed against a bound with slope g the posterior falls off like exp(-g x), with standard deviation 1 / g.
+  for (int d = 0; d < dim; ++d)
+    if (IsPressed(space, u, gradient, d)) hessian(d, d) += gradient[d] * gradient[d];
   fit->mean = u;
   fit->precision = hessian;
   return best;

@@ -11,7 +11,6 @@ namespace armcmc {
 namespace {
 
 constexpr double kStudentDof = 5.0;  // tails of the Laplace components
-constexpr double kPilotEss = 250.0;  // effective draws of a pilot round that suffice
 constexpr double kRefitShare = 0.4;  // effective share of the draws below which the proposal is fitted once more
 
 enum Purpose : std::uint64_t {
@@ -156,29 +155,17 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   const bool use_previous = lambda > 0.0;
   const int wanted = DrawTarget(mismatch, out);
   const int target = std::clamp(limit, SamplerSettings::kMinDraws, wanted);
-  const double lambda_q = std::clamp(lambda, sampler_.lambda_q_min, sampler_.lambda_q_max);
+  // A change in part leaves one coordinate as wide as P_0: its density is a poor guide to the posterior.
+  const double lambda_q = transition_.Offers(previous)
+                              ? sampler_.lambda_q_min
+                              : std::clamp(lambda, sampler_.lambda_q_min, sampler_.lambda_q_max);
 
   FitLaplace(data, previous, use_previous, ws);
   Proposal proposal;
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);
   const RandomStream stream = stream_of(kDrawStream);
-  // Pilot rounds: Laplace fits, then, where they are a poor match, the ridge, then what the ridge round learnt.
-  const int pilot_size = std::min(kPilotDraws, wanted / (2 * kMaxPilotRounds) / kTileLanes * kTileLanes);
   memory_inside_ = 1.0;
-  int pilot = 0;
-  int pilot_blocks = 0;
-  for (int round = 0; round < kMaxPilotRounds; ++round) {
-    const int first = pilot;
-    pilot += pilot_size;
-    DrawAndScore(proposal, previous, data, first, pilot_size, stream, ws, out);
-    double ess = 0.0;
-    if (!std::isnan(Weigh(previous, lambda, first, pilot, ws)))
-      pilot_blocks = FitPilot(previous, lambda, first, pilot, ws, *out, &ess);
-    if (ess >= kPilotEss) break;
-    const bool ridge = round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, ws, &proposal);
-    if (!ridge) BuildProposal(previous, lambda_q, use_previous, pilot_blocks, &proposal);
-  }
-  BuildProposal(previous, lambda_q, use_previous, pilot_blocks, &proposal);
+  int pilot = RunPilot(data, previous, use_previous, lambda, lambda_q, wanted, stream, ws, &proposal, out);
 
   // Nothing above or below depends on `limit` but where the loop ends, so that a truncated run repeats to the bit.
   int made = pilot;

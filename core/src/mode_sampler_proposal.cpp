@@ -11,9 +11,12 @@
 namespace armcmc {
 namespace {
 
+constexpr double kPilotEss = 250.0;        // effective draws of the pilot that suffice, or
+constexpr double kPilotEssShare = 0.24;    // of a round's draws, when there are few
 constexpr double kLaplaceInflation = 1.2;  // standard deviations of the Laplace components
 constexpr double kInitialShare = 0.10;     // of P_0 in the data-driven part of q
 constexpr double kLaplaceShare = 0.15;     // of the Laplace fits there, once the pilot's fit exists
+constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
 constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
 
 }  // namespace
@@ -31,11 +34,25 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
   }
   SetElliptic(fit_fresh_.mean, Evaluate(fit_fresh_.precision.inverse()), kLaplaceInflation, &student_table_,
               &laplace_fresh_);
+  num_persisted_ = 0;
   if (!use_previous) return;
+  const auto add = [&](const Gaussian& fit) noexcept ARMCMC_NONBLOCKING {
+    SetElliptic(fit.mean, Evaluate(fit.precision.inverse()), kLaplaceInflation, &student_table_,
+                &laplace_persisted_[static_cast<std::size_t>(num_persisted_++)]);
+  };
+  if (transition_.Offers(previous)) {
+    fit_persisted_ = transition_.fit(0);
+    for (int b = 0; b < previous.num_blocks; ++b) add(transition_.fit(b));
+    return;
+  }
   const Gaussian prior{previous.mean, Evaluate(previous.covariance.inverse())};
   LaplaceFit(kernels_, model_, data, noise_, space_, prior, previous.mean, &ws->laplace, &fit_persisted_);
-  SetElliptic(fit_persisted_.mean, Evaluate(fit_persisted_.precision.inverse()), kLaplaceInflation, &student_table_,
-              &laplace_persisted_);
+  add(fit_persisted_);
+}
+
+void ModeSampler::AddPersisted(double share, Proposal* proposal) const noexcept {
+  for (int b = 0; b < num_persisted_; ++b)
+    proposal->Add(&laplace_persisted_[static_cast<std::size_t>(b)], share / num_persisted_);
 }
 
 void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous,
@@ -52,8 +69,9 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
                   rest * (1.0 - kInitialShare - kLaplaceShare) / num_pilot_blocks);
   // The pilot's blocks stand in for the Laplace fit of what they were drawn for; after a modification, with P_0 alone
   // in the target, it stays, against a late surprise in the tails.
-  if (use_previous && num_pilot_blocks == 0) {
-    proposal->Add(&laplace_persisted_, 0.6 * rest * laplace);
+  // The same holds for changes in part, which are several in one pilot's block.
+  if (use_previous && (num_pilot_blocks == 0 || transition_.Offers(previous))) {
+    AddPersisted(0.6 * rest * laplace, proposal);
     proposal->Add(&laplace_fresh_, 0.4 * rest * laplace);
   } else if (!use_previous) {
     proposal->Add(&laplace_fresh_, rest * laplace);
@@ -66,9 +84,12 @@ bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory
                                      double lambda_q, SamplerWorkspace* ws, Proposal* proposal) noexcept {
   const int dim = space_.dim;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
-  const Gaussian persisted = use_previous ? Gaussian{previous.mean, Evaluate(previous.covariance.inverse())} : initial;
-  const int anchors = FollowRidge(kernels_, model_, data, noise_, space_, persisted,
-                                  use_previous ? fit_persisted_ : fit_fresh_, &ws->laplace, &anchors_);
+  // With one coordinate drawn anew the others hold the posterior together: the ridge is that of everything anew.
+  const bool partial = use_previous && transition_.Offers(previous);
+  const bool follow_previous = use_previous && !partial;
+  const Gaussian prior = follow_previous ? Gaussian{previous.mean, Evaluate(previous.covariance.inverse())} : initial;
+  const int anchors = FollowRidge(kernels_, model_, data, noise_, space_, prior,
+                                  follow_previous ? fit_persisted_ : fit_fresh_, &ws->laplace, &anchors_);
   if (anchors == 0) return false;
   proposal->Clear();
   if (use_previous)
@@ -80,6 +101,7 @@ bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory
     SetElliptic(anchors_[i].mean, anchors_[i].covariance, kLaplaceInflation, &normal_table_, &ridge_blocks_[i]);
     proposal->Add(&ridge_blocks_[i], anchors_[i].share);
   }
+  if (partial) AddPersisted(1.0, proposal);
   proposal->Add(&laplace_fresh_, kInitialShare);
   proposal->Add(&initial_block_, kInitialShare);
   proposal->Normalise();
@@ -127,7 +149,55 @@ int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int fi
     }
   }
   *ess = fit(weighted, 0);
-  return *ess >= kMinimumEss ? 1 : 0;
+  if (*ess >= kMinimumEss) return 1;
+  // A few candidates hold all the weight. The posterior to a power below one is broad enough to be fitted by them, and
+  // lies where the posterior does: the next round draws from there.
+  double top = 0.0;
+  for (int k = first; k < last; ++k) top = std::fmax(top, ws->weight[static_cast<std::size_t>(k)]);
+  if (!(top > 0.0)) return 0;
+  weighted.weight = ws->group_weight.data() + offset;
+  for (const double power : kTempers) {
+    for (int k = first; k < last; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      ws->group_weight[i] = std::pow(ws->weight[i] / top, power);
+    }
+    if (fit(weighted, 0) >= 2.0 * kMinimumEss) return 1;
+  }
+  return 0;
+}
+
+int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda,
+                          double lambda_q, int wanted, const RandomStream& stream, SamplerWorkspace* ws,
+                          Proposal* proposal, ModeDraws* out) noexcept {
+  const int size = std::min(kPilotDraws, wanted / (2 * kPilotRounds) / kTileLanes * kTileLanes);
+  const double enough = std::fmin(kPilotEss, kPilotEssShare * size);
+  int made = 0;
+  int pooled = 0;  // first draw of those that share the proposal of this round
+  int blocks = 0;
+  bool on_ridge = false;
+  for (int round = 0; round < kMaxPilotRounds; ++round) {
+    if (round >= kPilotRounds && made + size > wanted / 2) break;
+    DrawAndScore(*proposal, previous, data, made, size, stream, ws, out);
+    made += size;
+    double ess = 0.0;
+    if (!std::isnan(Weigh(previous, lambda, pooled, made, ws)))
+      blocks = FitPilot(previous, lambda, pooled, made, ws, *out, &ess);
+    if (ess >= enough) {
+      on_ridge = false;
+      break;
+    }
+    if (on_ridge && (round > 1 || ess >= kMinimumEss)) continue;  // thin, but right: more of the same
+    pooled = made;
+    on_ridge = round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, ws, proposal);
+    if (!on_ridge) BuildProposal(previous, lambda_q, use_previous, blocks, proposal);
+  }
+  if (!on_ridge) {
+    BuildProposal(previous, lambda_q, use_previous, blocks, proposal);
+  } else if (blocks > 0) {
+    for (int b = 0; b < blocks; ++b) proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)], 0.5 / blocks);
+    proposal->Normalise();
+  }
+  return made;
 }
 
 void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& previous, const ModeData& data,

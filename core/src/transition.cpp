@@ -32,9 +32,8 @@ Transition::Hypothesis Transition::Judge(const ModeData& data, const ParamVector
   h.mean = mean;
   h.covariance = covariance;
   const Gaussian prior{mean, Evaluate(covariance.inverse())};
-  Gaussian fit;
-  const double height = LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, scratch, &fit);
-  h.log_evidence = height + 0.5 * (LogDeterminant(prior.precision) - LogDeterminant(fit.precision));
+  const double height = LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, scratch, &h.fit);
+  h.log_evidence = height + 0.5 * (LogDeterminant(prior.precision) - LogDeterminant(h.fit.precision));
   if (!std::isfinite(h.log_evidence)) h.log_evidence = -HUGE_VAL;
   return h;
 }
@@ -47,6 +46,7 @@ void Transition::SetMemory(const PosteriorMemory& previous, const Hypothesis* hy
     const auto i = static_cast<std::size_t>(b);
     SetElliptic(hypotheses[b].mean, hypotheses[b].covariance, 1.0, normal_table_, &memory_.block[i]);
     memory_.weight[i] = 1.0 / count;
+    fits_[i] = hypotheses[b].fit;
   }
   memory_.mean = hypotheses[0].mean;
   memory_.covariance = hypotheses[0].covariance;
@@ -91,12 +91,14 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
 
 const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorMemory& previous, Mismatch* mismatch,
                                           double* share, LaplaceScratch* scratch) noexcept {
+  restarted_ = false;
   if (!previous.valid) stable_ = just_modified_ = false;
   *share = mismatch->lambda;
   if (!previous.valid || !previous.informed) return previous;
   const bool reinforcement = mismatch->decision == Decision::kReinforcement;
   if (!reinforcement || (just_modified_ && stable_)) {
     if (OfferChanges(data, previous, reinforcement, scratch)) {
+      restarted_ = reinforcement;
       mismatch->decision = Decision::kModification;
       mismatch->lambda = 0.0;
       *share = kChangeShare;
@@ -107,7 +109,8 @@ const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorM
 }
 
 void Transition::Accept(const PosteriorMemory& next, Decision decision) noexcept {
-  just_modified_ = decision == Decision::kModification;
+  // A pack that started again is the first of the new plant alone; another such start would lose what it taught.
+  just_modified_ = decision == Decision::kModification && !restarted_;
   if (just_modified_) return;
   stable_ = next.informed;
   stable_mean_ = next.mean;

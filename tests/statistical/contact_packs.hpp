@@ -29,11 +29,11 @@ struct Motion {
 };
 
 inline DataPack MakeContactPack(std::int64_t seq, const Motion& motion, const ContactTruth& truth, double noise_std,
-                                Normal* normal, int num_samples = 100) {
+                                Normal* normal, int num_samples = 100, double dt = 1e-3) {
   DataPack pack;
   pack.seq = seq;
   pack.run_id = 1;
-  pack.dt = 1e-3;
+  pack.dt = dt;
   pack.plant = PlantKind::kHuntCrossley;
   pack.num_samples = num_samples;
   pack.num_inputs = 2;

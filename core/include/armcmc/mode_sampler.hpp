@@ -59,8 +59,9 @@ class SamplerWorkspace {
 class ModeSampler {
  public:
   static constexpr int kPilotDraws = 1024;  ///< In one round.
-  static constexpr int kMaxPilotRounds = 3;
-  static constexpr int kChunkDraws = 512;  ///< Between two looks at the clock.
+  static constexpr int kPilotRounds = 3;
+  static constexpr int kMaxPilotRounds = 7;  ///< Where there are draws enough.
+  static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock.
   static constexpr int kMismatchDraws = 256;
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
@@ -90,6 +91,8 @@ class ModeSampler {
                   SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   void BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous, int num_pilot_blocks,
                      Proposal* proposal) const noexcept ARMCMC_NONBLOCKING;
+  /// The Laplace fits under what is carried on.
+  void AddPersisted(double share, Proposal* proposal) const noexcept ARMCMC_NONBLOCKING;
   void DrawAndScore(const Proposal& proposal, const PosteriorMemory& previous, const ModeData& data, int first,
                     int count, const RandomStream& stream, SamplerWorkspace* ws,
                     ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
@@ -103,7 +106,14 @@ class ModeSampler {
   /// Fits the pilot's weighted draws [first, last). @return number of blocks; *ess their effective number.
   int FitPilot(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
                const ModeDraws& draws, double* ess) noexcept ARMCMC_NONBLOCKING;
-  /// Proposal along the ridge of this pack, for a second pilot. @return false when there is none.
+  /// Draws in rounds until the posterior is known well enough to draw the rest from: Laplace fits; where they are a
+  /// poor match, the ridge; where that fails, too, powers of the posterior that come nearer to it round by round.
+  /// @param[out] proposal  For the rest. @return the number of draws made, at most half of `wanted` after the first
+  /// kPilotRounds.
+  int RunPilot(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda, double lambda_q,
+               int wanted, const RandomStream& stream, SamplerWorkspace* ws, Proposal* proposal,
+               ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+  /// Proposal along the ridge of this pack. @return false when there is none.
   bool BuildRidgeProposal(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda_q,
                           SamplerWorkspace* ws, Proposal* proposal) noexcept ARMCMC_NONBLOCKING;
   /// Mode of the target: the best draw, climbed to the top after a modification (when AR-MAP reports it) whose prior
@@ -134,7 +144,9 @@ class ModeSampler {
   Transition transition_;
   std::array<MarginalTable, kMaxParams> uniform_tables_;
   DensityBlock initial_block_;  ///< P_0 as a proposal component.
-  DensityBlock laplace_fresh_, laplace_persisted_;
+  DensityBlock laplace_fresh_;
+  std::array<DensityBlock, PosteriorMemory::kMaxBlocks> laplace_persisted_;  ///< One for each change in part, else one.
+  int num_persisted_ = 0;
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> pilot_blocks_;
   Gaussian fit_fresh_, fit_persisted_;
   std::array<RidgeAnchor, kRidgeAnchors> anchors_;

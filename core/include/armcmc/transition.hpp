@@ -26,8 +26,8 @@ struct Kernels;
 ///   changed          prior = P_0                              the paper's modification
 ///
 /// A partial change competes with P_0 after a modification, so that one parameter's jump does not lose the others. The
-/// pack that holds the jump is a mixture of two plants and teaches nothing: the pack after it may start again from what
-/// was known before both.
+/// pack that holds the jump is a mixture of two plants and teaches nothing: the one pack after it may start again from
+/// what was known before both.
 ///
 /// Evidences are Laplace approximations: they choose the prior; the posterior under it is then sampled exactly.
 class Transition {
@@ -44,6 +44,11 @@ class Transition {
   const PosteriorMemory& Choose(const ModeData& data, const PosteriorMemory& previous, Mismatch* mismatch,
                                 double* share, LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
 
+  /// Whether `memory` stands for changes in part.
+  [[nodiscard]] bool Offers(const PosteriorMemory& memory) const noexcept { return &memory == &memory_; }
+  /// Laplace fit of the pack under block b of that memory.
+  [[nodiscard]] const Gaussian& fit(int b) const noexcept { return fits_[static_cast<std::size_t>(b)]; }
+
   /// After a pack's posterior: what is trusted from now on.
   void Accept(const PosteriorMemory& next, Decision decision) noexcept ARMCMC_NONBLOCKING;
 
@@ -56,6 +61,7 @@ class Transition {
     double log_evidence = 0.0;
     ParamVector mean;
     ParamMatrix covariance;
+    Gaussian fit;
   };
 
   [[nodiscard]] Hypothesis Judge(const ModeData& data, const ParamVector& mean, const ParamMatrix& covariance,
@@ -70,11 +76,13 @@ class Transition {
   const NoiseModel& noise_;
   const MarginalTable* normal_table_;
   PosteriorMemory memory_;
+  std::array<Gaussian, PosteriorMemory::kMaxBlocks> fits_;
 
   bool stable_ = false;  ///< stable_mean_ and stable_covariance_ are the last posterior that a reinforcement confirmed.
   ParamVector stable_mean_;
   ParamMatrix stable_covariance_;
   bool just_modified_ = false;
+  bool restarted_ = false;  ///< This pack starts again from what was known before the last one.
 };
 
 }  // namespace armcmc
