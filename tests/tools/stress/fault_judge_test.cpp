@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace armcmc::stress {
@@ -72,6 +73,27 @@ TEST_F(FaultJudgeTest, AFaultThatNobodyNoticedIsNotDetected) {
   const FaultOutcome outcome = Outcome();
   EXPECT_TRUE(outcome.injected);
   EXPECT_FALSE(outcome.detected);
+}
+
+/// The first estimate of three moves by so many joint standard deviations at the fault.
+class MovedEstimate : public FaultJudgeTest, public ::testing::WithParamInterface<double> {};
+
+TEST_P(MovedEstimate, MayMoveByFourJointDeviations) {
+  Begin("nan");
+  ++status_.rejected_value;
+  ++status_.packs_rejected;
+  estimate_.ar_map[0] = 4.0 + GetParam() * 0.05 * std::sqrt(2.0);
+  for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq);
+  EXPECT_EQ(Outcome().recovered_steps == FaultJudge::kNever, GetParam() > 4.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(JointDeviations, MovedEstimate, ::testing::Values(1.0, 3.5, 4.5));
+
+TEST_F(FaultJudgeTest, AFlagInAStatusThatDidNotComeCannotBeJudged) {
+  Begin("nan");
+  ++status_.step;  // the status that told of it was lost on its way
+  for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq);
+  EXPECT_FALSE(Outcome().injected);
 }
 
 TEST_F(FaultJudgeTest, APackThatTheBusLostWasNotAFault) {

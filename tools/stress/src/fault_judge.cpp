@@ -5,6 +5,11 @@
 #include <utility>
 
 namespace armcmc::stress {
+namespace {
+
+constexpr double kApart = 4.0;  // joint standard deviations
+
+}  // namespace
 
 void FaultJudge::BeginRun(std::vector<Slot> slots) {
   slots_ = std::move(slots);
@@ -17,6 +22,7 @@ void FaultJudge::BeginRun(std::vector<Slot> slots) {
   evidence_.before = evidence_.after = last_status_;
   has_before_ = true;
   background_ = raised_ = 0;
+  unheard_ = 0;
   signalled_ = false;
   affected_until_ = 0;
 }
@@ -57,6 +63,7 @@ std::int64_t FaultJudge::NotOurs(const estimator_status_t& status) const {
 
 void FaultJudge::OnStatus(const estimator_status_t& status) {
   const std::int64_t not_ours = NotOurs(status);
+  const std::int64_t unheard = std::max<std::int64_t>(status.step - last_status_.step - 1, 0);
   const std::int64_t dropped = status.packs_dropped - last_status_.packs_dropped;
   last_status_ = status;
   if (!started_) {
@@ -77,6 +84,7 @@ void FaultJudge::OnStatus(const estimator_status_t& status) {
     return;
   }
   evidence_.after = status;
+  unheard_ += unheard;
   raised_ |= status.fault_flags;
   Step& step = steps_[status.last_seq];
   step.has_status = true;
@@ -98,7 +106,7 @@ bool FaultJudge::Agrees(const Step& step, bool relearns) const {
   for (std::size_t i = 0; i < step.value.size(); ++i) {
     const bool inside = step.value[i] >= reference_.lo[i] && step.value[i] <= reference_.hi[i];
     const double joint_sd = std::hypot(step.sd[i], reference_.sd[i]);
-    if (!inside && std::fabs(step.value[i] - reference_.value[i]) > 2.0 * joint_sd) return false;
+    if (!inside && std::fabs(step.value[i] - reference_.value[i]) > kApart * joint_sd) return false;
     const double width = step.hi[i] - step.lo[i], width_before = reference_.hi[i] - reference_.lo[i];
     if (!relearns && width > 4.0 * width_before) return false;
   }
@@ -132,6 +140,7 @@ void FaultJudge::FinishSlot() {
   // Nothing heard since: this program stood still itself, and cannot judge.
   const bool heard = evidence_.after.t_status_ns > evidence_.before.t_status_ns;
   outcome.injected = has_before_ && heard && (!from_outside || signalled_);
+  if (!outcome.detected && unheard_ > 0) outcome.injected = false;  // a flag lives in one status
   if (!outcome.detected && !from_outside && fault.source != FaultSource::kPlantEnd) {
     // Lost on its way, or given up in favour of newer packs before the stage came to it: it did not happen.
     const auto at = steps_.find(slot.at());
@@ -140,14 +149,18 @@ void FaultJudge::FinishSlot() {
     if (lost || (fault.source == FaultSource::kEstimatorPlan && !computed)) outcome.injected = false;
   }
   outcome.recovered_steps = kNever;
+  std::int64_t missing = 0;  // steps without any message, up to the present one
   for (std::int64_t seq = over + 1; seq < slot.end; ++seq) {
     const auto found = steps_.find(seq);
     const Step step = found != steps_.end() ? found->second : Step{};
     const char* hindrance = Hindrance(step, fault);
     if (hindrance == nullptr) {
-      outcome.recovered_steps = seq - over - outcome.stalled_steps;  // of those before it
+      // Of those before it. Packs given up in favour of this one left no step that could have told.
+      const std::int64_t given_up = from_outside ? std::min(std::max(step.not_ours, step.dropped), missing) : 0;
+      outcome.recovered_steps = seq - over - outcome.stalled_steps - given_up;
       break;
     }
+    missing = found != steps_.end() ? 0 : missing + 1;
     outcome.hindrance = hindrance;
     // The backlog of a process that stood still is part of the fault.
     outcome.stalled_steps += from_outside ? std::max(step.not_ours, step.dropped) : step.not_ours;
@@ -160,6 +173,7 @@ void FaultJudge::FinishSlot() {
   evidence_.before = evidence_.after = last_status_;
   has_before_ = false;
   background_ = raised_ = 0;
+  unheard_ = 0;
   signalled_ = false;
   affected_until_ = 0;
 }

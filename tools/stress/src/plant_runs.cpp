@@ -100,9 +100,10 @@ void PlantRuns::EndSignal(const FaultSpec& fault) {
   std::int64_t over = 0;
   if (name == "plant_stop") {
     plant_->Signal(SIGCONT);
-    // It sends at once what it owes: those packs belong to the fault.
-    over =
-        static_cast<std::int64_t>(std::ceil(fault.LastsMs(context_.options->period_ms) / context_.options->period_ms));
+    // It sends at once what it owes, and what falls due meanwhile: those packs belong to the fault.
+    constexpr double kCatchingUp = 0.2;  // of the time that it stood
+    const double stood_ms = static_cast<double>(rt::MonotonicNow() - active_since_ns_) / 1e6;
+    over = static_cast<std::int64_t>(std::ceil((1.0 + kCatchingUp) * stood_ms / context_.options->period_ms));
   }
   if (name == "estimator_stop") context_.estimator->Signal(SIGCONT);
   flood_.reset();
