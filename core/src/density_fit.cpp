@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "armcmc/linear_algebra.hpp"
+#include "bend_fit.hpp"
 #include "simd/kernels.hpp"
 
 namespace armcmc {
@@ -11,7 +12,7 @@ namespace {
 
 constexpr int kNodes = 97;  // [-6, 6] at 8 nodes per standard deviation
 constexpr double kReach = 6.0;
-constexpr int kProbeDraws = 2048;
+constexpr int kProbeDraws = 4096;
 constexpr double kBendMinimumEss = 50.0;  // below, the bends would be noise
 
 struct Moments {
@@ -68,167 +69,6 @@ void PrincipalAxes(const ParamMatrix& covariance, ParamMatrix* whiten, ParamMatr
       (*unwhiten)(j, i) = solver.eigenvectors()(j, column) * axis_sd * sd[j];
     }
   }
-}
-
-/// Least-squares polynomial of z_i in the widest coordinate, for every i >= 1. `z` holds the whitened coordinates.
-void FitPolynomials(const simd::Kernels& kernels, const WeightedDraws& draws, double* const* z,
-                    DensityBlock* block) noexcept {
-  constexpr int kPowers = DensityBlock::kDegree + 1;
-  std::array<double, 2 * DensityBlock::kDegree + 1 + kPowers * kMaxParams> sums{};
-  kernels.bend_moments(block->dim, z, draws.weight, draws.size, sums.data());
-  Eigen::Matrix<double, kPowers, kPowers> gram;
-  for (int i = 0; i < kPowers; ++i)
-    for (int j = 0; j < kPowers; ++j) gram(i, j) = sums[static_cast<std::size_t>(i + j)] / sums[0];
-  gram.diagonal() *= 1.0 + 1e-9;
-  const auto factor = FactorSymmetric(gram);
-  std::size_t t = 2 * DensityBlock::kDegree + 1;
-  for (int i = 1; i < block->dim; ++i) {
-    Eigen::Matrix<double, kPowers, 1> cross;
-    for (int q = 0; q < kPowers; ++q) cross[q] = sums[t++] / sums[0];
-    const Eigen::Matrix<double, kPowers, 1> c = Solve(factor, cross);
-    if (!c.allFinite()) continue;
-    for (int q = 0; q < kPowers; ++q) block->poly[static_cast<std::size_t>(i)][static_cast<std::size_t>(q)] = c[q];
-  }
-}
-
-/// What is left of coordinate i >= 2 on the straightened ones before it: linear terms, e_1 c and e_1^2. `e` holds the
-/// coordinates straightened so far (row i without these terms); rows `extra` are scratch.
-void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, int i, double* const* e,
-                     double* const* extra, DensityBlock* block) noexcept {
-  for (int k = 0; k < draws.size; ++k) {
-    extra[0][k] = e[1][k] * DensityBlock::Clamped(e[0][k]);
-    extra[1][k] = e[1][k] * e[1][k];
-  }
-  std::array<const double*, simd::kMaxMomentRows> rows{};
-  int n = 0;
-  for (int j = 1; j < i; ++j) rows[static_cast<std::size_t>(n++)] = e[j];
-  rows[static_cast<std::size_t>(n++)] = extra[0];
-  rows[static_cast<std::size_t>(n++)] = extra[1];
-  rows[static_cast<std::size_t>(n)] = e[i];
-  std::array<double, 2 + simd::kMaxMomentRows> first{};
-  std::array<double, simd::kMaxMomentRows> mean{};
-  for (int r = 0; r <= n; ++r) {
-    kernels.first_moments(1, &rows[static_cast<std::size_t>(r)], draws.weight, draws.size, first.data());
-    mean[static_cast<std::size_t>(r)] = first[2] / first[0];
-  }
-  std::array<double, simd::kMaxMomentRows*(simd::kMaxMomentRows + 1) / 2> sums{};
-  kernels.second_moments(n + 1, rows.data(), draws.weight, mean.data(), draws.size, sums.data());
-  using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, simd::kMaxMomentRows, simd::kMaxMomentRows>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, simd::kMaxMomentRows, 1>;
-  Gram gram(n, n);
-  Vector cross(n);
-  std::size_t t = 0;
-  for (int a = 0; a < n; ++a)
-    for (int b = 0; b <= a; ++b) gram(a, b) = gram(b, a) = sums[t++];
-  for (int a = 0; a < n; ++a) cross[a] = sums[t++];
-  // Equilibrate: the rows differ by powers of a ridge's thickness.
-  Vector size(n);
-  for (int a = 0; a < n; ++a) size[a] = gram(a, a) > 0.0 ? 1.0 / std::sqrt(gram(a, a)) : 0.0;
-  gram = Evaluate(size.asDiagonal() * gram * size.asDiagonal());
-  gram.diagonal().array() += 1e-9;
-  const Vector scaled = size.asDiagonal() * cross;
-  Vector c = Solve(FactorSymmetric(gram), scaled);
-  c = (size.asDiagonal() * c).eval();
-  if (!c.allFinite()) return;
-  const auto ii = static_cast<std::size_t>(i);
-  for (int j = 1; j < i; ++j) block->linear[ii][static_cast<std::size_t>(j)] = c[j - 1];
-  block->cross[ii] = c[n - 2];
-  block->square[ii] = c[n - 1];
-}
-
-/// True when straightening took more variance out of some whitened coordinate (variance 1) than its coefficients would
-/// take out of noise. `sums` are the first moments of e.
-bool BendPays(const simd::Kernels& kernels, const WeightedDraws& draws, const double* sums, const double* const* e,
-              const DensityBlock& block) noexcept {
-  const double ess = sums[0] * sums[0] / sums[1];
-  const double pays = 0.004 + 2.5 * (DensityBlock::kDegree + 1) / ess;
-  for (int i = 1; i < block.dim; ++i) {
-    const double* row = e[i];
-    const double mean = sums[static_cast<std::size_t>(2 + i)] / sums[0];
-    double square = 0.0;
-    kernels.second_moments(1, &row, draws.weight, &mean, draws.size, &square);
-    if (square / sums[0] < 1.0 - pays) return true;
-  }
-  return false;
-}
-
-/// Thickness of coordinate i along the ridge: log of the variance in bins of c, fitted by a parabola. `ess` is the
-/// effective number of the draws.
-void FitThickness(const WeightedDraws& draws, double ess, int i, double* const* e, DensityBlock* block) noexcept {
-  constexpr int kBins = 10;
-  constexpr double kEdge = 2.5;
-  constexpr int kEnough = 4096;  // draws: a parabola needs no more
-  const int stride = std::max(draws.size / kEnough, 1);
-  std::array<double, kBins> mass{}, square{}, place{}, mean{};
-  for (int k = 0; k < draws.size; k += stride) {
-    const double c = DensityBlock::Clamped(e[0][k]);
-    const auto bin = static_cast<std::size_t>(std::clamp((c + kEdge) * (kBins / (2.0 * kEdge)), 0.0, kBins - 1.0));
-    const double w = draws.weight[k];
-    mass[bin] += w;
-    place[bin] += w * c;
-    mean[bin] += w * e[i][k];
-    square[bin] += w * e[i][k] * e[i][k];
-  }
-  double total = 0.0;
-  for (const double m : mass) total += m;
-  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d cross = Eigen::Vector3d::Zero();
-  int used = 0;
-  for (std::size_t b = 0; b < kBins; ++b) {
-    if (mass[b] < 0.01 * total) continue;
-    const double c = place[b] / mass[b];
-    const double variance = square[b] / mass[b] - mean[b] * mean[b] / (mass[b] * mass[b]);
-    if (!(variance > 0.0)) continue;
-    const Eigen::Vector3d phi(1.0, c, c * c);
-    gram += mass[b] / total * phi * phi.transpose();
-    cross += mass[b] / total * 0.5 * std::log(variance) * phi;
-    ++used;
-  }
-  if (used < 4) return;
-  const Eigen::Vector3d fit = Solve(FactorSymmetric(gram), cross);
-  if (!fit.allFinite()) return;
-  // The log of a standard deviation from n draws has variance 1 / 2n, so that without any taper twice the explained sum
-  // of squares is a chi-square of two degrees of freedom, which exceeds this once in a thousand fits.
-  constexpr double kSignificant = 13.8;
-  const double explained = fit.dot(cross) - cross[0] * cross[0] / gram(0, 0);
-  if (2.0 * ess / stride * explained < kSignificant) return;
-  // A thickness that would change by more than e^2 within the reach is held to that.
-  constexpr double kMost = 2.0;
-  const double reach = DensityBlock::kBendReach;
-  const double change = std::fabs(fit[1]) * reach + std::fabs(fit[2]) * reach * reach;
-  const double keep = change > kMost ? kMost / change : 1.0;
-  // A change of less than a tenth within two standard deviations is not worth an exponential for every draw.
-  constexpr double kLeast = 0.1;
-  if (2.0 * std::fabs(fit[1]) + 4.0 * std::fabs(fit[2]) < kLeast) return;
-  block->thickness[static_cast<std::size_t>(i)] = {fit[1] * keep, fit[2] * keep};
-}
-
-/// Fits all bends and tapers. @return false, with the block left unbent, when they are not worth having.
-bool FitBends(const simd::Kernels& kernels, const WeightedDraws& draws, double* const* scratch,
-              DensityBlock* block) noexcept {
-  const int dim = block->dim;
-  block->bent = block->tapered = false;
-  kernels.straighten(*block, draws.u.data(), draws.size, scratch);
-  FitPolynomials(kernels, draws, scratch, block);
-  block->bent = true;
-  for (auto& row : block->linear) row.fill(0.0);
-  block->cross.fill(0.0);
-  block->square.fill(0.0);
-  kernels.straighten(*block, draws.u.data(), draws.size, scratch);
-  for (int i = 2; i < dim; ++i) {
-    FitInteractions(kernels, draws, i, scratch, scratch + kMaxParams, block);
-    kernels.straighten(*block, draws.u.data(), draws.size, scratch);
-  }
-  std::array<double, 2 + kMaxParams> sums{};
-  kernels.first_moments(dim, scratch, draws.weight, draws.size, sums.data());
-  const double ess = sums[0] * sums[0] / sums[1];
-  for (int i = 1; i < dim; ++i) {
-    block->thickness[static_cast<std::size_t>(i)] = {0.0, 0.0};
-    FitThickness(draws, ess, i, scratch, block);
-    block->tapered = block->tapered || block->Tapers(i);
-  }
-  block->bent = block->tapered || BendPays(kernels, draws, sums.data(), scratch, *block);
-  return block->bent;
 }
 
 /// Gaussian smoothing of node masses, in place, with a kernel of standard deviation h (node units h * 8).
@@ -291,6 +131,7 @@ void SetElliptic(const ParamVector& mean, const ParamMatrix& covariance, double 
 void SetAxisAligned(int dim, const std::array<const MarginalTable*, kMaxParams>& tables, DensityBlock* block) noexcept {
   *block = DensityBlock{};
   block->dim = dim;
+  block->axis_aligned = true;
   const ParamMatrix identity = ParamMatrix::Identity(dim, dim);
   StoreAxes(identity, identity, block);
   block->scale.fill(1.0);
@@ -327,14 +168,15 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
   ParamMatrix unwhiten;
   PrincipalAxes(moments.covariance, &whiten, &unwhiten);
   StoreAxes(whiten, unwhiten, block);
+  bool straight = false;  // the scratch holds the straightened coordinates
   if (dim > 1 && ess > kBendMinimumEss) {
     // Most posteriors are Gaussian but for noise: a part of the draws tells whether bends pay.
     WeightedDraws probe = draws;
     probe.size = std::min(draws.size, kProbeDraws);
-    if (FitBends(kernels, probe, scratch, block) && probe.size < draws.size)
-      (void)FitBends(kernels, draws, scratch, block);
+    straight = FitBends(kernels, probe, scratch, block) &&
+               (probe.size == draws.size || FitBends(kernels, draws, scratch, block));
   }
-  kernels.straighten(*block, draws.u.data(), draws.size, scratch);
+  if (!straight) kernels.straighten(*block, draws.u.data(), draws.size, scratch);
   for (int i = 1; i < dim; ++i) {
     if (!block->tapered || !block->Tapers(i)) continue;
     double* const row = scratch[i];
@@ -357,21 +199,11 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
     sd[ii] = std::sqrt(std::fmax(square / moments.sum / std::fmax(1.0 - freedom / ess, 0.5), 1e-12));
     const double per_node = MarginalTable::kNodesPerUnit / sd[ii];
     const double origin = kReach * MarginalTable::kNodesPerUnit - first[ii] * per_node;
-    struct Bin {
-      double weight = 0.0,
-             upper = 0.0;  // of the draws in a cell, and the part of it that goes to the cell's upper node
-    };
-    std::array<Bin, kNodes> bins{};
-    for (int k = 0; k < draws.size; ++k) {
-      const double position = std::min(std::max(0.0, e[k] * per_node + origin), kNodes - 1.001);
-      const auto node = static_cast<int>(position);
-      Bin& bin = bins[static_cast<std::size_t>(node)];
-      bin.weight += draws.weight[k];
-      bin.upper += draws.weight[k] * (position - node);
-    }
+    std::array<double, 2 * kNodes> cells{};
+    kernels.histogram(e, draws.weight, draws.size, per_node, origin, kNodes, cells.data());
     for (std::size_t n = 0; n + 1 < kNodes; ++n) {
-      histogram[ii][n] += bins[n].weight - bins[n].upper;
-      histogram[ii][n + 1] += bins[n].upper;
+      histogram[ii][n] += cells[2 * n] - cells[2 * n + 1];
+      histogram[ii][n + 1] += cells[2 * n + 1];
     }
   }
   const double bandwidth = options.bandwidth_factor * 1.06 * std::pow(ess, -0.2);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "armcmc/rng.hpp"
+#include "bend_fit.hpp"
 #include "kernel_sets.hpp"
 
 namespace armcmc {
@@ -319,6 +320,58 @@ TEST(SetElliptic, IsTheGaussianItIsAskedFor) {
   const double expected = std::exp(-0.5 * square) / (2.0 * M_PI * std::sqrt(det));
   EXPECT_NEAR(block.Density(u) / expected, 1.0, 0.01) << "tabulated at 8 nodes a standard deviation";
   EXPECT_LT((CovarianceOf(block) - covariance).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+/// A block that whitens the law exactly, so that the draws' own covariance is only near the identity.
+DensityBlock Whitened(int dim) {
+  static const MarginalTable table = MarginalTable::Normal();
+  DensityBlock block;
+  SetElliptic(ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim), 1.0, &table, &block);
+  return block;
+}
+
+TEST(FitBends, StraightDrawsAreNotTakenForBentWhateverTheirScatter) {
+  // Their variances differ from one by more than a bend has to take out.
+  int bent = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Sample s(
+        6, 4096,
+        [](std::mt19937_64& g, double* u) {
+          for (int d = 0; d < 6; ++d) u[d] = normal(g);
+        },
+        seed);
+    for (std::size_t d = 0; d < 6; ++d) s.draws.u[d] = s.row[d].data();
+    s.draws.weight = s.weight.data();
+    DensityBlock block = Whitened(6);
+    bent += FitBends(simd::Best(), s.draws, s.scratch, &block) ? 1 : 0;
+    EXPECT_EQ(block.bent, block.tapered) << seed;
+  }
+  EXPECT_LE(bent, 1);  // a taper in a thousand
+}
+
+TEST(FitBends, FindsTheInteractionsOfCoordinatesStraightenedOneAfterTheOther) {
+  // e_2 hangs on e_1 and its square, e_3 on e_2 as straightened, e_1 c and c: all in one pass over the draws.
+  Sample s(4, 4096, [](std::mt19937_64& g, double* u) {
+    const double c = normal(g), e1 = normal(g), e2 = 0.1 * normal(g), e3 = 0.1 * normal(g);
+    u[0] = c;
+    u[1] = e1 + 0.3 * c * c;
+    u[2] = e2 + 0.5 * e1 + 0.2 * e1 * e1 - 0.4 * c;
+    u[3] = e3 + 3.0 * e2 + 0.6 * e1 * c;
+  });
+  for (std::size_t d = 0; d < 4; ++d) s.draws.u[d] = s.row[d].data();
+  s.draws.weight = s.weight.data();
+  DensityBlock block = Whitened(4);  // the axes stay u's, since their variances are equal
+  for (std::size_t i = 0; i < 4; ++i) {
+    block.whiten[i].fill(0.0);
+    block.unwhiten[i].fill(0.0);
+    block.whiten[i][i] = block.unwhiten[i][i] = 1.0;
+  }
+  ASSERT_TRUE(FitBends(simd::Best(), s.draws, s.scratch, &block));
+  EXPECT_NEAR(block.linear[2][1], 0.5, 0.02);
+  EXPECT_NEAR(block.square[2], 0.2, 0.02);
+  EXPECT_NEAR(block.linear[3][2], 3.0, 0.1);
+  EXPECT_NEAR(block.linear[3][1], 0.0, 0.05);
+  EXPECT_NEAR(block.cross[3], 0.6, 0.02);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -73,6 +74,46 @@ TEST(MomentKernels, FusedInstructionSetsGiveTheSameBits) {
   EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
   sets[0]->second_moments(kDim, c.u, c.weight.data(), mean, kCount, a);
   sets[1]->second_moments(kDim, c.u, c.weight.data(), mean, kCount, b);
+  EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
+}
+
+constexpr int kNodes = 21;
+constexpr double kPerNode = 2.0, kOrigin = 10.0;  // nodes at -5, -4.5 .. 5 of the first row
+
+TEST(HistogramKernel, SharesEachDrawBetweenTheNodesOfItsCell) {
+  const Cloud c;
+  std::vector<double> expected(2 * kNodes, 0.0);
+  for (std::size_t k = 0; k < kCount; ++k) {
+    const double place = std::min(std::max(c.rows[0][k] * kPerNode + kOrigin, 0.0), kNodes - 1.001);
+    const auto cell = static_cast<std::size_t>(place);
+    expected[2 * cell] += c.weight[k];
+    expected[2 * cell + 1] += c.weight[k] * (place - std::floor(place));
+  }
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    std::vector<double> cells(2 * kNodes, 0.0);
+    kernels->histogram(c.u[0], c.weight.data(), kCount, kPerNode, kOrigin, kNodes, cells.data());
+    for (std::size_t i = 0; i < cells.size(); ++i) EXPECT_NEAR(cells[i], expected[i], 1e-10) << kernels->name << i;
+  }
+}
+
+TEST(HistogramKernel, HoldsWhatLiesBeyondTheNodes) {
+  const std::vector<double> e = {-1e300, 1e300, std::nan(""), -5.0, 5.0, 0.0, 0.0, 0.0};
+  const std::vector<double> weight = {1.0, 2.0, 0.0, 4.0, 8.0, 0.0, 0.0, 0.0};
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    std::vector<double> cells(2 * kNodes, 0.0);
+    kernels->histogram(e.data(), weight.data(), 8, kPerNode, kOrigin, kNodes, cells.data());
+    EXPECT_EQ(cells[0], 5.0) << kernels->name;
+    EXPECT_EQ(cells[2 * (kNodes - 2)], 10.0) << kernels->name;
+  }
+}
+
+TEST(HistogramKernel, FusedInstructionSetsGiveTheSameBits) {
+  const auto sets = test::FusedKernels();
+  if (sets.size() < 2) GTEST_SKIP() << "this CPU runs one fused instruction set only";
+  const Cloud c;
+  double a[2 * kNodes] = {}, b[2 * kNodes] = {};
+  sets[0]->histogram(c.u[0], c.weight.data(), kCount, kPerNode, kOrigin, kNodes, a);
+  sets[1]->histogram(c.u[0], c.weight.data(), kCount, kPerNode, kOrigin, kNodes, b);
   EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
 }
 

@@ -29,8 +29,9 @@ struct DensityBlock {
   using Row = std::array<double, kMaxParams>;
 
   int dim = 0;
-  bool bent = false;     ///< Any of poly, linear, cross, square is in use.
-  bool tapered = false;  ///< Any of alpha, beta is in use; implies bent.
+  bool axis_aligned = false;  ///< W is the identity, which need not be multiplied by.
+  bool bent = false;          ///< Any of poly, linear, cross, square is in use.
+  bool tapered = false;       ///< Any of alpha, beta is in use; implies bent.
   Row mean{};
   std::array<Row, kMaxParams> whiten{};                            ///< W, row i at [i].
   std::array<Row, kMaxParams> unwhiten{};                          ///< W^-1

@@ -4,7 +4,7 @@ namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
 /// Linear interpolation in a marginal table at a place counted in nodes from its lower end, 0 outside.
-V TableDensity(const MarginalTable& table, V place) noexcept {
+[[gnu::always_inline]] inline V TableDensity(const MarginalTable& table, V place) noexcept {
   const V zero{};
   const double end = table.num_nodes() - 1;
   const Simd::I inside = (place >= zero) & (place < Simd::Set(end));
@@ -20,7 +20,7 @@ V TableDensity(const MarginalTable& table, V place) noexcept {
 }
 
 /// What straightening subtracts from z_i; see DensityBlock.
-V Bend(const DensityBlock& block, int i, V c, const V* e) noexcept {
+[[gnu::always_inline]] inline V Bend(const DensityBlock& block, int i, V c, const V* e) noexcept {
   const auto ii = static_cast<unsigned>(i);
   V bend = Simd::Set(block.poly[ii][DensityBlock::kDegree]);
   for (int k = DensityBlock::kDegree - 1; k >= 0; --k)
@@ -31,12 +31,18 @@ V Bend(const DensityBlock& block, int i, V c, const V* e) noexcept {
   return bend;
 }
 
-/// Straightened coordinates of one vector of candidates; e[0] clamped goes to *c.
+/// Straightened coordinates of one vector of candidates; e[0] clamped goes to *c. Inlined, so that they stay in
+/// registers.
 template <int kDim>
-void StraightenVector(const DensityBlock& block, const double* const* u, int at, V* e, V* c) noexcept {
+[[gnu::always_inline]] inline void StraightenVector(const DensityBlock& block, const double* const* u, int at, V* e,
+                                                    V* c) noexcept {
   V centered[static_cast<unsigned>(kDim)];
   for (int d = 0; d < kDim; ++d) centered[d] = Simd::Load(u[d] + at) - Simd::Set(block.mean[static_cast<unsigned>(d)]);
   for (int i = 0; i < kDim; ++i) {
+    if (block.axis_aligned) {
+      e[i] = centered[i];
+      continue;
+    }
     V sum = V{};
     for (int d = 0; d < kDim; ++d)
       sum = Simd::Fma(Simd::Set(block.whiten[static_cast<unsigned>(i)][static_cast<unsigned>(d)]), centered[d], sum);

@@ -78,6 +78,11 @@ struct Kernels {
   void (*bend_moments)(int dim, const double* const* z, const double* w, int count,
                        double* sums) noexcept ARMCMC_NONBLOCKING;
 
+  /// Adds draws to num_nodes - 1 cells between nodes. With place = e[k] per_node + origin, held to the nodes, and
+  /// j = floor(place): cells[2 j] += w[k], cells[2 j + 1] += w[k] (place - j). Padding as above.
+  void (*histogram)(const double* e, const double* w, int count, double per_node, double origin, int num_nodes,
+                    double* cells) noexcept ARMCMC_NONBLOCKING;
+
   /// out[k] = exp(log_likelihood[k] - reference), k in [0, count), count a multiple of the lanes of any set (8).
   void (*relative_likelihood)(const double* log_likelihood, double reference, int count,
                               double* out) noexcept ARMCMC_NONBLOCKING;

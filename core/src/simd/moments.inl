@@ -94,5 +94,31 @@ void BendMoments(int dim, const double* const* z, const double* w, int count,
   for (int i = 0; i < kGram + kPowers * (dim - 1); ++i) sums[i] = s.Total(i);
 }
 
+void Histogram(const double* e, const double* w, int count, double per_node, double origin, int num_nodes,
+               double* cells) noexcept ARMCMC_NONBLOCKING {
+  typedef double Cell __attribute__((vector_size(16)));  // weight, and the part of it that goes to the upper node
+  const V end = Simd::Set(num_nodes - 1.001);
+  const V magic = Simd::Set(6755399441055744.0);  // as in TableDensity
+  alignas(64) double upper[8];
+  alignas(64) std::int64_t cell[8];
+  for (int k = 0; k < count; k += 8) {
+    for (int p = 0; p < 8; p += Simd::kLanes) {
+      const V place = Simd::Fma(Simd::Load(e + k + p), Simd::Set(per_node), Simd::Set(origin));
+      const V inside = Simd::Min(Simd::Max(place, V{}), end);
+      const V shifted = inside - Simd::Set(0.5) + magic;
+      const Simd::I index = Simd::Bits(shifted) - Simd::Bits(magic);
+      std::memcpy(cell + p, &index, sizeof index);
+      Simd::Store(upper + p, Simd::Load(w + k + p) * (inside - (shifted - magic)));
+    }
+    for (int l = 0; l < 8; ++l) {
+      double* const to = cells + 2 * cell[l];
+      Cell sum;
+      std::memcpy(&sum, to, sizeof sum);
+      sum += Cell{w[k + l], upper[l]};
+      std::memcpy(to, &sum, sizeof sum);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
