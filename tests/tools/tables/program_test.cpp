@@ -68,9 +68,11 @@ TEST(TablesProgram, PutsArmcmcAheadOnTheAuthorsRecordingsAndDrawsEveryFigure) {
 }
 
 TEST(TablesProgram, SaysWhatADataFolderMustHold) {
-  const test::Outcome outcome =
-      test::RunProgram(test::Program("armcmc-tables"), {"--data", "/nowhere", "--out", "/tmp/armcmc-tables-none"});
+  const test::ScratchDir folder;
+  const test::Outcome outcome = test::RunProgram(
+      test::Program("armcmc-tables"), {"--data", (folder / "none").string(), "--out", (folder / "out").string()});
   EXPECT_EQ(outcome.code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
   EXPECT_NE(outcome.err.find("hunt_crossley.csv"), std::string::npos) << outcome.err;
 }
 
