@@ -40,7 +40,7 @@ TEST(TablesProgram, PutsArmcmcAheadOnTheAuthorsRecordingsAndDrawsEveryFigure) {
   EXPECT_LE(ours.at("clean_force_mae_mN").at("contact"), 5.5);
   EXPECT_LE(ours.at("clean_force_mae_mN").at("overall"), 4.0);
   EXPECT_EQ(ours.at("modifications_after_first_pack"), 0);
-  for (const char* other : {"mcmc_1", "mcmc_2", "rls", "rls_no_forgetting", "pf"}) {
+  for (const char* other : {"mcmc_1", "mcmc_2", "rls", "rls_no_forgetting", "rls_no_reset", "rls_keeps_all", "pf"}) {
     const json& theirs = contact.at(other);
     for (const char* q : {"K", "B", "p"})
       EXPECT_LT(ours.at("mae_active_contact").at(q), theirs.at("mae_active_contact").at(q)) << other << " " << q;
