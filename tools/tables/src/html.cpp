@@ -146,7 +146,7 @@ void Lead(const Result& result, plots::Page* page) {
   } else {
     out << "<div class=\"note\"><p>Rows that AR-MAP loses:</p><ul class=\"plain\">";
     for (const std::string& row : lost) out << "<li>" << EscapeHtml(row) << "</li>";
-    out << "</ul></div>\n";
+    out << "</ul><p>" << EscapeHtml(LostRowsNote()) << "</p></div>\n";
   }
   page->Html(out.str());
 }

@@ -95,6 +95,7 @@ ordered_json ToJson(const Result& result) {
     entry["seeds"] = cell.seeds;
   }
   out["rows_lost"] = LostRows(result);
+  out["rows_lost_note"] = LostRowsNote();
   return out;
 }
 

@@ -98,21 +98,26 @@ std::string ToText(const Result& result) {
   const std::vector<std::string> lost = LostRows(result);
   out << (lost.empty() ? "AR-MAP is ahead of every other online method on every row.\n" : "Rows that AR-MAP loses:\n");
   for (const std::string& row : lost) out << "  " << row << '\n';
+  if (!lost.empty()) out << LostRowsNote() << '\n';
   return out.str();
 }
 
 std::string CoverageSentence(const Row& row) {
   constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
   std::string off;
+  double largest = 0.0;
   for (std::size_t l = 0; l < kLevels.size(); ++l)
     for (std::size_t d = 0; d < 3; ++d) {
       const double coverage = row.contact.coverage[l][d], error = row.coverage_error[l][d];
+      largest = std::fmax(largest, error);
       if (JudgeCoverage(coverage, l, error) == Calibration::kAsStated) continue;
       off += (off.empty() ? "" : "; ") + Significant(100.0 * kLevels[l], 3) + " % of " + kNames[d] + " " +
              CoverageText(coverage, l, error);
     }
-  return off.empty() ? "The 50, 90 and 95 % intervals of AR-MAP cover as stated, within two standard errors."
-                     : "Intervals of AR-MAP that are off by more than two standard errors: " + off + ".";
+  return off.empty()
+             ? "The 50, 90 and 95 % intervals of AR-MAP cover as stated, within two standard errors (of up to " +
+                   Significant(100.0 * largest, 2) + " %)."
+             : "Intervals of AR-MAP that are off by more than two standard errors: " + off + ".";
 }
 
 std::vector<std::string> LostRows(const Result& result) {

@@ -44,5 +44,7 @@ struct PaperRow {
 
 /// Rows that an online baseline wins against AR-MAP, "soft_actuator: alpha_l2: rls_per_mode 0.1 < 0.2".
 [[nodiscard]] std::vector<std::string> LostRows(const Result& result);
+/// Why the rows of the actuator are lost.
+[[nodiscard]] const char* LostRowsNote();
 
 }  // namespace armcmc::tables
