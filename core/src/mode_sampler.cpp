@@ -53,7 +53,7 @@ ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerS
       noise_(noise),
       normal_table_(MarginalTable::Normal()),
       student_table_(MarginalTable::StudentT(kStudentDof)),
-      transition_(kernels_, model_, space_, noise_, &normal_table_) {
+      transition_(kernels_, model_, space_, noise_, &normal_table_, forgetting.partial_change) {
   // P_0 as a proposal: axis aligned, each coordinate with its own law.
   std::array<const MarginalTable*, kMaxParams> laws{};
   for (int d = 0; d < space_.dim; ++d) {

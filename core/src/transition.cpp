@@ -23,8 +23,13 @@ double LogDeterminant(const ParamMatrix& m) noexcept ARMCMC_NONBLOCKING {
 }  // namespace
 
 Transition::Transition(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
-                       const MarginalTable* normal_table)
-    : kernels_(kernels), model_(model), space_(space), noise_(noise), normal_table_(normal_table) {}
+                       const MarginalTable* normal_table, bool partial_change)
+    : kernels_(kernels),
+      model_(model),
+      space_(space),
+      noise_(noise),
+      normal_table_(normal_table),
+      partial_change_(partial_change) {}
 
 Transition::Hypothesis Transition::Judge(const ModeData& data, const ParamVector& mean, const ParamMatrix& covariance,
                                          const ParamVector& start, LaplaceScratch* scratch) const noexcept {
@@ -94,7 +99,7 @@ const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorM
   restarted_ = false;
   if (!previous.valid) stable_ = just_modified_ = false;
   *share = mismatch->lambda;
-  if (!previous.valid || !previous.informed) return previous;
+  if (!partial_change_ || !previous.valid || !previous.informed) return previous;
   const bool reinforcement = mismatch->decision == Decision::kReinforcement;
   if (!reinforcement || (just_modified_ && stable_)) {
     if (OfferChanges(data, previous, reinforcement, scratch)) {

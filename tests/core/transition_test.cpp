@@ -13,7 +13,8 @@ namespace {
 /// Runs packs of a well excited contact; K halves in the middle of pack `change`, or between two packs.
 class Contact {
  public:
-  Contact() : estimator_(BuiltinSettings("hunt_crossley")), result_(estimator_.MakeResult()) {}
+  explicit Contact(bool partial_change = true)
+      : estimator_(Settings(partial_change)), result_(estimator_.MakeResult()) {}
 
   const ModeEstimate& Run(int seq, const test::ContactTruth& truth, int old_samples, const test::ContactTruth& old) {
     const test::Motion motion{.depth = 1.0, .swing = 0.5, .hertz = 1.3, .phase = 0.0};
@@ -26,7 +27,16 @@ class Contact {
     return estimate_->modes[0];
   }
 
+  /// Spends the noise of a pack, so that the next one is the same as after Run().
+  void Skip() { (void)test::MakeContactPack(1, {1.0, 0.5, 1.3, 0.0}, {}, 0.1, &normal_); }
+
  private:
+  static EstimatorSettings Settings(bool partial_change) {
+    EstimatorSettings s = BuiltinSettings("hunt_crossley");
+    s.forgetting.partial_change = partial_change;
+    return s;
+  }
+
   test::Normal normal_{7};
   Estimator estimator_;
   std::unique_ptr<AdjustResult> result_;
@@ -53,6 +63,21 @@ TEST_P(HalvedStiffness, IsFollowedWithinTwoPacksAndDampingAndExponentStay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OldSamples, HalvedStiffness, ::testing::Values(0, 10, 50, 99));
+
+TEST(Transition, WithThePapersRuleAModificationForgetsEveryParameter) {
+  const test::ContactTruth soft{.k = 2.0};
+  Contact contact(false), fresh(false);
+  for (int k = 1; k <= 30; ++k) contact.Run(k, {}, 0, {});
+  for (int k = 1; k <= 30; ++k) fresh.Skip();
+  const ModeEstimate& after = contact.Run(31, soft, 0, {});
+  const ModeEstimate& alone = fresh.Run(31, soft, 0, {});
+  EXPECT_EQ(after.decision, Decision::kModification);
+  EXPECT_EQ(after.p_changed, 1.0);
+  for (std::size_t d = 0; d < 3; ++d) {
+    EXPECT_NEAR(after.marginal[d].ar_ap, alone.marginal[d].ar_ap, 0.1 * alone.marginal[d].sd) << d;
+    EXPECT_NEAR(after.marginal[d].sd, alone.marginal[d].sd, 0.1 * alone.marginal[d].sd) << d;
+  }
+}
 
 TEST(Transition, WithoutAChangeNothingIsModified) {
   Contact contact;

@@ -53,6 +53,7 @@ struct ForgettingSettings {
   double lambda_max = 0.99999;  ///< In (0, 1): a change is never held to be impossible.
   double rho = 0.0;             ///< In [0, 1]: weight exp(-rho (N_s - n)) of the error of sample n.
   int min_samples = 3;          ///< Packs with fewer informative samples of a mode hold its posterior, >= 1.
+  bool partial_change = true;   ///< A modification may keep all parameters but one; false: P_0 alone, as published.
 };
 
 /// Which number of draws a pack gets.

@@ -29,11 +29,13 @@ struct Kernels;
 /// pack that holds the jump is a mixture of two plants and teaches nothing: the one pack after it may start again from
 /// what was known before both.
 ///
+/// Without partial changes (ForgettingSettings::partial_change) a modification is the paper's: P_0 alone.
+///
 /// Evidences are Laplace approximations: they choose the prior; the posterior under it is then sampled exactly.
 class Transition {
  public:
   Transition(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
-             const MarginalTable* normal_table);
+             const MarginalTable* normal_table, bool partial_change);
 
   /// Chooses the prior of a pack.
   /// @param previous  Posterior before the pack.
@@ -75,6 +77,7 @@ class Transition {
   const ParameterSpace& space_;
   const NoiseModel& noise_;
   const MarginalTable* normal_table_;
+  bool partial_change_;
   PosteriorMemory memory_;
   std::array<Gaussian, PosteriorMemory::kMaxBlocks> fits_;
 

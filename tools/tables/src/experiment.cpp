@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace armcmc::tables {
 namespace {
@@ -21,6 +22,7 @@ void Add(ContactScore* sum, const ContactScore& s, double share) {
   for (std::size_t l = 0; l < kLevels.size(); ++l) {
     Each(&sum->coverage[l], s.coverage[l], add);
     Each(&sum->width[l], s.width[l], add);
+    Each(&sum->coverage_variance[l], s.coverage_variance[l], add);
   }
   sum->false_modifications += s.false_modifications;
   add(&sum->median_ms, s.median_ms);
@@ -46,12 +48,12 @@ Row MeanRow(Row row, const std::vector<ContactScore>& contact, const std::vector
   for (const ContactScore& s : contact) Add(&row.contact, s, 1.0 / static_cast<double>(contact.size()));
   for (const ActuatorScore& s : actuator) Add(&row.actuator, s, 1.0 / static_cast<double>(actuator.size()));
   const auto n = static_cast<double>(contact.size());
-  if (n < 2.0) return row;
   for (std::size_t l = 0; l < kLevels.size(); ++l)
     for (std::size_t d = 0; d < 3; ++d) {
       double square = 0.0;
       for (const ContactScore& s : contact) square += std::pow(s.coverage[l][d] - row.contact.coverage[l][d], 2);
-      row.coverage_error[l][d] = std::sqrt(square / (n - 1.0) / n);
+      const double between = square / std::fmax(n - 1.0, 1.0);
+      row.coverage_error[l][d] = std::sqrt(std::fmax(row.contact.coverage_variance[l][d], between) / n);
     }
   return row;
 }
@@ -116,11 +118,14 @@ std::vector<LikelihoodCell> RunLikelihoods(int seeds, const std::function<Record
     for (const auto& [believed, other] : noises) {
       const MethodSpec spec = PaperMethods(ScenarioSettings(other)).front();
       std::vector<ContactScore> scores;
+      Row row;
+      row.key = "armcmc_map";
+      row.label = "AR-MAP";
       for (int seed = 0; seed < seeds; ++seed) {
         const Recording recording = source(scenario, seed);
         scores.push_back(ScoreContact(recording, RunMethod(recording, spec), Point::kMap, spec.settings));
       }
-      cells.push_back({noise, believed, MeanRow({}, scores, {})});
+      cells.push_back({noise, believed, seeds, MeanRow(std::move(row), scores, {})});
     }
   }
   return cells;

@@ -109,16 +109,27 @@ void PaperBlocks(const Experiment& e, plots::Page* page) {
 }
 
 std::string LikelihoodTable(const Result& result) {
-  HtmlTable table(
-      {"noise / believed", "50 % covers K", "B", "p", "90 % K", "B", "p", "95 % K", "B", "p", "force in contact, mN"});
+  std::ostringstream out;
+  out << "<div class=\"scroll\"><table><tr><th>noise</th><th>believed</th><th></th><th class=\"num\">50 % covers</th>"
+         "<th class=\"num\">90 %</th><th class=\"num\">95 %</th><th class=\"num\">force in contact, mN</th>"
+         "<th class=\"num\">modifications a run</th></tr>\n";
+  constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
   for (const LikelihoodCell& cell : result.likelihoods) {
-    std::vector<double> values;
-    for (const auto& level : cell.row.contact.coverage)
-      for (const double c : level) values.push_back(100.0 * c);
-    values.push_back(cell.row.contact.force_contact_mn);
-    table.Add(cell.noise + " / " + cell.believed, values, false);
+    const ContactScore& s = cell.row.contact;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const bool first = d == 0;
+      out << "<tr><td>" << (first ? cell.noise : "") << "</td><td>" << (first ? cell.believed : "") << "</td><td>"
+          << kNames[d] << "</td>";
+      for (std::size_t l = 0; l < kLevels.size(); ++l)
+        out << "<td class=\"num\">" << EscapeHtml(CoverageText(s.coverage[l][d], l, cell.row.coverage_error[l][d]))
+            << "</td>";
+      const double modifications = static_cast<double>(s.false_modifications) / cell.seeds;
+      out << "<td class=\"num\">" << (first ? NumberText(s.force_contact_mn, 3) : "") << "</td><td class=\"num\">"
+          << (first ? NumberText(modifications, 3) : "") << "</td></tr>\n";
+    }
   }
-  return table.ToString(0);
+  out << "</table></div>\n";
+  return out.str();
 }
 
 void Lead(const Result& result, plots::Page* page) {
@@ -135,7 +146,7 @@ void Lead(const Result& result, plots::Page* page) {
   } else {
     out << "<div class=\"note\"><p>Rows that AR-MAP loses:</p><ul class=\"plain\">";
     for (const std::string& row : lost) out << "<li>" << EscapeHtml(row) << "</li>";
-    out << "</ul></div>\n";
+    out << "</ul><p>" << EscapeHtml(LostRowsNote()) << "</p></div>\n";
   }
   page->Html(out.str());
 }
@@ -154,6 +165,8 @@ std::string ToHtml(const Result& result) {
         (e.plant == PlantKind::kHuntCrossley ? ": mean absolute errors in contact while an estimate is shown" : "") +
         "</h3>\n");
     page.Html(e.plant == PlantKind::kHuntCrossley ? ContactTable(e) : ActuatorTable(e));
+    if (e.plant == PlantKind::kHuntCrossley)
+      page.Html("<p>" + EscapeHtml(CoverageSentence(e.Find("armcmc_map"))) + "</p>\n");
     if (e.key == "hunt_crossley") page.Html("<p class=\"soft\">" + EscapeHtml(ContactNote()) + "</p>\n");
     if (e.key == "soft_actuator") page.Html("<p class=\"soft\">" + EscapeHtml(ActuatorNote()) + "</p>\n");
     AddFigures(e, &page);
@@ -161,8 +174,11 @@ std::string ToHtml(const Result& result) {
   }
   if (!result.likelihoods.empty())
     page.Html(
-        "<section class=\"card\"><h2>Right and wrong likelihoods</h2><p>Coverage of ARMCMC's intervals in percent "
-        "when the estimator believes in a noise law, right or wrong.</p>" +
+        "<section class=\"card\"><h2>Right and wrong likelihoods</h2><p>Share of the packs, in percent, whose "
+        "intervals "
+        "hold the truth when the estimator believes in a noise law, right or wrong, with its standard error. The "
+        "packs of one run share their data: the error is that of right intervals, from how the posteriors narrow, or "
+        "what the runs differ by, whichever is larger. What is off by more than two of them is said.</p>" +
         LikelihoodTable(result) + "</section>\n");
   page.Html("<section class=\"card\"><h2>Number of draws</h2>\n");
   AddDrawNumbers(&page);

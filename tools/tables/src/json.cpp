@@ -9,11 +9,15 @@ using nlohmann::ordered_json;
 
 ordered_json Number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(); }
 
+constexpr std::array<const char*, 3> kParameters{"K", "B", "p"};
+
 ordered_json Parameters(const std::array<double, 3>& v) {
-  return {{"K", Number(v[0])}, {"B", Number(v[1])}, {"p", Number(v[2])}};
+  ordered_json out;
+  for (std::size_t d = 0; d < 3; ++d) out[kParameters[d]] = Number(v[d]);
+  return out;
 }
 
-ordered_json ContactJson(const Row& row, int seeds) {
+ordered_json ContactJson(const Row& row) {
   const ContactScore& s = row.contact;
   ordered_json out;
   out["label"] = row.label;
@@ -27,7 +31,10 @@ ordered_json ContactJson(const Row& row, int seeds) {
     for (std::size_t l = 0; l < names.size(); ++l) {
       out[std::string("coverage") + names[l]] = Parameters(s.coverage[l]);
       out[std::string("width") + names[l]] = Parameters(s.width[l]);
-      if (seeds > 1) out[std::string("coverage") + names[l] + "_standard_error"] = Parameters(row.coverage_error[l]);
+      out[std::string("coverage") + names[l] + "_standard_error"] = Parameters(row.coverage_error[l]);
+      ordered_json& verdict = out[std::string("coverage") + names[l] + "_verdict"];
+      for (std::size_t d = 0; d < 3; ++d)
+        verdict[kParameters[d]] = NameOf(JudgeCoverage(s.coverage[l][d], l, row.coverage_error[l][d]));
     }
     out["draws"] = s.mean_draws;
   }
@@ -70,7 +77,7 @@ ordered_json ToJson(const Result& result) {
     entry["title"] = e.title;
     entry["seeds"] = e.seeds;
     for (const Row& row : e.rows)
-      entry["methods"][row.key] = e.plant == PlantKind::kHuntCrossley ? ContactJson(row, e.seeds) : ActuatorJson(row);
+      entry["methods"][row.key] = e.plant == PlantKind::kHuntCrossley ? ContactJson(row) : ActuatorJson(row);
     if (e.key == "hunt_crossley") {
       entry["published"] = PaperJson(PublishedContact(), {"mae_K", "mae_B", "mae_p", "printed_F_e_mN"});
       entry["authors_stored"] = PaperJson(StoredContact(), {"mae_K", "mae_B", "mae_p", "clean_force_mae_mN_contact",
@@ -83,9 +90,12 @@ ordered_json ToJson(const Result& result) {
       entry["note"] = ActuatorNote();
     }
   }
-  for (const LikelihoodCell& cell : result.likelihoods)
-    out["likelihoods"][cell.noise][cell.believed] = ContactJson(cell.row, 2);
+  for (const LikelihoodCell& cell : result.likelihoods) {
+    ordered_json& entry = out["likelihoods"][cell.noise][cell.believed] = ContactJson(cell.row);
+    entry["seeds"] = cell.seeds;
+  }
   out["rows_lost"] = LostRows(result);
+  out["rows_lost_note"] = LostRowsNote();
   return out;
 }
 

@@ -66,6 +66,7 @@ ContactScore ScoreContact(const Recording& r, const Trace& trace, Point point, c
     s.mae_active_contact[d] /= active;
   }
   double counted = 0.0, updates = 0.0;
+  std::array<std::vector<double>, 3> sd;
   for (std::size_t k = 0; k < trace.packs.size(); ++k) {
     const Knowledge& mode = trace.packs[k].modes[0];
     if (!mode.updated) continue;
@@ -75,6 +76,7 @@ ContactScore ScoreContact(const Recording& r, const Trace& trace, Point point, c
     const std::size_t last = (k + 1) * static_cast<std::size_t>(trace.pack_samples);
     if (!mode.known || last >= r.size()) continue;
     counted += 1.0;
+    for (std::size_t d = 0; d < 3; ++d) sd[d].push_back(mode.sd[d]);
     for (std::size_t l = 0; l < kLevels.size(); ++l)
       for (std::size_t d = 0; d < 3; ++d) {
         const auto& [from, to] = mode.interval[l][d];
@@ -86,6 +88,9 @@ ContactScore ScoreContact(const Recording& r, const Trace& trace, Point point, c
   for (auto* table : {&s.coverage, &s.width})
     for (auto& level : *table)
       for (double& v : level) v /= std::fmax(counted, 1.0);
+  if (trace.has_intervals)
+    for (std::size_t l = 0; l < kLevels.size(); ++l)
+      for (std::size_t d = 0; d < 3; ++d) s.coverage_variance[l][d] = NullCoverageVariance(sd[d], l);
   Times(trace, &s.median_ms, &s.max_ms);
   return s;
 }

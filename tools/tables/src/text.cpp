@@ -27,6 +27,7 @@ void ContactTable(const Experiment& e, std::ostringstream* out) {
                   row.has_intervals ? Significant(s.mean_draws, 5) : "-"});
   }
   Put(out, e.title + ": mean absolute errors in contact while an estimate is shown", table);
+  *out << CoverageSentence(e.Find("armcmc_map")) << "\n\n";
 }
 
 void ActuatorTable(const Experiment& e, std::ostringstream* out) {
@@ -53,17 +54,21 @@ void PaperTable(const std::string& title, const std::vector<std::string>& header
 }
 
 void LikelihoodTable(const Result& result, std::ostringstream* out) {
-  TextTable table({"noise", "believed", "50 % covers K", "B", "p", "90 % K", "B", "p", "95 % K", "B", "p", "force mN"});
+  TextTable table({"noise", "believed", "parameter", "50 % covers", "90 %", "95 %", "force mN", "modifications a run"});
+  constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
   for (const LikelihoodCell& cell : result.likelihoods) {
-    std::vector<std::string> cells = {cell.noise, cell.believed};
-    for (std::size_t l = 0; l < kLevels.size(); ++l)
-      for (std::size_t d = 0; d < 3; ++d)
-        cells.push_back(Significant(100.0 * cell.row.contact.coverage[l][d], 3) + " +- " +
-                        Significant(100.0 * cell.row.coverage_error[l][d], 2));
-    cells.push_back(Significant(cell.row.contact.force_contact_mn, 4));
-    table.AddRow(cells);
+    const ContactScore& s = cell.row.contact;
+    for (std::size_t d = 0; d < 3; ++d) {
+      std::vector<std::string> cells = {d == 0 ? cell.noise : "", d == 0 ? cell.believed : "", kNames[d]};
+      for (std::size_t l = 0; l < kLevels.size(); ++l)
+        cells.push_back(CoverageText(s.coverage[l][d], l, cell.row.coverage_error[l][d]));
+      if (d == 0) cells.push_back(Significant(s.force_contact_mn, 4));
+      if (d == 0) cells.push_back(Significant(static_cast<double>(s.false_modifications) / cell.seeds, 3));
+      table.AddRow(cells);
+    }
   }
-  Put(out, "Right and wrong likelihoods: coverage in percent, standard errors over the seeds", table);
+  Put(out, "Right and wrong likelihoods: coverage in percent with its standard error; off by more than two is said",
+      table);
 }
 
 }  // namespace
@@ -93,7 +98,26 @@ std::string ToText(const Result& result) {
   const std::vector<std::string> lost = LostRows(result);
   out << (lost.empty() ? "AR-MAP is ahead of every other online method on every row.\n" : "Rows that AR-MAP loses:\n");
   for (const std::string& row : lost) out << "  " << row << '\n';
+  if (!lost.empty()) out << LostRowsNote() << '\n';
   return out.str();
+}
+
+std::string CoverageSentence(const Row& row) {
+  constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
+  std::string off;
+  double largest = 0.0;
+  for (std::size_t l = 0; l < kLevels.size(); ++l)
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double coverage = row.contact.coverage[l][d], error = row.coverage_error[l][d];
+      largest = std::fmax(largest, error);
+      if (JudgeCoverage(coverage, l, error) == Calibration::kAsStated) continue;
+      off += (off.empty() ? "" : "; ") + Significant(100.0 * kLevels[l], 3) + " % of " + kNames[d] + " " +
+             CoverageText(coverage, l, error);
+    }
+  return off.empty()
+             ? "The 50, 90 and 95 % intervals of AR-MAP cover as stated, within two standard errors (of up to " +
+                   Significant(100.0 * largest, 2) + " %)."
+             : "Intervals of AR-MAP that are off by more than two standard errors: " + off + ".";
 }
 
 std::vector<std::string> LostRows(const Result& result) {

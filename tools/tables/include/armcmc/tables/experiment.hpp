@@ -14,7 +14,8 @@ struct Row {
   bool online = true, has_intervals = true;
   ContactScore contact;
   ActuatorScore actuator;
-  /// Standard error of contact.coverage over the seeds: the packs of one run are not independent. 0 for one seed.
+  /// Standard error of contact.coverage: the larger of what right intervals would have (NullCoverageVariance) and of
+  /// what the runs differ by.
   std::array<std::array<double, 3>, 3> coverage_error{};
 };
 
@@ -41,6 +42,7 @@ using Source = std::function<Recording(int)>;
 /// Coverage of ARMCMC's intervals when the estimator believes in another noise law than the one that acts.
 struct LikelihoodCell {
   std::string noise, believed;
+  int seeds = 1;
   Row row;
 };
 [[nodiscard]] std::vector<LikelihoodCell> RunLikelihoods(

@@ -39,7 +39,12 @@ struct PaperRow {
 /// One page with tables and figures that opens without a network.
 [[nodiscard]] std::string ToHtml(const Result& result);
 
+/// Which intervals of a contact row cover as stated, and which do not.
+[[nodiscard]] std::string CoverageSentence(const Row& row);
+
 /// Rows that an online baseline wins against AR-MAP, "soft_actuator: alpha_l2: rls_per_mode 0.1 < 0.2".
 [[nodiscard]] std::vector<std::string> LostRows(const Result& result);
+/// Why the rows of the actuator are lost.
+[[nodiscard]] const char* LostRowsNote();
 
 }  // namespace armcmc::tables

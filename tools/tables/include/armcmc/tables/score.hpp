@@ -17,9 +17,10 @@ struct ContactScore {
   double force_contact_mn = 0.0, force_overall_mn = 0.0;  ///< MAE of the force against the true one.
   double noisy_force_l2_n = 0.0;  ///< Root of the sum of squares against the measured force: what the paper prints.
   /// Share of the packs in contact with an estimate whose interval, after the pack, holds the truth at its last sample.
-  std::array<std::array<double, 3>, 3> coverage{};  ///< [level][parameter]
-  std::array<std::array<double, 3>, 3> width{};     ///< Mean width of those intervals.
-  int false_modifications = 0;                      ///< Decisions "modification" after the first pack.
+  std::array<std::array<double, 3>, 3> coverage{};           ///< [level][parameter]
+  std::array<std::array<double, 3>, 3> width{};              ///< Mean width of those intervals.
+  std::array<std::array<double, 3>, 3> coverage_variance{};  ///< Of coverage, if the intervals are right.
+  int false_modifications = 0;                               ///< Decisions "modification" after the first pack.
   double median_ms = 0.0, max_ms = 0.0, mean_draws = 0.0;
 };
 [[nodiscard]] ContactScore ScoreContact(const Recording& recording, const Trace& trace, Point point,

@@ -5,12 +5,11 @@
 #include <vector>
 
 #include "armcmc/estimate.hpp"
+#include "armcmc/tables/coverage.hpp"
 #include "armcmc/tables/method.hpp"
 #include "armcmc/tables/recording.hpp"
 
 namespace armcmc::tables {
-
-inline constexpr std::array<double, 3> kLevels{0.5, 0.9, 0.95};  ///< Of the credible intervals.
 
 /// What was known of one mode after a pack.
 struct Knowledge {
