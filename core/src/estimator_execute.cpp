@@ -30,10 +30,10 @@ void Estimator::Impl::ShareVector(Estimate* e) noexcept {
 
 void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
   const DataPack& pack = result.pack;
-  if (composition.empty()) {
-    predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
-  } else {
+  if (contact_effects()) {
     PredictShown(result, e);
+  } else {
+    predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
   }
   const auto last = static_cast<std::size_t>(pack.num_samples - 1);
   e->y_free_run = e->y_shown_free_run[last];
@@ -58,7 +58,7 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
       square += error * error;
       ++count;
     }
-    if (m == e->mode || !composition.empty()) PredictLastSample(pack, m, e);
+    if (m == e->mode || contact_effects()) PredictLastSample(pack, m, e);
   }
   e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
   if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];

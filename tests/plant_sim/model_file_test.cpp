@@ -122,7 +122,7 @@ std::vector<double> Predict(const EstimatorSettings& settings, const std::vector
     for (std::size_t n = 0; n < kPack; ++n) pack.u[n] = {samples[first + n].inputs[0], samples[first + n].inputs[1]};
     pack.t_last_s = samples[first + kPack - 1].t_s;
     EXPECT_TRUE(composition.Prepare(pack, effects.get()));
-    Composition::Fill(pack, *effects, data.get());
+    composition.Fill(pack, *effects, 0, data.get());
     simd::kSse2Kernels.predict(FindModel("hunt_crossley"), *data, theta, tile.get());
     for (std::size_t n = 0; n < kPack; ++n) predicted.push_back(tile->value[n][0]);
   }
@@ -148,7 +148,7 @@ void ExpectSamePrediction(const std::vector<Case>& cases, double tolerance, cons
 TEST(ModelFile, TheCasesAreTheWholeCatalogue) {
   std::vector<std::string> names, catalogue;
   for (const Case& one : AllCases()) names.push_back(one.name);
-  for (const EffectInfo* info : AllEffects::kInfos) catalogue.emplace_back(info->name);
+  for (const EffectInfo* info : ContactEffects::kInfos) catalogue.emplace_back(info->name);
   EXPECT_THAT(names, testing::UnorderedElementsAreArray(catalogue));
 }
 

@@ -43,14 +43,14 @@ struct PlainForward {
 template <unsigned kAdditive>
 struct AdditiveForward {
   static constexpr unsigned kRows = 3 + kAdditive;
-  const EffectPack& pack;
+  const ContactPack& pack;
   unsigned Row(unsigned i) const noexcept { return i < 3 ? i : static_cast<unsigned>(pack.additive_amplitude[i - 3]); }
   bool Far(int n) const noexcept { return std::fabs(pack.log2_x[static_cast<unsigned>(n)]) > ScoreSimd::kReach; }
   template <class S>
   Simd::V AddTo(Simd::V base, const Simd::V* theta, int n) const noexcept {
     const auto in = static_cast<unsigned>(n);
     for (unsigned a = 0; a < kAdditive; ++a) base = Simd::Fma(theta[3 + a], Simd::Set(pack.feature[a][in]), base);
-    if (pack.log2_x[in] <= EffectPack::kNoDepth) return base;
+    if (pack.log2_x[in] <= ContactPack::kNoDepth) return base;
     return HuntCrossley::AddLaw<S>(base, theta[0], theta[1], theta[2], pack.log2_x[in], pack.v[in]);
   }
 };
@@ -106,7 +106,7 @@ void SumSquaresOf(const Forward& forward, const ModeData& data, const ThetaTile&
 template <unsigned kAdditive>
 void SumSquaresAdditive(const ModeData& data, const ThetaTile& theta, double noise_mean,
                         double* out) noexcept ARMCMC_NONBLOCKING {
-  SumSquaresOf(AdditiveForward<kAdditive>{*data.effects}, data, theta, noise_mean, out);
+  SumSquaresOf(AdditiveForward<kAdditive>{*data.contact}, data, theta, noise_mean, out);
 }
 
 template <class Model>
@@ -130,12 +130,12 @@ static_assert(std::size(kSumSquaresAdditive) == kMaxAdditive + 1);
 void Score(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta, const double* log_scale,
            PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
   const bool gaussian = noise.settings().kind == NoiseKind::kGaussian;
-  if (!gaussian || (data.effects != nullptr && !data.effects->additive_only())) {
+  if (!gaussian || data.flow != nullptr || (data.contact != nullptr && !data.contact->additive_only())) {
     Predict(model, data, theta, scratch);
     LogLikelihood(noise, data, *scratch, log_scale, out);
     return;
   }
-  const SumSquaresFn sum_squares = data.effects != nullptr ? kSumSquaresAdditive[data.effects->num_additive]
+  const SumSquaresFn sum_squares = data.contact != nullptr ? kSumSquaresAdditive[data.contact->num_additive]
                                                            : SumSquaresTable<AllModels>::kOf[model];
   sum_squares(data, theta, noise.settings().mean, out);
   const V samples = Simd::Set(static_cast<double>(data.num_samples));
