@@ -119,7 +119,7 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     estimate.known[i] = mode.known && mode.noise_std > 0.0;
     estimate.noise_std[i] = mode.noise_std;
     for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
-      estimate.theta[i][d] = mode.marginal[d].ar_ap;
+      estimate.theta[i][d] = mode.marginal[static_cast<std::size_t>(info.ReportedOf(static_cast<int>(d)))].ar_ap;
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
   gap_watch.Step(pack, estimate, changed);
@@ -180,7 +180,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     s.shown[0].known[i] = mode.known || (contact && s.known_draws[i]) || (contact && s.shown[1].known[i]);
     if (!mode.known && !(contact && s.known_draws[i])) continue;
     for (int d = 0; d < s.info.num_parameters; ++d) {
-      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(d)];
+      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(s.info.ReportedOf(d))];
       s.shown[0].theta[i][static_cast<std::size_t>(d)] = mode.known ? marginal.ar_map : marginal.ar_ap;
     }
   }

@@ -49,6 +49,10 @@ struct ModelInfo {
   void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept ARMCMC_NONBLOCKING;
   int num_added = 0;  ///< Amplitudes of effects: the last of the parameters, and reported as they are, last.
 
+  /// Index among the reported quantities of parameter d, which the model reports as it is.
+  [[nodiscard]] int ReportedOf(int d) const noexcept ARMCMC_NONBLOCKING {
+    return d < num_parameters - num_added ? d : d + num_reported - num_parameters;
+  }
   /// Reported quantities at theta, kMaxReported at most. @rt No heap, no lock, no throw.
   void Report(const double* theta, const PlantConstants& constants, double* values) const noexcept ARMCMC_NONBLOCKING {
     int own = num_parameters - num_added;

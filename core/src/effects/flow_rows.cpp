@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "armcmc/effects/flow_law.hpp"
 #include "armcmc/models/soft_actuator.hpp"
 #include "armcmc/scalar_ops.hpp"
 
@@ -29,8 +30,10 @@ FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
     const EffectSettings& effect = settings.effects[At(e)];
     const int index = FlowEffects::Find(effect.name);
     term[At(index)] = {first_amplitude, effect.gate, effect.from_s, effect.until_s};
-    first_amplitude += FlowEffects::kInfos[At(index)]->num_amplitudes;
+    const EffectInfo& info = *FlowEffects::kInfos[At(index)];
+    first_amplitude += info.num_amplitudes;
     empty = false;
+    head_moves = head_moves || (info.needs.pressure && info.slot != EffectSlot::kAdditive);
     if (effect.name == std::string_view(ValveLag::kInfo.name)) {
       const ParameterSettings& tau = effect.amplitudes[0];
       longest_lag = tau.upper;
@@ -70,6 +73,7 @@ void FlowRows::Prepare(const DataPack& pack, FlowPack* out) noexcept {
   out->dt = pack.dt;
   out->supply = plan_.supply;
   out->least_gain = plan_.least_gain;
+  out->head_moves = plan_.head_moves;
   for (std::size_t e = 0; e < plan_.term.size(); ++e) out->amplitude[e] = plan_.term[e].parameter;
   for (int n = 0; n < pack.num_samples; ++n) {
     const auto& u = pack.u[At(n)];
@@ -78,6 +82,8 @@ void FlowRows::Prepare(const DataPack& pack, FlowPack* out) noexcept {
     const double command = told == 0 ? u[0] : (told == 1 ? -u[1] : 0.0);
     out->gauge[At(n)] = u[2] - plan_.p_atm;
     out->pdot[At(n)] = u[3];
+    out->head[At(n)] =
+        told < kNone ? FlowLaw<ScalarOps>::Head({command, out->gauge[At(n)], plan_.supply, 0.0}, told) : 0.0;
     for (std::size_t e = 0; e < plan_.term.size(); ++e)
       out->gate[e][At(n)] = plan_.term[e].there() && plan_.term[e].ActsAt(t) ? 1.0 : 0.0;
     bool sure = true;

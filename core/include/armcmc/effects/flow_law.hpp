@@ -27,17 +27,24 @@ struct FlowLaw {
     return S::Max(mode == 0 ? point.opening : V{} - point.opening, V{});
   }
 
-  /// What is compared with the measured pdot, Pa/s:
+  /// The predicted pressure rate of the valve of `mode`, Pa/s, for gain = g + theta2 gauge of the sign that the valve
+  /// must have and at least `least_gain` large:
   ///
-  ///   pdot + sigma (opening head - (pdot - rate) gain) / max(|gain|, least_gain),   gain = g + theta2 gauge
+  ///   opening head / gain + rate
   ///
-  /// with sigma = 1 for the fill valve and -1 for the vent valve. For a gain of the sign that its valve must have this
-  /// is the predicted pressure rate, opening head / gain + rate; near and beyond gain = 0, where that has a pole, it is
-  /// what leads a fit away from there.
-  static V Rate(const FlowPoint<S>& point, int mode, V g, V theta2, V pdot, V least_gain) noexcept {
+  /// Towards gain = 0, where that has a pole, the error pdot - prediction goes on as a straight line in gain that leads
+  /// a fit out to where opening head = (pdot - rate) gain; where hardly anything passes, as a constant: an explanation
+  /// by a gain of zero is none.
+  /// @param head  Head(point, mode), or what is known of it beforehand.
+  /// @param pdot  As measured; the prediction depends on it for gains that are too small only.
+  static V Rate(const FlowPoint<S>& point, int mode, V head, V g, V theta2, V pdot, V least_gain) noexcept {
+    constexpr double kPasses = 4.0;  // times what the least gain would need: then the line misses zero by as much
     const V gain = S::Fma(theta2, point.gauge, g);
-    const V flow = S::Fma(V{} - (pdot - point.rate), gain, Opening(point, mode) * Head(point, mode));
-    const V off = flow / S::Max(S::Abs(gain), least_gain);
+    const V flow = Opening(point, mode) * head;
+    const V wanted = pdot - point.rate;
+    const V large = S::Max(S::Abs(gain) - least_gain, S::Abs(flow) - S::Set(kPasses) * least_gain * S::Abs(wanted));
+    const V held = S::Select(large >= V{}, gain, mode == 0 ? least_gain : V{} - least_gain);
+    const V off = S::Fma(V{} - wanted, held, flow) / S::Max(S::Abs(gain), least_gain);
     return mode == 0 ? pdot + off : pdot - off;
   }
 };

@@ -21,6 +21,8 @@ struct alignas(64) FlowPack {
   double least_gain = 0.0;  ///< Size of g + theta2 (p - p_atm) below which a valve passes nonsense; sqrt(Pa) s/Pa.
   Row gauge{};              ///< p - p_atm as measured, Pa.
   Row pdot{};               ///< Pa/s
+  bool head_moves = false;  ///< Some effect changes the pressures across the valves: `head` is not theirs.
+  Row head{};  ///< sign(dp) sqrt|dp| by the measured pressure, of the valve that is told to open; sqrt(Pa).
 
   std::array<int, FlowEffects::kSize> amplitude{};
   std::array<Row, FlowEffects::kSize> gate{};  ///< 0 or 1.

@@ -30,6 +30,7 @@ struct FlowPlan {
   [[nodiscard]] const Term& lag() const noexcept { return term[FlowEffects::kIndexOf<ValveLag>]; }
 
   bool empty = true;
+  bool head_moves = false;  ///< See FlowPack.
   std::array<Term, FlowEffects::kSize> term;
   double p_atm = 0.0, supply = 0.0;             ///< Pa; supply is p_s - p_atm.
   double least_gain = 0.0;                      ///< See FlowPack.
