@@ -12,7 +12,7 @@ namespace armcmc {
 namespace {
 
 constexpr double kRemembered = 8.0;   // time constants after which a spool has forgotten its start
-constexpr double kUnsure = 2.0;       // longest time constants after a start
+constexpr double kUnsure = 4.0;       // longest time constants after a start
 constexpr double kLeastShare = 0.01;  // of the size of the gains in the prior
 constexpr int kNone = SoftActuator::kInfo.num_modes;
 
@@ -54,7 +54,7 @@ void FlowRows::Recall(const DataPack& pack) noexcept {
   if (!plan_.lag().there()) return;
   if (!continues) {
     before_ = slowest_ = 0.0;
-    unsure_ = static_cast<int>(std::fmin(kUnsure * plan_.longest_lag / pack.dt, kMaxFlowHistory));
+    unsure_ = static_cast<int>(std::fmin(std::ceil(kUnsure * plan_.longest_lag / pack.dt), kMaxFlowHistory));
     return;
   }
   const double wanted = std::fmin(std::ceil(kRemembered * plan_.longest_lag / pack.dt) + 1.0, kMaxFlowHistory);
