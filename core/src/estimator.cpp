@@ -26,7 +26,7 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       composition(s),
       info(composition.info()),
       kernels(simd::Best()),
-      predictor(info, s.constants),
+      predictor(info, s.constants, composition.flow()),
       summary(s.sampler.max_draws),
       gap_watch(settings, model, kernels) {
   dim = info.num_parameters;
@@ -60,7 +60,7 @@ void Estimator::Impl::PrepareMode(const DataPack& pack, const EffectPack& effect
   if (composition.empty()) {
     AllModels::kPrepare[static_cast<std::size_t>(model)](pack, settings.constants, mode, data);
   } else {
-    Composition::Fill(pack, effects, data);
+    composition.Fill(pack, effects, mode, data);
   }
   data->pack_share = static_cast<double>(data->num_samples) / pack.num_samples;
   const double rho = settings.forgetting.rho;

@@ -30,10 +30,10 @@ void Estimator::Impl::ShareVector(Estimate* e) noexcept {
 
 void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
   const DataPack& pack = result.pack;
-  if (composition.empty()) {
-    predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
-  } else {
+  if (contact_effects()) {
     PredictShown(result, e);
+  } else {
+    predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
   }
   const auto last = static_cast<std::size_t>(pack.num_samples - 1);
   e->y_free_run = e->y_shown_free_run[last];
@@ -58,7 +58,7 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
       square += error * error;
       ++count;
     }
-    if (m == e->mode || !composition.empty()) PredictLastSample(pack, m, e);
+    if (m == e->mode || contact_effects()) PredictLastSample(pack, m, e);
   }
   e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
   if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
@@ -119,7 +119,7 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     estimate.known[i] = mode.known && mode.noise_std > 0.0;
     estimate.noise_std[i] = mode.noise_std;
     for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
-      estimate.theta[i][d] = mode.marginal[d].ar_ap;
+      estimate.theta[i][d] = mode.marginal[static_cast<std::size_t>(info.ReportedOf(static_cast<int>(d)))].ar_ap;
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
   gap_watch.Step(pack, estimate, changed);
@@ -180,7 +180,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     s.shown[0].known[i] = mode.known || (contact && s.known_draws[i]) || (contact && s.shown[1].known[i]);
     if (!mode.known && !(contact && s.known_draws[i])) continue;
     for (int d = 0; d < s.info.num_parameters; ++d) {
-      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(d)];
+      const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(s.info.ReportedOf(d))];
       s.shown[0].theta[i][static_cast<std::size_t>(d)] = mode.known ? marginal.ar_map : marginal.ar_ap;
     }
   }

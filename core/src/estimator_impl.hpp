@@ -70,8 +70,10 @@ struct Estimator::Impl {
   int report_mode = 0;
   GapWatch gap_watch;
 
+  /// The effects of a contact act on the output that is predicted; those of the actuator on what bends it.
+  [[nodiscard]] bool contact_effects() const noexcept { return !composition.empty() && composition.flow().empty; }
   void WatchGap(const DataPack& pack, Estimate* e) noexcept;
-  /// Output at every sample of the pack with the estimates on display, for a model with effects.
+  /// Output at every sample of the pack with the estimates on display, for a contact with effects.
   void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
   void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
   void StoreBandDraws(int mode, const ModeDraws& draws) noexcept;

@@ -53,15 +53,21 @@ void ValidateParameter(const std::string& key, const ParameterSettings& p) {
     throw std::invalid_argument(key + ": the bounds hold none of the prior's mass (mean more than 5 sd outside)");
 }
 
-std::string KnownEffects() {
+std::string KnownEffects(PlantKind plant) {
   std::string known;
-  for (const EffectInfo* info : AllEffects::kInfos) known += (known.empty() ? "" : ", ") + std::string(info->name);
+  for (const EffectInfo* info : EffectsOf(plant))
+    if (info->online) known += (known.empty() ? "" : ", ") + std::string(info->name);
   return known;
 }
 
-void ValidateEffect(const EffectSettings& effect, const EffectInfo& info) {
+void ValidateEffect(const EffectSettings& effect, const EffectInfo& info, PlantKind plant) {
   const std::string key = "effect." + effect.name;
-  if (!info.online) throw std::invalid_argument(key + " is for offline fits only");
+  if (!info.online)
+    throw std::invalid_argument(
+        key + " is for offline fits only: it acts on the bending angle (" + std::string(info.formula) +
+        "), and the estimator estimates the valve flow. Remove it; those that run are " + KnownEffects(plant));
+  if (plant == PlantKind::kSoftActuator && (effect.gate == EffectGate::kContact || effect.gate == EffectGate::kFree))
+    throw std::invalid_argument(key + ": an actuator has no contact; use when = \"always\", from_s or until_s");
   for (int i = 0; i < info.num_shapes; ++i) {
     const EffectShape& shape = info.shapes[static_cast<std::size_t>(i)];
     Closed(key + "." + std::string(shape.name), effect.shapes[static_cast<std::size_t>(i)], shape.lower, shape.upper);
@@ -82,20 +88,22 @@ void ValidateEffect(const EffectSettings& effect, const EffectInfo& info) {
 void ValidateEffects(const EstimatorSettings& s, const ModelInfo& model) {
   Closed("number of effects", s.num_effects, 0, kMaxEffects);
   if (s.num_effects == 0) return;
-  if (model.plant != PlantKind::kHuntCrossley)
-    throw std::invalid_argument("effect: model '" + s.model + "' takes no effects");
-  int coordinates = model.num_parameters + (s.noise[0].estimate_std ? 1 : 0);
+  int coordinates = model.num_parameters;
+  bool samples_noise = false;
+  for (std::size_t m = 0; m < static_cast<std::size_t>(model.num_modes); ++m)
+    samples_noise = samples_noise || s.noise[m].estimate_std;
+  coordinates += samples_noise ? 1 : 0;
   for (int e = 0; e < s.num_effects; ++e) {
     const EffectSettings& effect = s.effects[static_cast<std::size_t>(e)];
-    const int index = FindEffect(effect.name);
-    if (index < 0)
-      throw std::invalid_argument("effect.name = '" + effect.name + "' is not an effect; known are " + KnownEffects());
+    const EffectInfo* info = FindEffect(model.plant, effect.name);
+    if (info == nullptr)
+      throw std::invalid_argument("effect.name = '" + effect.name + "' is not an effect of " + s.model +
+                                  "; known are " + KnownEffects(model.plant));
     for (int other = 0; other < e; ++other)
       if (s.effects[static_cast<std::size_t>(other)].name == effect.name)
         throw std::invalid_argument("effect '" + effect.name + "' is named twice");
-    const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(index)];
-    ValidateEffect(effect, info);
-    coordinates += info.num_amplitudes;
+    ValidateEffect(effect, *info, model.plant);
+    coordinates += info->num_amplitudes;
   }
   if (coordinates > kMaxParams)
     throw std::invalid_argument("the model with its effects has " + std::to_string(coordinates) +
@@ -105,10 +113,10 @@ void ValidateEffects(const EstimatorSettings& s, const ModelInfo& model) {
 
 }  // namespace
 
-EffectSettings MakeEffect(const std::string& name, const EffectScales& scales) {
-  const int index = FindEffect(name);
-  if (index < 0) throw std::invalid_argument("unknown effect '" + name + "'; known are " + KnownEffects());
-  const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(index)];
+EffectSettings MakeEffect(PlantKind plant, const std::string& name, const EffectScales& scales) {
+  const EffectInfo* found = FindEffect(plant, name);
+  if (found == nullptr) throw std::invalid_argument("unknown effect '" + name + "'; known are " + KnownEffects(plant));
+  const EffectInfo& info = *found;
   EffectSettings effect;
   effect.name = name;
   for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_amplitudes); ++i) {
@@ -120,6 +128,10 @@ EffectSettings MakeEffect(const std::string& name, const EffectScales& scales) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_shapes); ++i)
     effect.shapes[i] = info.shapes[i].typical * info.shapes[i].unit_size(scales);
   return effect;
+}
+
+EffectSettings MakeEffect(const std::string& name, const EffectScales& scales) {
+  return MakeEffect(PlantKind::kHuntCrossley, name, scales);
 }
 
 void EstimatorSettings::Validate() const {

@@ -22,7 +22,7 @@ void Reported(const ModelInfo& info, const PlantConstants& constants, const Para
     std::array<double, kMaxReported> reported{};
     for (int d = 0; d < space.num_parameters; ++d)
       theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
-    info.report(theta.data(), constants, reported.data());
+    info.Report(theta.data(), constants, reported.data());
     value[k] = reported[ir];
   }
 }
@@ -151,11 +151,7 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
     mode_theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.mode_u[static_cast<std::size_t>(d)]);
   std::array<double, kMaxReported> mode{};
   static_assert(kMaxReported == kMaxParams);
-  if (info.report == nullptr) {
-    mode = mode_theta;
-  } else {
-    info.report(mode_theta.data(), constants, mode.data());
-  }
+  info.Report(mode_theta.data(), constants, mode.data());
   // The chain stays at some candidates and never comes to others: what describes the chain looks at the visited ones.
   int visited = 0;
   for (int k = 0; k < draws.draws; ++k) {

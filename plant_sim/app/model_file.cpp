@@ -47,7 +47,7 @@ Values Polar(const Values& amplitudes, const Values& shapes, double /*duration_s
   return {std::hypot(amplitudes[0], amplitudes[1]), shapes[0], std::atan2(amplitudes[0], amplitudes[1])};
 }
 
-const std::vector<ModelEffect>& ModelEffects() {
+const std::vector<ModelEffect>& ModelsOfContact() {
   static const std::vector<ModelEffect> effects = {
       {"force_bias", "constant", {"force"}, {}, Same},
       {"force_drift", "linear", {"rate"}, {"origin"}, OverTheRun},
@@ -65,6 +65,22 @@ const std::vector<ModelEffect>& ModelEffects() {
       {"stiffness_drift", "linear", {"rate"}, {"origin"}, OverTheRun},
   };
   return effects;
+}
+
+/// In the order in which the estimator lets them act, which for the valves is that of the list.
+const std::vector<ModelEffect>& ModelsOfActuator() {
+  static const std::vector<ModelEffect> effects = {
+      {"pressure_bias", "constant", {"bias"}, {}, Same},
+      {"valve_lag", "spool", {"tau"}, {}, Same},
+      {"valve_dead_band", "rescaled", {"width"}, {}, Same},
+      {"supply_droop", "opening", {"droop"}, {}, Same},
+      {"leak", "linear", {"rate"}, {}, Same},
+  };
+  return effects;
+}
+
+const std::vector<ModelEffect>& ModelEffects(const Scenario& scenario) {
+  return scenario.family->name == "soft_actuator" ? ModelsOfActuator() : ModelsOfContact();
 }
 
 /// The mean of a prior or posterior; the rest of its table is the estimator's.
@@ -89,23 +105,29 @@ Schedule ReadParameters(StrictTable table, const Scenario& scenario) {
   return {std::move(values), {}};
 }
 
-Gate ReadGate(StrictTable* table) {
-  const std::string when = table->Choice("when", "always", {"always", "contact", "free"});
-  if (!table->Has("from_s")) return Gate::Parse(when);
-  if (table->Has("when")) throw table->Error("from_s", "an effect has `when` or `from_s`, not both");
+Gate ReadGate(StrictTable* table, bool has_contact) {
+  const std::vector<std::string> whens =
+      has_contact ? std::vector<std::string>{"always", "contact", "free"} : std::vector<std::string>{"always"};
+  const std::string when = table->Choice("when", "always", whens);
+  const bool from = table->Has("from_s"), until = table->Has("until_s");
+  if (table->Has("when") + from + until > 1)
+    throw table->Error(from ? "from_s" : "until_s", "an effect has `when`, `from_s` or `until_s`, not both");
+  if (until) return {Gate::Kind::kUntil, table->RequiredNumber("until_s", -kMax, kMax)};
+  if (!from) return Gate::Parse(when);
   const double from_s = table->RequiredNumber("from_s", -kMax, kMax);
   return from_s > 0.0 ? Gate{Gate::Kind::kFrom, from_s} : Gate{};
 }
 
 HiddenEffect ReadEffect(StrictTable* table, const Scenario& scenario) {
+  const std::vector<ModelEffect>& known = ModelEffects(scenario);
   std::vector<std::string> names;
-  for (const ModelEffect& effect : ModelEffects()) names.push_back(effect.name);
+  for (const ModelEffect& effect : known) names.push_back(effect.name);
   const std::string name = table->RequiredChoice("name", names);
-  const ModelEffect& model = *std::find_if(ModelEffects().begin(), ModelEffects().end(),
-                                           [&name](const ModelEffect& effect) { return effect.name == name; });
+  const ModelEffect& model =
+      *std::find_if(known.begin(), known.end(), [&name](const ModelEffect& effect) { return effect.name == name; });
   HiddenEffect effect;
   effect.spec = FindEffectSpec(*scenario.family, model.name, model.variant);
-  effect.gate = ReadGate(table);
+  effect.gate = ReadGate(table, scenario.family->name == "hunt_crossley");
   Values amplitudes, shapes;
   for (const std::string& key : model.amplitudes) {
     if (!table->Has(key)) throw table->Error(key, "missing, and a plant needs its { mean = ... }");
@@ -130,11 +152,12 @@ HiddenEffect ReadEffect(StrictTable* table, const Scenario& scenario) {
 void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
   StrictTable root = StrictTable::FromFile(path);
   static_cast<void>(root.RequiredInteger("schema", 1, 1));
-  if (const std::string base = root.RequiredText("base"); base != "hunt_crossley")
-    throw root.Error("base",
-                     "\"" + base + "\" cannot become a plant: only a model of a contact, \"hunt_crossley\", can");
-  if (scenario->family->name != "hunt_crossley")
-    throw root.Error("base", "\"hunt_crossley\" does not fit the scenario's plant, \"" + scenario->family->name + "\"");
+  const std::string base = root.RequiredText("base");
+  const std::string family = base == "soft_actuator_excited" ? "soft_actuator" : base;
+  if (family != "hunt_crossley" && family != "soft_actuator")
+    throw root.Error("base", "\"" + base + "\" cannot become a plant: \"hunt_crossley\" and \"soft_actuator\" can");
+  if (scenario->family->name != family)
+    throw root.Error("base", "\"" + base + "\" does not fit the scenario's plant, \"" + scenario->family->name + "\"");
   if (!scenario->schedule.changes().empty())
     throw ConfigError(scenario->name +
                       " changes its parameters ([[change]]): a model file needs a scenario that does not");
@@ -143,7 +166,12 @@ void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
                       " hides effects ([[hidden_effect]]): a model file needs a scenario that does not");
   root.LeaveToOthers("noise");
   Scenario changed = *scenario;
-  changed.schedule = ReadParameters(root.Table("parameters"), *scenario);
+  if (family == "soft_actuator") {
+    // One prior serves both valves: it says nothing on either.
+    for (const char* estimated : {"parameters", "constants"}) root.LeaveToOthers(estimated);
+  } else {
+    changed.schedule = ReadParameters(root.Table("parameters"), *scenario);
+  }
   for (StrictTable& table : root.Tables("effect")) {
     HiddenEffect effect = ReadEffect(&table, changed);
     for (const HiddenEffect& other : changed.hidden)
@@ -151,6 +179,14 @@ void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
     changed.hidden.push_back(std::move(effect));
   }
   root.Finish();
+  if (family == "soft_actuator") {
+    const auto place = [](const HiddenEffect& effect) {
+      return std::find_if(ModelsOfActuator().begin(), ModelsOfActuator().end(),
+                          [&](const ModelEffect& one) { return one.name == effect.spec->name; });
+    };
+    std::stable_sort(changed.hidden.begin(), changed.hidden.end(),
+                     [&](const HiddenEffect& a, const HiddenEffect& b) { return place(a) < place(b); });
+  }
   try {
     ResolveNoise(&changed);
   } catch (const std::invalid_argument& error) {

@@ -73,7 +73,7 @@ EstimatorSettings Model(const std::vector<Case>& cases) {
     EffectSettings& effect = settings.effects[static_cast<std::size_t>(settings.num_effects++)];
     effect = armcmc::MakeEffect(one.name);
     effect.gate = one.gate;
-    effect.from_s = 1.2345;
+    effect.from_s = effect.until_s = 1.2345;
     for (std::size_t a = 0; a < one.amplitudes.size(); ++a)
       effect.amplitudes[a] = At(effect.amplitudes[a], one.amplitudes[a]);
     std::copy(one.shapes.begin(), one.shapes.end(), effect.shapes.begin());
@@ -122,7 +122,7 @@ std::vector<double> Predict(const EstimatorSettings& settings, const std::vector
     for (std::size_t n = 0; n < kPack; ++n) pack.u[n] = {samples[first + n].inputs[0], samples[first + n].inputs[1]};
     pack.t_last_s = samples[first + kPack - 1].t_s;
     EXPECT_TRUE(composition.Prepare(pack, effects.get()));
-    Composition::Fill(pack, *effects, data.get());
+    composition.Fill(pack, *effects, 0, data.get());
     simd::kSse2Kernels.predict(FindModel("hunt_crossley"), *data, theta, tile.get());
     for (std::size_t n = 0; n < kPack; ++n) predicted.push_back(tile->value[n][0]);
   }
@@ -148,7 +148,7 @@ void ExpectSamePrediction(const std::vector<Case>& cases, double tolerance, cons
 TEST(ModelFile, TheCasesAreTheWholeCatalogue) {
   std::vector<std::string> names, catalogue;
   for (const Case& one : AllCases()) names.push_back(one.name);
-  for (const EffectInfo* info : AllEffects::kInfos) catalogue.emplace_back(info->name);
+  for (const EffectInfo* info : ContactEffects::kInfos) catalogue.emplace_back(info->name);
   EXPECT_THAT(names, testing::UnorderedElementsAreArray(catalogue));
 }
 
@@ -171,7 +171,7 @@ TEST(ModelFile, TheEstimatorsInertiaIsThePlantsHalfASampleEarlier) {
 }
 
 TEST(ModelFile, AlsoThroughGates) {
-  for (const EffectGate gate : {EffectGate::kContact, EffectGate::kFree, EffectGate::kFrom}) {
+  for (const EffectGate gate : {EffectGate::kContact, EffectGate::kFree, EffectGate::kFrom, EffectGate::kUntil}) {
     for (Case one : AllCases()) {
       one.gate = gate;
       ExpectSamePrediction({one}, one.tolerance, one.name + " gate " + std::to_string(static_cast<int>(gate)));
@@ -255,6 +255,103 @@ TEST(ModelFile, SaysWhatIsWrongWithAFile) {
   EXPECT_THAT(problem("[parameters.Q]\nmean = 1.0\n"), HasSubstr("parameters.Q"));
 }
 
+// The flow's effects: what the plant measures, without noise, is what the estimator's law says at the truth.
+struct FlowCase {
+  std::string name;
+  double amplitude;
+};
+
+std::vector<FlowCase> FlowCases() {
+  return {{"pressure_bias", -3e3},
+          {"valve_lag", 0.002},
+          {"valve_dead_band", 0.004},
+          {"supply_droop", 1.5e6},
+          {"leak", 0.05}};
+}
+
+EstimatorSettings ActuatorModel(const std::vector<FlowCase>& cases, double from_s) {
+  EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
+  for (const FlowCase& one : cases) {
+    EffectSettings& effect = settings.effects[static_cast<std::size_t>(settings.num_effects++)];
+    effect = armcmc::MakeEffect(PlantKind::kSoftActuator, one.name);
+    effect.amplitudes[0] = At(effect.amplitudes[0], one.amplitude);
+    effect.amplitudes[0].upper = std::max(effect.amplitudes[0].mean * 2.0, 0.0) + 1e-6;
+    effect.gate = from_s > 0.0 ? EffectGate::kFrom : EffectGate::kAlways;
+    effect.from_s = from_s;
+  }
+  return settings;
+}
+
+/// Largest difference of the pressure rates, as a share of the largest.
+double WorstFlow(const std::vector<FlowCase>& cases, double from_s) {
+  const EstimatorSettings settings = ActuatorModel(cases, from_s);
+  const test::ScratchDir folder;
+  std::ofstream(folder / "m.toml") << support::ModelFileText(settings, "soft_actuator_excited");
+  Scenario scenario = BuiltinScenario("soft_actuator_excited");
+  for (NoiseLaw& law : scenario.noise) law = {};
+  ApplyModelFile(folder / "m.toml", &scenario);
+  EXPECT_EQ(scenario.hidden.size(), cases.size());
+  const std::vector<PlantSample> samples = Simulate(scenario);
+  Composition composition(settings);
+  const auto effects = std::make_unique<EffectPack>();
+  const auto data = std::make_unique<ModeData>();
+  const auto tile = std::make_unique<PredictionTile>();
+  ThetaTile theta{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(composition.sampled().num_parameters); ++d)
+    theta.value[d].fill(composition.sampled().parameters[d].mean);
+  double worst = 0.0, largest = 0.0;
+  int compared = 0;
+  for (std::size_t first = 0; first < samples.size(); first += kPack) {
+    DataPack pack;
+    pack.seq = static_cast<std::int64_t>(first / kPack) + 1;
+    pack.run_id = 1;
+    pack.dt = 1e-3;
+    pack.plant = PlantKind::kSoftActuator;
+    pack.num_samples = kPack;
+    pack.num_inputs = 4;
+    for (std::size_t n = 0; n < kPack; ++n)
+      for (std::size_t i = 0; i < 4; ++i) pack.u[n][i] = samples[first + n].inputs[i];
+    pack.t_last_s = samples[first + kPack - 1].t_s;
+    EXPECT_TRUE(composition.Prepare(pack, effects.get()));
+    for (int mode = 0; mode < 2; ++mode) {
+      composition.Fill(pack, *effects, mode, data.get());
+      const std::size_t m = mode == 0 ? 0 : 2;
+      const double slope = scenario.schedule.Value(static_cast<int>(m) + 1, 0.0);
+      theta.value[0].fill(scenario.schedule.Value(static_cast<int>(m), 0.0) + slope * settings.constants.p_atm);
+      theta.value[1].fill(slope);
+      simd::kSse2Kernels.predict(FindModel("soft_actuator"), *data, theta, tile.get());
+      for (std::size_t k = 0; k < static_cast<std::size_t>(data->num_samples); ++k, ++compared) {
+        const double measured = data->target[k];
+        worst = std::max(worst, std::abs(tile->value[k][0] - measured));
+        largest = std::max(largest, std::abs(measured));
+      }
+    }
+  }
+  EXPECT_GT(compared, 1500);
+  return worst / largest;
+}
+
+TEST(ModelFile, TheActuatorDoesWhatTheEstimatorPredictsForEveryEffectOfItsFlow) {
+  for (const FlowCase& one : FlowCases()) EXPECT_LT(WorstFlow({one}, 0.0), 1e-9) << one.name;
+  for (const FlowCase& one : FlowCases()) {
+    EXPECT_LT(WorstFlow({one}, 1.2345), 1e-9) << one.name << " from 1.2345 s";
+  }
+}
+
+TEST(ModelFile, TheActuatorsEffectsActInTheEstimatorsOrderWhateverThatOfTheFile) {
+  std::vector<FlowCase> cases = FlowCases();
+  EXPECT_LT(WorstFlow(cases, 0.0), 1e-9);
+  std::reverse(cases.begin(), cases.end());
+  EXPECT_LT(WorstFlow(cases, 0.0), 1e-9);
+}
+
+TEST(ModelFile, TheFlowCasesAreWhatRunsOnline) {
+  std::vector<std::string> names, online;
+  for (const FlowCase& one : FlowCases()) names.push_back(one.name);
+  for (const EffectInfo* info : FlowEffects::kInfos) online.emplace_back(info->name);
+  EXPECT_THAT(names, testing::UnorderedElementsAreArray(online));
+}
+
 TEST(ModelFile, SaysWhyItDoesNotFitAScenario) {
   const test::ScratchDir folder;
   const auto problem = [&folder](const std::string& base, const std::string& name) -> std::string {
@@ -268,8 +365,10 @@ TEST(ModelFile, SaysWhyItDoesNotFitAScenario) {
     return "accepted";
   };
   EXPECT_EQ(problem("hunt_crossley", "hunt_crossley_paper"), "accepted");
-  EXPECT_THAT(problem("soft_actuator", "soft_actuator_paper"), HasSubstr("cannot become a plant"));
+  EXPECT_EQ(problem("soft_actuator_excited", "soft_actuator_excited"), "accepted");
+  EXPECT_THAT(problem("tank", "soft_actuator_paper"), HasSubstr("cannot become a plant"));
   EXPECT_THAT(problem("hunt_crossley", "soft_actuator_paper"), HasSubstr("does not fit"));
+  EXPECT_THAT(problem("soft_actuator", "hunt_crossley_paper"), HasSubstr("does not fit"));
   EXPECT_THAT(problem("hunt_crossley", "hunt_crossley_step"), HasSubstr("[[change]]"));
 }
 

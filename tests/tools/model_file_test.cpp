@@ -69,7 +69,7 @@ void ExpectSameModel(const EstimatorSettings& a, const EstimatorSettings& b) {
 
 TEST_F(ModelFile, EveryEffectReadsBackToTheBit) {
   int k = 0;
-  for (const EffectInfo* info : AllEffects::kInfos) {
+  for (const EffectInfo* info : ContactEffects::kInfos) {
     EstimatorSettings settings = BuiltinSettings("hunt_crossley");
     settings.parameters[0].mean = 1.0 / 3.0;
     settings.parameters[2].prior = PriorKind::kUniform;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "armcmc/types.hpp"
 
 namespace armcmc {
 
-struct EffectPack;
+struct ContactPack;
+struct FlowPack;
 
 inline constexpr int kMaxFeatures = 6;  ///< Precomputed inputs a model may keep for each sample.
 inline constexpr int kTileLanes = 32;   ///< Candidates scored side by side.
@@ -21,8 +23,12 @@ struct alignas(64) ModeData {
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
-  bool weighted = true;                 ///< false: every weight is 1, and is not read for scoring.
-  const EffectPack* effects = nullptr;  ///< Not null: the prediction comes from there, features are not read.
+  bool weighted = true;  ///< false: every weight is 1, and is not read for scoring.
+  // Of a model with effects one is not null: the prediction comes from there, features are not read.
+  const ContactPack* contact = nullptr;
+  const FlowPack* flow = nullptr;
+  int mode = 0;                                        ///< Of the flow.
+  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of the flow: where in the pack it stands.
 };
 
 /// Predictions of kTileLanes candidates: value[n][lane].

@@ -45,8 +45,24 @@ struct ModelInfo {
   std::array<ReportedInfo, kMaxReported> reported;
   /// Mode that acts at sample n; num_modes if none does.
   int (*mode_of)(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING;
-  /// Null: what is reported are the parameters themselves.
+  /// Of the model's own parameters. Null: what is reported are the parameters themselves.
   void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept ARMCMC_NONBLOCKING;
+  int num_added = 0;  ///< Amplitudes of effects: the last of the parameters, and reported as they are, last.
+
+  /// Index among the reported quantities of parameter d, which the model reports as it is.
+  [[nodiscard]] int ReportedOf(int d) const noexcept ARMCMC_NONBLOCKING {
+    return d < num_parameters - num_added ? d : d + num_reported - num_parameters;
+  }
+  /// Reported quantities at theta, kMaxReported at most. @rt No heap, no lock, no throw.
+  void Report(const double* theta, const PlantConstants& constants, double* values) const noexcept ARMCMC_NONBLOCKING {
+    int own = num_parameters - num_added;
+    if (report == nullptr) {
+      for (int d = 0; d < own; ++d) values[d] = theta[d];
+    } else {
+      report(theta, constants, values);
+    }
+    for (int r = num_reported - num_added; r < num_reported; ++r) values[r] = theta[own++];
+  }
 };
 
 }  // namespace armcmc

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "armcmc/data_pack.hpp"
+#include "armcmc/effects/flow_plan.hpp"
 #include "armcmc/model.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
@@ -22,11 +23,15 @@ struct ShownEstimates {
 /// the exact transition of the linear part for p linear between samples. Two runs are kept: one restarted from the
 /// measured pressure at each pack, one that sees only the valve inputs since the first pack. Inputs that arrive before
 /// their mode has an estimate are kept (up to kBacklogPacks packs) and integrated once it has one.
+///
+/// Effects of the valve flow act on that pressure as they do in the regression. While both valves are shut they have
+/// the amplitudes of the valve that was open last.
 class OutputPredictor {
  public:
   static constexpr int kBacklogPacks = 8;
 
-  OutputPredictor(const ModelInfo& info, const PlantConstants& constants);
+  /// @param info  Must outlive this.
+  OutputPredictor(const ModelInfo& info, const PlantConstants& constants, const FlowPlan& flow = {});
 
   /// Forgets the state: the next pack starts both runs from its measurements.
   void Reset() noexcept { last_seq_ = -1; }
@@ -43,16 +48,35 @@ class OutputPredictor {
  private:
   struct State {
     double p = 0.0, alpha = 0.0, rate = 0.0;
+    double spool = 0.0;  ///< Of slow valves.
+    int valve = 2;       ///< Open last; 2: none yet.
   };
   struct Input {
-    double u_c = 0.0, u_d = 0.0;
+    double u_c = 0.0, u_d = 0.0, t_s = 0.0;
   };
+  /// Pressure one sample on by the law alone. @return false when a mode that acts is not known.
+  [[nodiscard]] bool NextPressure(const Input& input, const ShownEstimates& shown, const State& state,
+                                  double* p) const noexcept ARMCMC_NONBLOCKING;
+  /// The same with effects; moves the spool.
+  [[nodiscard]] bool NextPressureWithEffects(const Input& input, const ShownEstimates& shown, State* state,
+                                             double* p) const noexcept ARMCMC_NONBLOCKING;
+  /// What the chamber holds when the sensor says `measured`.
+  [[nodiscard]] double TruePressure(double measured, double t_s, int mode,
+                                    const ShownEstimates& shown) const noexcept ARMCMC_NONBLOCKING;
+  /// Amplitude of an effect at a time, of the parameters theta.
+  [[nodiscard]] double Amplitude(std::size_t effect, double t_s, const double* theta) const noexcept ARMCMC_NONBLOCKING;
   void Discretise(double dt) noexcept ARMCMC_NONBLOCKING;
+  /// @return false, and nothing changed, when a mode that acts is not known.
   [[nodiscard]] bool Advance(const Input& input, const ShownEstimates& shown,
                              State* state) const noexcept ARMCMC_NONBLOCKING;
+  /// The same, or with the pressure held where its mode is not known.
+  void AdvanceOrHold(const Input& input, const ShownEstimates& shown, State* state) const noexcept ARMCMC_NONBLOCKING;
+  /// The angle one sample on, the pressure moving to next_p.
+  void Bend(double next_p, State* state) const noexcept ARMCMC_NONBLOCKING;
 
   const ModelInfo& info_;
   PlantConstants constants_;
+  FlowPlan flow_;
   double dt_ = 0.0;
   std::array<double, 4> transition_{};  ///< exp(A dt), row major.
   std::array<double, 4> gain_{};        ///< Effect of p - p_atm at the start and the end of a step.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "armcmc/data_pack.hpp"
 #include "armcmc/effects/effect.hpp"
 #include "armcmc/gap_watch/gap_settings.hpp"
 #include "armcmc/types.hpp"
@@ -30,7 +31,9 @@ enum class NoiseKind : std::uint8_t { kGaussian, kStudentT, kLaplace, kMixture }
 /// t law, the mean absolute deviation b (Laplace), the standard deviation of the inlier part (mixture).
 struct NoiseSettings {
   NoiseKind kind = NoiseKind::kGaussian;
-  double std = 1.0;              ///< > 0, unit of the regression target.
+  /// > 0, unit of the regression target: N for a contact; sqrt(Pa) for the actuator, Pa/s for the actuator with
+  /// effects.
+  double std = 1.0;
   double mean = 0.0;             ///< mu_nu, same unit.
   bool estimate_std = false;     ///< Sample the scale with theta, log-normal prior around `std`.
   double std_log_sd = 1.0;       ///< Prior standard deviation of log(scale) when it is estimated, > 0.
@@ -105,8 +108,8 @@ struct PlantConstants {
 /// When an effect acts.
 enum class EffectGate : std::uint8_t {
   kAlways,
-  kContact,  ///< While the measured x >= 0.
-  kFree,     ///< While it is not.
+  kContact,  ///< While the measured x >= 0; contact plant only.
+  kFree,     ///< While it is not; contact plant only.
   kFrom,     ///< From plant time from_s on.
   kUntil,    ///< Before plant time until_s.
 };
@@ -133,7 +136,7 @@ struct EstimatorSettings {
   Method method = Method::kArmcmc;
   BaselineSettings baseline;
   PlantConstants constants;
-  std::array<EffectSettings, kMaxEffects> effects;  ///< Contact plant only, each at most once.
+  std::array<EffectSettings, kMaxEffects> effects;  ///< Each at most once.
   int num_effects = 0;
   GapWatchSettings gap_watch;  ///< Changes no estimate.
 
@@ -145,8 +148,10 @@ struct EstimatorSettings {
 /// @throws std::invalid_argument listing the known names.
 [[nodiscard]] EstimatorSettings BuiltinSettings(const std::string& model);
 
-/// An effect with the priors and typical shapes of the catalogue, for motion and forces of these sizes, always on.
+/// An effect with the priors and typical shapes of the plant's catalogue, for signals of these sizes, always on.
 /// @throws std::invalid_argument listing the known names.
+[[nodiscard]] EffectSettings MakeEffect(PlantKind plant, const std::string& name, const EffectScales& scales = {});
+/// The same of the contact plant.
 [[nodiscard]] EffectSettings MakeEffect(const std::string& name, const EffectScales& scales = {});
 
 }  // namespace armcmc

@@ -24,38 +24,56 @@ double GateOf(EffectGate gate, double from_s, double until_s, const EffectInput&
 }  // namespace
 
 Composition::Composition(const EstimatorSettings& settings)
-    : info_(*AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]), sampled_(settings) {
-  if (settings.num_effects == 0) return;
+    : info_(*AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]),
+      sampled_(settings),
+      num_terms_(settings.num_effects),
+      flow_(settings.num_effects > 0 && info_.plant == PlantKind::kSoftActuator
+                ? FlowPlan(settings, info_.num_parameters)
+                : FlowPlan()),
+      flow_rows_(flow_) {
+  if (empty()) return;
+  if (flow_.empty) SetUpContact(settings);
   for (int e = 0; e < settings.num_effects; ++e) {
     const EffectSettings& effect = settings.effects[static_cast<std::size_t>(e)];
-    const auto index = static_cast<std::size_t>(FindEffect(effect.name));
-    Term& term = terms_[static_cast<std::size_t>(num_terms_++)];
-    term.info = AllEffects::kInfos[index];
-    term.feature = AllEffects::kFeatures[index];
+    const EffectInfo& effect_info = *FindEffect(info_.plant, effect.name);
+    for (int a = 0; a < effect_info.num_amplitudes; ++a) {
+      const EffectAmplitude& amplitude = effect_info.amplitudes[static_cast<std::size_t>(a)];
+      const ParameterSettings& prior = effect.amplitudes[static_cast<std::size_t>(a)];
+      const auto d = static_cast<std::size_t>(info_.num_parameters++);
+      names_[d] = std::string(effect_info.name) + "_" + std::string(amplitude.name);
+      info_.parameters[d] = {names_[d], amplitude.unit, prior.mean, prior.sd, prior.lower, prior.upper};
+      info_.reported[static_cast<std::size_t>(info_.num_reported++)] = {names_[d], amplitude.unit};
+      info_.num_added += 1;
+      sampled_.parameters[d] = prior;
+      sampled_.parameters[d].name = names_[d];
+    }
+  }
+  sampled_.num_parameters = info_.num_parameters;
+  if (!flow_.empty) info_.target_unit = "Pa/s";
+}
+
+void Composition::SetUpContact(const EstimatorSettings& settings) {
+  int parameter = info_.num_parameters;
+  for (int e = 0; e < num_terms_; ++e) {
+    const EffectSettings& effect = settings.effects[static_cast<std::size_t>(e)];
+    const auto index = static_cast<std::size_t>(ContactEffects::Find(effect.name));
+    Term& term = terms_[static_cast<std::size_t>(e)];
+    term.info = ContactEffects::kInfos[index];
+    term.feature = kContactFeatures[index];
     term.shapes = effect.shapes;
     term.gate = effect.gate;
     term.from_s = effect.from_s;
     term.until_s = effect.until_s;
-    term.parameter = info_.num_parameters;
-    for (int a = 0; a < term.info->num_amplitudes; ++a) {
-      const EffectAmplitude& amplitude = term.info->amplitudes[static_cast<std::size_t>(a)];
-      const ParameterSettings& prior = effect.amplitudes[static_cast<std::size_t>(a)];
-      const auto d = static_cast<std::size_t>(info_.num_parameters++);
-      names_[d] = std::string(term.info->name) + "_" + std::string(amplitude.name);
-      info_.parameters[d] = {names_[d], amplitude.unit, prior.mean, prior.sd, prior.lower, prior.upper};
-      info_.reported[d] = {names_[d], amplitude.unit};
-      sampled_.parameters[d] = prior;
-      sampled_.parameters[d].name = names_[d];
-    }
+    term.parameter = parameter;
+    parameter += term.info->num_amplitudes;
     if (term.info->slot == EffectSlot::kSensorDelay) longest_delay_ = effect.amplitudes[0].upper;
     if (term.info->slot == EffectSlot::kSensorLag) longest_lag_ = effect.amplitudes[0].upper;
   }
-  info_.num_reported = sampled_.num_parameters = info_.num_parameters;
   Assign(&memory_[0].pack);
   Assign(&memory_[1].pack);
 }
 
-void Composition::Assign(EffectPack* pack) const noexcept {
+void Composition::Assign(ContactPack* pack) const noexcept {
   for (int i = 0; i < num_terms_; ++i) {
     const Term& term = terms_[static_cast<std::size_t>(i)];
     switch (term.info->slot) {
@@ -78,8 +96,8 @@ int Composition::HistoryFor(double dt) const noexcept {
   return static_cast<int>(std::fmin(std::ceil(samples) + 1.0, kMaxHistory));
 }
 
-void Composition::CopyRows(const EffectPack& from, int first, int count, EffectPack* to) noexcept {
-  const auto copy = [&](const EffectPack::Row& source, EffectPack::Row* target) noexcept {
+void Composition::CopyRows(const ContactPack& from, int first, int count, ContactPack* to) noexcept {
+  const auto copy = [&](const ContactPack::Row& source, ContactPack::Row* target) noexcept {
     std::copy_n(source.begin() + first, count, target->begin());
   };
   copy(from.x, &to->x);
@@ -95,10 +113,10 @@ void Composition::CopyRows(const EffectPack& from, int first, int count, EffectP
 
 void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const noexcept {
   const auto r = static_cast<std::size_t>(row);
-  EffectPack& pack = memory->pack;
+  ContactPack& pack = memory->pack;
   pack.x[r] = in.x;
   pack.v[r] = in.v;
-  pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), EffectPack::kNoDepth) : EffectPack::kNoDepth;
+  pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), ContactPack::kNoDepth) : ContactPack::kNoDepth;
   std::size_t next = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(num_terms_); ++i) {
     const Term& term = terms_[i];
@@ -121,6 +139,12 @@ void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const 
 }
 
 bool Composition::Prepare(const DataPack& pack, EffectPack* out) noexcept {
+  if (flow_.empty) return PrepareContact(pack, &out->contact);
+  flow_rows_.Prepare(pack, &out->flow);
+  return true;
+}
+
+bool Composition::PrepareContact(const DataPack& pack, ContactPack* out) noexcept {
   const Memory& before = memory_[static_cast<std::size_t>(current_)];
   Memory& after = memory_[static_cast<std::size_t>(1 - current_)];
   const bool continues =
@@ -129,7 +153,7 @@ bool Composition::Prepare(const DataPack& pack, EffectPack* out) noexcept {
   after.run_id = pack.run_id;
   after.dt = pack.dt;
   after.filter = before.filter;
-  EffectPack& rows = after.pack;
+  ContactPack& rows = after.pack;
   rows.dt = pack.dt;
   rows.num_samples = pack.num_samples;
   rows.history = continues ? std::min(HistoryFor(pack.dt), before.pack.rows()) : 0;
@@ -167,10 +191,14 @@ bool Composition::Prepare(const DataPack& pack, EffectPack* out) noexcept {
   return true;
 }
 
-void Composition::Fill(const DataPack& pack, const EffectPack& effects, ModeData* data) noexcept {
+void Composition::Fill(const DataPack& pack, const EffectPack& effects, int mode, ModeData* data) const noexcept {
+  if (!flow_.empty) {
+    FlowRows::Fill(effects.flow, mode, data);
+    return;
+  }
   data->num_samples = pack.num_samples;
   std::copy_n(pack.y.begin(), pack.num_samples, data->target.begin());
-  data->effects = &effects;
+  data->contact = &effects.contact;
 }
 
 }  // namespace armcmc

@@ -51,11 +51,11 @@ void GapLineariser::FillTheta(const std::array<double, kMaxParams>& theta) noexc
 bool GapLineariser::FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
                              GapRows* rows) noexcept {
   kernels_.predict(model_, data_, theta_, &prediction_);
-  const bool all = !composition_.empty();
+  const bool all = data_.contact != nullptr;
   bool finite = true;
   int row = 0;
-  for (std::size_t n = 0; n < At(rows->num_samples); ++n) {
-    if (!all && modes[n] != mode) continue;
+  for (std::size_t n = 0; n < At(rows->num_samples) && row < data_.num_samples; ++n) {
+    if (data_.flow != nullptr ? At(data_.sample[At(row)]) != n : !all && modes[n] != mode) continue;
     const auto& value = prediction_.value[At(row)];
     rows->used[n] = true;
     rows->output[n] = value[0] / noise_std;
@@ -89,7 +89,7 @@ bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapR
     if (composition_.empty()) {
       AllModels::kPrepare[At(model_)](pack, settings_.constants, m, &data_);
     } else {
-      Composition::Fill(pack, effects_, &data_);
+      composition_.Fill(pack, effects_, m, &data_);
     }
     if (data_.num_samples > 0) finite = FillMode(m, at.noise_std[At(m)], *modes, rows) && finite;
   }

@@ -2,14 +2,15 @@
 
 #include <iterator>
 
-#include "armcmc/effects/effect_pack.hpp"
+#include "armcmc/effects/contact_pack.hpp"
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
 /// Additive effects: one FMA each a sample, their number known to the compiler.
 template <std::size_t kAdditive>
-void PredictAdditive(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+void PredictAdditive(const ContactPack& pack, const ThetaTile& theta,
+                     PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   using V = Simd::V;
   for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
@@ -31,7 +32,7 @@ void PredictAdditive(const EffectPack& pack, const ThetaTile& theta, PredictionT
 Simd::V Gated(double gate, Simd::V yes, Simd::V no) noexcept { return gate != 0.0 ? yes : no; }
 
 /// Plant forces of one vector of candidates, history included: input map, constitutive law, additive terms.
-void PlantForces(const EffectPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
+void PlantForces(const ContactPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
   using V = Simd::V;
   const auto amplitude_of = [&](int parameter) noexcept {
     return parameter < 0 ? V{} : Simd::Load(&theta.value[static_cast<std::size_t>(parameter)][at]);
@@ -58,7 +59,7 @@ void PlantForces(const EffectPack& pack, const ThetaTile& theta, std::size_t at,
 }
 
 /// What the sensor makes of them, in place: delay, low pass, limit.
-void Sense(const EffectPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
+void Sense(const ContactPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
   using V = Simd::V;
   const int rows = pack.rows();
   const auto amplitude_of = [&](int parameter) noexcept {
@@ -92,7 +93,7 @@ void Sense(const EffectPack& pack, const ThetaTile& theta, std::size_t at, doubl
   }
 }
 
-void PredictSensed(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+void PredictSensed(const ContactPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   alignas(64) double series[kMaxEffectSamples * Simd::kLanes];
   for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
@@ -104,12 +105,12 @@ void PredictSensed(const EffectPack& pack, const ThetaTile& theta, PredictionTil
   }
 }
 
-using PredictComposedFn = void (*)(const EffectPack&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
+using PredictComposedFn = void (*)(const ContactPack&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
 constexpr PredictComposedFn kPredictAdditive[] = {&PredictSensed,      &PredictAdditive<1>, &PredictAdditive<2>,
                                                   &PredictAdditive<3>, &PredictAdditive<4>, &PredictAdditive<5>};
 static_assert(std::size(kPredictAdditive) == kMaxAdditive + 1);
 
-void PredictComposed(const EffectPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
+void PredictComposed(const ContactPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept {
   (pack.additive_only() ? kPredictAdditive[pack.num_additive] : kPredictAdditive[0])(pack, theta, tile);
 }
 

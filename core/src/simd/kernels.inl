@@ -5,6 +5,7 @@
 // clang-format off
 #include "simd/vector.hpp"
 #include "simd/effects.inl"
+#include "simd/flow.inl"
 // clang-format on
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
@@ -38,8 +39,12 @@ struct PredictTable<ModelList<Models...>> {
 
 void Predict(int model, const ModeData& data, const ThetaTile& theta,
              PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  if (data.effects != nullptr) {
-    PredictComposed(*data.effects, theta, tile);
+  if (data.contact != nullptr) {
+    PredictComposed(*data.contact, theta, tile);
+    return;
+  }
+  if (data.flow != nullptr) {
+    PredictFlow(data, theta, tile);
     return;
   }
   PredictTable<AllModels>::kOf[model](data, theta, tile);

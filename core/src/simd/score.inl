@@ -31,7 +31,9 @@ template <class Model>
 struct PlainForward {
   static constexpr unsigned kRows = static_cast<unsigned>(Model::kInfo.num_parameters);
   const ModeData& data;
-  static unsigned Row(unsigned i) noexcept { return i; }
+  static Simd::V Load(const ThetaTile& theta, unsigned i, unsigned lane) noexcept {
+    return Simd::Load(&theta.value[i][lane]);
+  }
   bool Far(int n) const noexcept { return Model::LargestLog2(data, n) > ScoreSimd::kReach; }
   template <class S>
   Simd::V AddTo(Simd::V base, const Simd::V* theta, int n) const noexcept {
@@ -43,15 +45,32 @@ struct PlainForward {
 template <unsigned kAdditive>
 struct AdditiveForward {
   static constexpr unsigned kRows = 3 + kAdditive;
-  const EffectPack& pack;
-  unsigned Row(unsigned i) const noexcept { return i < 3 ? i : static_cast<unsigned>(pack.additive_amplitude[i - 3]); }
+  const ContactPack& pack;
+  Simd::V Load(const ThetaTile& theta, unsigned i, unsigned lane) const noexcept {
+    return Simd::Load(&theta.value[i < 3 ? i : static_cast<unsigned>(pack.additive_amplitude[i - 3])][lane]);
+  }
   bool Far(int n) const noexcept { return std::fabs(pack.log2_x[static_cast<unsigned>(n)]) > ScoreSimd::kReach; }
   template <class S>
   Simd::V AddTo(Simd::V base, const Simd::V* theta, int n) const noexcept {
     const auto in = static_cast<unsigned>(n);
     for (unsigned a = 0; a < kAdditive; ++a) base = Simd::Fma(theta[3 + a], Simd::Set(pack.feature[a][in]), base);
-    if (pack.log2_x[in] <= EffectPack::kNoDepth) return base;
+    if (pack.log2_x[in] <= ContactPack::kNoDepth) return base;
     return HuntCrossley::AddLaw<S>(base, theta[0], theta[1], theta[2], pack.log2_x[in], pack.v[in]);
+  }
+};
+
+/// The valve flow with effects, but for slow valves.
+struct FlowForward {
+  static constexpr unsigned kRows = kFlowRows;
+  const ModeData& data;
+  static bool Far(int) noexcept { return false; }
+  template <class S>
+  Simd::V AddTo(Simd::V base, const Simd::V* theta, int k) const noexcept {
+    const auto n = static_cast<std::size_t>(data.sample[static_cast<unsigned>(k)]);
+    return base + FlowRate(*data.flow, data.mode, theta, Simd::Set(Command(*data.flow, n)), n);
+  }
+  Simd::V Load(const ThetaTile& theta, unsigned i, unsigned lane) const noexcept {
+    return FlowRow(*data.flow, theta, i, lane);
   }
 };
 
@@ -79,7 +98,7 @@ void SumSquares(const Forward& forward, const ModeData& data, const ThetaTile& t
     V sum[kGroup];
     for (int g = 0; g < kGroup; ++g) {
       const auto lane = static_cast<unsigned>((v0 + g) * Simd::kLanes);
-      for (unsigned i = 0; i < Forward::kRows; ++i) parameters[g][i] = Simd::Load(&theta.value[forward.Row(i)][lane]);
+      for (unsigned i = 0; i < Forward::kRows; ++i) parameters[g][i] = forward.Load(theta, i, lane);
       sum[g] = V{};
     }
     for (int n = 0; n < data.num_samples; ++n) {
@@ -103,10 +122,15 @@ void SumSquaresOf(const Forward& forward, const ModeData& data, const ThetaTile&
   }
 }
 
+void SumSquaresFlow(const ModeData& data, const ThetaTile& theta, double noise_mean,
+                    double* out) noexcept ARMCMC_NONBLOCKING {
+  SumSquaresOf(FlowForward{data}, data, theta, noise_mean, out);
+}
+
 template <unsigned kAdditive>
 void SumSquaresAdditive(const ModeData& data, const ThetaTile& theta, double noise_mean,
                         double* out) noexcept ARMCMC_NONBLOCKING {
-  SumSquaresOf(AdditiveForward<kAdditive>{*data.effects}, data, theta, noise_mean, out);
+  SumSquaresOf(AdditiveForward<kAdditive>{*data.contact}, data, theta, noise_mean, out);
 }
 
 template <class Model>
@@ -130,12 +154,14 @@ static_assert(std::size(kSumSquaresAdditive) == kMaxAdditive + 1);
 void Score(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta, const double* log_scale,
            PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
   const bool gaussian = noise.settings().kind == NoiseKind::kGaussian;
-  if (!gaussian || (data.effects != nullptr && !data.effects->additive_only())) {
+  if (!gaussian || (data.flow != nullptr && !ValvesAreFast(*data.flow)) ||
+      (data.contact != nullptr && !data.contact->additive_only())) {
     Predict(model, data, theta, scratch);
     LogLikelihood(noise, data, *scratch, log_scale, out);
     return;
   }
-  const SumSquaresFn sum_squares = data.effects != nullptr ? kSumSquaresAdditive[data.effects->num_additive]
+  const SumSquaresFn sum_squares = data.contact != nullptr ? kSumSquaresAdditive[data.contact->num_additive]
+                                   : data.flow != nullptr  ? &SumSquaresFlow
                                                            : SumSquaresTable<AllModels>::kOf[model];
   sum_squares(data, theta, noise.settings().mean, out);
   const V samples = Simd::Set(static_cast<double>(data.num_samples));

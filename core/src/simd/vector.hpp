@@ -96,6 +96,10 @@ struct Simd {
   static V Max(V a, V b) noexcept { return Select(a > b, a, b); }
   static V Min(V a, V b) noexcept { return Select(a < b, a, b); }
 #endif
+  static V CopySign(V size, V sign) noexcept {
+    const I mask = I{} + static_cast<std::int64_t>(0x8000000000000000ULL);
+    return FromBits((Bits(size) & ~mask) | (Bits(sign) & mask));
+  }
   static V Abs(V a) noexcept { return FromBits(Bits(a) & (I{} + 0x7fffffffffffffffLL)); }
 
   /// 2^x, relative error below 1 ulp for |x| <= 1000; clamped beyond. Round to nearest by the magic-number

@@ -36,7 +36,7 @@ class Predictor {
       const std::size_t count = std::min(kSizes[static_cast<std::size_t>(seq) % 6], series.size() - first);
       const DataPack pack = series.Pack(seq++, first, count);
       EXPECT_TRUE(composition_.Prepare(pack, pack_.get()));
-      Composition::Fill(pack, *pack_, data_.get());
+      composition_.Fill(pack, *pack_, 0, data_.get());
       kernels_.predict(FindModel("hunt_crossley"), *data_, theta_, tile_.get());
       for (std::size_t n = 0; n < count; ++n) out.push_back(tile_->value[n][lane]);
       first += count;
@@ -69,7 +69,7 @@ void ExpectEqualsReference(const std::vector<HiddenEffect>& effects, const std::
 }
 
 TEST(EffectPrediction, EveryEffectOfTheCatalogueEqualsTheReference) {
-  ASSERT_EQ(Catalogue().size(), static_cast<std::size_t>(AllEffects::kSize)) << "an effect without a reference";
+  ASSERT_EQ(Catalogue().size(), static_cast<std::size_t>(ContactEffects::kSize)) << "an effect without a reference";
   for (const HiddenEffect& e : Catalogue()) ExpectEqualsReference({e}, e.name);
 }
 
@@ -158,7 +158,7 @@ TEST(EffectPrediction, AGapStartsTheMemoryAnew) {
   ASSERT_TRUE(composition.Prepare(series.Pack(1, 0, 100), pack.get()));
   ASSERT_TRUE(composition.Prepare(series.Pack(3, 200, 100), pack.get())) << "pack 2 is lost";
   ASSERT_TRUE(fresh.Prepare(series.Pack(3, 200, 100), other.get()));
-  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->feature[0][n], other->feature[0][n]);
+  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->contact.feature[0][n], other->contact.feature[0][n]);
 }
 
 TEST(EffectPrediction, APackThatOverflowsIsRefusedAndForgotten) {
@@ -173,7 +173,7 @@ TEST(EffectPrediction, APackThatOverflowsIsRefusedAndForgotten) {
   ASSERT_FALSE(composition.Prepare(broken, pack.get()));
   ASSERT_TRUE(composition.Prepare(series.Pack(2, 100, 100), pack.get()));
   ASSERT_TRUE(fresh.Prepare(series.Pack(2, 100, 100), other.get()));
-  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->feature[0][n], other->feature[0][n]);
+  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->contact.feature[0][n], other->contact.feature[0][n]);
 }
 
 }  // namespace

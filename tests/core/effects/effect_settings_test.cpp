@@ -27,7 +27,7 @@ EstimatorSettings With(std::initializer_list<const char*> names) {
 }
 
 TEST(EffectSettings, TheCatalogueIsValidAtAnyScale) {
-  for (const EffectInfo* info : AllEffects::kInfos)
+  for (const EffectInfo* info : ContactEffects::kInfos)
     for (const EffectScales& scales : {EffectScales{}, EffectScales{5.0, 2e-3, 0.01, 0.3, 10.0}}) {
       EstimatorSettings settings = BuiltinSettings("hunt_crossley");
       settings.effects[0] = MakeEffect(std::string(info->name), scales);
@@ -84,7 +84,7 @@ TEST(EffectSettings, NamesTheKeyThatIsWrong) {
   EstimatorSettings actuator = BuiltinSettings("soft_actuator");
   actuator.effects[0] = MakeEffect("force_bias");
   actuator.num_effects = 1;
-  EXPECT_THAT(ErrorOf(actuator), HasSubstr("'soft_actuator' takes no effects"));
+  EXPECT_THAT(ErrorOf(actuator), AllOf(HasSubstr("'force_bias' is not an effect of soft_actuator"), HasSubstr("leak")));
 }
 
 }  // namespace

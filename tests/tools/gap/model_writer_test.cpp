@@ -55,7 +55,7 @@ Vector EstimatorSays(const EstimatorSettings& settings, const Signals& s, int am
     pack.t_last_s = s.t[first + pack.num_samples - 1];
     pack.t_last_ns = static_cast<Nanos>(pack.t_last_s * 1e9);
     EXPECT_TRUE(composition.Prepare(pack, effects.get()));
-    Composition::Fill(pack, *effects, data.get());
+    composition.Fill(pack, *effects, 0, data.get());
     simd::Best().predict(FindModel("hunt_crossley"), *data, *theta, tile.get());
     for (int n = 0; n < pack.num_samples; ++n) y[first + n] = tile->value[static_cast<std::size_t>(n)][0];
   }

@@ -166,7 +166,7 @@ int Run(const Arguments& a) {
   result.version = support::Version();
   if (outcome.augmented) {
     result.model_file = "model.toml";
-    Write(out / result.model_file, support::ModelFileText(*outcome.augmented));
+    Write(out / result.model_file, support::ModelFileText(*outcome.augmented, request.model));
     try {
       result.budget =
           MeasureBudget(support::ReadModel(a.model), *outcome.augmented, a.data, 1e-3 * a.period_ms, a.skip_bad);

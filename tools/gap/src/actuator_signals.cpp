@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "armcmc/effects/flow_law.hpp"
 #include "armcmc/gap/smoothing.hpp"
+#include "armcmc/scalar_ops.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -19,8 +21,8 @@ double RootMeanSquare(const Vector& series, const Vector& weight) {
 }
 
 double ValveHead(double opening, double gauge_pressure, const PlantConstants& constants) {
-  const double dp = opening < 0.0 ? gauge_pressure : constants.p_supply - constants.p_atm - gauge_pressure;
-  return std::copysign(std::sqrt(std::abs(dp)), dp);
+  return FlowLaw<ScalarOps>::Head({opening, gauge_pressure, constants.p_supply - constants.p_atm, 0.0},
+                                  opening < 0.0 ? 1 : 0);
 }
 
 Signals ActuatorSignals(const Recording& recording, int window, const PlantConstants& constants) {

@@ -11,8 +11,8 @@ namespace {
 /// The estimator's own feature of an additive effect, over the whole recording.
 Matrix CoreFeature(int effect, const Signals& s, const double* shape_values) {
   const auto index = static_cast<std::size_t>(effect);
-  const EffectFeatureFn feature = AllEffects::kFeatures[index];
-  Matrix columns(s.rows(), AllEffects::kInfos[index]->num_amplitudes);
+  const EffectFeatureFn feature = kContactFeatures[index];
+  Matrix columns(s.rows(), ContactEffects::kInfos[index]->num_amplitudes);
   std::array<double, kEffectMemory> memory{};
   std::array<double, kMaxEffectAmplitudes> value{};
   for (Eigen::Index i = 0; i < s.rows(); ++i) {
@@ -27,8 +27,8 @@ Matrix CoreFeature(int effect, const Signals& s, const double* shape_values) {
 }  // namespace
 
 EffectForm FromCore(const char* name, std::vector<Coordinate> coordinates) {
-  const int index = FindEffect(name);
-  const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(index)];
+  const int index = ContactEffects::Find(name);
+  const EffectInfo& info = *ContactEffects::kInfos[static_cast<std::size_t>(index)];
   EffectForm form;
   form.effect = name;
   form.family = info.family;

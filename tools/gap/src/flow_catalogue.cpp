@@ -1,28 +1,53 @@
 #include <algorithm>
 #include <cmath>
 
+#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap/actuator_equation.hpp"
 #include "armcmc/gap/actuator_signals.hpp"
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/form_tools.hpp"
 #include "armcmc/gap/sensor_forms.hpp"
 #include "armcmc/gap/smoothing.hpp"
+#include "armcmc/scalar_ops.hpp"
 
 namespace armcmc::gap {
 namespace {
 
 const Vector& Opening(const Signals& s) { return s.at(Role::kOpening); }
 
+/// An effect that the estimator runs, too: its formulas are those of core.
+template <class E>
+EffectForm FromCore() {
+  EffectForm form;
+  form.effect = E::kInfo.name;
+  form.family = E::kInfo.family;
+  form.formula = E::kInfo.formula;
+  return form;
+}
+
+/// What moves the spool from where its command stands.
+Vector Behind(const Vector& opening, double tau, double dt) {
+  const ValveLag::Spool<ScalarOps> law(tau, dt);
+  Vector behind(opening.size());
+  double position = opening[0];
+  for (Eigen::Index i = 0; i < opening.size(); ++i) {
+    position = law.Next(position, opening[i]);
+    behind[i] = position - opening[i];
+  }
+  return behind;
+}
+
 void AddLeak(const Signals& s, std::vector<EffectForm>* out) {
   const double pressure = s.scale_of(Role::kPressure);
-  EffectForm leak;
-  leak.effect = "leak";
-  leak.family = "leakage";
-  leak.formula = "p' - rate (p - p_atm)";
+  EffectForm leak = FromCore<Leak>();
   leak.coordinates = {AmplitudeOf("rate", "1/s", s.output_scale / pressure, true)};
   leak.own_groups = {"pressure"};
   leak.features = [pressure](const Signals& in, const double*) -> Matrix {
-    return -in.output_scale / pressure * in.at(Role::kPressure);
+    return in.at(Role::kPressure).unaryExpr([unit = in.output_scale / pressure](double gauge) {
+      FlowPoint<ScalarOps> point{0.0, gauge, 0.0, 0.0};
+      Leak::Apply<ScalarOps>(unit, &point);
+      return point.rate;
+    });
   };
   SetStarts(&leak, {});
   out->push_back(leak);
@@ -37,43 +62,35 @@ void AddLeak(const Signals& s, std::vector<EffectForm>* out) {
 
 void AddDeadBand(const Signals& s, std::vector<EffectForm>* out) {
   const double opening = s.scale_of(Role::kOpening);
-  EffectForm band;
-  band.effect = "valve_dead_band";
-  band.family = "dead band";
-  band.formula = "u = max(u - width, 0) / (1 - width)";
+  EffectForm band = FromCore<ValveDeadBand>();
   band.slot = Slot::kDrive;
   band.num_amplitudes = 0;
   band.linear = false;
   band.coordinates = {ShapeOf("width", "-", opening, 1e-6, 1.5)};
   band.own_groups = {"opening"};
-  const auto passed = [](const Signals& in, double width) {
-    return (Opening(in).array().sign() * (Opening(in).array().abs() - width).max(0.0)).matrix();
-  };
-  band.features = [band, passed](const Signals& in, const double* shape) -> Matrix {
-    const double width = ShapeValue(band, 0, shape);
-    return passed(in, width) / (1.0 - std::min(width, 0.99)) - Opening(in);
+  band.features = [band](const Signals& in, const double* shape) -> Matrix {
+    return Opening(in).unaryExpr(
+        [width = ShapeValue(band, 0, shape)](double u) { return ValveDeadBand::Opening<ScalarOps>(u, width) - u; });
   };
   SetStarts(&band, {10});
   out->push_back(band);
   EffectForm plain = VariantOf(band, "plain", "u = max(u - width, 0)");
-  plain.features = [plain, passed](const Signals& in, const double* shape) -> Matrix {
-    return passed(in, ShapeValue(plain, 0, shape)) - Opening(in);
+  plain.features = [plain](const Signals& in, const double* shape) -> Matrix {
+    return Opening(in).unaryExpr(
+        [width = ShapeValue(plain, 0, shape)](double u) { return ValveDeadBand::Beyond<ScalarOps>(u, width) - u; });
   };
   out->push_back(plain);
 }
 
 void AddLag(const Signals& s, std::vector<EffectForm>* out) {
-  EffectForm lag;
-  lag.effect = "valve_lag";
-  lag.family = "valve lag";
-  lag.formula = "s, tau s' + s = u_c - u_d, open to the side of s's sign";
+  EffectForm lag = FromCore<ValveLag>();
   lag.slot = Slot::kDrive;
   lag.num_amplitudes = 0;
   lag.linear = false;
   lag.coordinates = {ShapeOf("tau", "s", s.dt, 0.1, 300.0)};
   lag.own_groups = {"change of opening", "change of the rate"};
   lag.features = [lag](const Signals& in, const double* shape) -> Matrix {
-    return Leaky(Opening(in), ShapeValue(lag, 0, shape) / in.dt) - Opening(in);
+    return Behind(Opening(in), ShapeValue(lag, 0, shape), in.dt);
   };
   // Below a sample the effect goes with exp(-dt / tau): a step of Newton's from afar misses it.
   SetStarts(&lag, {24});
@@ -114,10 +131,7 @@ Vector Drooped(const Signals& s, const Vector& droop, const PlantConstants& cons
 
 void AddDroop(const Signals& s, const PlantConstants& constants, std::vector<EffectForm>* out) {
   const double supply = constants.p_supply - constants.p_atm, opening = s.scale_of(Role::kOpening);
-  EffectForm droop;
-  droop.effect = "supply_droop";
-  droop.family = "supply";
-  droop.formula = "p_s - droop u_c in place of p_s";
+  EffectForm droop = FromCore<SupplyDroop>();
   droop.slot = Slot::kDrive;
   droop.num_amplitudes = 0;
   droop.linear = false;
@@ -125,7 +139,10 @@ void AddDroop(const Signals& s, const PlantConstants& constants, std::vector<Eff
   droop.starts = {{0.003}, {0.03}, {0.2}};
   droop.own_groups = {"opening", "pressure while filling", "pressure x rate"};
   droop.features = [droop, constants](const Signals& in, const double* shape) -> Matrix {
-    return Drooped(in, ShapeValue(droop, 0, shape) * Opening(in).cwiseMax(0.0), constants);
+    return Drooped(in, Opening(in).unaryExpr([by = ShapeValue(droop, 0, shape)](double u) {
+      return -SupplyDroop::Supply<ScalarOps>(0.0, by, u);
+    }),
+                   constants);
   };
   out->push_back(droop);
   EffectForm flow = VariantOf(droop, "flow", "p_s - droop u_c sqrt(p_s - p) in place of p_s");
@@ -146,10 +163,7 @@ void AddDroop(const Signals& s, const PlantConstants& constants, std::vector<Eff
 }
 
 void AddPressureBias(const Signals& s, std::vector<EffectForm>* out) {
-  EffectForm bias;
-  bias.effect = "pressure_bias";
-  bias.family = "sensor zero";
-  bias.formula = "p + bias";
+  EffectForm bias = FromCore<PressureBias>();
   bias.slot = Slot::kInputMap;
   bias.coordinates = {AmplitudeOf("bias", "Pa", s.scale_of(Role::kPressure), false, 0.2, 0.8)};
   bias.own_groups = {"pressure", "pressure x rate"};

@@ -17,6 +17,7 @@ enum Base { kGainFill = 0, kSlopeFill = 1, kGainVent = 2, kSlopeVent = 3, kNumBa
 constexpr double kTypicalGain = 4e-4;   // sqrt(Pa) s/Pa: the coordinates are of order one for valves of this size
 constexpr double kLeastGain = 0.02;     // of the typical one: a valve that passes fifty times more is none
 constexpr double kMaxCondition = 1e3;   // of (p', p' p), above which p did not vary enough to tell effects apart
+constexpr double kPriorReach = 5.0;     // sd
 constexpr double kMinOpenShare = 0.02;  // of the samples
 
 class FlowEquation final : public Equation {
@@ -44,8 +45,15 @@ class FlowEquation final : public Equation {
     return s;
   }
 
-  // The estimator adds effects to a contact law only.
-  bool online() const override { return false; }
+  void SetPriors(const std::vector<ParameterEstimate>& base, EstimatorSettings* settings) const override {
+    // Both valves share a prior: it must hold either, of either sign.
+    for (std::size_t i = 0; i < 2; ++i) {
+      ParameterSettings& prior = settings->parameters[i];
+      prior.sd = std::max({prior.sd, std::abs(base[i].mean), std::abs(base[i + 2].mean)});
+      prior.upper = std::max(prior.upper, kPriorReach * prior.sd);
+      prior.lower = std::min(prior.lower, -kPriorReach * prior.sd);
+    }
+  }
 
   Suitability Check(const Signals& s) const override {
     const Vector& v = s.at(Role::kOpening);

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "armcmc/effects/registry.hpp"
+#include "armcmc/gap/equation.hpp"
+#include "armcmc/models/registry.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -41,17 +43,22 @@ double InertiaSmoothing(const Signals& s, double mass, double noise_sd) {
 
 }  // namespace
 
+void Equation::SetPriors(const std::vector<ParameterEstimate>& base, EstimatorSettings* settings) const {
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    ParameterSettings& prior = settings->parameters[i];
+    const double lower = prior.lower;
+    prior = Prior(prior.name, base[i].mean, base[i].sd, std::min(lower, base[i].mean - base[i].sd));
+  }
+}
+
 EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitter, const Fitted& fitted,
                                     double noise_sd) {
   const Signals& signals = fitter.signals();
   EstimatorSettings settings = BuiltinSettings(model);
+  const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]->plant;
   const Matrix covariance = fitted.Covariance(fitter.whitener().s2);
-  const std::vector<ParameterEstimate> base = fitter.equation().Report(signals, fitted.theta, covariance);
-  for (std::size_t i = 0; signals.law_seen && i < base.size(); ++i) {
-    ParameterSettings& prior = settings.parameters[i];
-    const double lower = prior.lower;
-    prior = Prior(prior.name, base[i].mean, base[i].sd, std::min(lower, base[i].mean - base[i].sd));
-  }
+  if (signals.law_seen)
+    fitter.equation().SetPriors(fitter.equation().Report(signals, fitted.theta, covariance), &settings);
   for (NoiseSettings& noise : settings.noise) {
     noise.kind = NoiseKind::kGaussian;
     noise.std = noise_sd;
@@ -63,12 +70,12 @@ EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitt
   for (const Term& term : fitted.hypothesis.terms) {
     const EffectForm& form = *term.form;
     if (!form.exact()) throw std::invalid_argument(form.effect + ": this formula cannot run in the estimator");
-    EffectSettings effect = MakeEffect(form.effect);
+    EffectSettings effect = MakeEffect(plant, form.effect);
     effect.gate = GateOf(term.when);
     effect.from_s = effect.until_s = 0.0;
     if (effect.gate == EffectGate::kFrom) effect.from_s = term.when.time_s;
     if (effect.gate == EffectGate::kUntil) effect.until_s = term.when.time_s;
-    const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(FindEffect(form.effect))];
+    const EffectInfo& info = *FindEffect(plant, form.effect);
     int written = 0;
     for (std::size_t c = 0; c < form.coordinates.size(); ++c) {
       const Coordinate& coordinate = form.coordinates[c];

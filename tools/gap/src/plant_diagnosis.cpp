@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <stdexcept>
 
 namespace armcmc::gap {
 namespace {
@@ -104,6 +105,20 @@ std::size_t CarrierOf(const std::vector<EquationDiagnosis>& equations) {
   return best;
 }
 
+/// Of the effects that the model has, those of one equation; they are taken out of `nowhere`.
+std::vector<std::pair<std::string, When>> KnownTo(const std::vector<EffectForm>& catalogue,
+                                                  const std::vector<std::pair<std::string, When>>& known,
+                                                  std::vector<std::pair<std::string, When>>* nowhere) {
+  std::vector<std::pair<std::string, When>> own;
+  for (const auto& one : known) {
+    const auto is_it = [&](const EffectForm& form) { return form.exact() && form.effect == one.first; };
+    if (std::none_of(catalogue.begin(), catalogue.end(), is_it)) continue;
+    own.push_back(one);
+    std::erase_if(*nowhere, [&](const auto& other) { return other.first == one.first; });
+  }
+  return own;
+}
+
 }  // namespace
 
 std::vector<const EquationDiagnosis*> PlantDiagnosis::Others() const {
@@ -116,15 +131,21 @@ std::vector<const EquationDiagnosis*> PlantDiagnosis::Others() const {
 PlantDiagnosis DiagnosePlant(const std::string& model, const Recording& recording, const DiagnoseOptions& options) {
   constexpr int kWindow = 15;
   PlantDiagnosis plant;
+  std::vector<std::pair<std::string, When>> nowhere = options.known;
   for (std::unique_ptr<Equation>& equation : MakeEquations(model)) {
     EquationDiagnosis one;
-    one.suitability = equation->Check(equation->Prepare(recording, kWindow));
+    const Signals signals = equation->Prepare(recording, kWindow);
+    one.suitability = equation->Check(signals);
+    DiagnoseOptions own = options;
+    own.known = KnownTo(equation->Catalogue(signals), options.known, &nowhere);
     one.diagnosis =
-        one.suitability.can_name ? Diagnose(*equation, recording, options) : CompareOnly(*equation, recording, options);
+        one.suitability.can_name ? Diagnose(*equation, recording, own) : CompareOnly(*equation, recording, own);
     if (!one.suitability.note.empty()) plant.notes.push_back(one.suitability.note);
     one.equation = std::move(equation);
     plant.equations.push_back(std::move(one));
   }
+  if (!nowhere.empty())
+    throw std::invalid_argument("the workflow knows no effect of " + model + " called " + nowhere.front().first);
   plant.carrier = CarrierOf(plant.equations);
   Consult(&plant);
   KeepShared(&plant);

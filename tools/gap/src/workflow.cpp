@@ -12,6 +12,7 @@
 #include "armcmc/gap/joint.hpp"
 #include "armcmc/gap/localise.hpp"
 #include "armcmc/gap/model_writer.hpp"
+#include "armcmc/gap/online_part.hpp"
 #include "armcmc/gap/plant_diagnosis.hpp"
 #include "armcmc/gap/verify.hpp"
 
@@ -90,6 +91,12 @@ std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePt
   return effects;
 }
 
+/// What the fits leave, in the unit of the output.
+double NoiseSd(const Diagnosis& diagnosis) {
+  const Whitener& whitener = diagnosis.look->fitter->whitener();
+  return std::sqrt(whitener.s2 * whitener.Gain());
+}
+
 /// @param in  " in the flow law" where the plant has several equations.
 std::string Sentence(const Result& result, const Finding& finding, const std::string& in) {
   const auto percent = [](double p) {
@@ -149,18 +156,6 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
     result->notes.emplace_back(note);
   }
   result->sentence = Sentence(*result, finding, in);
-}
-
-/// The best hypothesis of these names in the catalogue's own formulas: what the estimator can run.
-Fitted Runnable(const Diagnosis& diagnosis) {
-  const Fitter& fitter = *diagnosis.look->fitter;
-  const Fitted& best = diagnosis.finding.best->fit;
-  if (diagnosis.finding.best->exact()) return best;
-  Fitted fit = diagnosis.finding.base->fit;
-  for (const Term& term : diagnosis.finding.best->added())
-    for (const EffectForm& form : diagnosis.look->catalogue)
-      if (form.exact() && form.effect == term.form->effect) fit = fitter.Add(fit, {&form, term.when});
-  return fit;
 }
 
 const Fitted* Control(const Finding& finding) {
@@ -249,13 +244,33 @@ void DescribeOthers(const PlantDiagnosis& plant, int min_active, Result* result)
   }
 }
 
-/// What keeps the estimator from running an effect; empty: nothing.
-std::string NotOnline(const Equation& equation, const Fitted& fit) {
-  if (equation.online()) return {};
-  std::string names;
-  for (const Term& term : fit.hypothesis.terms) names += (names.empty() ? "" : ", ") + term.form->effect;
-  return names + ": for offline fits only. The estimator adds no effects to the " + equation.name() +
-         ", so that no model file is written";
+/// The model that the estimator can run, and notes on what it leaves out or puts differently.
+std::optional<EstimatorSettings> Add(const WorkflowRequest& request, const PlantDiagnosis& plant,
+                                     const HeldOut& heldout, Result* result) {
+  const OnlinePart part = OnlinePartOf(plant);
+  const EquationDiagnosis& carrying = plant.carrying();
+  if (!part.left_out.empty())
+    result->notes.push_back(
+        Joined(part.left_out, ", ") + ": for offline fits only. The estimator estimates no effects of the " +
+        carrying.equation->name() +
+        (part.equation == nullptr ? ", so that no model file is written" : ": the model file leaves them out"));
+  if (part.equation == nullptr) return std::nullopt;
+  const Diagnosis& diagnosis = part.equation->diagnosis;
+  if (part.equation != &carrying)
+    result->notes.push_back("the estimator runs it in the " + part.equation->equation->name() +
+                            ", with the parameters that are fitted there");
+  if (part.equation == &carrying && part.other_formula) {
+    char note[160];
+    std::snprintf(
+        note, sizeof(note),
+        "the estimator runs the catalogue's formula, which by itself closes %.0f %% of the gap and is refitted "
+        "at every pack",
+        100.0 *
+            ShowGap(*carrying.equation, heldout, *diagnosis.bootstrap, diagnosis.finding.base->fit, part.fit, nullptr)
+                .closed_fraction);
+    result->notes.emplace_back(note);
+  }
+  return AugmentedSettings(request.model, *diagnosis.look->fitter, part.fit, NoiseSd(diagnosis));
 }
 
 /// Rows that are diagnosed, and the recording whose rest shows the gap.
@@ -327,7 +342,6 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   result.equation = equation->name();
   result.notes.insert(result.notes.end(), plant.notes.begin(), plant.notes.end());
   const Look& look = *diagnosis.look;
-  const double noise_sd = std::sqrt(look.fitter->whitener().s2 * look.fitter->whitener().Gain());
   result.notes.insert(result.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
   if (!look.signals.law_seen)
     result.notes.push_back("hardly any " + equation->active_name() +
@@ -365,23 +379,10 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     result.separate_by = equation->Separate(look, diagnosis.finding.set);
   }
   const bool adds = !diagnosis.finding.set.empty();
-  const std::string refusal = adds ? NotOnline(*equation, diagnosis.finding.best->fit) : "";
-  if (!refusal.empty()) result.notes.push_back(refusal);
   const Fitted after = adds ? diagnosis.finding.best->fit : diagnosis.finding.base->fit;
-  if (request.until >= Step::kAdd && adds && refusal.empty()) {
+  if (request.until >= Step::kAdd && adds) {
     clock.Begin("add", 0.75);
-    const Fitted runnable = Runnable(diagnosis);
-    outcome.augmented = AugmentedSettings(request.model, *look.fitter, runnable, noise_sd);
-    if (!diagnosis.finding.best->exact()) {
-      char note[160];
-      std::snprintf(
-          note, sizeof(note),
-          "the estimator runs the catalogue's formula, which by itself closes %.0f %% of the gap and is refitted "
-          "at every pack",
-          100.0 * ShowGap(*equation, heldout, *diagnosis.bootstrap, diagnosis.finding.base->fit, runnable, nullptr)
-                      .closed_fraction);
-      result.notes.emplace_back(note);
-    }
+    outcome.augmented = Add(request, plant, heldout, &result);
   }
   if (request.until >= Step::kShow) {
     clock.Begin("show", 0.8);

@@ -92,7 +92,7 @@ EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& mo
   ReadParameters(model.Table("parameters"), &settings);
   ReadConstants(model, facts.plant, &settings);
   ReadNoise(root.Table("noise"), facts.modes, &settings);
-  ReadEffects(root, &settings);
+  ReadEffects(root, facts.plant, &settings);
   ReadMethod(root, &settings);
   ReadForgetting(root.Table("forgetting"), &settings.forgetting);
   ReadSampler(root.Table("sampler"), &settings.sampler);

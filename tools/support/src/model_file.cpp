@@ -41,8 +41,8 @@ void WriteNoise(const std::string& mode, const NoiseSettings& noise, std::ostrea
       << "\noutlier_scale = " << Text(noise.outlier_scale) << '\n';
 }
 
-void WriteEffect(const EffectSettings& effect, std::ostream& out) {
-  const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(FindEffect(effect.name))];
+void WriteEffect(const EffectSettings& effect, PlantKind plant, std::ostream& out) {
+  const EffectInfo& info = *FindEffect(plant, effect.name);
   out << "\n[[effect]]\nname = \"" << effect.name << "\"\n";
   switch (effect.gate) {
     case EffectGate::kAlways: out << "when = \"always\"\n"; break;
@@ -99,7 +99,7 @@ void ApplyModelFile(const std::string& path, EstimatorSettings* settings) {
   ReadParameters(root.Table("parameters"), settings);
   ReadConstants(root, facts.plant, settings);
   ReadNoise(root.Table("noise"), facts.modes, settings);
-  ReadEffects(root, settings);
+  ReadEffects(root, facts.plant, settings);
   root.Finish();
 }
 
@@ -115,10 +115,10 @@ EstimatorSettings ReadModel(const std::string& model) {
   return settings;
 }
 
-std::string ModelFileText(const EstimatorSettings& settings) {
+std::string ModelFileText(const EstimatorSettings& settings, const std::string& base) {
   const ModelFacts facts = FactsOf(settings);
   std::ostringstream out;
-  out << "schema = 1\nbase = \"" << settings.model << "\"\n";
+  out << "schema = 1\nbase = \"" << (base.empty() ? settings.model : base) << "\"\n";
   for (int d = 0; d < settings.num_parameters; ++d) {
     const ParameterSettings& p = settings.parameters[static_cast<std::size_t>(d)];
     out << "\n[parameters." << p.name << "]\n";
@@ -131,7 +131,8 @@ std::string ModelFileText(const EstimatorSettings& settings) {
         << "\nq2 = " << Text(c.q2) << "\nq3 = " << Text(c.q3) << '\n';
   }
   for (std::size_t m = 0; m < facts.modes.size(); ++m) WriteNoise(facts.modes[m], settings.noise[m], out);
-  for (int e = 0; e < settings.num_effects; ++e) WriteEffect(settings.effects[static_cast<std::size_t>(e)], out);
+  for (int e = 0; e < settings.num_effects; ++e)
+    WriteEffect(settings.effects[static_cast<std::size_t>(e)], facts.plant, out);
   return out.str();
 }
 

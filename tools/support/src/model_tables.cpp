@@ -42,8 +42,8 @@ void ReadNoiseLaw(StrictTable& table, NoiseSettings* noise) {
   noise->outlier_scale = table.Number("outlier_scale", noise->outlier_scale, std::nextafter(1.0, 2.0), kMax);
 }
 
-void ReadEffect(StrictTable& table, EffectSettings* effect) {
-  const EffectInfo& info = *AllEffects::kInfos[static_cast<std::size_t>(FindEffect(effect->name))];
+void ReadEffect(StrictTable& table, PlantKind plant, EffectSettings* effect) {
+  const EffectInfo& info = *FindEffect(plant, effect->name);
   effect->gate = ReadWord<EffectGate>(
       table, "when", effect->gate,
       {{"always", EffectGate::kAlways}, {"contact", EffectGate::kContact}, {"free", EffectGate::kFree}});
@@ -109,19 +109,19 @@ void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* sett
   c.q3 = table.Number("q3", c.q3, 0.0, kMax);
 }
 
-void ReadEffects(StrictTable& root, EstimatorSettings* settings) {
+void ReadEffects(StrictTable& root, PlantKind plant, EstimatorSettings* settings) {
   std::vector<StrictTable> tables = root.Tables("effect");
   if (tables.empty()) return;
   if (tables.size() > static_cast<std::size_t>(kMaxEffects))
     throw root.Error("effect", "a model takes at most " + std::to_string(kMaxEffects) + " effects, there are " +
                                    std::to_string(tables.size()));
   std::vector<std::string> names;
-  for (const EffectInfo* info : AllEffects::kInfos) names.emplace_back(info->name);
+  for (const EffectInfo* info : EffectsOf(plant)) names.emplace_back(info->name);
   settings->num_effects = 0;
   for (StrictTable& table : tables) {
     EffectSettings& effect = settings->effects[static_cast<std::size_t>(settings->num_effects++)];
-    effect = MakeEffect(table.RequiredChoice("name", names));
-    ReadEffect(table, &effect);
+    effect = MakeEffect(plant, table.RequiredChoice("name", names));
+    ReadEffect(table, plant, &effect);
   }
 }
 

@@ -26,6 +26,6 @@ void ReadNoise(StrictTable noise, const std::vector<std::string>& modes, Estimat
 void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* settings);
 /// [[effect]]: name, when, from_s or until_s, the shapes as numbers, the priors of the amplitudes as tables. Replaces
 /// the effects of the settings when there is one.
-void ReadEffects(StrictTable& root, EstimatorSettings* settings);
+void ReadEffects(StrictTable& root, PlantKind plant, EstimatorSettings* settings);
 
 }  // namespace armcmc::support

@@ -5,6 +5,8 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/effects/effect_pack.hpp"
+#include "armcmc/effects/flow_plan.hpp"
+#include "armcmc/effects/flow_rows.hpp"
 #include "armcmc/effects/registry.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/model.hpp"
@@ -16,8 +18,11 @@ namespace armcmc {
 /// A base model with the effects of the settings: parameters and reported quantities of both, and the memory that the
 /// effects carry from pack to pack.
 ///
-/// The parameters are those of the base, then the amplitudes in the order of the settings, called NAME_PARAMETER. With
-/// effects, mode 0 uses every sample of a pack: free motion says something on a bias, a drag or a mass.
+/// The parameters are those of the base, then the amplitudes in the order of the settings, called NAME_PARAMETER.
+///
+/// Contact plant: with effects, mode 0 uses every sample of a pack: free motion says something on a bias, a drag or a
+/// mass. Soft actuator: with effects, what is regressed is the pressure rate (see FlowLaw), whose noise is that of a
+/// sensor, so that the noise of the settings is in Pa/s; each valve has its own amplitudes.
 class Composition {
  public:
   /// @pre settings.Validate() passes.
@@ -30,6 +35,9 @@ class Composition {
   /// The settings with the amplitudes appended to the parameters: what a ParameterSpace is made from.
   [[nodiscard]] const EstimatorSettings& sampled() const noexcept { return sampled_; }
 
+  /// Effects of the valve flow; empty for the contact plant.
+  [[nodiscard]] const FlowPlan& flow() const noexcept { return flow_; }
+
   /// Features of the pack, from the memory of the pack before; then remembers this one. A gap in the pack numbers,
   /// another run or another sample interval starts with an empty memory.
   /// @return false when a feature is not finite: nothing is remembered.
@@ -37,11 +45,15 @@ class Composition {
   /// @rt No heap, no lock, no throw. O(samples).
   [[nodiscard]] bool Prepare(const DataPack& pack, EffectPack* out) noexcept ARMCMC_NONBLOCKING;
 
-  /// What the sampler scores. `effects` must outlive `data`.
-  static void Fill(const DataPack& pack, const EffectPack& effects, ModeData* data) noexcept ARMCMC_NONBLOCKING;
+  /// What the sampler scores of one mode. `effects` must outlive `data`.
+  void Fill(const DataPack& pack, const EffectPack& effects, int mode,
+            ModeData* data) const noexcept ARMCMC_NONBLOCKING;
 
   /// Forgets the packs before.
-  void Reset() noexcept { memory_[0].seq = memory_[1].seq = -1; }
+  void Reset() noexcept {
+    memory_[0].seq = memory_[1].seq = -1;
+    flow_rows_.Reset();
+  }
 
  private:
   struct Term {
@@ -57,18 +69,24 @@ class Composition {
     std::int64_t seq = -1, run_id = 0;
     double dt = 0.0;
     std::array<std::array<double, kEffectMemory>, kMaxEffects> filter{};
-    EffectPack pack;
+    ContactPack pack;
   };
 
-  void Assign(EffectPack* pack) const noexcept ARMCMC_NONBLOCKING;
+  void SetUpContact(const EstimatorSettings& settings);
+  [[nodiscard]] bool PrepareContact(const DataPack& pack, ContactPack* out) noexcept ARMCMC_NONBLOCKING;
+  void Assign(ContactPack* pack) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int HistoryFor(double dt) const noexcept ARMCMC_NONBLOCKING;
-  static void CopyRows(const EffectPack& from, int first, int count, EffectPack* to) noexcept ARMCMC_NONBLOCKING;
+  static void CopyRows(const ContactPack& from, int first, int count, ContactPack* to) noexcept ARMCMC_NONBLOCKING;
   void FillRow(const EffectInput& in, int row, Memory* memory) const noexcept ARMCMC_NONBLOCKING;
 
   ModelInfo info_;
   EstimatorSettings sampled_;
   std::array<std::string, kMaxParams> names_;
   int num_terms_ = 0;
+  // Soft actuator.
+  FlowPlan flow_;
+  FlowRows flow_rows_;
+  // Contact plant.
   std::array<Term, kMaxEffects> terms_;
   double longest_delay_ = 0.0, longest_lag_ = 0.0;  ///< Upper bounds of the priors, s.
   std::array<Memory, 2> memory_;

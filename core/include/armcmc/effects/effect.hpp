@@ -28,17 +28,27 @@ struct EffectNeeds {
   bool position = false;
   bool velocity = false;
   bool acceleration = false;
-  bool memory = false;  ///< Depends on the samples before.
+  bool memory = false;    ///< Depends on the samples before.
+  bool opening = false;   ///< Of the valves.
+  bool pressure = false;  ///< In the chamber.
 };
 
-/// The sizes that make priors free of units: rms force in contact, depth, speed and acceleration of the motion, and the
-/// length of the record. SI units.
+/// The sizes that make priors free of units: of a contact, rms force in contact, depth, speed and acceleration of the
+/// motion; of the soft actuator, rms pressure above the atmosphere, pressure rate, opening, angle and its rate and
+/// acceleration, and the supply above the atmosphere; of both the length of the record. SI units.
 struct EffectScales {
-  double force = 1.0;         ///< N
-  double length = 1.0;        ///< m
-  double speed = 1.0;         ///< m/s
-  double acceleration = 1.0;  ///< m/s^2
-  double duration = 1.0;      ///< s
+  double force = 1.0;              ///< N
+  double length = 1.0;             ///< m
+  double speed = 1.0;              ///< m/s
+  double acceleration = 1.0;       ///< m/s^2
+  double duration = 1.0;           ///< s
+  double pressure = 1.0;           ///< Pa
+  double pressure_rate = 1.0;      ///< Pa/s
+  double opening = 1.0;            ///< -
+  double supply = 1.0;             ///< Pa
+  double angle = 1.0;              ///< rad
+  double angle_rate = 1.0;         ///< rad/s
+  double bend_acceleration = 1.0;  ///< rad/s^2
 };
 
 /// A parameter that is estimated together with those of the base model. Its prior is N(mean, sd^2) cut at the bounds,
@@ -59,13 +69,16 @@ struct EffectShape {
   double lower, upper;  ///< Allowed values, in the parameter's unit.
 };
 
-/// One physical effect of the catalogue for the contact plant.
+/// One physical effect of a plant's catalogue.
 ///
-/// An effect is one header in effects/ with a struct that has `static constexpr EffectInfo kInfo` and, by slot:
+/// An effect is one header in effects/ with a struct that has `static constexpr EffectInfo kInfo` and one entry in the
+/// list of its plant in effects/registry.hpp. If it runs online it has besides, on the contact plant and by slot:
 ///   additive          static void Feature(const EffectInput&, const double* shape, double* memory, double* feature)
 ///   constitutive law  static double Elapsed(const EffectInput&, const double* shape)
 ///   any other slot    template <class S> static typename S::V ..., per candidate (see its header)
-/// and one entry in effects/registry.hpp.
+/// and on the valve flow of the soft actuator, whatever the slot, per candidate and sample:
+///   template <class S> static void Apply(typename S::V amplitude, FlowPoint<S>* point)
+/// which changes nothing for an amplitude of zero.
 struct EffectInfo {
   std::string_view name;
   std::string_view family;
@@ -79,7 +92,7 @@ struct EffectInfo {
   std::array<EffectShape, kMaxEffectShapes> shapes;
 };
 
-/// What an additive effect sees of one sample.
+/// What an additive effect of the contact plant sees of one sample.
 struct EffectInput {
   double t;    ///< Plant time, s.
   double dt;   ///< Sample interval, s.
@@ -99,6 +112,17 @@ constexpr double ForcePerSpeed(const EffectScales& s) noexcept { return s.force 
 constexpr double ForcePerLength(const EffectScales& s) noexcept { return s.force / s.length; }
 constexpr double ForcePerAcceleration(const EffectScales& s) noexcept { return s.force / s.acceleration; }
 constexpr double PerTime(const EffectScales& s) noexcept { return 1.0 / s.duration; }
+constexpr double Duration(const EffectScales& s) noexcept { return s.duration; }
+constexpr double Pressure(const EffectScales& s) noexcept { return s.pressure; }
+constexpr double FlowPerPressure(const EffectScales& s) noexcept { return s.pressure_rate / s.pressure; }
+constexpr double Opening(const EffectScales& s) noexcept { return s.opening; }
+constexpr double SupplyPerOpening(const EffectScales& s) noexcept { return s.supply / s.opening; }
+constexpr double Angle(const EffectScales& s) noexcept { return s.angle; }
+constexpr double AngleRate(const EffectScales& s) noexcept { return s.angle_rate; }
+constexpr double BendAcceleration(const EffectScales& s) noexcept { return s.bend_acceleration; }
+constexpr double BendPerCubedAngle(const EffectScales& s) noexcept {
+  return s.bend_acceleration / (s.angle * s.angle * s.angle);
+}
 }  // namespace effect_unit
 
 }  // namespace armcmc

@@ -57,8 +57,9 @@ Names NamesOf(const Truth& truth) {
 Names FamiliesOf(const Names& names) {
   Names families;
   for (const std::string& name : names) {
-    const int index = FindEffect(name);
-    families.emplace_back(index < 0 ? name : std::string(AllEffects::kInfos[static_cast<std::size_t>(index)]->family));
+    const int index = ContactEffects::Find(name);
+    families.emplace_back(index < 0 ? name
+                                    : std::string(ContactEffects::kInfos[static_cast<std::size_t>(index)]->family));
   }
   std::sort(families.begin(), families.end());
   return families;
@@ -90,7 +91,7 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
     std::sort(names.begin(), names.end());
     // Physics that competes without a name in the catalogue.
     const bool unlisted =
-        std::any_of(names.begin(), names.end(), [](const std::string& name) { return FindEffect(name) < 0; });
+        std::any_of(names.begin(), names.end(), [](const std::string& name) { return ContactEffects::Find(name) < 0; });
     probability[unlisted ? "unnamed" : Joined(names)] += candidate.probability;
   }
   const auto top = std::max_element(probability.begin(), probability.end(),

@@ -74,7 +74,7 @@ Calibration Calibrate(const std::vector<Outcome>& outcomes) {
 
 Confusion Confuse(const std::vector<Outcome>& outcomes) {
   Confusion confusion;
-  for (const EffectInfo* info : AllEffects::kInfos) confusion.names.emplace_back(info->name);
+  for (const EffectInfo* info : ContactEffects::kInfos) confusion.names.emplace_back(info->name);
   confusion.answers = confusion.names;
   for (const char* answer : {"tie with the truth", "other set", "unnamed", "none"})
     confusion.answers.emplace_back(answer);
@@ -82,7 +82,7 @@ Confusion Confuse(const std::vector<Outcome>& outcomes) {
   confusion.count.assign(confusion.names.size(), std::vector<int>(confusion.answers.size(), 0));
   for (const Outcome& outcome : outcomes) {
     if (!SingleEffect(outcome) || outcome.what.strength < kVisible || outcome.truth.effects.size() != 1) continue;
-    const int row = FindEffect(outcome.truth.effects.front().name);
+    const int row = ContactEffects::Find(outcome.truth.effects.front().name);
     if (row < 0) continue;
     const std::vector<Names> sets = SetsOf(outcome.answer.result);
     std::size_t column = tie + 1;
@@ -92,8 +92,8 @@ Confusion Confuse(const std::vector<Outcome>& outcomes) {
       column = tie + 2;
     else if (outcome.answer.result.verdict == gap::Verdict::kNone)
       column = tie + 3;
-    else if (sets.size() == 1 && sets.front().size() == 1 && FindEffect(sets.front().front()) >= 0)
-      column = static_cast<std::size_t>(FindEffect(sets.front().front()));
+    else if (sets.size() == 1 && sets.front().size() == 1 && ContactEffects::Find(sets.front().front()) >= 0)
+      column = static_cast<std::size_t>(ContactEffects::Find(sets.front().front()));
     ++confusion.count[static_cast<std::size_t>(row)][column];
   }
   return confusion;

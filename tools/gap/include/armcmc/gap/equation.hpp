@@ -10,6 +10,7 @@
 #include "armcmc/gap/recording.hpp"
 #include "armcmc/gap/result.hpp"
 #include "armcmc/gap/signals.hpp"
+#include "armcmc/settings.hpp"
 
 namespace armcmc::gap {
 
@@ -71,6 +72,9 @@ class Equation {
 
   /// Whether the estimator can run effects of this equation.
   [[nodiscard]] virtual bool online() const { return true; }
+  /// Turns what Report() says of the base parameters into the estimator's priors. By default they have the same names
+  /// in the same order.
+  virtual void SetPriors(const std::vector<ParameterEstimate>& base, EstimatorSettings* settings) const;
   /// The gate before any naming.
   [[nodiscard]] virtual Suitability Check(const Signals& signals) const {
     (void)signals;

@@ -40,6 +40,7 @@ void ApplyModelFile(const std::string& path, EstimatorSettings* settings);
 [[nodiscard]] EstimatorSettings ReadModel(const std::string& model);
 
 /// The model file that reads back to the same parameters, constants, noise and effects, to the bit.
-[[nodiscard]] std::string ModelFileText(const EstimatorSettings& settings);
+/// @param base  Built-in name that the settings were made from; empty: settings.model.
+[[nodiscard]] std::string ModelFileText(const EstimatorSettings& settings, const std::string& base = {});
 
 }  // namespace armcmc::support

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "armcmc/effects/effect.hpp"
+
+namespace armcmc {
+
+/// Load that is picked up:  (1 + load) alpha'' in place of alpha'' from t = at on,  load >= 0.
+/// Acts on the bending angle, whose equation the estimator does not estimate: for offline fits only.
+struct PayloadStep {
+  static constexpr EffectInfo kInfo{
+      .name = "payload_step",
+      .family = "payload",
+      .formula = "(1 + load) alpha'' in place of alpha'' from t = at",
+      .slot = EffectSlot::kConstitutiveLaw,
+      .needs = {},
+      .online = false,
+      .num_amplitudes = 1,
+      .amplitudes = {{{"load", "-", 0.0, 0.5, 0.0, 30.0, &effect_unit::One}}},
+      .num_shapes = 1,
+      .shapes = {{{"at", "s", 0.5, &effect_unit::Duration, -1e12, 1e12}}},
+  };
+};
+
+}  // namespace armcmc
