@@ -32,7 +32,8 @@ Simd::V FlowRow(const FlowPack& pack, const ThetaTile& theta, std::size_t row, s
 }
 
 /// Pressure rate at sample n of the pack, for an opening that a slow valve may have changed.
-Simd::V FlowRate(const FlowPack& pack, int mode, const Simd::V* theta, Simd::V opening, std::size_t n) noexcept {
+[[gnu::always_inline]] inline Simd::V FlowRate(const FlowPack& pack, int mode, const Simd::V* theta, Simd::V opening,
+                                               std::size_t n) noexcept {
   using Law = FlowLaw<Simd>;
   FlowPoint<Simd> point{opening, Simd::Set(pack.gauge[n]), Simd::Set(pack.supply), Simd::V{}};
   FlowEffects::ForEach([&]<class E>(std::type_identity<E>, std::size_t e) {
