@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -62,6 +63,49 @@ TEST_F(LiveModel, TheEstimatorRunsItAndFindsTheHiddenEffect) {
   EXPECT_EQ(column(final_line, "pack", header), std::to_string(last.seq));
   EXPECT_EQ(std::strtod(column(final_line, "K", header).c_str(), nullptr), last.ar_map[0]);
   EXPECT_EQ(std::strtod(column(final_line, "force_bias_force", header).c_str(), nullptr), last.ar_map[3]);
+}
+
+/// A model file of three additive effects. `amplitudes`: mean and standard deviation of each.
+std::string ThreeEffects(const std::array<std::array<double, 2>, 3>& amplitudes) {
+  std::ostringstream text;
+  text << "schema = 1\nbase = \"hunt_crossley\"\n";
+  const char* const names[] = {"force_bias", "coulomb_friction", "viscous_friction"};
+  const char* const keys[] = {"force", "force", "coefficient"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    text << "[[effect]]\nname = \"" << names[i] << "\"\nwhen = \"always\"\n";
+    if (i == 1) text << "speed = 0.02\n";
+    text << keys[i] << " = { prior = \"normal\", mean = " << amplitudes[i][0] << ", sd = " << amplitudes[i][1]
+         << ", lower = " << (i == 0 ? "-3.0" : "0.0") << ", upper = 3.0 }\n";
+  }
+  return text.str();
+}
+
+// The plant has three effects more than the base equations; the estimator knows their form, not their size.
+TEST_F(LiveModel, ThreeAddedEffectsAreLearntWithoutAMissOrAnAllocation) {
+  constexpr std::array<double, 3> kTruth{0.25, 0.4, 0.3};
+  constexpr double kPriorSd = 0.5;
+  std::ofstream(dir_ / "plant.toml") << ThreeEffects({{{kTruth[0], 0.1}, {kTruth[1], 0.1}, {kTruth[2], 0.1}}});
+  std::ofstream(dir_ / "model.toml") << ThreeEffects({{{-0.5, kPriorSd}, {1.2, kPriorSd}, {1.2, kPriorSd}}});
+  auto estimator = StartEstimator({"--model", dir_ / "model.toml"});
+  auto plant = StartPlant("15", {"--model", dir_ / "plant.toml"});
+  ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
+  ASSERT_TRUE(recorder_->WaitForEstimates(150)) << estimator->err();
+  const nlohmann::json report = Finish(estimator.get());
+  for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
+  // Without real-time scheduling other programs of the machine may take the processor, which nobody witnesses.
+  if (report["rt"]["policy"] == "SCHED_FIFO") {
+    EXPECT_EQ(report["misses"]["own"], 0);
+  }
+  EXPECT_EQ(report["steps"], 150);
+  const estimate_t last = recorder_->estimates().back();
+  ASSERT_EQ(last.n_params, 6);
+  for (int i = 0; i < 3; ++i) {
+    const double truth = kTruth[static_cast<std::size_t>(i)];
+    // Far from where the prior stood, by the data: narrow, and where the plant is.
+    EXPECT_LT(last.sd[3 + i], 0.2 * kPriorSd) << i;
+    EXPECT_NEAR(last.ar_map[3 + i], truth, 4.0 * last.sd[3 + i]) << i;
+    EXPECT_NEAR(last.ar_map[3 + i], truth, 0.1) << i;
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "armcmc/gap_bench/report.hpp"
 
@@ -58,6 +59,40 @@ TEST(Gates, AnAnswerThatFailedCountsAsWrong) {
   const std::vector<Gate> gates =
       Gates({Made("pairs", Grade::kFailed, 0, false), Made("pairs", Grade::kRight, 1, true)});
   EXPECT_EQ(Find(gates, "pairs", "wrong")->value, 0.5);
+}
+
+Outcome Begun(Grade grade, std::optional<double> error_s, std::optional<double> off_s) {
+  Outcome outcome = Made("onset", grade, 0.9, true);
+  outcome.onset_error_s = error_s;
+  outcome.onset_off_s = off_s;
+  return outcome;
+}
+
+TEST(LocateOnsets, CountsOfThoseFoundAlsoTheOnesWithoutATime) {
+  // Of four found: one exact, one 0.1 s off the interval, one 0.3 s, one said to act always. The wrong one is not
+  // found.
+  const std::vector<Outcome> outcomes = {Begun(Grade::kRight, 0.0, 0.15), Begun(Grade::kTie, 0.1, 0.25),
+                                         Begun(Grade::kRight, 0.3, 0.3), Begun(Grade::kRight, {}, {}),
+                                         Begun(Grade::kWrong, 0.0, 0.0)};
+  const Onsets onsets = LocateOnsets(outcomes);
+  EXPECT_EQ(onsets.n, 4);
+  EXPECT_EQ(onsets.dated, 3);
+  EXPECT_EQ(onsets.within_20_ms, 0.25);
+  EXPECT_EQ(onsets.within_200_ms, 0.5);
+  EXPECT_EQ(onsets.off_within_200_ms, 0.25);
+  EXPECT_NEAR(onsets.median_s, 0.1, 1e-12);
+  const std::vector<Gate> gates = Gates(outcomes);
+  ASSERT_NE(Find(gates, "onset", "onset within 0.2 s, of those found"), nullptr);
+  EXPECT_FALSE(Find(gates, "onset", "onset within 0.2 s, of those found")->passed());
+  const nlohmann::json json = ToJson(outcomes, 1);
+  EXPECT_EQ(json.at("onset").at("within_200_ms"), 0.5);
+  EXPECT_EQ(json.at("cases").at(0).at("onset_off_s"), 0.15);
+  EXPECT_NE(Html(outcomes, 1).find("50 % were dated within 0.2 s and 25 % within 20 ms"), std::string::npos);
+}
+
+TEST(LocateOnsets, HasNoGateWithoutItsStratum) {
+  EXPECT_EQ(Find(Gates({Made("null", Grade::kRight, 1, true)}), "onset", "onset within 20 ms, of those found"),
+            nullptr);
 }
 
 TEST(Quantile, IsLinearBetweenValues) {

@@ -111,10 +111,10 @@ class BendEquation final : public Equation {
   std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
 
   std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
-    return {{"angle alpha, rad", s.at(Role::kPosition)},
-            {"rate alpha', rad/s", s.at(Role::kVelocity)},
-            {"pressure p - p_atm, Pa", s.at(Role::kPressure)},
-            {"time, s", s.t}};
+    return {{"angle alpha, rad", s.at(Role::kPosition), "alpha"},
+            {"rate alpha', rad/s", s.at(Role::kVelocity), "alpha'"},
+            {"pressure p - p_atm, Pa", s.at(Role::kPressure), "(p - p_atm)"},
+            {"time, s", s.t, "t"}};
   }
 
   std::vector<SplitVariable> SplitVariables(const Signals& s) const override {

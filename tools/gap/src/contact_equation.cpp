@@ -143,10 +143,10 @@ class ContactEquation final : public Equation {
   std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
 
   std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
-    return {{"depth x, m", s.at(Role::kPosition)},
-            {"speed v, m/s", s.at(Role::kVelocity)},
-            {"acceleration, m/s^2", s.at(Role::kAcceleration)},
-            {"time, s", s.t}};
+    return {{"depth x, m", s.at(Role::kPosition), "x"},
+            {"speed v, m/s", s.at(Role::kVelocity), "v"},
+            {"acceleration, m/s^2", s.at(Role::kAcceleration), "a"},
+            {"time, s", s.t, "t"}};
   }
 
  private:

@@ -151,9 +151,9 @@ class FlowEquation final : public Equation {
   std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
 
   std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
-    return {{"pressure p - p_atm, Pa", s.at(Role::kPressure)},
-            {"opening, fill positive, vent negative", s.at(Role::kOpening)},
-            {"time, s", s.t}};
+    return {{"pressure p - p_atm, Pa", s.at(Role::kPressure), "(p - p_atm)"},
+            {"opening, fill positive, vent negative", s.at(Role::kOpening), "u"},
+            {"time, s", s.t, "t"}};
   }
 
   std::vector<SplitVariable> SplitVariables(const Signals& s) const override {

@@ -1,19 +1,12 @@
 #include "armcmc/tables/recording.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "armcmc/support/csv.hpp"
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/subprocess.hpp"
 
 namespace armcmc::tables {
 namespace {
@@ -97,31 +90,12 @@ void FillPack(const Recording& recording, int k, int samples, DataPack* pack) {
 }
 
 std::filesystem::path Simulate(const std::string& scenario, std::uint64_t seed, const std::filesystem::path& folder) {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "armcmc-plant";
-  const std::filesystem::path csv = folder / (scenario + "-" + std::to_string(seed) + ".csv");
-  const std::filesystem::path errors = folder / (scenario + "-" + std::to_string(seed) + ".err");
-  std::vector<std::string> texts = {program.string(),     "--scenario", scenario,    "--seed",
-                                    std::to_string(seed), "--csv",      csv.string()};
-  std::vector<char*> argv;
-  for (std::string& text : texts) argv.push_back(text.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  pid_t pid = -1;
-  const int error = posix_spawn(&pid, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error(program.string() + ": " + std::strerror(error));
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0)
-    if (errno != EINTR) throw std::runtime_error(program.string() + ": " + std::strerror(errno));
-  std::ifstream text(errors);
-  const std::string message{std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()};
-  std::filesystem::remove(errors);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw std::runtime_error(program.string() + " --scenario " + scenario + " failed: " + message);
+  const std::filesystem::path program = support::ProgramBeside("armcmc-plant");
+  const std::filesystem::path csv =
+      std::filesystem::absolute(folder) / (scenario + "-" + std::to_string(seed) + ".csv");
+  const support::SubprocessEnd end = support::RunSubprocess(
+      program, {"--scenario", scenario, "--seed", std::to_string(seed), "--csv", csv.string()}, folder);
+  if (end.code != 0) throw std::runtime_error(program.string() + " --scenario " + scenario + " failed: " + end.errors);
   return csv;
 }
 

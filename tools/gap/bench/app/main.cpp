@@ -14,6 +14,7 @@
 #include "armcmc/gap_bench/strata.hpp"
 #include "armcmc/gap_bench/summary.hpp"
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/subprocess.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -70,7 +71,7 @@ int Run(Arguments a) {
     a.strata = StratumNames();
     a.strata.emplace_back(kTies);
   }
-  if (a.plant.empty()) a.plant = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "armcmc-plant";
+  if (a.plant.empty()) a.plant = support::ProgramBeside("armcmc-plant");
   if (!std::filesystem::exists(a.plant)) throw support::InputError(a.plant + " does not exist: give --plant");
   const PlantProcess plant(a.plant, a.out);
   std::vector<Case> cases;

@@ -9,7 +9,6 @@ namespace armcmc::gap_bench {
 namespace {
 
 using Test = std::function<bool(const Outcome&)>;
-constexpr double kOnsetTolerance_s = 0.02;
 constexpr double kTiny = 1e-12;
 
 bool IsGrade(const Outcome& o, std::initializer_list<Grade> grades) {
@@ -87,9 +86,6 @@ void AddNames(Gatherer* g) {
 void AddMotions(Gatherer* g) {
   const Test onset = In({"onset"}), poor = In({"poor"}), modes = In({"modes"}), paper = In({"paper"});
   g->Share("onset", "truth in the set", onset, Covers, 0.97, true);
-  g->Share(
-      "onset", "onset within 20 ms, of those found", [&](const Outcome& o) { return onset(o) && Covers(o); },
-      [](const Outcome& o) { return o.onset_error_s.value_or(HUGE_VAL) <= kOnsetTolerance_s; }, 0.85, true);
   g->Share("modes", "truth in the set", modes, Covers, 0.97, true);
   g->Share(
       "modes", "mode right, of those found", [&](const Outcome& o) { return modes(o) && Covers(o); },
@@ -127,6 +123,12 @@ void AddProof(Gatherer* g) {
       0.95, true);
 }
 
+void AddOnsets(const Onsets& onsets, Gatherer* g) {
+  if (onsets.n == 0) return;
+  g->Add("onset", "onset within 20 ms, of those found", onsets.within_20_ms, 0.85, true, onsets.n);
+  g->Add("onset", "onset within 0.2 s, of those found", onsets.within_200_ms, 0.85, true, onsets.n);
+}
+
 /// Relative errors of the base parameters, before and after the effect was added.
 void AddBias(const std::vector<Outcome>& outcomes, Gatherer* g) {
   std::vector<double> before, after;
@@ -152,6 +154,7 @@ std::vector<Gate> Gates(const std::vector<Outcome>& outcomes) {
   Gatherer g(outcomes);
   AddNames(&g);
   AddMotions(&g);
+  AddOnsets(LocateOnsets(outcomes), &g);
   AddProof(&g);
   AddBias(outcomes, &g);
   const Calibration calibration = Calibrate(outcomes);

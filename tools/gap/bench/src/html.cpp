@@ -118,6 +118,18 @@ void AddClosure(const std::vector<Outcome>& outcomes, plots::Page* page) {
   page->Html("</section>\n");
 }
 
+void AddOnsets(const Onsets& onsets, plots::Page* page) {
+  if (onsets.n == 0) return;
+  const auto percent = [](double share) { return plots::FixedText(100.0 * share, 0) + " %"; };
+  page->Html("<section class=\"card\"><h2>Onsets</h2>\n<p>Of " + std::to_string(onsets.n) +
+             " effects that begin during the recording and were found, " + percent(onsets.within_200_ms) +
+             " were dated within 0.2 s and " + percent(onsets.within_20_ms) +
+             " within 20 ms of the times at which the data cannot tell the onset apart (median " +
+             plots::NumberText(onsets.median_s, 2) + " s, 90 % quantile " + plots::NumberText(onsets.quantile90_s, 2) +
+             " s). Within 0.2 s of the true onset, at which an effect need not leave a trace yet: " +
+             percent(onsets.off_within_200_ms) + ".</p></section>\n");
+}
+
 void AddFailures(const std::vector<Outcome>& outcomes, plots::Page* page) {
   page->Html("<section class=\"card\"><h2>Wrong and failed</h2>\n<ul class=\"plain\">\n");
   for (const Outcome& o : outcomes)
@@ -136,6 +148,7 @@ std::string Html(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
   AddConfusion(outcomes, &page);
   AddReliability(outcomes, &page);
   AddClosure(outcomes, &page);
+  AddOnsets(LocateOnsets(outcomes), &page);
   AddCounts(outcomes, &page);
   AddFailures(outcomes, &page);
   page.Html("</main>\n");

@@ -36,6 +36,7 @@ json CaseJson(const Outcome& o) {
   out["label"] = {{"text", o.label}, {"probability", o.label_probability}, {"right", o.label_right}};
   out["cpu_s"] = o.answer.cpu_s;
   if (o.onset_error_s) out["onset_error_s"] = *o.onset_error_s;
+  if (o.onset_off_s) out["onset_off_s"] = *o.onset_off_s;
   if (o.diagnosed_strength) out["diagnosed_strength"] = *o.diagnosed_strength;
   if (o.when_right) out["when_right"] = *o.when_right;
   return out;
@@ -58,6 +59,15 @@ json ToJson(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
                             {"at_least", gate.at_least},
                             {"n", gate.n},
                             {"passed", gate.passed()}});
+  const Onsets onsets = LocateOnsets(outcomes);
+  if (onsets.n > 0)
+    out["onset"] = {{"n", onsets.n},
+                    {"dated", onsets.dated},
+                    {"within_20_ms", onsets.within_20_ms},
+                    {"within_200_ms", onsets.within_200_ms},
+                    {"within_200_ms_of_the_truth", onsets.off_within_200_ms},
+                    {"median_s", onsets.median_s},
+                    {"quantile90_s", onsets.quantile90_s}};
   const Calibration calibration = Calibrate(outcomes);
   out["calibration"] = {{"expected_error", calibration.error}, {"n", calibration.n}};
   for (const Bin& bin : calibration.bins)

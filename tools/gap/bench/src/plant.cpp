@@ -1,12 +1,5 @@
 #include "armcmc/gap_bench/plant.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -14,6 +7,7 @@
 #include <stdexcept>
 
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/subprocess.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -23,30 +17,6 @@ using Json = nlohmann::json;
 std::string Contents(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// Runs a program in `folder`, its stderr to a file. @return its exit code.
-int Run(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-        const std::filesystem::path& folder, const std::filesystem::path& errors) {
-  std::vector<std::string> texts = {program.string()};
-  texts.insert(texts.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& text : texts) argv.push_back(text.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  pid_t pid = -1;
-  const int error = posix_spawn(&pid, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error(program.string() + ": " + std::strerror(error));
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0)
-    if (errno != EINTR) throw std::runtime_error(program.string() + ": " + std::strerror(errno));
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
 /// Leaves t,x,v,f, the columns that a robot would record: those after them are the plant's own truth.
@@ -107,26 +77,20 @@ void PlantProcess::Remove(const Case& what) const {
 }
 
 bool PlantProcess::Make(const Case& what) const {
-  const std::filesystem::path errors = folder_ / (what.Name() + ".err");
-  const int code = Run(program_, Arguments(what), folder_, errors);
-  const std::string message = Contents(errors);
-  std::filesystem::remove(errors);
+  const support::SubprocessEnd end = support::RunSubprocess(program_, Arguments(what), folder_);
   // Out of reach is the one bad input that a case may be.
-  if (code == support::kExitBadInput && message.find("gap ratio") != std::string::npos) return false;
-  if (code != 0) throw std::runtime_error(program_.string() + " for " + what.Name() + ": " + message);
+  if (end.code == support::kExitBadInput && end.errors.find("gap ratio") != std::string::npos) return false;
+  if (end.code != 0) throw std::runtime_error(program_.string() + " for " + what.Name() + ": " + end.errors);
   HideTruth(Recording(what));
   return true;
 }
 
 std::vector<double> PlantProcess::Output(const Case& what, const std::string& scenario_text) const {
   const std::string name = what.Name() + "_contribution";
-  const std::filesystem::path scenario = folder_ / (name + ".toml"), csv = folder_ / (name + ".csv"),
-                              errors = folder_ / (name + ".err");
+  const std::filesystem::path scenario = folder_ / (name + ".toml"), csv = folder_ / (name + ".csv");
   std::ofstream(scenario, std::ios::binary) << scenario_text;
-  const int code =
-      Run(program_, {"--scenario", scenario.string(), "--seed", std::to_string(what.seed), "--csv", csv.string()},
-          folder_, errors);
-  const std::string message = Contents(errors);
+  const support::SubprocessEnd end = support::RunSubprocess(
+      program_, {"--scenario", scenario.string(), "--seed", std::to_string(what.seed), "--csv", csv.string()}, folder_);
   std::vector<double> output;
   std::ifstream rows(csv);
   std::string row;
@@ -137,8 +101,8 @@ std::vector<double> PlantProcess::Output(const Case& what, const std::string& sc
     for (int c = 0; c < 4; ++c) std::getline(fields, field, ',');
     output.push_back(std::stod(field));
   }
-  for (const std::filesystem::path& path : {scenario, csv, errors}) std::filesystem::remove(path);
-  if (code != 0) throw std::runtime_error(program_.string() + " for " + name + ": " + message);
+  for (const std::filesystem::path& path : {scenario, csv}) std::filesystem::remove(path);
+  if (end.code != 0) throw std::runtime_error(program_.string() + " for " + name + ": " + end.errors);
   return output;
 }
 

@@ -100,10 +100,12 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
   }
   if (outcome->truth.effects.size() != 1) return;
   const TrueEffect& effect = outcome->truth.effects.front();
-  if (effect.onset_s && !result.effects.empty())
+  if (effect.onset_s && !result.effects.empty()) {
     outcome->onset_error_s = OnsetError(result, effect.name,
                                         OnsetInterval(Contribution(plant, outcome->what, outcome->truth, false),
                                                       result.dt, *effect.onset_s, outcome->truth.noise_sd));
+    outcome->onset_off_s = OnsetError(result, effect.name, {*effect.onset_s, *effect.onset_s});
+  }
   const bool contact = effect.gate == "contact";
   if ((contact || effect.gate == "free") && !result.effects.empty())
     outcome->when_right =

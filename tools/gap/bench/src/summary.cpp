@@ -15,6 +15,7 @@ constexpr int kBins = 10;
 constexpr double kVisible = 0.3;  // gap ratio from which an effect has to be found
 constexpr double kClear = 1.0;
 constexpr double kSure = 0.9;
+constexpr double kNear_s = 0.02, kLocated_s = 0.2;  // of an onset
 
 bool Answered(const Outcome& o) { return Counts(o) && o.grade != Grade::kFailed; }
 
@@ -119,6 +120,29 @@ double Quantile(std::vector<double> values, double share) {
   const auto low = static_cast<std::size_t>(at);
   const std::size_t high = std::min(low + 1, values.size() - 1);
   return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+Onsets LocateOnsets(const std::vector<Outcome>& outcomes) {
+  Onsets onsets;
+  std::vector<double> errors;
+  int near = 0, located = 0, of_truth = 0;
+  for (const Outcome& o : outcomes) {
+    if (o.what.stratum != "onset" || (o.grade != Grade::kRight && o.grade != Grade::kTie)) continue;
+    ++onsets.n;
+    if (o.onset_off_s) of_truth += *o.onset_off_s <= kLocated_s ? 1 : 0;
+    if (!o.onset_error_s) continue;
+    errors.push_back(*o.onset_error_s);
+    near += errors.back() <= kNear_s ? 1 : 0;
+    located += errors.back() <= kLocated_s ? 1 : 0;
+  }
+  onsets.dated = static_cast<int>(errors.size());
+  const double n = std::max(onsets.n, 1);
+  onsets.within_20_ms = near / n;
+  onsets.within_200_ms = located / n;
+  onsets.off_within_200_ms = of_truth / n;
+  onsets.median_s = Quantile(errors, 0.5);
+  onsets.quantile90_s = Quantile(errors, 0.9);
+  return onsets;
 }
 
 SureLabels CountSure(const std::vector<Outcome>& outcomes) {

@@ -20,10 +20,11 @@ struct FeatureGroup {
   Matrix columns;
 };
 
-/// A variable that a report plots the residual against.
+/// A variable that a report plots the residual against, and that describes what has no name.
 struct PlotFeature {
-  std::string title;  ///< With unit.
-  Vector value;
+  std::string title;   ///< With unit.
+  Vector value;        ///< SI
+  std::string symbol;  ///< In expressions: "x".
 };
 
 /// A variable to split the recording by, with the words for both sides.

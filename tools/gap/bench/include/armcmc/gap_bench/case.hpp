@@ -82,6 +82,7 @@ struct Outcome {
   double label_probability = 0;  ///< Printed with it.
   bool label_right = false;
   std::optional<double> onset_error_s;  ///< Beyond the times at which the data cannot tell the onset apart.
+  std::optional<double> onset_off_s;    ///< From the true onset itself, at which the effect need not leave a trace.
   std::optional<bool> when_right;       ///< Contact-only and free-only effects: said so.
   /// Of effects that were not found: rms of what they add to the output in the diagnosed part of the recording, over
   /// the noise. A bound of R there, since the base parameters absorb some of it.

@@ -50,6 +50,16 @@ struct SureLabels {
   int n = 0, right = 0;
 };
 
+/// Where effects that begin during a recording were said to begin, of those that were found. Errors count beyond the
+/// times at which the data cannot tell the onset apart, see OnsetInterval.
+struct Onsets {
+  int n = 0;                                       ///< Found.
+  int dated = 0;                                   ///< With a time, not "always" or a mode.
+  double within_20_ms = 0.0, within_200_ms = 0.0;  ///< Shares of n.
+  double off_within_200_ms = 0.0;                  ///< Share of n, from the true onset itself.
+  double median_s = 0.0, quantile90_s = 0.0;       ///< Of the errors of those that were dated; NaN of none.
+};
+
 /// Whether a case counts: it could be made, and shows its effect.
 [[nodiscard]] bool Counts(const Outcome& outcome);
 [[nodiscard]] std::vector<Row> Rows(const std::vector<Outcome>& outcomes);
@@ -61,6 +71,7 @@ struct SureLabels {
 [[nodiscard]] bool ShownClosed(const Outcome& outcome);
 /// Share of the gap that is closed on held-out data, of those.
 [[nodiscard]] std::vector<double> Closures(const std::vector<Outcome>& outcomes);
+[[nodiscard]] Onsets LocateOnsets(const std::vector<Outcome>& outcomes);
 [[nodiscard]] SureLabels CountSure(const std::vector<Outcome>& outcomes);
 /// Value below which `share` of the values lie, linear between them; NaN of none.
 [[nodiscard]] double Quantile(std::vector<double> values, double share);

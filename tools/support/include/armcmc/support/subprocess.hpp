@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace armcmc::support {
+
+/// A program of the product, in the folder of the one that runs: "armcmc-plant".
+[[nodiscard]] std::filesystem::path ProgramBeside(const std::string& name);
+
+/// How a process ended.
+struct SubprocessEnd {
+  int code = 0;        ///< Exit code, or minus the signal that ended it.
+  std::string errors;  ///< What it wrote to stderr.
+};
+
+/// Runs a program and waits for its end. It reads nothing, and what it prints is lost; threads may call this at once.
+/// @param folder  Where it runs.
+/// @throws std::runtime_error naming the program when it cannot be started.
+[[nodiscard]] SubprocessEnd RunSubprocess(const std::filesystem::path& program,
+                                          const std::vector<std::string>& arguments,
+                                          const std::filesystem::path& folder);
+
+}  // namespace armcmc::support
