@@ -109,7 +109,7 @@ TEST(PlantDiagnosis, SaysThatTheConstantsAreWrongRatherThanToNameAnEffect) {
   EXPECT_EQ(finding.unlisted->fit.hypothesis.terms[0].form->family, "constants");
 }
 
-TEST(ActuatorWorkflow, SaysWhichEquationAndThatTheEstimatorCannotRunTheEffect) {
+TEST(ActuatorWorkflow, SaysWhichEquationAndWritesTheModelThatRuns) {
   WorkflowRequest request;
   request.model = kModel;
   request.data = RecordPlant(kModel, {{"leak", 1.0, {}}}, 65, kSeconds);
@@ -120,9 +120,10 @@ TEST(ActuatorWorkflow, SaysWhichEquationAndThatTheEstimatorCannotRunTheEffect) {
   EXPECT_NE(result.sentence.find("in the flow law: leak"), std::string::npos) << result.sentence;
   ASSERT_FALSE(result.where.empty());
   EXPECT_EQ(result.where.front().feature.rfind("flow law: ", 0), 0u) << result.where.front().feature;
-  EXPECT_FALSE(outcome.augmented);
-  EXPECT_TRUE(std::any_of(result.notes.begin(), result.notes.end(),
-                          [](const std::string& note) { return note.find("offline") != std::string::npos; }));
+  ASSERT_TRUE(outcome.augmented);
+  EXPECT_EQ(outcome.augmented->effects[0].name, "leak");
+  EXPECT_TRUE(std::none_of(result.notes.begin(), result.notes.end(),
+                           [](const std::string& note) { return note.find("offline") != std::string::npos; }));
   EXPECT_GT(result.gap.closed_fraction, 0.9);
   EXPECT_EQ(result.gap.unit, "Pa/s");
 }
