@@ -154,7 +154,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   const PosteriorMemory& previous = transition_.Choose(data, last, &mismatch, &lambda, &ws->laplace);
   const bool use_previous = lambda > 0.0;
   const int wanted = DrawTarget(mismatch, out);
-  const int target = std::clamp(limit, SamplerSettings::kMinDraws, wanted);
+  int target = std::clamp(limit, SamplerSettings::kMinDraws, wanted);
   // A change in part leaves one coordinate as wide as P_0: its density is a poor guide to the posterior.
   const double lambda_q = transition_.Offers(previous)
                               ? sampler_.lambda_q_min
@@ -165,7 +165,10 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);
   const RandomStream stream = stream_of(kDrawStream);
   memory_inside_ = 1.0;
-  int pilot = RunPilot(data, previous, use_previous, lambda, lambda_q, wanted, stream, ws, &proposal, out);
+  bool in_haste = false;
+  int pilot = RunPilot(data, previous, use_previous, lambda, lambda_q, wanted, {deadline_ns, clock, limit}, stream, ws,
+                       &proposal, out, &in_haste);
+  if (in_haste) target = pilot + DrawsInHaste(pilot, wanted);
 
   // Nothing above or below depends on `limit` but where the loop ends, so that a truncated run repeats to the bit.
   int made = pilot;

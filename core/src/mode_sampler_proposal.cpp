@@ -167,16 +167,29 @@ int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int fi
 }
 
 int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda,
-                          double lambda_q, int wanted, const RandomStream& stream, SamplerWorkspace* ws,
-                          Proposal* proposal, ModeDraws* out) noexcept {
+                          double lambda_q, int wanted, const DrawTime& time, const RandomStream& stream,
+                          SamplerWorkspace* ws, Proposal* proposal, ModeDraws* out, bool* in_haste) noexcept {
   const int size = std::min(kPilotDraws, wanted / (2 * kPilotRounds) / kTileLanes * kTileLanes);
   const double enough = std::fmin(kPilotEss, kPilotEssShare * size);
   int made = 0;
   int pooled = 0;  // first draw of those that share the proposal of this round
   int blocks = 0;
   bool on_ridge = false;
+  Nanos worst_round_ns = 0;
+  Nanos before = time.clock.Now();
   for (int round = 0; round < kMaxPilotRounds; ++round) {
     if (round >= kPilotRounds && made + size > wanted / 2) break;
+    if (round > 0 && size > 2 * kTileLanes) {  // shorter rounds cost nothing
+      const int after_round = made + size + DrawsInHaste(made + size, wanted);
+      if (after_round > time.limit) break;
+      const Nanos now = time.clock.Now();
+      worst_round_ns = std::max(worst_round_ns, now - before);
+      before = now;
+      const double ahead =
+          finish_ns_per_draw_ * after_round + static_cast<double>(worst_round_ns) * (after_round - made) / size;
+      *in_haste = now + static_cast<Nanos>(ahead) > time.deadline_ns;
+      if (*in_haste) break;
+    }
     DrawAndScore(*proposal, previous, data, made, size, stream, ws, out);
     made += size;
     double ess = 0.0;

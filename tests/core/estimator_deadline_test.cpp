@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "estimator_rig.hpp"
+#include "statistical/contact_packs.hpp"
 
 namespace armcmc {
 namespace {
@@ -59,6 +60,17 @@ TEST(Deadline, DrawLimitsRepeatATruncatedRunOfTwoModesToTheBit) {
   std::vector<DataPack> packs;
   for (std::int64_t seq = 1; seq <= 20; ++seq) packs.push_back(test::Actuator{}.Pack(seq, 60));
   ExpectRepeatable(test::ActuatorSettings(), packs);
+}
+
+TEST(Deadline, DrawLimitsRepeatAPilotThatWasCutShortToTheBit) {
+  // Short packs of a plant that changes: pilots of up to seven rounds.
+  std::vector<DataPack> packs;
+  test::Normal normal(11);
+  for (std::int64_t seq = 1; seq <= 120; ++seq) {
+    const test::ContactTruth truth = seq % 8 >= 5 ? test::ContactTruth{.k = 2.0, .b = 1.15} : test::ContactTruth{};
+    packs.push_back(test::MakeContactPack(seq, {1.6, 1.4, 0.66, 0.0}, truth, 0.1, &normal, 100, 1e-4));
+  }
+  ExpectRepeatable(BuiltinSettings("hunt_crossley"), packs);
 }
 
 TEST(Deadline, BudgetOfACertainLengthCutsTheDrawsAndSaysSo) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -85,6 +86,19 @@ class ModeSampler {
   [[nodiscard]] Transition& transition() noexcept { return transition_; }
 
  private:
+  /// Draws after a pilot that there was no time to finish. made + DrawsInHaste(made) rises with every round of more
+  /// than two tiles, and so tells how many rounds there were.
+  static constexpr int DrawsInHaste(int made, int wanted) noexcept {
+    return std::min(kChunkDraws, (wanted - made) / 2 / kTileLanes * kTileLanes);
+  }
+
+  /// Until when a pack may draw, and how much at most.
+  struct DrawTime {
+    Nanos deadline_ns;
+    ClockRef clock;
+    int limit;
+  };
+
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
                    SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   void FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous,
@@ -108,11 +122,14 @@ class ModeSampler {
                const ModeDraws& draws, double* ess) noexcept ARMCMC_NONBLOCKING;
   /// Draws in rounds until the posterior is known well enough to draw the rest from: Laplace fits; where they are a
   /// poor match, the ridge; where that fails, too, powers of the posterior that come nearer to it round by round.
+  ///
+  /// A round that would not leave time for a chunk of draws is not begun: then `in_haste`, and DrawsInHaste() follow. A
+  /// run that is limited to as many draws as that makes the same rounds.
   /// @param[out] proposal  For the rest. @return the number of draws made, at most half of `wanted` after the first
   /// kPilotRounds.
   int RunPilot(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda, double lambda_q,
-               int wanted, const RandomStream& stream, SamplerWorkspace* ws, Proposal* proposal,
-               ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+               int wanted, const DrawTime& time, const RandomStream& stream, SamplerWorkspace* ws, Proposal* proposal,
+               ModeDraws* out, bool* in_haste) noexcept ARMCMC_NONBLOCKING;
   /// Proposal along the ridge of this pack. @return false when there is none.
   bool BuildRidgeProposal(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda_q,
                           SamplerWorkspace* ws, Proposal* proposal) noexcept ARMCMC_NONBLOCKING;
