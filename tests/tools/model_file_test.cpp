@@ -167,7 +167,7 @@ TEST_F(ModelFile, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(ErrorOf(start + "[[effect]]\nname = \"viscous_friction\"\ncoefficient = { lower = -1.0 }\n"),
               HasSubstr("effect.viscous_friction.coefficient.lower = -1"));
   EXPECT_THAT(ErrorOf("schema = 1\nbase = \"soft_actuator\"\n[[effect]]\nname = \"force_bias\"\n"),
-              HasSubstr("takes no effects"));
+              HasSubstr("expected one of pressure_bias"));
 }
 
 }  // namespace
