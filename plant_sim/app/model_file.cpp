@@ -184,8 +184,8 @@ void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
       return std::find_if(ModelsOfActuator().begin(), ModelsOfActuator().end(),
                           [&](const ModelEffect& one) { return one.name == effect.spec->name; });
     };
-    std::stable_sort(changed.hidden.begin(), changed.hidden.end(),
-                     [&](const HiddenEffect& a, const HiddenEffect& b) { return place(a) < place(b); });
+    std::sort(changed.hidden.begin(), changed.hidden.end(),
+              [&](const HiddenEffect& a, const HiddenEffect& b) { return place(a) < place(b); });
   }
   try {
     ResolveNoise(&changed);
