@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -130,6 +131,20 @@ TEST_F(PackSourceTest, APackWithoutSamplesIsLost) {
   EXPECT_EQ(packs[0].pack.seq, 1);
   EXPECT_EQ(packs[1].pack.seq, 3);
   EXPECT_EQ(source_->counts().lost, 1);
+}
+
+TEST_F(PackSourceTest, AGapOfMonthsIsCountedAtOnce) {
+  std::string text = ContactCsv(301);  // up to 0.3 s
+  for (int n = 1; n <= 200; ++n) {
+    char row[64];
+    std::snprintf(row, sizeof(row), "%.3f,0.001,0.1,2.5\n", 1e7 + n * 0.001);
+    text += row;
+  }
+  Csv(text);
+  const auto packs = ReadAll();
+  ASSERT_EQ(packs.size(), 5u);
+  EXPECT_EQ(packs[3].pack.seq, 100'000'001);
+  EXPECT_EQ(source_->counts().lost, 100'000'000 - 3);
 }
 
 TEST_F(PackSourceTest, AnActuatorPackWithAGapIsLostBecauseItsAngleIsIntegrated) {

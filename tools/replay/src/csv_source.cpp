@@ -87,8 +87,18 @@ void CsvSource::Fill(std::size_t end_row, DataPack* pack, std::array<double, kMa
   }
 }
 
+void CsvSource::SkipEmptyPacks() {
+  if (row_ >= number_.size()) return;
+  const std::int64_t filled = (number_[row_] + samples_per_pack_ - 1) / samples_per_pack_;
+  const std::int64_t before = std::min(filled, last_pack_) - 1;
+  if (before <= pack_) return;
+  counts_.lost += before - pack_;
+  pack_ = before;
+}
+
 bool CsvSource::Next(RecordedPack* next) {
   while (pack_ < last_pack_) {
+    SkipEmptyPacks();
     ++pack_;
     std::size_t end_row = row_;
     while (end_row < number_.size() && number_[end_row] <= pack_ * samples_per_pack_) ++end_row;

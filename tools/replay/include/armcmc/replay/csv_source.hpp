@@ -27,6 +27,8 @@ class CsvSource final : public PackSource {
 
  private:
   void NumberSamples(const SourceRequest& request);
+  /// Counts the packs without any row as lost, at once: a gap may be as long as it likes.
+  void SkipEmptyPacks();
   void Fill(std::size_t end_row, DataPack* pack, std::array<double, kMaxPackSamples>* t) const;
 
   PlantKind plant_;
