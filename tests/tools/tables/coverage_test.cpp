@@ -64,6 +64,12 @@ TEST(JudgeCoverage, SaysMoreThanTwoStandardErrors) {
   EXPECT_EQ(CoverageText(0.862, 2, 0.027), "86.2 ± 2.7, too narrow");
 }
 
+TEST(NullCoverageVariance, PosteriorsWithoutWidthAreOneDecision) {
+  const std::vector<double> sd(5, 0.0);
+  for (std::size_t level = 0; level < kLevels.size(); ++level)
+    EXPECT_NEAR(NullCoverageVariance(sd, level), kLevels[level] * (1.0 - kLevels[level]), 1e-3);
+}
+
 /// Four runs of one pack each, at rest with K = 4, that all cover K: the spread between the runs is zero.
 Experiment RunsThatAllCover() {
   Recording r;

@@ -39,7 +39,9 @@ double NullCoverageVariance(std::span<const double> sd, std::size_t level) {
   for (std::size_t j = 0; j < sd.size(); ++j) {
     for (std::size_t k = 0; k < j; ++k) {
       // The wider of the two is the earlier one, but where something was forgotten in between.
-      const double at = kIntervals * std::asin(std::min(sd[j], sd[k]) / std::max(sd[j], sd[k])) / kQuarterTurn;
+      const double ratio = std::min(sd[j], sd[k]) / std::max(sd[j], sd[k]);
+      // A filter whose particles are all alike has no width: nothing in it is independent.
+      const double at = std::isfinite(ratio) ? kIntervals * std::asin(ratio) / kQuarterTurn : kIntervals;
       const auto i = static_cast<std::size_t>(std::min(at, kIntervals - 1.0));
       pairs += table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
     }

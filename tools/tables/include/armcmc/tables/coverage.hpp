@@ -28,7 +28,7 @@ inline constexpr std::array<double, 3> kHalfWidths{0.674489750196082, 1.64485362
 /// which is 0 for r = 0 and L (1 - L) for r = 1. The variance is the mean of that over all pairs of packs. For a method
 /// that forgets (or learns from one pack alone) the packs depend on each other less, and this is an upper bound.
 ///
-/// @param sd     Posterior standard deviations of one parameter after each pack that is counted, > 0.
+/// @param sd     Posterior standard deviations of one parameter after each pack that is counted, >= 0.
 /// @param level  Index into kLevels.
 [[nodiscard]] double NullCoverageVariance(std::span<const double> sd, std::size_t level);
 
