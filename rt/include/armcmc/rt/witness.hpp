@@ -48,9 +48,9 @@ class WakeUpRing {
 /// the machine that stood still (hypervisor, firmware, kernel), since no thread of ours can delay it.
 class Witness {
  public:
-  /// A quarter of the deadline, so that a step sees several wake-ups, within [100 us, 1 ms].
+  /// A fortieth of the deadline, within [100 us, 1 ms]: time that is taken in slices shorter than this is hardly seen.
   [[nodiscard]] static constexpr Nanos PeriodFor(Nanos deadline_ns) noexcept {
-    return std::clamp<Nanos>(deadline_ns / 4, 100'000, 1'000'000);
+    return std::clamp<Nanos>(deadline_ns / 40, 100'000, 1'000'000);
   }
 
   Witness(int cpu, Nanos period_ns) noexcept : cpu_(cpu), period_ns_(period_ns) {}
