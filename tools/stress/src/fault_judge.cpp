@@ -7,7 +7,7 @@
 namespace armcmc::stress {
 namespace {
 
-constexpr double kApart = 4.0;  // joint standard deviations
+constexpr double kApart = 2.0;  // joint standard deviations
 
 }  // namespace
 

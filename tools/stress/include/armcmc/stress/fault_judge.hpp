@@ -27,10 +27,8 @@ struct FaultOutcome {
 /// Watches the estimator's messages of one run of the plant after another and judges every slot.
 ///
 /// A step is normal when its estimate came, its status raises no flag that was not there before the fault, its
-/// deadline was kept, and its estimate agrees with the one before the fault: inside its 95 % interval or within four
-/// joint standard deviations (hundreds of faults with three parameters each, some of them long enough to learn a lot
-/// meanwhile: two would be left by chance in every run), with an interval at most four times as wide (unless the fault
-/// makes it learn again).
+/// deadline was kept, and its estimate agrees with the one before the fault: inside its 95 % interval or within two
+/// joint standard deviations, with an interval at most four times as wide (unless the fault makes it learn again).
 /// Memory is bounded by the length of a slot.
 class FaultJudge {
  public:
