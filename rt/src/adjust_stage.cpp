@@ -16,11 +16,10 @@ AdjustStage::AdjustStage(const RtSettings& settings, StepEngine* engine, PackRin
       counters_(counters),
       events_(events) {}
 
-void AdjustStage::CountDropped(const StepInfo& info, Stage waiting_for, Nanos now_ns, Nanos lacked_ns) noexcept {
-  const MissCause cause = monitor_->RecordDropped(info.times, waiting_for, now_ns, lacked_ns);
+void AdjustStage::CountDropped(std::int64_t seq, MissCause cause, Nanos now_ns, Nanos lacked_ns) noexcept {
   counters_->adjust.dropped.Add();
   counters_->faults.Raise(estimator_status_t::FAULT_BACKLOG);
-  events_->Add({now_ns, EventKind::kPackDropped, static_cast<std::uint8_t>(cause), info.seq, lacked_ns});
+  events_->Add({now_ns, EventKind::kPackDropped, static_cast<std::uint8_t>(cause), seq, lacked_ns});
 }
 
 void AdjustStage::DropUnkeepable() noexcept {
@@ -29,7 +28,7 @@ void AdjustStage::DropUnkeepable() noexcept {
     const Nanos now_ns = MonotonicNow();
     const Nanos lacked_ns = now_ns + typical_.Get() - slot->times.deadline_ns;
     if (lacked_ns <= 0) return;
-    CountDropped({slot->pack.seq, slot->pack.run_id, Status::kOk, slot->times}, Stage::kAdjust, now_ns, lacked_ns);
+    CountDropped(slot->pack.seq, monitor_->RecordDropped(slot->times, now_ns, typical_.Get()), now_ns, lacked_ns);
     ring_->Pop();
   }
 }
@@ -63,6 +62,7 @@ bool AdjustStage::Step() noexcept {
                                 MonotonicClock(), result);
   const Nanos end_ns = MonotonicNow();
   info.times.end_ns[IndexOf(Stage::kAdjust)] = end_ns;
+  monitor_->RecordAdjusted(&info.times);
   ring_->Pop();
   typical_.Add(end_ns - start_ns);
   NoteStatus(info);
@@ -71,7 +71,8 @@ bool AdjustStage::Step() noexcept {
     // Execute did not come to the result before: it is lost, and its note is in the slot that is ours again.
     const StepInfo& lost = results_->info[static_cast<std::size_t>(results_->latest.write_slot())];
     const Nanos waited_ns = end_ns - lost.times.end_ns[IndexOf(Stage::kAdjust)];
-    CountDropped(lost, Stage::kExecute, end_ns, std::max(waited_ns, end_ns - lost.times.deadline_ns));
+    const Nanos lacked_ns = std::max(waited_ns, end_ns - lost.times.deadline_ns);
+    CountDropped(lost.seq, monitor_->RecordOvertaken(lost.times, end_ns, lacked_ns), end_ns, lacked_ns);
   }
   return true;
 }

@@ -24,16 +24,27 @@ std::string_view ToString(MissCause cause) noexcept {
 DeadlineMonitor::DeadlineMonitor(const RtSettings& settings) noexcept
     : budget_ns_{settings.ExecuteReserveNs(), settings.adjust_budget_ns, settings.ExecuteReserveNs()} {}
 
-Nanos DeadlineMonitor::StalledTime(const StepTimes& times, Stage last, Nanos end_ns) const noexcept {
-  // From the arrival on, since before it there was nothing to delay. The wait for a stage counts as that stage's.
-  Nanos begin = times.arrival_ns;
-  Nanos stalled = 0;
-  for (std::size_t i = 0; i <= IndexOf(last); ++i) {
-    const Nanos end = i == IndexOf(last) ? end_ns : times.end_ns[i];
-    if (witness_[i] != nullptr) stalled += witness_[i]->StalledTime(begin, end, end);
-    begin = end;
-  }
-  return stalled;
+Nanos DeadlineMonitor::StalledTime(Stage stage, Nanos begin_ns, Nanos end_ns) const noexcept {
+  const WakeUpRing* witness = witness_[IndexOf(stage)];
+  return witness != nullptr && begin_ns < end_ns ? witness->StalledTime(begin_ns, end_ns, end_ns) : 0;
+}
+
+Earlier DeadlineMonitor::Collected(const StepTimes& times) const noexcept {
+  const Nanos stall = StalledTime(Stage::kCollect, times.arrival_ns, times.end_ns[IndexOf(Stage::kCollect)]);
+  return {times.lateness_ns, stall, times.lateness_ns + stall};
+}
+
+StageWork DeadlineMonitor::Work(const StageTimeline& timeline, Stage stage, Nanos ready_ns, Nanos start_ns,
+                                Nanos end_ns) const noexcept {
+  return {ready_ns, start_ns, end_ns, StalledTime(stage, timeline.CouldBegin(ready_ns), start_ns),
+          StalledTime(stage, start_ns, end_ns)};
+}
+
+void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING {
+  const std::size_t adjust = IndexOf(Stage::kAdjust);
+  const StageWork work = Work(adjust_timeline_, Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)],
+                              times->start_ns[adjust], times->end_ns[adjust]);
+  times->adjusted_earlier = adjust_timeline_.Do(work, Collected(*times));
 }
 
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {
@@ -43,17 +54,29 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
     if (duration > budget_ns_[IndexOf(stage)]) overruns_[IndexOf(stage)].Add();
   }
   end_to_end_.Add(times.EndToEnd());
-  if (times.Slack() >= 0) return MissCause::kNone;
-  const Nanos stall = StalledTime(times, Stage::kExecute, times.end_ns[IndexOf(Stage::kExecute)]);
-  const MissCause cause = Attribute({-times.Slack(), times.lateness_ns, stall});
-  finished_late_[static_cast<std::size_t>(cause)].Add();
+  const std::size_t execute = IndexOf(Stage::kExecute);
+  const StageWork work = Work(execute_timeline_, Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)],
+                              times.start_ns[execute], times.end_ns[execute]);
+  const MissCause cause = Attribute(-times.Slack(), execute_timeline_.Do(work, times.adjusted_earlier));
+  if (cause != MissCause::kNone) finished_late_[static_cast<std::size_t>(cause)].Add();
   return cause;
 }
 
-MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Stage waiting_for, Nanos now_ns,
-                                         Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING {
-  const Nanos stall = StalledTime(times, waiting_for, now_ns);
-  const MissCause cause = Attribute({std::max<Nanos>(1, lacked_ns), times.lateness_ns, stall});
+MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns,
+                                         Nanos typical_ns) noexcept ARMCMC_NONBLOCKING {
+  const StageWork work = Work(adjust_timeline_, Stage::kAdjust, times.end_ns[IndexOf(Stage::kCollect)], now_ns, now_ns);
+  const Earlier earlier = adjust_timeline_.GiveUp(work, Collected(times), typical_ns);
+  const MissCause cause = Attribute(std::max<Nanos>(1, now_ns + typical_ns - times.deadline_ns), earlier);
+  given_up_[static_cast<std::size_t>(cause)].Add();
+  return cause;
+}
+
+MissCause DeadlineMonitor::RecordOvertaken(const StepTimes& times, Nanos now_ns,
+                                           Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING {
+  const Nanos stall = StalledTime(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], now_ns);
+  const Earlier& ready = times.adjusted_earlier;
+  const MissCause cause = Attribute(std::max<Nanos>(1, lacked_ns),
+                                    {ready.without_lateness, ready.without_stalls + stall, ready.without_both + stall});
   given_up_[static_cast<std::size_t>(cause)].Add();
   return cause;
 }

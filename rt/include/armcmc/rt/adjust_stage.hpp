@@ -57,7 +57,7 @@ class AdjustStage {
 
  private:
   void DropUnkeepable() noexcept ARMCMC_NONBLOCKING;
-  void CountDropped(const StepInfo& info, Stage waiting_for, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
+  void CountDropped(std::int64_t seq, MissCause cause, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
   void NoteStatus(const StepInfo& info) noexcept ARMCMC_NONBLOCKING;
 
   Nanos budget_ns_, reserve_ns_;

@@ -2,21 +2,17 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
 #include "armcmc/rt/log_histogram.hpp"
+#include "armcmc/rt/miss_cause.hpp"
 #include "armcmc/rt/settings.hpp"
+#include "armcmc/rt/stage_timeline.hpp"
 #include "armcmc/rt/witness.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc::rt {
-
-/// Why a deadline was missed. Values equal estimator_status_t.MISS_*.
-enum class MissCause : std::uint8_t { kNone = 0, kOwn = 1, kMachine = 2, kLateData = 3 };
-inline constexpr std::size_t kNumMissCauses = 4;
-[[nodiscard]] std::string_view ToString(MissCause cause) noexcept ARMCMC_NONBLOCKING;
 
 /// Time stamps of one step, CLOCK_MONOTONIC.
 struct StepTimes {
@@ -25,35 +21,17 @@ struct StepTimes {
   Nanos arrival_ns = 0;   ///< Kernel receive time of the pack.
   Nanos deadline_ns = 0;  ///< Absolute: release + deadline of the settings.
   std::array<Nanos, kNumStages> start_ns{}, end_ns{};
+  Earlier adjusted_earlier;  ///< How much earlier adjust would have been through.
 
   [[nodiscard]] Nanos Duration(Stage stage) const noexcept { return end_ns[IndexOf(stage)] - start_ns[IndexOf(stage)]; }
   [[nodiscard]] Nanos EndToEnd() const noexcept { return end_ns[IndexOf(Stage::kExecute)] - release_ns; }
   [[nodiscard]] Nanos Slack() const noexcept { return deadline_ns - end_ns[IndexOf(Stage::kExecute)]; }
 };
 
-/// What is known about a step that lacked time.
-struct MissEvidence {
-  Nanos lacked_ns = 0;    ///< By how much the deadline was missed; <= 0: it was not.
-  Nanos lateness_ns = 0;  ///< How late the pack came on the locked grid.
-  Nanos stall_ns = 0;     ///< Time a witness on the CPU of the stage that was running waited in vain.
-};
-
-/// Exactly one cause per miss.
-///
-/// Late data, when the pack alone came late by at least what the step lacked; else the machine, when the stalls that
-/// the witnesses saw alone are as long as that: without them the deadline had been met; else our own. In doubt it is
-/// our own.
-[[nodiscard]] constexpr MissCause Attribute(const MissEvidence& evidence) noexcept {
-  if (evidence.lacked_ns <= 0) return MissCause::kNone;
-  if (evidence.lateness_ns >= evidence.lacked_ns) return MissCause::kLateData;
-  if (evidence.stall_ns >= evidence.lacked_ns) return MissCause::kMachine;
-  return MissCause::kOwn;
-}
-
 /// Judges every step against its deadline and keeps the times of all stages.
 ///
-/// The execute thread calls Record(), the adjust thread RecordDropped(); the miss counters may be read any time, the
-/// histograms after both have ended.
+/// The adjust thread calls RecordAdjusted() and RecordDropped(), the execute thread Record(); the miss counters may be
+/// read any time, the histograms after both have ended.
 class DeadlineMonitor {
  public:
   explicit DeadlineMonitor(const RtSettings& settings) noexcept;
@@ -61,15 +39,21 @@ class DeadlineMonitor {
   /// Wake-ups of the witness on the CPU of a stage; without one the machine is never blamed.
   void SetWitness(Stage stage, const WakeUpRing* wake_ups) noexcept { witness_[IndexOf(stage)] = wake_ups; }
 
-  /// Judges a step that went through all stages. @rt O(wake-ups in the step) on a miss, else O(1).
+  /// Notes in times->adjusted_earlier what stalls and late packs cost a step that adjust has just been through, the
+  /// steps before it included. @rt O(wake-ups in the step).
+  void RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING;
+
+  /// Judges a step that went through all stages. @rt O(wake-ups in execute).
   MissCause Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
 
-  /// Judges a pack that was given up at now_ns in favour of a newer one: always a miss.
-  /// @param waiting_for  Stage that it did not get through.
-  /// @param lacked_ns    What its predicted end lacks against the deadline; at least 1 is assumed.
+  /// Judges a pack that adjust gives up at now_ns in favour of a newer one: always a miss.
+  /// @param typical_ns  What adjust would have taken; now_ns + typical_ns is past the deadline.
   /// @rt O(wake-ups since its arrival).
-  MissCause RecordDropped(const StepTimes& times, Stage waiting_for, Nanos now_ns,
-                          Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
+  MissCause RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns) noexcept ARMCMC_NONBLOCKING;
+
+  /// Judges a result that execute did not come to before now_ns and the next result: always a miss.
+  /// @param lacked_ns  By how much execute was late; at least 1 is assumed. @rt O(wake-ups since adjust).
+  MissCause RecordOvertaken(const StepTimes& times, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] std::int64_t misses(MissCause cause) const noexcept ARMCMC_NONBLOCKING;
   /// Steps in which a stage took more than its budget (adjust: its budget; the others: the execute reserve).
@@ -78,9 +62,14 @@ class DeadlineMonitor {
   [[nodiscard]] const LogHistogram& end_to_end() const noexcept { return end_to_end_; }
 
  private:
-  [[nodiscard]] Nanos StalledTime(const StepTimes& times, Stage last, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Nanos StalledTime(Stage stage, Nanos begin_ns, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Earlier Collected(const StepTimes& times) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] StageWork Work(const StageTimeline& timeline, Stage stage, Nanos ready_ns, Nanos start_ns,
+                               Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
 
   std::array<const WakeUpRing*, kNumStages> witness_{};
+  StageTimeline adjust_timeline_;   // of the adjust thread
+  StageTimeline execute_timeline_;  // of the execute thread
   std::array<Nanos, kNumStages> budget_ns_;
   std::array<LogHistogram, kNumStages> stage_times_;
   LogHistogram end_to_end_;

@@ -1,0 +1,30 @@
+#include "armcmc/rt/miss_cause.hpp"
+
+#include <gtest/gtest.h>
+
+namespace armcmc::rt {
+namespace {
+
+TEST(Attribute, BlamesNobodyWhenTheDeadlineWasMet) {
+  EXPECT_EQ(Attribute(0, {50, 50, 100}), MissCause::kNone);
+  EXPECT_EQ(Attribute(-1, {}), MissCause::kNone);
+}
+
+TEST(Attribute, BlamesTheDataWhenTheyWereLateByWhatTheStepLacked) {
+  EXPECT_EQ(Attribute(10, {10, 0, 10}), MissCause::kLateData);
+  EXPECT_EQ(Attribute(10, {9, 0, 9}), MissCause::kOwn);
+}
+
+TEST(Attribute, BlamesTheMachineForStallsAsLongAsWhatTheStepLacked) {
+  EXPECT_EQ(Attribute(10, {0, 10, 10}), MissCause::kMachine);
+  EXPECT_EQ(Attribute(10, {0, 9, 9}), MissCause::kOwn);
+}
+
+TEST(Attribute, BlamesTheLargerPartWhenOnlyBothExplainIt) {
+  EXPECT_EQ(Attribute(10, {4, 6, 10}), MissCause::kMachine);
+  EXPECT_EQ(Attribute(10, {6, 4, 10}), MissCause::kLateData);
+  EXPECT_EQ(Attribute(10, {6, 6, 9}), MissCause::kOwn) << "they overlap";
+}
+
+}  // namespace
+}  // namespace armcmc::rt
