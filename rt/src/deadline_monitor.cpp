@@ -34,17 +34,19 @@ Earlier DeadlineMonitor::Collected(const StepTimes& times) const noexcept {
   return {times.lateness_ns, stall, times.lateness_ns + stall};
 }
 
-StageWork DeadlineMonitor::Work(const StageTimeline& timeline, Stage stage, Nanos ready_ns, Nanos start_ns,
+StageWork DeadlineMonitor::Work(Queue* queue, Stage stage, Nanos ready_ns, Nanos start_ns,
                                 Nanos end_ns) const noexcept {
-  return {ready_ns, start_ns, end_ns, StalledTime(stage, timeline.CouldBegin(ready_ns), start_ns),
-          StalledTime(stage, start_ns, end_ns)};
+  const Nanos begin_ns = queue->timeline.CouldBegin(ready_ns);
+  const Nanos before_ns = queue->wake_up.Stalled(start_ns - begin_ns, StalledTime(stage, begin_ns, start_ns));
+  const Nanos stall_ns = queue->work.Stalled(end_ns - start_ns, StalledTime(stage, start_ns, end_ns));
+  return {ready_ns, start_ns, end_ns, before_ns, stall_ns};
 }
 
 void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING {
   const std::size_t adjust = IndexOf(Stage::kAdjust);
-  const StageWork work = Work(adjust_timeline_, Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)],
+  const StageWork work = Work(&adjust_queue_, Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)],
                               times->start_ns[adjust], times->end_ns[adjust]);
-  times->adjusted_earlier = adjust_timeline_.Do(work, Collected(*times));
+  times->adjusted_earlier = adjust_queue_.timeline.Do(work, Collected(*times));
 }
 
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {
@@ -55,17 +57,20 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
   }
   end_to_end_.Add(times.EndToEnd());
   const std::size_t execute = IndexOf(Stage::kExecute);
-  const StageWork work = Work(execute_timeline_, Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)],
+  const StageWork work = Work(&execute_queue_, Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)],
                               times.start_ns[execute], times.end_ns[execute]);
-  const MissCause cause = Attribute(-times.Slack(), execute_timeline_.Do(work, times.adjusted_earlier));
+  const MissCause cause = Attribute(-times.Slack(), execute_queue_.timeline.Do(work, times.adjusted_earlier));
   if (cause != MissCause::kNone) finished_late_[static_cast<std::size_t>(cause)].Add();
   return cause;
 }
 
 MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns,
                                          Nanos typical_ns) noexcept ARMCMC_NONBLOCKING {
-  const StageWork work = Work(adjust_timeline_, Stage::kAdjust, times.end_ns[IndexOf(Stage::kCollect)], now_ns, now_ns);
-  const Earlier earlier = adjust_timeline_.GiveUp(work, Collected(times), typical_ns);
+  StageWork work;
+  work.ready_ns = times.end_ns[IndexOf(Stage::kCollect)];
+  work.start_ns = work.end_ns = now_ns;
+  work.stall_before_ns = StalledTime(Stage::kAdjust, adjust_queue_.timeline.CouldBegin(work.ready_ns), now_ns);
+  const Earlier earlier = adjust_queue_.timeline.GiveUp(work, Collected(times), typical_ns);
   const MissCause cause = Attribute(std::max<Nanos>(1, now_ns + typical_ns - times.deadline_ns), earlier);
   given_up_[static_cast<std::size_t>(cause)].Add();
   return cause;

@@ -97,6 +97,16 @@ TEST_F(DeadlineMonitorTest, ManyShortStallsAreTheMachineToo) {
   EXPECT_EQ(Judge(Step(129)), MissCause::kOwn) << "30 ms lacked";
 }
 
+TEST_F(DeadlineMonitorTest, AStallThatWasHalfSeenIsTheMachineForAStageThatIsUsuallyFast) {
+  for (Nanos k = 32; k > 0; --k) EXPECT_EQ(Judge(Step(5, 0, 1000 - 100 * k)), MissCause::kNone);
+  Fill(cpu0_.get(), 0, 0);
+  Fill(cpu1_.get(), 1030, 60);
+  EXPECT_EQ(Judge(Step(120)), MissCause::kMachine) << "60 of 115 ms more than usual were seen; 21 lacked";
+  EXPECT_EQ(Judge(Step(1200, 0, 1200, 1325)), MissCause::kOwn) << "none was seen";
+  StartAnew();
+  EXPECT_EQ(Judge(Step(165)), MissCause::kOwn) << "66 lacked, and nothing is known of what is usual";
+}
+
 TEST_F(DeadlineMonitorTest, AStallOfTheOtherCpuIsNoExcuse) {
   Fill(cpu0_.get(), 1040, 60);  // while adjust runs on CPU 1
   Fill(cpu1_.get(), 0, 0);

@@ -173,8 +173,7 @@ double GapBlock::CarryOver() const noexcept {
   return samples > 0 ? std::min(kCarryOver * packs / samples, 1.0) : 0.0;
 }
 
-CheckScore GapBlock::ScoreRegion(int region, const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
-                                 double* explained) const noexcept {
+CheckScore GapBlock::ScoreRegion(int region, double tolerance, double* explained) const noexcept {
   // phi on the parameters' directions: M phi = phi - J c.
   Vector c{};
   for (const PackSums& pack : packs_) {
@@ -192,7 +191,7 @@ CheckScore GapBlock::ScoreRegion(int region, const std::array<GapShift, kGapBloc
     if (!pack.used) continue;
     const RegionSums& sums = pack.region[At(region)];
     const GapShift ck = ShiftOf(pack, c);
-    const GapShift& dk = fit[At(k)];
+    const GapShift& dk = fit_[At(k)];
     double own = sums.square;                 // |(M phi)_k|^2
     double psi = sums.error;                  // (M phi)_k' r_k,  r_k = e_k - J_k d_k
     std::array<double, kGapColumns> along{};  // J_k' (M phi)_k
@@ -247,8 +246,7 @@ CheckScore GapBlock::ScoreEcho(int lag, double tolerance, double* explained) con
   return result;
 }
 
-CheckScore GapBlock::ScoreWander(const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
-                                 double* explained) const noexcept {
+CheckScore GapBlock::ScoreWander(double tolerance, double* explained) const noexcept {
   double sum = 0.0, square = 0.0, fourth = 0.0, last = 0.0, variance = 0.0;
   int count = 0, pairs = 0;
   bool neighbour = false;
@@ -258,7 +256,7 @@ CheckScore GapBlock::ScoreWander(const std::array<GapShift, kGapBlockPacks>& fit
       neighbour = false;
       continue;
     }
-    const double total = pack.region[0].error - Dot(pack.region[0].slope.data(), fit[At(k)].data(), columns_);
+    const double total = pack.region[0].error - Dot(pack.region[0].slope.data(), fit_[At(k)].data(), columns_);
     const double mean = total / std::sqrt(static_cast<double>(pack.count));
     if (neighbour) {
       const double product = mean * last;
@@ -284,34 +282,37 @@ CheckScore GapBlock::ScoreWander(const std::array<GapShift, kGapBlockPacks>& fit
   return result;
 }
 
-void GapBlock::Score(double tolerance, std::array<CheckScore, kMaxGapChecks>* scores) noexcept {
+void GapBlock::BeginScores() noexcept {
   SumNormalMatrix();
   Factor();
   Vector solution;
   SolveErrors(&solution);
-  std::array<GapShift, kGapBlockPacks> fit{};
   excess_ = 0.0;
   for (int k = 0; k < kGapBlockPacks; ++k) {
     const PackSums& pack = packs_[At(k)];
     if (!pack.used) continue;
-    const GapShift& dk = fit[At(k)] = ShiftOf(pack, solution);
+    const GapShift& dk = fit_[At(k)] = ShiftOf(pack, solution);
     excess_ += pack.error_square - pack.count;
     for (int a = 0; a < columns_; ++a)
       excess_ -= dk[At(a)] * (2.0 * pack.slope_error[At(a)] - Dot(pack.slope_slope[At(a)].data(), dk.data(), columns_));
   }
   excess_ += static_cast<double>(std::count(kept_.begin(), kept_.begin() + columns_ * kGapDirections, true));
-  for (int r = 0; r < family_.num_regions; ++r) (*scores)[At(r)] = ScoreRegion(r, fit, tolerance, &explained_[At(r)]);
-  const int serial = family_.num_regions;
-  (*scores)[At(serial)] = ScoreEcho(1, tolerance, &explained_[At(serial)]);
-  (*scores)[At(serial + 1)] = ScoreEcho(2, tolerance, &explained_[At(serial + 1)]);
-  (*scores)[At(serial + 2)] = ScoreWander(fit, tolerance, &explained_[At(serial + 2)]);
   if (!std::isfinite(excess_)) excess_ = 0.0;
-  for (int c = 0; c < family_.num_checks(); ++c) {
-    // Data without any noise: what is left is rounding, and its squares may underflow.
-    CheckScore& score = (*scores)[At(c)];
-    if (!std::isfinite(score.z) || !std::isfinite(score.margin)) score = CheckScore{};
-    if (!std::isfinite(explained_[At(c)])) explained_[At(c)] = 0.0;
+}
+
+CheckScore GapBlock::Score(int check, double tolerance) noexcept {
+  double* explained = &explained_[At(check)];
+  CheckScore score;
+  switch (check - family_.num_regions) {
+    case 0: score = ScoreEcho(1, tolerance, explained); break;
+    case 1: score = ScoreEcho(2, tolerance, explained); break;
+    case 2: score = ScoreWander(tolerance, explained); break;
+    default: score = ScoreRegion(check, tolerance, explained); break;
   }
+  // Data without any noise: what is left is rounding, and its squares may underflow.
+  if (!std::isfinite(score.z) || !std::isfinite(score.margin)) score = CheckScore{};
+  if (!std::isfinite(*explained)) *explained = 0.0;
+  return score;
 }
 
 }  // namespace armcmc

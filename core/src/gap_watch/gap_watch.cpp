@@ -71,20 +71,36 @@ void GapWatch::Reset() noexcept {
 }
 
 void GapWatch::Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept {
-  if (!enabled_ || !Record(pack, changed)) return;
-  if (analysed_ != nullptr) Analyse();
-  if (recordings_[At(recording_)].count == kGapBlockPacks) BeginAnalysis(estimate);
+  if (!enabled_) return;
+  const bool complete = Record(pack, changed);
+  if (analysed_ != nullptr) Analyse(pack.num_samples);
+  if (complete && recordings_[At(recording_)].count == kGapBlockPacks) BeginAnalysis(estimate);
 }
 
-void GapWatch::Analyse() noexcept {
-  for (int i = 0; i < kPacksPerStep && next_ < 2 * kGapBlockPacks; ++i) {
-    AnalysePack(next_ % kGapBlockPacks, next_ >= kGapBlockPacks);
-    ++next_;
-    if (next_ == kGapBlockPacks) FitTrajectory();
+void GapWatch::Analyse(int num_samples) noexcept {
+  // In proportion to the estimator's own pack, of which one of the block may hold many.
+  const int stretch = std::max(1, analysed_->packs.front().num_samples);
+  const int pieces = std::clamp(kPiecesPerPack * num_samples / stretch, 1, kPiecesPerPack);
+  for (int i = 0; i < pieces && analysed_ != nullptr; ++i) AnalysePiece();
+}
+
+void GapWatch::AnalysePiece() noexcept {
+  constexpr int kFit = kGapBlockPacks, kSecondPass = kFit + 1, kScores = kSecondPass + kGapBlockPacks;
+  const int piece = next_++;
+  if (piece < kFit) {
+    AnalysePack(piece, false);
+  } else if (piece == kFit) {
+    FitTrajectory();
+  } else if (piece < kScores) {
+    AnalysePack(piece - kSecondPass, true);
+  } else if (piece == kScores) {
+    block_.BeginScores();
+  } else if (const int check = piece - kScores - 1; check < family_.num_checks()) {
+    new_scores_[At(check)] = block_.Score(check, settings_.tolerance);
+  } else {
+    Judge();
+    analysed_ = nullptr;
   }
-  if (next_ < 2 * kGapBlockPacks) return;
-  Judge();
-  analysed_ = nullptr;
 }
 
 bool GapWatch::Record(const DataPack& pack, bool changed) noexcept {
@@ -181,8 +197,7 @@ void GapWatch::FitTrajectory() noexcept {
 }
 
 void GapWatch::Judge() noexcept {
-  scores_ = {};
-  block_.Score(settings_.tolerance, &scores_);
+  scores_ = new_scores_;
   const DataPack& first = analysed_->packs.front();
   const DataPack& last = analysed_->packs.back();
   const double even = evidence_.stakes() / family_.num_checks();

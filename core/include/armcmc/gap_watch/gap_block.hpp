@@ -57,11 +57,14 @@ class GapBlock {
   /// @param[out] shift  Of every pack.
   void Fit(const std::array<double, kGapColumns>& precision,
            std::array<GapShift, kGapBlockPacks>* shift) noexcept ARMCMC_NONBLOCKING;
-  /// Scores of all checks; zero where a block says too little.
-  /// @param tolerance  See GapWatchSettings.
-  void Score(double tolerance, std::array<CheckScore, kMaxGapChecks>* scores) noexcept ARMCMC_NONBLOCKING;
+  /// After the second pass: the fit that the scores are free of. @rt O(packs).
+  void BeginScores() noexcept ARMCMC_NONBLOCKING;
+  /// Score of one check; zero where the block says too little. @pre BeginScores(), and no pack since.
+  /// @param tolerance  See GapWatchSettings. @rt O(packs).
+  [[nodiscard]] CheckScore Score(int check, double tolerance) noexcept ARMCMC_NONBLOCKING;
 
-  /// After Score(): squared error that a check explains, and all of it beyond the noise; in units of the noise.
+  /// After Score() of the check: squared error that a check explains, and all of it beyond the noise; in units of the
+  /// noise.
   [[nodiscard]] double explained(int check) const noexcept { return explained_[static_cast<std::size_t>(check)]; }
   [[nodiscard]] double excess() const noexcept { return excess_; }
 
@@ -93,11 +96,10 @@ class GapBlock {
   void SolveErrors(Vector* solution) const noexcept ARMCMC_NONBLOCKING;
   /// Correlation of neighbouring packs' means that is allowed for.
   [[nodiscard]] double CarryOver() const noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] CheckScore ScoreRegion(int region, const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
+  [[nodiscard]] CheckScore ScoreRegion(int region, double tolerance,
                                        double* explained) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] CheckScore ScoreEcho(int lag, double tolerance, double* explained) const noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] CheckScore ScoreWander(const std::array<GapShift, kGapBlockPacks>& fit, double tolerance,
-                                       double* explained) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] CheckScore ScoreWander(double tolerance, double* explained) const noexcept ARMCMC_NONBLOCKING;
   void Detrend(const GapRows& rows, std::array<double, kMaxPackSamples>* out) const noexcept ARMCMC_NONBLOCKING;
 
   const GapFamily& family_;
@@ -107,6 +109,7 @@ class GapBlock {
   std::array<int, 3> detrended_count_{};
   std::array<std::array<double, kGapNuisance>, kGapNuisance> matrix_{};  ///< Normal matrix, then its factor.
   std::array<bool, kGapNuisance> kept_{};
+  std::array<GapShift, kGapBlockPacks> fit_{};  ///< Of the parameters, where the scores are taken.
   std::array<double, kMaxGapChecks> explained_{};
   double excess_ = 0.0;
 };

@@ -51,8 +51,10 @@ class GapWatch {
   [[nodiscard]] const std::array<CheckScore, kMaxGapChecks>& scores() const noexcept { return scores_; }
 
  private:
-  /// Of the block that is being linearised, at one step: both passes end well before the next block is full.
-  static constexpr int kPacksPerStep = 6;
+  /// Of the analysis of one block, for every pack of the next one: a pack of one pass, the fit, a score. All pieces
+  /// are done well before the next block is full.
+  static constexpr int kPiecesPerPack = 6;
+  static_assert(kPiecesPerPack * kGapBlockPacks > 2 * (2 * kGapBlockPacks + kMaxGapChecks + 3));
   static constexpr double kShortestPack = 0.1;  ///< s: longer than coloured noise remembers.
   static constexpr int kNoChange = kGapBlockPacks;
 
@@ -64,7 +66,8 @@ class GapWatch {
 
   /// @return true when a pack of the block is complete.
   [[nodiscard]] bool Record(const DataPack& pack, bool changed) noexcept ARMCMC_NONBLOCKING;
-  void Analyse() noexcept ARMCMC_NONBLOCKING;
+  void Analyse(int num_samples) noexcept ARMCMC_NONBLOCKING;
+  void AnalysePiece() noexcept ARMCMC_NONBLOCKING;
   void BeginAnalysis(const GapReference& estimate) noexcept ARMCMC_NONBLOCKING;
   /// The first change of the block, and which packs around it are left out.
   void PlaceChange() noexcept ARMCMC_NONBLOCKING;
@@ -79,7 +82,7 @@ class GapWatch {
   GapBlock block_;
   GapEvidence evidence_;
   GapState state_;
-  std::array<CheckScore, kMaxGapChecks> scores_{};
+  std::array<CheckScore, kMaxGapChecks> scores_{}, new_scores_{};
 
   std::array<Recording, 2> recordings_;
   int recording_ = 0;
@@ -89,7 +92,7 @@ class GapWatch {
   std::int64_t first_seq_ = 0;                ///< Of the recorded block.
   std::int64_t analysed_seq_ = 0;             ///< First pack of the analysed block.
   Recording* analysed_ = nullptr;
-  int next_ = 0;  ///< Packs of both passes done.
+  int next_ = 0;  ///< Pieces done.
   GapReference reference_;
   std::array<GapShift, kGapBlockPacks> shift_{};
   int change_ = kNoChange;

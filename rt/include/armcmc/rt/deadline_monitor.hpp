@@ -9,6 +9,7 @@
 #include "armcmc/rt/miss_cause.hpp"
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/rt/stage_timeline.hpp"
+#include "armcmc/rt/usual_duration.hpp"
 #include "armcmc/rt/witness.hpp"
 #include "armcmc/types.hpp"
 
@@ -64,12 +65,17 @@ class DeadlineMonitor {
  private:
   [[nodiscard]] Nanos StalledTime(Stage stage, Nanos begin_ns, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Earlier Collected(const StepTimes& times) const noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] StageWork Work(const StageTimeline& timeline, Stage stage, Nanos ready_ns, Nanos start_ns,
+  /// A queue with one server.
+  struct Queue {
+    StageTimeline timeline;
+    UsualDuration wake_up, work;
+  };
+  [[nodiscard]] StageWork Work(Queue* queue, Stage stage, Nanos ready_ns, Nanos start_ns,
                                Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
 
   std::array<const WakeUpRing*, kNumStages> witness_{};
-  StageTimeline adjust_timeline_;   // of the adjust thread
-  StageTimeline execute_timeline_;  // of the execute thread
+  Queue adjust_queue_;   // of the adjust thread
+  Queue execute_queue_;  // of the execute thread
   std::array<Nanos, kNumStages> budget_ns_;
   std::array<LogHistogram, kNumStages> stage_times_;
   LogHistogram end_to_end_;

@@ -48,9 +48,10 @@ class WakeUpRing {
 /// the machine that stood still (hypervisor, firmware, kernel), since no thread of ours can delay it.
 class Witness {
  public:
-  /// A fortieth of the deadline, within [100 us, 1 ms]: time that is taken in slices shorter than this is hardly seen.
+  /// A twentieth of the deadline, within [0.5 ms, 1 ms]: shorter slices are hardly seen, and each wake-up costs the
+  /// stages of its CPU some 10 us.
   [[nodiscard]] static constexpr Nanos PeriodFor(Nanos deadline_ns) noexcept {
-    return std::clamp<Nanos>(deadline_ns / 40, 100'000, 1'000'000);
+    return std::clamp<Nanos>(deadline_ns / 20, 500'000, 1'000'000);
   }
 
   Witness(int cpu, Nanos period_ns) noexcept : cpu_(cpu), period_ns_(period_ns) {}
