@@ -25,28 +25,36 @@ DeadlineMonitor::DeadlineMonitor(const RtSettings& settings) noexcept
     : budget_ns_{settings.ExecuteReserveNs(), settings.adjust_budget_ns, settings.ExecuteReserveNs()} {}
 
 Nanos DeadlineMonitor::StalledTime(Stage stage, Nanos begin_ns, Nanos end_ns) const noexcept {
-  const WakeUpRing* witness = witness_[IndexOf(stage)];
+  const WakeUpRing* witness = witness_[IndexOf(stage)].wake_ups;
   return witness != nullptr && begin_ns < end_ns ? witness->StalledTime(begin_ns, end_ns, end_ns) : 0;
 }
 
-Earlier DeadlineMonitor::Collected(const StepTimes& times) const noexcept {
-  const Nanos stall = StalledTime(Stage::kCollect, times.arrival_ns, times.end_ns[IndexOf(Stage::kCollect)]);
-  return {times.lateness_ns, stall, times.lateness_ns + stall};
+Nanos DeadlineMonitor::StallBefore(Stage stage, Nanos begin_ns, Nanos start_ns, Nanos others_ns) const noexcept {
+  const auto& [witness, foremost] = witness_[IndexOf(stage)];
+  const Nanos seen_ns = StalledTime(stage, begin_ns, start_ns);
+  if (witness == nullptr || !foremost || others_ns == kAwake) return seen_ns;
+  const Nanos delay_ns = start_ns - begin_ns - others_ns;
+  return delay_ns > WakeUpRing::kOrdinaryDelayNs ? std::max(seen_ns, delay_ns) : seen_ns;
 }
 
-StageWork DeadlineMonitor::Work(Queue* queue, Stage stage, Nanos ready_ns, Nanos start_ns,
-                                Nanos end_ns) const noexcept {
-  const Nanos begin_ns = queue->timeline.CouldBegin(ready_ns);
-  const Nanos before_ns = queue->wake_up.Stalled(start_ns - begin_ns, StalledTime(stage, begin_ns, start_ns));
-  const Nanos stall_ns = queue->work.Stalled(end_ns - start_ns, StalledTime(stage, start_ns, end_ns));
-  return {ready_ns, start_ns, end_ns, before_ns, stall_ns};
+StageWork DeadlineMonitor::Work(Stage stage, Nanos ready_ns, Nanos start_ns, Nanos end_ns, Nanos others_ns) noexcept {
+  Queue& queue = queue_[IndexOf(stage)];
+  return {ready_ns, start_ns, end_ns, StallBefore(stage, queue.timeline.CouldBegin(ready_ns), start_ns, others_ns),
+          queue.work.Stalled(end_ns - start_ns, StalledTime(stage, start_ns, end_ns))};
 }
 
-void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING {
+Earlier DeadlineMonitor::Collected(const StepTimes& times) noexcept {
+  const std::size_t collect = IndexOf(Stage::kCollect);
+  const StageWork work = Work(Stage::kCollect, times.arrival_ns, times.start_ns[collect], times.end_ns[collect], 0);
+  return queue_[collect].timeline.Do(work, {times.lateness_ns, 0, times.lateness_ns});
+}
+
+void DeadlineMonitor::RecordAdjusted(StepTimes* times, bool held) noexcept ARMCMC_NONBLOCKING {
   const std::size_t adjust = IndexOf(Stage::kAdjust);
-  const StageWork work = Work(&adjust_queue_, Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)],
-                              times->start_ns[adjust], times->end_ns[adjust]);
-  times->adjusted_earlier = adjust_queue_.timeline.Do(work, Collected(*times));
+  const StageWork work = Work(Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)], times->start_ns[adjust],
+                              times->end_ns[adjust], held ? kAwake : 0);
+  times->collect_worked_ns = collect_worked_.Get();
+  times->adjusted_earlier = queue_[adjust].timeline.Do(work, Collected(*times));
 }
 
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {
@@ -57,20 +65,21 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
   }
   end_to_end_.Add(times.EndToEnd());
   const std::size_t execute = IndexOf(Stage::kExecute);
-  const StageWork work = Work(&execute_queue_, Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)],
-                              times.start_ns[execute], times.end_ns[execute]);
-  const MissCause cause = Attribute(-times.Slack(), execute_queue_.timeline.Do(work, times.adjusted_earlier));
+  const StageWork work = Work(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], times.start_ns[execute],
+                              times.end_ns[execute], collect_worked_.Get() - times.collect_worked_ns);
+  const MissCause cause = Attribute(-times.Slack(), queue_[execute].timeline.Do(work, times.adjusted_earlier));
   if (cause != MissCause::kNone) finished_late_[static_cast<std::size_t>(cause)].Add();
   return cause;
 }
 
-MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns,
-                                         Nanos typical_ns) noexcept ARMCMC_NONBLOCKING {
+MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns,
+                                         bool held) noexcept ARMCMC_NONBLOCKING {
   StageWork work;
   work.ready_ns = times.end_ns[IndexOf(Stage::kCollect)];
   work.start_ns = work.end_ns = now_ns;
-  work.stall_before_ns = StalledTime(Stage::kAdjust, adjust_queue_.timeline.CouldBegin(work.ready_ns), now_ns);
-  const Earlier earlier = adjust_queue_.timeline.GiveUp(work, Collected(times), typical_ns);
+  StageTimeline& timeline = queue_[IndexOf(Stage::kAdjust)].timeline;
+  work.stall_before_ns = StallBefore(Stage::kAdjust, timeline.CouldBegin(work.ready_ns), now_ns, held ? kAwake : 0);
+  const Earlier earlier = timeline.GiveUp(work, Collected(times), typical_ns);
   const MissCause cause = Attribute(std::max<Nanos>(1, now_ns + typical_ns - times.deadline_ns), earlier);
   given_up_[static_cast<std::size_t>(cause)].Add();
   return cause;

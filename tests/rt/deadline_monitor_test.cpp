@@ -16,8 +16,9 @@ class DeadlineMonitorTest : public ::testing::Test {
   /// A monitor that knows nothing of the steps so far.
   void StartAnew() {
     monitor_ = std::make_unique<DeadlineMonitor>(RtSettings{});
-    for (const Stage stage : {Stage::kCollect, Stage::kExecute}) monitor_->SetWitness(stage, cpu0_.get());
-    monitor_->SetWitness(Stage::kAdjust, cpu1_.get());
+    for (const Stage stage : {Stage::kCollect, Stage::kExecute})
+      monitor_->SetWitness(stage, cpu0_.get(), /*foremost=*/true);
+    monitor_->SetWitness(Stage::kAdjust, cpu1_.get(), /*foremost=*/true);
   }
 
   /// A step that adjust comes to at start_ms and is through with at end_ms; execute takes 1 ms more.
@@ -45,7 +46,7 @@ class DeadlineMonitorTest : public ::testing::Test {
 
   /// The step goes through all stages.
   MissCause Judge(StepTimes times) {
-    monitor_->RecordAdjusted(&times);
+    monitor_->RecordAdjusted(&times, /*held=*/false);
     return monitor_->Record(times);
   }
 
@@ -169,11 +170,47 @@ TEST_F(DeadlineMonitorTest, LatenessAndStallsTogetherBlameTheLongerOne) {
   EXPECT_EQ(Judge(Step(1000, 4, 1004, 1119)), MissCause::kOwn) << "19 of 20 ms explained";
 }
 
+// The witness sees nothing of a wake-up that got lost between two CPUs.
+TEST_F(DeadlineMonitorTest, AThreadThatSleptAndWasWokenLateIsItsOwnWitness) {
+  Fill(cpu0_.get(), 0, 0);
+  Fill(cpu1_.get(), 0, 0);
+  EXPECT_EQ(Judge(Step(1000, 0, 1060, 1119)), MissCause::kMachine) << "adjust began 60 ms after the pack was there";
+  StartAnew();
+  StepTimes held = Step(1000, 0, 1060, 1119);
+  monitor_->RecordAdjusted(&held, /*held=*/true);
+  EXPECT_EQ(monitor_->Record(held), MissCause::kOwn) << "it waited for execute";
+  StartAnew();
+  monitor_->SetWitness(Stage::kAdjust, cpu1_.get(), /*foremost=*/false);
+  EXPECT_EQ(Judge(Step(1000, 0, 1060, 1119)), MissCause::kOwn) << "another stage may have had the CPU";
+  StartAnew();
+  StepTimes slow_collect = Step(1000, 0, 1060, 1119);
+  slow_collect.end_ns[0] = 1060 * kMs;
+  EXPECT_EQ(Judge(slow_collect), MissCause::kOwn) << "collect was at work";
+  StartAnew();
+  StepTimes late_collect = slow_collect;
+  late_collect.start_ns[0] = late_collect.end_ns[0];
+  EXPECT_EQ(Judge(late_collect), MissCause::kMachine) << "collect slept";
+}
+
+TEST_F(DeadlineMonitorTest, ExecuteMayHaveWaitedForCollect) {
+  Fill(cpu0_.get(), 0, 0);
+  Fill(cpu1_.get(), 0, 0);
+  for (const Nanos collect_ms : {0, 60}) {
+    StartAnew();
+    StepTimes times = Step(50);
+    monitor_->RecordAdjusted(&times, /*held=*/false);
+    times.start_ns[2] = 1118 * kMs;
+    times.end_ns[2] = 1119 * kMs;
+    monitor_->AddCollectWork(collect_ms * kMs);
+    EXPECT_EQ(monitor_->Record(times), collect_ms == 0 ? MissCause::kMachine : MissCause::kOwn);
+  }
+}
+
 TEST_F(DeadlineMonitorTest, AnOvertakenResultBlamesWhatHeldExecuteUp) {
   Fill(cpu0_.get(), 1060, 60);
   Fill(cpu1_.get(), 0, 0);
   StepTimes times = Step(1000, 0, 1000, 1050);
-  monitor_->RecordAdjusted(&times);
+  monitor_->RecordAdjusted(&times, /*held=*/false);
   EXPECT_EQ(monitor_->RecordOvertaken(times, 1110 * kMs, 10 * kMs), MissCause::kMachine);
   EXPECT_EQ(monitor_->RecordOvertaken(times, 1110 * kMs, 60 * kMs), MissCause::kOwn);
 }
@@ -182,11 +219,12 @@ TEST_F(DeadlineMonitorTest, ADroppedPackIsAMissWithACause) {
   Fill(cpu0_.get(), 0, 0);
   Fill(cpu1_.get(), 1010, 150);
   EXPECT_EQ(Judge(Step(1000, 0, 1000, 1210)), MissCause::kMachine);
-  EXPECT_EQ(monitor_->RecordDropped(Step(0, 0, 1100), 1210 * kMs, 60 * kMs), MissCause::kMachine);
+  EXPECT_EQ(monitor_->RecordDropped(Step(0, 0, 1100), 1210 * kMs, 60 * kMs, false), MissCause::kMachine);
   EXPECT_EQ(monitor_->misses(MissCause::kMachine), 2);
   StartAnew();
-  EXPECT_EQ(monitor_->RecordDropped(Step(0), 1005 * kMs, 96 * kMs), MissCause::kOwn);
-  EXPECT_EQ(monitor_->misses(MissCause::kOwn), 1);
+  EXPECT_EQ(Judge(Step(900, 0, 900, 1005)), MissCause::kOwn);
+  EXPECT_EQ(monitor_->RecordDropped(Step(0), 1005 * kMs, 96 * kMs, false), MissCause::kOwn) << "adjust was at work";
+  EXPECT_EQ(monitor_->misses(MissCause::kOwn), 2);
 }
 
 TEST_F(DeadlineMonitorTest, ADroppedPackWouldHaveTakenItsTime) {
@@ -194,7 +232,7 @@ TEST_F(DeadlineMonitorTest, ADroppedPackWouldHaveTakenItsTime) {
   Fill(cpu1_.get(), 1010, 150);
   EXPECT_EQ(Judge(Step(1000, 0, 1000, 1230)), MissCause::kMachine);
   // Without the stall the first had been through at 1080, this one at 1180, and the next at 1280.
-  EXPECT_EQ(monitor_->RecordDropped(Step(0, 0, 1100), 1230 * kMs, 80 * kMs), MissCause::kMachine);
+  EXPECT_EQ(monitor_->RecordDropped(Step(0, 0, 1100), 1230 * kMs, 80 * kMs, false), MissCause::kMachine);
   EXPECT_EQ(Judge(Step(1200, 0, 1230, 1330)), MissCause::kOwn) << "130 ms, 30 of them waited; 50 would have been free";
 }
 
