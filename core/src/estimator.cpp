@@ -18,12 +18,19 @@ int ModelIndex(const EstimatorSettings& settings) {
   return FindModel(settings.model);
 }
 
+/// Recursive least squares needs a law that is linear in its parameters: the valve flow's is, the pressure rate's is
+/// not.
+EstimatorSettings Regressed(EstimatorSettings settings) {
+  settings.pressure_rate = settings.pressure_rate && settings.method != Method::kRls;
+  return settings;
+}
+
 }  // namespace
 
 Estimator::Impl::Impl(const EstimatorSettings& s)
     : settings(s),
       model(ModelIndex(s)),
-      composition(s),
+      composition(Regressed(s)),
       info(composition.info()),
       kernels(simd::Best()),
       predictor(info, s.constants, composition.flow()),
@@ -160,6 +167,7 @@ void Estimator::Reset() noexcept {
 }
 
 const EstimatorSettings& Estimator::settings() const noexcept { return impl_->settings; }
+std::string_view Estimator::target_unit() const noexcept { return impl_->info.target_unit; }
 PlantKind Estimator::plant() const noexcept { return impl_->info.plant; }
 int Estimator::num_modes() const noexcept { return impl_->info.num_modes; }
 std::string_view Estimator::mode_name(int mode) const noexcept {

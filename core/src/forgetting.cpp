@@ -32,6 +32,8 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
   deviance /= n;
   variance *= noise.information() / n;
 
+  // Of every law, d E[deviance] / d log s = -2 and d E[log density] / d log s = -1 where s is right.
+  const double log_noise_variance = predictive.log_noise_sd * predictive.log_noise_sd;
   Mismatch m;
   double excess = 0.0;
   switch (settings.index) {
@@ -44,15 +46,18 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
       const double expected = std::sqrt(noise.deviance_mean() + variance);
       m.zeta = std::sqrt(deviance) - expected;
       // Delta method; the predictive error is one draw shared by all samples, hence no 1/n on its part.
-      m.allowance = kAllowance * std::sqrt(noise.deviance_sd() * noise.deviance_sd() / n + 2.0 * variance * variance) /
+      m.allowance = kAllowance *
+                    std::sqrt(noise.deviance_sd() * noise.deviance_sd() / n + 2.0 * variance * variance +
+                              4.0 * log_noise_variance) /
                     (2.0 * expected);
       excess = m.zeta - settings.mu;
       break;
     }
     case MismatchIndex::kLogPredictive:
       m.zeta = (log_expected - log_density) / n;
-      m.allowance = kAllowance * std::sqrt(noise.log_density_sd() * noise.log_density_sd() / n +
-                                           0.5 * variance * variance / ((1.0 + variance) * (1.0 + variance)));
+      m.allowance = kAllowance *
+                    std::sqrt(noise.log_density_sd() * noise.log_density_sd() / n +
+                              0.5 * variance * variance / ((1.0 + variance) * (1.0 + variance)) + log_noise_variance);
       excess = m.zeta - settings.mu;
       break;
   }

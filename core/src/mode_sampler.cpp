@@ -125,6 +125,10 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
   }
   mean_sum /= kMismatchDraws;
   p.variance_of_mean = std::fmax(mean_square / kMismatchDraws - mean_sum * mean_sum, 0.0);
+  const Eigen::Index last = space_.dim - 1;
+  p.log_noise_sd = space_.samples_noise_scale()
+                       ? space_.scale[static_cast<std::size_t>(last)] * std::sqrt(previous.covariance(last, last))
+                       : 0.0;
   return EvaluateMismatch(forgetting_, noise_, std::exp(previous.log_noise_scale), data, p);
 }
 

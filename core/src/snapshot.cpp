@@ -44,6 +44,7 @@ std::uint64_t SnapshotIdentity(const EstimatorSettings& s) noexcept {
   }
   const PlantConstants& c = s.constants;
   for (const double v : {c.p_atm, c.p_supply, c.q1, c.q2, c.q3}) hash.Add(v);
+  hash.Add(s.pressure_rate ? 1 : 0);
   hash.Add(s.num_effects);
   for (int i = 0; i < s.num_effects; ++i) {
     const EffectSettings& e = s.effects[static_cast<std::size_t>(i)];

@@ -168,7 +168,7 @@ void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
   Scenario changed = *scenario;
   if (family == "soft_actuator") {
     // One prior serves both valves: it says nothing on either.
-    for (const char* estimated : {"parameters", "constants"}) root.LeaveToOthers(estimated);
+    for (const char* estimated : {"parameters", "constants", "pressure_rate"}) root.LeaveToOthers(estimated);
   } else {
     changed.schedule = ReadParameters(root.Table("parameters"), *scenario);
   }

@@ -62,6 +62,21 @@ TEST(Mismatch, ConstantErrorHasItsClosedForm) {
   }
 }
 
+// A scale that is 10 % too small makes the index larger by as much: three times that is explained by not knowing it.
+TEST(Mismatch, AllowsForANoiseScaleThatIsNotKnown) {
+  for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture})
+    for (const MismatchIndex index : {MismatchIndex::kRms, MismatchIndex::kLogPredictive}) {
+      Case c(kMaxPackSamples, [](int) { return 0.0; });
+      c.noise = Law(kind);
+      const double known = c.Evaluate(index).allowance;
+      c.predictive.log_noise_sd = 0.1;
+      const double unknown = c.Evaluate(index).allowance;
+      // By how much the index moves with log s, from the law's moments.
+      const double slope = index == MismatchIndex::kRms ? 1.0 / std::sqrt(Law(kind).deviance_mean()) : 1.0;
+      EXPECT_NEAR(std::sqrt(unknown * unknown - known * known), 0.3 * slope, 1e-9);
+    }
+}
+
 TEST(Mismatch, LambdaAndDecisionFollowTheirFormulas) {
   for (const MismatchIndex index : kIndices)
     for (double a = 0.0; a < 4.0; a += 0.05) {

@@ -186,6 +186,7 @@ TEST(SnapshotIdentity, IsThatOfTheQuestionAndNotOfTheSampler) {
               s->num_effects = 1;
             }),
             same);
+  EXPECT_NE(identity_with([](auto* s) { s->pressure_rate = true; }), same);
   EXPECT_NE(SnapshotIdentity(BuiltinSettings("soft_actuator")),
             SnapshotIdentity(BuiltinSettings("soft_actuator_excited")));
 }

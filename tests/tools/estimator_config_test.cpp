@@ -169,6 +169,15 @@ TEST(EstimatorConfig, ConstantsBelongToTheActuator) {
   EXPECT_THAT(ErrorOf(kHunt + "[model.constants]\nq1 = 0.07\n"), HasSubstr("model.constants"));
 }
 
+TEST(EstimatorConfig, WhatIsRegressedCanBeChosenForTheActuator) {
+  EXPECT_FALSE(Read(kActuator).pressure_rate);
+  EXPECT_TRUE(Read(kActuator + "pressure_rate = true\n").pressure_rate);
+  EXPECT_FALSE(Read(kActuator + "pressure_rate = false\n").pressure_rate);
+  EXPECT_THAT(ErrorOf(kHunt + "pressure_rate = true\n"),
+              AllOf(HasSubstr("f.toml:4"), HasSubstr("hunt_crossley has no pressure")));
+  EXPECT_THAT(ErrorOf(kActuator + "pressure_rat = true\n"), HasSubstr("did you mean pressure_rate?"));
+}
+
 TEST(EstimatorConfig, TheModelOfTheCommandLineWins) {
   EXPECT_EQ(Read(kHunt, "soft_actuator").model, "soft_actuator");
   EXPECT_EQ(Read("schema = 1\n", "hunt_crossley").model, "hunt_crossley");

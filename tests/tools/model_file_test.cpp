@@ -51,6 +51,7 @@ void ExpectSameModel(const EstimatorSettings& a, const EstimatorSettings& b) {
   for (std::size_t d = 0; d < static_cast<std::size_t>(a.num_parameters); ++d)
     ExpectSamePrior(a.parameters[d], b.parameters[d]);
   EXPECT_EQ(a.constants.q1, b.constants.q1);
+  EXPECT_EQ(a.pressure_rate, b.pressure_rate);
   EXPECT_EQ(a.noise[0].kind, b.noise[0].kind);
   EXPECT_EQ(a.noise[0].std, b.noise[0].std);
   EXPECT_EQ(a.noise[0].estimate_std, b.noise[0].estimate_std);
@@ -91,8 +92,11 @@ TEST_F(ModelFile, EveryEffectReadsBackToTheBit) {
 }
 
 TEST_F(ModelFile, TheActuatorReadsBack) {
-  const EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
-  ExpectSameModel(ReadModel(Write(ModelFileText(settings))), settings);
+  EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
+  for (const bool pressure_rate : {true, false}) {
+    settings.pressure_rate = pressure_rate;
+    ExpectSameModel(ReadModel(Write(ModelFileText(settings))), settings);
+  }
 }
 
 TEST_F(ModelFile, ABuiltInNameIsAModelToo) {

@@ -78,6 +78,8 @@ class Estimator {
                              std::span<const std::byte> executed) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] const EstimatorSettings& settings() const noexcept ARMCMC_NONBLOCKING;
+  /// Unit of what is regressed, and so of the noise.
+  [[nodiscard]] std::string_view target_unit() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING;
   /// mode == num_modes(): the passive one.

@@ -14,6 +14,7 @@ struct PredictiveMoments {
   std::array<double, kMaxPackSamples> mean{};      ///< E[F(x_n, theta)] over the previous posterior.
   std::array<double, kMaxPackSamples> variance{};  ///< Its variance.
   double variance_of_mean = 0.0;                   ///< Variance over the draws of the mean prediction of the pack.
+  double log_noise_sd = 0.0;  ///< Standard deviation of the log of the noise scale; 0: it is known.
 };
 
 /// Mismatch of a pack against the previous posterior (equation `bys5333`), and what it means.
@@ -33,8 +34,9 @@ struct Mismatch {
 ///   log_predictive  zeta = expected - actual mean log posterior-predictive density
 ///
 /// The paper's lambda falls with any |zeta|, so that pure noise makes it forget: a pack of 3 samples has a standard
-/// deviation of zeta of 0.4. What chance explains (three standard deviations) is therefore not counted. rms and
-/// log_predictive only count a worse fit than expected: a better one is no reason to forget.
+/// deviation of zeta of 0.4. What chance explains (three standard deviations) is therefore not counted. An estimated
+/// noise scale that is too small by chance is part of it. rms and log_predictive only count a worse fit than expected:
+/// a better one is no reason to forget.
 /// @rt No heap, no lock, no throw. O(samples).
 [[nodiscard]] Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& noise, double noise_scale,
                                         const ModeData& data,

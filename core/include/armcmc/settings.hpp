@@ -31,8 +31,8 @@ enum class NoiseKind : std::uint8_t { kGaussian, kStudentT, kLaplace, kMixture }
 /// t law, the mean absolute deviation b (Laplace), the standard deviation of the inlier part (mixture).
 struct NoiseSettings {
   NoiseKind kind = NoiseKind::kGaussian;
-  /// > 0, unit of the regression target: N for a contact; sqrt(Pa) for the actuator, Pa/s for the actuator with
-  /// effects.
+  /// > 0, unit of the regression target: N for a contact; sqrt(Pa) for the actuator, Pa/s for the actuator whose
+  /// pressure rate is regressed.
   double std = 1.0;
   double mean = 0.0;             ///< mu_nu, same unit.
   bool estimate_std = false;     ///< Sample the scale with theta, log-normal prior around `std`.
@@ -136,6 +136,10 @@ struct EstimatorSettings {
   Method method = Method::kArmcmc;
   BaselineSettings baseline;
   PlantConstants constants;
+  /// Soft actuator: what is regressed is the pressure rate (see FlowLaw) and not the valve flow, for data whose noise
+  /// is that of the pressure rate's sensor: in the flow it multiplies the parameters that are sought, which biases them
+  /// and tells nothing of how precise a sample is. Effects of the valve flow are always estimated so.
+  bool pressure_rate = false;
   std::array<EffectSettings, kMaxEffects> effects;  ///< Each at most once.
   int num_effects = 0;
   GapWatchSettings gap_watch;  ///< Changes no estimate.

@@ -213,6 +213,9 @@ Status ParticleFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64
     chunk_.pack_share = data.pack_share;
     std::copy(data.target.begin() + from, data.target.begin() + to, chunk_.target.begin());
     std::copy(data.weight.begin() + from, data.weight.begin() + to, chunk_.weight.begin());
+    chunk_.flow = data.flow;
+    chunk_.mode = data.mode;
+    std::copy(data.sample.begin() + from, data.sample.begin() + to, chunk_.sample.begin());
     for (std::size_t f = 0; f < data.feature.size(); ++f)
       std::copy(data.feature[f].begin() + from, data.feature[f].begin() + to, chunk_.feature[f].begin());
     good = Update(chunk_, &numbers);

@@ -60,6 +60,21 @@ void RlsFilter::Update(const ParamVector& phi, double y, double r) noexcept {
   for (int d = 0; d < dim_; ++d) p_(d, d) = std::fmax(p_(d, d), 1e-24 * prior_(d, d));
 }
 
+double RlsFilter::SquareGain(const ModeData& data, std::size_t sample, const ParamVector& z,
+                             const ParamMatrix& p) const noexcept {
+  const double rate = data.feature[0][sample];
+  if (rate == 0.0) return 1.0;  // the sample says nothing
+  ParamVector phi(dim_);
+  double gain = 0.0;
+  for (int d = 0; d < dim_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    phi[d] = parts_.space.scale[i] * data.feature[i][sample] / rate;
+    gain += parts_.space.offset[i] * data.feature[i][sample] / rate;
+  }
+  gain += phi.dot(z);
+  return gain * gain + phi.dot(p * phi);
+}
+
 void RlsFilter::Saturate() noexcept {
   const ParameterSpace& s = parts_.space;
   if (!contact_) {
@@ -90,16 +105,14 @@ void RlsFilter::ToDraw(const ParamVector& z, double* u) const noexcept {
   for (int d = dim_; d < s.dim; ++d) u[d] = 0.0;  // the noise scale as it is believed to be
 }
 
-Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos, ClockRef, int,
-                      ModeDraws* out) noexcept {
+void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept {
   const ParameterSpace& s = parts_.space;
-  const double noise = std::exp(s.log_noise_scale);
+  const double noise = std::exp(s.log_noise_scale), mean = parts_.noise.settings().mean;
+  const bool of_rate = parts_.settings.pressure_rate;
   ParamVector phi(dim_);
-  const ParamVector old_z = z_;
-  const ParamMatrix old_p = p_;
   for (int n = 0; n < data.num_samples; ++n) {
     const auto i = static_cast<std::size_t>(n);
-    double y = data.target[i] - parts_.noise.settings().mean;
+    double y = data.target[i] - (of_rate ? 0.0 : mean);
     double r = noise * noise;
     if (contact_) {
       if (y < kLeastForce * noise) continue;
@@ -107,14 +120,34 @@ Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mo
       y = std::log(y);
       phi << 1.0, data.feature[1][i], data.feature[0][i] / 1.4426950408889634;  // log2 x to log x
     } else {
+      // The noise of a pressure rate, its mean included, is in what is measured of it and not in the valve flow.
+      const double share = of_rate && data.feature[0][i] != 0.0 ? 1.0 - mean / data.feature[0][i] : 1.0;
       for (int d = 0; d < dim_; ++d) {
         const auto id = static_cast<std::size_t>(d);
-        phi[d] = s.scale[id] * data.feature[id][i];
-        y -= s.offset[id] * data.feature[id][i];
+        const double feature = share * data.feature[id][i];
+        phi[d] = s.scale[id] * feature;
+        y -= s.offset[id] * feature;
       }
+      if (of_rate) r *= SquareGain(data, i, gain_z, gain_p);
     }
     Update(phi, y, r);
     Saturate();
+  }
+}
+
+Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos, ClockRef, int,
+                      ModeDraws* out) noexcept {
+  const ParameterSpace& s = parts_.space;
+  const ParamVector old_z = z_;
+  const ParamMatrix old_p = p_;
+  Pass(data, old_z, old_p);
+  if (parts_.settings.pressure_rate && z_.allFinite() && p_.allFinite()) {
+    // Once more, with the weights that the pack's own gains give: before the first pack nothing is known of them.
+    const ParamVector gain_z = z_;
+    const ParamMatrix gain_p = p_;
+    z_ = old_z;
+    p_ = old_p;
+    Pass(data, gain_z, gain_p);
   }
   if (!z_.allFinite() || !p_.allFinite()) {
     z_ = old_z;

@@ -27,7 +27,7 @@ Composition::Composition(const EstimatorSettings& settings)
     : info_(*AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]),
       sampled_(settings),
       num_terms_(settings.num_effects),
-      flow_(settings.num_effects > 0 && info_.plant == PlantKind::kSoftActuator
+      flow_(info_.plant == PlantKind::kSoftActuator && (settings.num_effects > 0 || settings.pressure_rate)
                 ? FlowPlan(settings, info_.num_parameters)
                 : FlowPlan()),
       flow_rows_(flow_) {

@@ -21,7 +21,7 @@ std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
 }  // namespace
 
 FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
-    : p_atm(settings.constants.p_atm), supply(settings.constants.p_supply - settings.constants.p_atm) {
+    : empty(false), p_atm(settings.constants.p_atm), supply(settings.constants.p_supply - settings.constants.p_atm) {
   const ParameterSettings& gain = settings.parameters[0];
   const bool normal = gain.prior == PriorKind::kNormal;
   least_gain = kLeastShare * (normal ? std::max(std::fabs(gain.mean), gain.sd)
@@ -32,7 +32,6 @@ FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
     term[At(index)] = {first_amplitude, effect.gate, effect.from_s, effect.until_s};
     const EffectInfo& info = *FlowEffects::kInfos[At(index)];
     first_amplitude += info.num_amplitudes;
-    empty = false;
     head_moves = head_moves || (info.needs.pressure && info.slot != EffectSlot::kAdditive);
     if (effect.name == std::string_view(ValveLag::kInfo.name)) {
       const ParameterSettings& tau = effect.amplitudes[0];

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <vector>
 
 #include "armcmc/effects/registry.hpp"
@@ -106,6 +107,60 @@ TEST(FlowEstimator, AChamberAtRestDoesNotLookLikeAnotherValve) {
   const ModeEstimate& after = rig.estimate().modes[0];
   for (const std::size_t d : {0u, 1u, 3u})
     EXPECT_NEAR(after.marginal[d].ar_ap, before.marginal[d].ar_ap, 2.0 * before.marginal[d].sd) << d;
+}
+
+/// A method after all packs, told the noise in the unit of what it regresses.
+std::unique_ptr<Rig> AfterMeasured(const ValveSeries& series, Method method, bool pressure_rate, int pf_updates = 1) {
+  EstimatorSettings settings = Quick(BuiltinSettings("soft_actuator_excited"));
+  settings.method = method;
+  settings.pressure_rate = pressure_rate;
+  settings.forgetting.threshold = 1e9;  // nothing changes: all data count
+  settings.forgetting.lambda_max = 1.0 - 1e-12;
+  settings.baseline.recall = true;
+  settings.baseline.rls_forgetting = 1.0;
+  settings.baseline.pf_updates = pf_updates;
+  for (NoiseSettings& noise : settings.noise) noise.std = series.rate_noise * (pressure_rate ? 1.0 : 5e-4);
+  auto rig = std::make_unique<Rig>(settings);
+  for (const DataPack& pack : series.Packs()) rig->Step(pack);
+  return rig;
+}
+
+// Twenty times the noise of the scenario: as a regressor it would bias the gains by a share of noise^2 / pdot^2.
+TEST(FlowEstimator, ThePressureRateIsRegressedWithoutBias) {
+  ValveSeries series;
+  series.rate_noise = 10e3;
+  series.Simulate(10'000);
+  const auto rate = AfterMeasured(series, Method::kArmcmc, true);
+  const auto flow = AfterMeasured(series, Method::kArmcmc, false);
+  EXPECT_LT(BaseDistance(*rate, series, {0, 1}), 3.0);
+  EXPECT_EQ(rate->estimator.target_unit(), "Pa/s");
+  EXPECT_EQ(flow->estimator.target_unit(), "sqrt(Pa)");
+}
+
+// They are told the same noise. Least squares keep the flow's law, which is linear, and weigh by the pressure rate's.
+TEST(FlowEstimator, TheBaselinesTakeTheNoiseOfThePressureRate) {
+  ValveSeries series;
+  series.Simulate(10'000);
+  const auto ours = AfterMeasured(series, Method::kArmcmc, true);
+  const auto rls = AfterMeasured(series, Method::kRls, true);
+  EXPECT_EQ(rls->estimator.target_unit(), "sqrt(Pa)");
+  for (std::size_t m = 0; m < 2; ++m)
+    for (std::size_t d = 0; d < 2; ++d) {
+      const MarginalSummary &a = rls->estimate().modes[m].marginal[d], &b = ours->estimate().modes[m].marginal[d];
+      EXPECT_NEAR(a.sd / b.sd, 1.0, 0.15) << "valve " << m << ", parameter " << d;
+      EXPECT_NEAR(a.ar_ap, b.ar_ap, 2.0 * b.sd) << "valve " << m << ", parameter " << d;
+    }
+  for (const int updates : {1, 4}) {
+    const auto pf = AfterMeasured(series, Method::kParticleFilter, true, updates);
+    for (std::size_t m = 0; m < 2; ++m)
+      EXPECT_NEAR(pf->estimate().modes[m].marginal[0].ar_ap / series.g[m], 1.0, 0.15) << updates << " updates a pack";
+  }
+}
+
+TEST(FlowEstimator, AContactHasNoPressureRate) {
+  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  settings.pressure_rate = true;
+  EXPECT_THROW(settings.Validate(), std::invalid_argument);
 }
 
 TEST(FlowEstimator, ReportsAmplitudesAfterTheModelsOwnQuantities) {

@@ -23,6 +23,9 @@ class ModelErrors {
             std::vector<double>* errors);
 
  private:
+  /// The same where the pressure rate of the actuator is what is regressed.
+  double OfPressureRate(const DataPack& pack, const double* theta, int mode, std::vector<double>* errors);
+
   EstimatorSettings settings_;
   int model_;
   ModeData data_;

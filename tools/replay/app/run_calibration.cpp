@@ -7,7 +7,6 @@
 #include "armcmc/calibrate/calibrate.hpp"
 #include "armcmc/calibrate/config_text.hpp"
 #include "armcmc/calibrate/report.hpp"
-#include "armcmc/models/registry.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
 #include "runs.hpp"
@@ -63,7 +62,7 @@ int RunCalibration(const Arguments& a) {
   Close(&config, a.calibrate);
   RequireReadsBack(a, found.settings, estimator.num_modes());
 
-  const std::string unit(AllModels::kInfos[static_cast<std::size_t>(FindModel(session.settings.model))]->target_unit);
+  const std::string unit(estimator.target_unit());
   const std::string page = std::filesystem::path(a.calibrate).replace_extension(".html").string();
   std::ofstream report = OpenOutput(page);
   report << calibrate::ReportHtml(found, a.data, a.config, unit);

@@ -91,6 +91,7 @@ EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& mo
   const ModelFacts facts = FactsOf(settings);
   ReadParameters(model.Table("parameters"), &settings);
   ReadConstants(model, facts.plant, &settings);
+  ReadPressureRate(model, facts.plant, &settings);
   ReadNoise(root.Table("noise"), facts.modes, &settings);
   ReadEffects(root, facts.plant, &settings);
   ReadMethod(root, &settings);

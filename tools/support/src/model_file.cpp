@@ -98,6 +98,7 @@ void ApplyModelFile(const std::string& path, EstimatorSettings* settings) {
   const ModelFacts facts = FactsOf(*settings);
   ReadParameters(root.Table("parameters"), settings);
   ReadConstants(root, facts.plant, settings);
+  ReadPressureRate(root, facts.plant, settings);
   ReadNoise(root.Table("noise"), facts.modes, settings);
   ReadEffects(root, facts.plant, settings);
   root.Finish();
@@ -119,6 +120,8 @@ std::string ModelFileText(const EstimatorSettings& settings, const std::string& 
   const ModelFacts facts = FactsOf(settings);
   std::ostringstream out;
   out << "schema = 1\nbase = \"" << (base.empty() ? settings.model : base) << "\"\n";
+  if (facts.plant == PlantKind::kSoftActuator)
+    out << "pressure_rate = " << (settings.pressure_rate ? "true" : "false") << '\n';
   for (int d = 0; d < settings.num_parameters; ++d) {
     const ParameterSettings& p = settings.parameters[static_cast<std::size_t>(d)];
     out << "\n[parameters." << p.name << "]\n";

@@ -109,6 +109,12 @@ void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* sett
   c.q3 = table.Number("q3", c.q3, 0.0, kMax);
 }
 
+void ReadPressureRate(StrictTable& holder, PlantKind plant, EstimatorSettings* settings) {
+  if (plant != PlantKind::kSoftActuator && holder.Has("pressure_rate"))
+    throw holder.Error("pressure_rate", settings->model + " has no pressure");
+  settings->pressure_rate = holder.Boolean("pressure_rate", settings->pressure_rate);
+}
+
 void ReadEffects(StrictTable& root, PlantKind plant, EstimatorSettings* settings) {
   std::vector<StrictTable> tables = root.Tables("effect");
   if (tables.empty()) return;

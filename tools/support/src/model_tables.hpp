@@ -24,6 +24,8 @@ void ReadParameters(StrictTable parameters, EstimatorSettings* settings);
 void ReadNoise(StrictTable noise, const std::vector<std::string>& modes, EstimatorSettings* settings);
 /// [.constants] of the actuator, where `holder` is the table that it is in.
 void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* settings);
+/// `pressure_rate` of the actuator, beside its constants.
+void ReadPressureRate(StrictTable& holder, PlantKind plant, EstimatorSettings* settings);
 /// [[effect]]: name, when, from_s or until_s, the shapes as numbers, the priors of the amplitudes as tables. Replaces
 /// the effects of the settings when there is one.
 void ReadEffects(StrictTable& root, PlantKind plant, EstimatorSettings* settings);

@@ -39,6 +39,10 @@ std::vector<MethodSpec> PaperMethods(const EstimatorSettings& base) {
   add("pf", "particle filter", Method::kParticleFilter);
   if (!contact) {
     add("rls_per_mode", "RLS, one for each valve", Method::kRls).settings.baseline.recall = true;
+    BaselineSettings& all =
+        add("rls_per_mode_keeps_all", "RLS, one for each valve, without forgetting", Method::kRls).settings.baseline;
+    all.recall = true;
+    all.rls_forgetting = 1.0;
     add("pf_per_mode", "particle filter, one for each valve", Method::kParticleFilter).settings.baseline.recall = true;
   } else {
     add("batch_nls", "batch least squares", Method::kArmcmc).online = false;
@@ -48,7 +52,12 @@ std::vector<MethodSpec> PaperMethods(const EstimatorSettings& base) {
 
 EstimatorSettings ScenarioSettings(const std::string& scenario) {
   if (scenario == "soft_actuator_paper") return BuiltinSettings("soft_actuator");
-  if (scenario == "soft_actuator_excited") return BuiltinSettings("soft_actuator_excited");
+  if (scenario == "soft_actuator_excited") {
+    EstimatorSettings excited = BuiltinSettings("soft_actuator_excited");
+    excited.pressure_rate = true;  // the noise of the scenario is that of its sensors
+    for (NoiseSettings& noise : excited.noise) noise.std = 500.0;
+    return excited;
+  }
   EstimatorSettings s = BuiltinSettings("hunt_crossley");
   NoiseSettings& noise = s.noise[0];
   if (scenario == "hunt_crossley_heavy_tailed") {

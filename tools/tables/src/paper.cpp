@@ -64,7 +64,8 @@ const char* ActuatorNote() {
 const char* LostRowsNote() {
   return "The valve equation is linear in its parameters and the open valve is known: RLS with one vector for each "
          "valve "
-         "is Bayes' rule there, too, without sampling error. In the paper's actuator scenario theta1 and theta2 apart "
+         "is Bayes' rule there, too, without sampling error, as long as it never forgets and the pressure rate, its "
+         "regressor, has no noise. In the paper's actuator scenario theta1 and theta2 apart "
          "cannot be identified, the pressure stays within 4 Pa of the atmosphere's: their errors compare starting "
          "points.";
 }

@@ -11,7 +11,9 @@ namespace armcmc {
 ///   P <- P / mu,   k = P phi / (r + phi' P phi),   z <- z + k (y - phi' z),   P <- P - k phi' P
 ///
 /// Actuator: linear as it stands in (g, theta2). The inputs are scaled by the prior's standard deviations, which does
-/// for each of them what the paper's common factor of 1e7 does for both; r = s^2.
+/// for each of them what the paper's common factor of 1e7 does for both; r = s^2. Where the noise is that of the
+/// pressure rate (settings.pressure_rate) the law is still that of the flow, the pressure rate's being no linear one,
+/// and r = s^2 E[gain^2], gain = g + theta2 (p - p_atm) by a first pass over the pack.
 ///
 /// Contact: the paper's log-linearisation (equations `hnt`, `hnt3`, `hnt44`),
 ///
@@ -34,6 +36,11 @@ class RlsFilter final : public PackFilter {
 
  private:
   void Update(const ParamVector& phi, double y, double r) noexcept ARMCMC_NONBLOCKING;
+  /// Updates by all samples. Of a pressure rate: weighted by the gains of a state (gain_z, gain_p).
+  void Pass(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept ARMCMC_NONBLOCKING;
+  /// Expected square of g + theta2 (p - p_atm) at a sample: it turns a variance of pdot into one of the flow.
+  [[nodiscard]] double SquareGain(const ModeData& data, std::size_t sample, const ParamVector& z,
+                                  const ParamMatrix& p) const noexcept ARMCMC_NONBLOCKING;
   void Saturate() noexcept ARMCMC_NONBLOCKING;
   /// Standardised coordinates of the sampled parameters for a state z.
   void ToDraw(const ParamVector& z, double* u) const noexcept ARMCMC_NONBLOCKING;

@@ -21,8 +21,9 @@ namespace armcmc {
 /// The parameters are those of the base, then the amplitudes in the order of the settings, called NAME_PARAMETER.
 ///
 /// Contact plant: with effects, mode 0 uses every sample of a pack: free motion says something on a bias, a drag or a
-/// mass. Soft actuator: with effects, what is regressed is the pressure rate (see FlowLaw), whose noise is that of a
-/// sensor, so that the noise of the settings is in Pa/s; each valve has its own amplitudes.
+/// mass. Soft actuator: with effects, or where the settings ask for it, what is regressed is the pressure rate (see
+/// FlowLaw), whose noise is that of a sensor, so that the noise of the settings is in Pa/s; each valve has its own
+/// amplitudes.
 class Composition {
  public:
   /// @pre settings.Validate() passes.
@@ -30,12 +31,13 @@ class Composition {
   Composition(const Composition&) = delete;  // info_ points into names_
   Composition& operator=(const Composition&) = delete;
 
-  [[nodiscard]] bool empty() const noexcept { return num_terms_ == 0; }
+  /// The model predicts what it does by itself.
+  [[nodiscard]] bool empty() const noexcept { return num_terms_ == 0 && flow_.empty; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
   /// The settings with the amplitudes appended to the parameters: what a ParameterSpace is made from.
   [[nodiscard]] const EstimatorSettings& sampled() const noexcept { return sampled_; }
 
-  /// Effects of the valve flow; empty for the contact plant.
+  /// The pressure rate that the valve flow makes; empty where it is not what is regressed.
   [[nodiscard]] const FlowPlan& flow() const noexcept { return flow_; }
 
   /// Features of the pack, from the memory of the pack before; then remembers this one. A gap in the pack numbers,

@@ -8,8 +8,8 @@
 
 namespace armcmc {
 
-/// The effects of the valve flow that the settings add: where their amplitudes stand, when they act, and the constants
-/// of the law.
+/// How the valve flow predicts the pressure rate: the constants of the law, and the effects that the settings add,
+/// where their amplitudes stand and when they act.
 struct FlowPlan {
   struct Term {
     int parameter = -1;  ///< Index of its amplitude among the parameters; negative: the effect is not there.
@@ -29,7 +29,7 @@ struct FlowPlan {
 
   [[nodiscard]] const Term& lag() const noexcept { return term[FlowEffects::kIndexOf<ValveLag>]; }
 
-  bool empty = true;
+  bool empty = true;        ///< The pressure rate is not what is regressed.
   bool head_moves = false;  ///< See FlowPack.
   std::array<Term, FlowEffects::kSize> term;
   double p_atm = 0.0, supply = 0.0;             ///< Pa; supply is p_s - p_atm.
