@@ -159,5 +159,24 @@ TEST(EvaluateLong, SlopeByAFrequencyHoldsOnALongRecording) {
   EXPECT_LT((at.jacobian.col(5) - slope).norm(), 0.02 * slope.norm());
 }
 
+TEST(Evaluate, ColumnsAreTheSameToTheBitHoweverFewOfThemAreWanted) {
+  const Bench bench(test::Measure({}, 600, 0.01, 3).recording);
+  const EffectForm& lag = bench.Form("sensor_lag");
+  const EffectForm& relaxation = bench.Form("stress_relaxation");
+  for (const EffectForm& form : bench.catalogue) {
+    Hypothesis hypothesis{{{&form, {}}}};
+    if (form.effect != relaxation.effect) hypothesis.terms.push_back({&relaxation, {}});
+    if (form.effect != lag.effect) hypothesis.terms.push_back({&lag, {When::Kind::kFrom, 0.2}});
+    const Vector theta = PointFor(bench, hypothesis);
+    const Prediction all = Evaluate(*bench.equation, bench.signals, hypothesis, theta);
+    EXPECT_EQ(Evaluate(*bench.equation, bench.signals, hypothesis, theta, Slopes::None()).y, all.y) << form.effect;
+    for (int c = 0; c < theta.size(); ++c) {
+      const Prediction one = Evaluate(*bench.equation, bench.signals, hypothesis, theta, {c, c + 1});
+      EXPECT_EQ(one.y, all.y) << Words(hypothesis) << "coordinate " << c;
+      EXPECT_EQ(one.jacobian.col(c), all.jacobian.col(c)) << Words(hypothesis) << "coordinate " << c;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::gap

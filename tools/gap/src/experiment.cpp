@@ -81,7 +81,7 @@ Signals Simulate(const Program& program, double pace, const Signals& like, doubl
 
 double Separation(const Equation& equation, Signals* s, const Whitener& whitener, const Fitted& truth,
                   const Fitted& rival) {
-  s->output = Evaluate(equation, *s, truth.hypothesis, truth.theta).y;
+  s->output = Evaluate(equation, *s, truth.hypothesis, truth.theta, Slopes::None()).y;
   const Fitter fitter(equation, *s, whitener);
   return 0.5 * fitter.Fit(rival.hypothesis, rival.theta, kSteps).squares / whitener.s2;
 }

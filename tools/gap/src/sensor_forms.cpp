@@ -34,16 +34,17 @@ Vector Delayed(const Vector& f, double lag_samples) {
   return g;
 }
 
-/// Applies a linear filter to the prediction and to every column that it has so far; the filter's own column is the
-/// difference quotient by its coordinate.
+/// Applies a linear filter to the prediction and to every wanted column that it has so far; the filter's own column is
+/// the difference quotient by its coordinate.
 template <class Filter>
 void Pass(const Filter& filter, double coordinate, int own, Prediction* out) {
   constexpr double kStep = 1e-4;
   const Vector before = out->y;
   out->y = filter(before, coordinate);
   for (Eigen::Index c = 0; c < out->jacobian.cols(); ++c)
-    if (!out->jacobian.col(c).isZero(0.0)) out->jacobian.col(c) = filter(out->jacobian.col(c), coordinate);
-  out->jacobian.col(own) = (filter(before, coordinate + kStep) - out->y) / kStep;
+    if (out->wanted.Has(static_cast<int>(c)) && !out->jacobian.col(c).isZero(0.0))
+      out->jacobian.col(c) = filter(out->jacobian.col(c), coordinate);
+  if (out->wanted.Has(own)) out->jacobian.col(own) = (filter(before, coordinate + kStep) - out->y) / kStep;
 }
 
 EffectForm Latency(const char* effect, const char* formula, Slot slot, const Signals& signals, const char* parameter) {
