@@ -29,6 +29,20 @@ void FillText(std::string_view text, std::uint8_t (&field)[kSize]) noexcept {
                  [](char c) { return static_cast<std::uint8_t>(c); });
 }
 
+/// A name that is too long keeps its head and its tail around a "~": those of one effect differ at the end.
+template <std::size_t kSize>
+void FillName(std::string_view name, std::uint8_t (&field)[kSize]) noexcept {
+  constexpr std::size_t kTail = 6, kHead = kSize - 2 - kTail;
+  if (name.size() < kSize) {
+    FillText(name, field);
+    return;
+  }
+  FillText(name.substr(0, kHead), field);
+  field[kHead] = static_cast<std::uint8_t>('~');
+  name.remove_prefix(name.size() - kTail);
+  std::transform(name.begin(), name.end(), field + kHead + 1, [](char c) { return static_cast<std::uint8_t>(c); });
+}
+
 /// Mode whose parameters are reported; guards the index against a mode that does not exist.
 const ModeEstimate& ReportedMode(const Estimate& estimate) noexcept {
   return estimate.modes[static_cast<std::size_t>(std::clamp(estimate.report_mode, 0, kMaxModes - 1))];
@@ -61,7 +75,7 @@ void FillEstimate(const StepOutput& output, const StepEngine& engine, std::int64
   for (int i = 0; i < num_reported; ++i) {
     const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(i)];
     const ReportedQuantity quantity = engine.reported(i);
-    FillText(quantity.name, message->param_name[i]);
+    FillName(quantity.name, message->param_name[i]);
     FillText(quantity.unit, message->param_unit[i]);
     if (!mode.known) continue;
     message->ar_map[i] = marginal.ar_map;

@@ -35,7 +35,7 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // hidden from the compiler on purpose: whoever 
 ARMCMC_TRUST_NONBLOCKING_END
 
 /// An engine whose result is the pack number, and whose time is set by the test.
-class FakeEngine final : public StepEngine {
+class FakeEngine : public StepEngine {
  public:
   [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override { return PlantKind::kHuntCrossley; }
   [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override { return 2; }

@@ -4,8 +4,11 @@
 
 #include <cstring>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
 
+#include "armcmc/effects/registry.hpp"
 #include "armcmc/rt/lcm_receiver.hpp"
 #include "fake_engine.hpp"
 #include "test_packs.hpp"
@@ -56,7 +59,7 @@ TEST(FillEstimate, ReportsTheActingModeWithNamesAndTimes) {
   EXPECT_EQ(message.n_modes, 1);
   EXPECT_EQ(Text(message.param_name[0]), "K");
   EXPECT_EQ(Text(message.param_unit[0]), "N/m^p");
-  EXPECT_EQ(Text(message.param_name[1]), "a_name_of_more_") << "cut, and still zero terminated";
+  EXPECT_EQ(Text(message.param_name[1]), "a_name_o~acters") << "cut, told so, and still zero terminated";
   EXPECT_EQ(message.ar_map[0], 7.0);
   EXPECT_EQ(message.ar_map_by_mode[0][0], 7.0);
   EXPECT_EQ(message.known_by_mode[0], 1);
@@ -64,6 +67,41 @@ TEST(FillEstimate, ReportsTheActingModeWithNamesAndTimes) {
   EXPECT_EQ(message.ar_map[2], 0.0);
   EXPECT_EQ(message.draws, 1000);
   EXPECT_EQ(message.y_pred, 2.5);
+}
+
+/// Reports the name that it is given.
+class Naming final : public test::FakeEngine {
+ public:
+  explicit Naming(std::string name) : name_(std::move(name)) {}
+  [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {
+    (void)index;
+    return {name_, "-"};
+  }
+
+ private:
+  std::string name_;
+};
+
+template <class Effects>
+void ExpectNamesApart() {
+  std::set<std::string> names, shown;
+  for (const EffectInfo* effect : Effects::kInfos)
+    for (int a = 0; a < effect->num_amplitudes; ++a) {
+      const std::string name =
+          std::string(effect->name) + "_" + std::string(effect->amplitudes[static_cast<std::size_t>(a)].name);
+      Naming engine(name);
+      estimate_t message;
+      FillEstimate(*Output(&engine), engine, 1, &message);
+      names.insert(name);
+      shown.insert(Text(message.param_name[0]));
+    }
+  EXPECT_EQ(shown.size(), names.size());
+  EXPECT_GT(names.size(), 4u);
+}
+
+TEST(FillEstimate, TellsTheParametersOfAllEffectsApart) {
+  ExpectNamesApart<ContactEffects>();
+  ExpectNamesApart<FlowEffects>();
 }
 
 TEST(FillEstimate, SaysNothingOfParametersBeforeAnythingIsKnown) {

@@ -16,6 +16,7 @@
 
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
+#include "armcmc/log_export/columns.hpp"
 #include "armcmc/log_export/meaning.hpp"
 #include "armcmc/posterior_t.hpp"
 #include "armcmc/support/program.hpp"
@@ -118,6 +119,31 @@ TEST(Meaning, UnitsHaveNoSlashWhichPlotJugglerTakesForAFolder) {
   EXPECT_EQ(ColumnUnit("1/s"), "s^-1");
   EXPECT_EQ(ColumnUnit("-"), "");
   EXPECT_EQ(ColumnUnit("us"), "us");
+}
+
+TEST(Columns, AnActuatorWithEffectsIsFittedToThePressureRate) {
+  const std::vector<MessageType> types = ReleasedTypes();
+  ChannelScan channel;
+  for (const MessageType& type : types)
+    if (type.name == "estimate_t") channel.type = &type;
+  ASSERT_NE(channel.type, nullptr);
+  const auto holds = [&](const PlantScan& plant, const std::string& header) {
+    const std::vector<Column> columns = ColumnsOf(channel, plant);
+    return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.header == header; });
+  };
+  PlantScan plant;
+  plant.plant_kind = 2;
+  plant.parameters = {"g", "theta2", "theta1"};
+  plant.units = {"sqrt(Pa) s/Pa", "sqrt(Pa) s/Pa^2", "sqrt(Pa) s/Pa"};
+  EXPECT_TRUE(holds(plant, "y_rmse [sqrt(Pa)]"));
+  plant.parameters.emplace_back("leak_rate");
+  plant.units.emplace_back("1/s");
+  EXPECT_TRUE(holds(plant, "y_rmse [Pa s^-1]"));
+  EXPECT_TRUE(holds(plant, "noise_std [Pa s^-1]"));
+  plant.plant_kind = 1;  // a contact's is a force, whatever it is made of
+  plant.parameters = {"K", "B", "p", "force_bias_force"};
+  plant.units = {"N/m^p", "N s/m^(p+1)", "-", "N"};
+  EXPECT_TRUE(holds(plant, "y_rmse [N]"));
 }
 
 TEST_F(CsvExport, EstimatesHaveTheNamesAndUnitsOfTheirParameters) {

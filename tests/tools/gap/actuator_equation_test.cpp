@@ -102,6 +102,36 @@ Vector Somewhere(const EffectForm& form, Vector theta) {
   return theta;
 }
 
+TEST(BendSimulation, RunsAbreastAreThoseOneByOneToTheBit) {
+  const PlantConstants constants = BuiltinSettings("soft_actuator_excited").constants;
+  const auto equation = ActuatorEquation(kBend);
+  const Signals s = equation->Prepare(RecordPlant("soft_actuator_excited", {}, 6, 1.0), kWindow);
+  const BendSimulation simulation(constants, s.dt);
+  const Vector gate = Vector::Ones(s.rows());
+  std::vector<std::vector<BendSimulation::Force>> runs(1);  // one without any force
+  const std::vector<EffectForm> catalogue = equation->Catalogue(s);
+  for (const EffectForm& form : catalogue) {
+    if (form.slot != Slot::kForce) continue;
+    const Vector at = Somewhere(form, Vector());
+    std::vector<double> values;
+    for (int c = 0; c < form.size(); ++c) values.push_back(form.coordinates[static_cast<std::size_t>(c)].Value(at[c]));
+    runs.push_back(runs.size() > 2 ? runs.back() : std::vector<BendSimulation::Force>());
+    if (runs.back().size() > 1) runs.back().erase(runs.back().begin());
+    runs.back().push_back({&form, values, &gate});
+  }
+  ASSERT_GT(runs.size(), 8u);
+  Matrix angles;
+  simulation.RunAbreast(s.t, s.at(Role::kPressure), {0.1, 0.2}, runs, &angles);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    Vector alone(s.rows());
+    simulation.Run(s.t, s.at(Role::kPressure), {0.1, 0.2}, runs[i], s.rows(), &alone, nullptr);
+    EXPECT_EQ(angles.col(static_cast<Eigen::Index>(i)), alone) << i;
+    if (i > 0) {
+      EXPECT_NE(angles.col(static_cast<Eigen::Index>(i)), angles.col(0)) << i;
+    }
+  }
+}
+
 class Derivatives : public ::testing::TestWithParam<int> {};
 
 TEST_P(Derivatives, OfTheLawAndOfEveryFormulaAreDifferenceQuotients) {
@@ -124,6 +154,24 @@ TEST_P(Derivatives, OfTheLawAndOfEveryFormulaAreDifferenceQuotients) {
       // One-sided quotients of shapes differ from central ones by their step; a kink, in the sample that it passes.
       EXPECT_LT((jacobian.col(c) - difference).norm(), 0.03 * size)
           << equation->name() << ", " << form.effect << " " << form.variant << ", coordinate " << c;
+    }
+  }
+}
+
+TEST_P(Derivatives, AreTheSameToTheBitHoweverFewOfThemAreWanted) {
+  const auto equation = ActuatorEquation(GetParam());
+  const Signals s = equation->Prepare(RecordPlant("soft_actuator_excited", {}, 4, 1.5), kWindow);
+  const std::vector<EffectForm> catalogue = equation->Catalogue(s);
+  for (std::size_t i = 0; i + 1 < catalogue.size(); ++i) {
+    // Two at a time, so that one's columns may depend on the other.
+    const Hypothesis hypothesis{{{&catalogue[i], {}}, {&catalogue[i + 1], {}}}};
+    const Vector theta = Somewhere(catalogue[i + 1], Somewhere(catalogue[i], equation->Start(s)));
+    const Prediction all = Evaluate(*equation, s, hypothesis, theta);
+    EXPECT_EQ(Evaluate(*equation, s, hypothesis, theta, Slopes::None()).y, all.y) << catalogue[i].effect;
+    for (int c = 0; c < theta.size(); ++c) {
+      const Prediction one = Evaluate(*equation, s, hypothesis, theta, {c, c + 1});
+      EXPECT_EQ(one.y, all.y) << catalogue[i].effect << ", coordinate " << c;
+      EXPECT_EQ(one.jacobian.col(c), all.jacobian.col(c)) << catalogue[i].effect << ", coordinate " << c;
     }
   }
 }

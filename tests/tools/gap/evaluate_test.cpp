@@ -159,5 +159,44 @@ TEST(EvaluateLong, SlopeByAFrequencyHoldsOnALongRecording) {
   EXPECT_LT((at.jacobian.col(5) - slope).norm(), 0.02 * slope.norm());
 }
 
+TEST(Evaluate, ColumnsAreTheSameToTheBitHoweverFewOfThemAreWanted) {
+  const Bench bench(test::Measure({}, 600, 0.01, 3).recording);
+  const EffectForm& lag = bench.Form("sensor_lag");
+  const EffectForm& relaxation = bench.Form("stress_relaxation");
+  for (const EffectForm& form : bench.catalogue) {
+    Hypothesis hypothesis{{{&form, {}}}};
+    if (form.effect != relaxation.effect) hypothesis.terms.push_back({&relaxation, {}});
+    if (form.effect != lag.effect) hypothesis.terms.push_back({&lag, {When::Kind::kFrom, 0.2}});
+    const Vector theta = PointFor(bench, hypothesis);
+    const Prediction all = Evaluate(*bench.equation, bench.signals, hypothesis, theta);
+    EXPECT_EQ(Evaluate(*bench.equation, bench.signals, hypothesis, theta, Slopes::None()).y, all.y) << form.effect;
+    for (int c = 0; c < theta.size(); ++c) {
+      const Prediction one = Evaluate(*bench.equation, bench.signals, hypothesis, theta, {c, c + 1});
+      EXPECT_EQ(one.y, all.y) << Words(hypothesis) << "coordinate " << c;
+      EXPECT_EQ(one.jacobian.col(c), all.jacobian.col(c)) << Words(hypothesis) << "coordinate " << c;
+    }
+  }
+}
+
+TEST(Evaluate, ALatencyIsTheSameTimeInARecordingOfAnotherRate) {
+  const Bench slow(test::Measure({}, 1000, 0.0, 3, 1e-3).recording);
+  const Recording quick = test::Measure({}, 4000, 0.0, 3, 0.25e-3).recording;
+  const Signals fine = slow.equation->PrepareLike(quick, 15, slow.signals);
+  constexpr double kLatency_s = 4e-3;
+  for (const char* effect : {"sensor_delay", "sensor_lag"}) {
+    const EffectForm& form = slow.Form(effect);
+    const Hypothesis hypothesis{{{&form, {}}}};
+    Vector theta = PointFor(slow, hypothesis);
+    theta[3] = kLatency_s / form.coordinates[0].unit_size;
+    const Vector at_slow = Evaluate(*slow.equation, slow.signals, hypothesis, theta).y;
+    const Vector at_fine = Evaluate(*slow.equation, fine, hypothesis, theta).y;
+    const Vector without = Evaluate(*slow.equation, slow.signals, {}, theta.head(3)).y;
+    double worst = 0.0;
+    for (Eigen::Index i = 100; i < 990; ++i) worst = std::max(worst, std::abs(at_slow[i] - at_fine[4 * i]));
+    const double moved = (at_slow - without).segment(100, 890).cwiseAbs().maxCoeff();
+    EXPECT_LT(worst, 0.02 * moved) << effect;
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::gap

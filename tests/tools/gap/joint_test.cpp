@@ -100,5 +100,24 @@ TEST_F(JoinTest, ARecordingOfAnotherEffectKeepsItsOwnVerdict) {
   EXPECT_NE(notes_[0].find("disagree"), std::string::npos) << notes_[0];
 }
 
+TEST_F(JoinTest, ALatencyIsJudgedByARecordingSampledMoreOften) {
+  HiddenEffect delay = test::Hidden("sensor_delay"), lag = test::Hidden("sensor_lag");
+  for (const bool delayed : {true, false}) {
+    const HiddenEffect& truth = delayed ? delay : lag;
+    options_.pairs = false;
+    first_ = Diagnose(*equation_, Measure({truth}, 3000, 0.05, 5).recording, options_);
+    LeaveOpen({"sensor_delay", "sensor_lag"});
+    recording_ = Measure({truth}, 12000, 0.06, 6, 0.25e-3).recording;
+    second_ = Diagnose(*equation_, recording_, options_);
+    second_.finding.verdict = Verdict::kNone;  // as if it named nothing by itself
+    notes_.clear();
+    Join(*equation_, recording_, first_, options_.thresholds, &second_, &notes_);
+    ASSERT_EQ(second_.finding.set.size(), 1u) << (notes_.empty() ? "" : notes_[0]);
+    EXPECT_TRUE(Holds(second_.finding, delayed ? "sensor_delay" : "sensor_lag")) << notes_[0];
+    const double before = first_.finding.set[delayed ? 0 : 1]->fit.theta.tail<1>()[0];
+    EXPECT_NEAR(second_.finding.best->fit.theta.tail<1>()[0], before, 0.1 * before);
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::gap

@@ -96,7 +96,13 @@ class Builder {
 
   [[nodiscard]] std::string Resolved(const std::string& unit) const {
     if (unit == "output") return ColumnUnit(words_.output_unit);
-    if (unit == "target") return ColumnUnit(words_.target_unit);
+    // With effects the estimator fits another output of the plant.
+    const bool extended =
+        !words_.extended_target_unit.empty() &&
+        std::any_of(plant_.parameters.begin(), plant_.parameters.end(), [&](const std::string& name) {
+          return std::find(words_.parameters.begin(), words_.parameters.end(), name) == words_.parameters.end();
+        });
+    if (unit == "target") return ColumnUnit(extended ? words_.extended_target_unit : words_.target_unit);
     return unit;
   }
 

@@ -45,16 +45,17 @@ FieldMeaning ReadField(support::StrictTable& fields, const std::string& name) {
 }
 
 const PlantWords kContact = {
-    "f", "N", "N", {"x", "v"}, {"m", "m/s"}, {"K", "B", "p"}, {"N/m^p", "N s/m^(p+1)", "-"}, {"contact"}};
+    "f", "N", "N", {"x", "v"}, {"m", "m/s"}, {"K", "B", "p"}, {"N/m^p", "N s/m^(p+1)", "-"}, {"contact"}, ""};
 const PlantWords kActuator = {"alpha",
                               "rad",
                               "sqrt(Pa)",
                               {"u_c", "u_d", "p", "pdot"},
                               {"-", "-", "Pa", "Pa/s"},
-                              {"g", "theta2"},
-                              {"sqrt(Pa) s/Pa", "sqrt(Pa) s/Pa^2"},
-                              {"u_c", "u_d"}};
-const PlantWords kUnknownPlant = {"y", "", "", {}, {}, {}, {}, {}};
+                              {"g", "theta2", "theta1"},
+                              {"sqrt(Pa) s/Pa", "sqrt(Pa) s/Pa^2", "sqrt(Pa) s/Pa"},
+                              {"u_c", "u_d"},
+                              "Pa/s"};
+const PlantWords kUnknownPlant = {"y", "", "", {}, {}, {}, {}, {}, ""};
 
 }  // namespace
 

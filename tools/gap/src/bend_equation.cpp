@@ -80,21 +80,25 @@ class BendEquation final : public Equation {
     std::vector<BendSimulation::Force> forces;
     for (const LawInput::Force& force : input.forces) forces.push_back({force.form, Values(force), &force.gate});
     (void)theta;
-    const BendSimulation::State first = StartOf(s, simulation);
-    out->y.resize(s.rows());
-    simulation.Run(s.t, gauge, first, forces, s.rows(), &out->y, nullptr);
-    out->elastic = Vector::Zero(s.rows());
-    Vector moved(s.rows());
+    // One run as it is, then one for every slope.
+    std::vector<std::vector<BendSimulation::Force>> runs{forces};
+    std::vector<int> columns;
     for (std::size_t f = 0; f < forces.size(); ++f) {
       const EffectForm& form = *forces[f].form;
       for (std::size_t c = 0; c < form.coordinates.size(); ++c) {
-        const double at = forces[f].values[c];
-        forces[f].values[c] = form.coordinates[c].Value(input.forces[f].coordinates[c] + kStep);
-        simulation.Run(s.t, gauge, first, forces, s.rows(), &moved, nullptr);
-        forces[f].values[c] = at;
-        out->jacobian.col(input.forces[f].first + static_cast<int>(c)) = (moved - out->y) / kStep;
+        const int column = input.forces[f].first + static_cast<int>(c);
+        if (!out->wanted.Has(column)) continue;
+        columns.push_back(column);
+        runs.push_back(forces);
+        runs.back()[f].values[c] = form.coordinates[c].Value(input.forces[f].coordinates[c] + kStep);
       }
     }
+    Matrix angles;
+    simulation.RunAbreast(s.t, gauge, StartOf(s, simulation), runs, &angles);
+    out->y = angles.col(0);
+    out->elastic = Vector::Zero(s.rows());
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      out->jacobian.col(columns[i]) = (angles.col(static_cast<Eigen::Index>(i) + 1) - out->y) / kStep;
   }
 
   std::vector<ParameterEstimate> Report(const Signals& s, const Vector& theta,

@@ -118,8 +118,8 @@ MapFigure Map(const std::string& x_title, const std::string& y_title, const Vect
 Figures MakeFigures(const Equation& equation, const Signals& signals, const Look& look, const Fitted& before,
                     const Fitted& after) {
   const Whitener& whitener = look.fitter->whitener();
-  const Vector first = Evaluate(equation, signals, before.hypothesis, before.theta).y;
-  const Vector second = Evaluate(equation, signals, after.hypothesis, after.theta).y;
+  const Vector first = Evaluate(equation, signals, before.hypothesis, before.theta, Slopes::None()).y;
+  const Vector second = Evaluate(equation, signals, after.hypothesis, after.theta, Slopes::None()).y;
   const Vector error_before = signals.output - first, error_after = signals.output - second;
   Figures figures;
   figures.output_title = equation.output_name() + ", " + equation.output_unit();

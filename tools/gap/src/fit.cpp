@@ -205,7 +205,9 @@ Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
     theta << parent.theta, Eigen::Map<const Vector>(start.data(), form.size());
     const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
     if (form.linear) theta.segment(first, form.num_amplitudes).setZero();
-    const Prediction prediction = Evaluate(*equation_, *signals_, hypothesis, theta);
+    const Slopes amplitudes_only{static_cast<int>(first), static_cast<int>(first) + form.num_amplitudes};
+    const Prediction prediction =
+        Evaluate(*equation_, *signals_, hypothesis, theta, form.linear ? amplitudes_only : Slopes::None());
     double squares = 0.0;
     if (form.linear) {
       const Matrix columns =

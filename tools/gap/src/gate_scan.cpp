@@ -136,11 +136,11 @@ std::vector<Vector> Templates(const Fitter& fitter, const Fitted& parent, const 
       Vector alone = theta;
       alone.segment(first, form.num_amplitudes).setZero();
       alone[first + a] = kUnit;
-      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, alone);
+      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, alone, Slopes::None());
       templates.push_back(fitter.whitener().Apply(Vector(p.y - parent.predicted)));
     }
     if (!form.linear) {
-      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, theta);
+      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, theta, Slopes::None());
       templates.push_back(fitter.whitener().Apply(Vector(p.y - parent.predicted)));
     }
   }

@@ -30,22 +30,23 @@ std::vector<Placed> Place(const Signals& signals, const Hypothesis& hypothesis, 
   return placed;
 }
 
-/// Features times amplitudes, gate included, with the derivative by every coordinate of the term.
+/// Features times amplitudes, gate included, with the derivative by every coordinate of the term that is wanted.
 struct Sum {
   Vector value;
   Matrix slopes;  ///< [row][coordinate of the term]
 };
 
-Sum Evaluate(const Signals& signals, const Placed& term) {
+Sum Evaluate(const Signals& signals, const Placed& term, Slopes wanted) {
   const EffectForm& form = *term.form;
   const Matrix columns = term.gate.asDiagonal() * form.features(signals, term.shapes());
   const Vector amplitudes = form.num_amplitudes == 0
                                 ? Vector(Vector::Ones(1))
                                 : Vector(Eigen::Map<const Vector>(term.theta, form.num_amplitudes));
-  Sum sum{columns * amplitudes, Matrix(signals.rows(), form.size())};
+  Sum sum{columns * amplitudes, Matrix::Zero(signals.rows(), form.size())};
   sum.slopes.leftCols(form.num_amplitudes) = columns.leftCols(form.num_amplitudes);
   std::vector<double> shape(term.shapes(), term.theta + form.size());
   for (std::size_t s = 0; s < shape.size(); ++s) {
+    if (!wanted.Has(term.first + form.num_amplitudes + static_cast<int>(s))) continue;
     const double at = shape[s];
     shape[s] = at + kShapeStep;
     const Vector moved = term.gate.asDiagonal() * form.features(signals, shape.data()) * amplitudes;
@@ -55,11 +56,13 @@ Sum Evaluate(const Signals& signals, const Placed& term) {
   return sum;
 }
 
-void AddToInput(const Sum& sum, const Placed& term, Vector* value, std::vector<LawInput::Slope>* slopes) {
+void AddToInput(const Sum& sum, const Placed& term, Slopes wanted, Vector* value,
+                std::vector<LawInput::Slope>* slopes) {
   if (value->size() == 0) *value = Vector::Zero(sum.value.size());
   *value += sum.value;
   for (Eigen::Index c = 0; c < sum.slopes.cols(); ++c)
-    slopes->push_back({term.first + static_cast<int>(c), sum.slopes.col(c)});
+    if (wanted.Has(term.first + static_cast<int>(c)))
+      slopes->push_back({term.first + static_cast<int>(c), sum.slopes.col(c)});
 }
 
 void AddMemory(const Signals& signals, const Placed& term, Prediction* out) {
@@ -71,10 +74,11 @@ void AddMemory(const Signals& signals, const Placed& term, Prediction* out) {
     out->y += amplitude * term.gate.cwiseProduct(branch);
     out->jacobian.col(term.first + a) += term.gate.cwiseProduct(branch);
     for (Eigen::Index c = 0; c < out->elastic_jacobian.cols(); ++c)
-      if (!out->elastic_jacobian.col(c).isZero(0.0))
+      if (out->wanted.Has(static_cast<int>(c)) && !out->elastic_jacobian.col(c).isZero(0.0))
         out->jacobian.col(c) +=
             amplitude * term.gate.cwiseProduct(form.filter(signals, out->elastic_jacobian.col(c), a, shape.data()));
     for (std::size_t s = 0; s < shape.size(); ++s) {
+      if (!out->wanted.Has(term.first + form.num_amplitudes + static_cast<int>(s))) continue;
       const double at = shape[s];
       shape[s] = at + kShapeStep;
       out->jacobian.col(term.first + form.num_amplitudes + static_cast<Eigen::Index>(s)) +=
@@ -130,28 +134,29 @@ std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& s
   return coordinates;
 }
 
-Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis,
-                    const Vector& theta) {
+Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis, const Vector& theta,
+                    Slopes wanted) {
   int num_terms = 0;
   for (const Term& term : hypothesis.terms) num_terms += term.form->size();
   const std::vector<Placed> terms = Place(signals, hypothesis, static_cast<int>(theta.size()) - num_terms, theta);
   LawInput input;
   for (const Placed& term : terms) {
-    if (term.form->slot == Slot::kInputMap)
-      AddToInput(Evaluate(signals, term), term, &input.shift, &input.shift_slopes);
-    if (term.form->slot == Slot::kParameter) AddToInput(Evaluate(signals, term), term, &input.gain, &input.gain_slopes);
-    if (term.form->slot == Slot::kDrive) AddToInput(Evaluate(signals, term), term, &input.drive, &input.drive_slopes);
+    const auto sum = [&] { return Evaluate(signals, term, wanted); };
+    if (term.form->slot == Slot::kInputMap) AddToInput(sum(), term, wanted, &input.shift, &input.shift_slopes);
+    if (term.form->slot == Slot::kParameter) AddToInput(sum(), term, wanted, &input.gain, &input.gain_slopes);
+    if (term.form->slot == Slot::kDrive) AddToInput(sum(), term, wanted, &input.drive, &input.drive_slopes);
     if (term.form->slot == Slot::kForce) input.forces.push_back({term.form, term.theta, term.first, term.gate});
   }
   if (input.gain.size() > 0) input.gain.array() += 1.0;
   Prediction out;
+  out.wanted = wanted;
   out.jacobian = Matrix::Zero(signals.rows(), theta.size());
   out.elastic_jacobian = Matrix::Zero(signals.rows(), theta.size());
   equation.Law(signals, theta.data(), input, &out);
   for (const Placed& term : terms) {
     if (term.form->slot == Slot::kMemory) AddMemory(signals, term, &out);
     if (term.form->slot == Slot::kAdditive) {
-      const Sum sum = Evaluate(signals, term);
+      const Sum sum = Evaluate(signals, term, wanted);
       out.y += sum.value;
       out.jacobian.middleCols(term.first, term.form->size()) += sum.slopes;
     }

@@ -215,13 +215,15 @@ CandidatePtr Search::Refined(const CandidatePtr& pair) const {
   return best;
 }
 
-Search::Candidates Search::Pairs(const Candidates& order) const {
+Search::Candidates Search::Pairs(const Candidates& order, const CandidatePtr& parent,
+                                 const Candidates& extended) const {
   Candidates pairs;
   std::set<std::vector<std::string>> beam;
   for (const CandidatePtr& first : order) {
     if (beam.size() >= kPairBeam) break;
     if (Gain(first) < limits_.min_gain || !beam.insert(first->names()).second) continue;
-    for (const CandidatePtr& pair : Extend(first, false)) pairs.push_back(pair);
+    const Candidates partners = first == parent ? extended : Extend(first, false);
+    pairs.insert(pairs.end(), partners.begin(), partners.end());
   }
   SortByScore(&pairs);
   pairs = OnePerName(pairs);
@@ -268,16 +270,16 @@ Finding Search::Run(bool pairs) const {
   for (const CandidatePtr& candidate : Near(listed, gap))
     if (Adequate(candidate, gap)) good.push_back(candidate);
   CandidatePtr top = listed.front();
-  Candidates all_pairs;
+  Candidates all_pairs, second;
   if (!good.empty()) {
     top = good.front();
     if (pairs) {
-      const Candidates second = Extend(top, false);
+      second = Extend(top, false);
       if (!second.empty() && Better(second.front()->fit, top->fit)) good.clear();
     }
   }
   if (good.empty() && pairs) {
-    all_pairs = Pairs(listed);
+    all_pairs = Pairs(listed, second.empty() ? nullptr : top, second);
     for (const CandidatePtr& pair : Near(all_pairs, gap)) {
       const bool earned = std::all_of(listed.begin(), listed.end(), [&](const CandidatePtr& single) {
         return !Holds(pair->fit, single->fit.hypothesis.terms.back().form->effect) || Better(pair->fit, single->fit);

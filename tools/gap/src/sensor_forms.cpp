@@ -10,6 +10,7 @@ namespace {
 
 // A latency is sought up to this many samples, and up to this share of the time in which the motion changes.
 constexpr double kLongestSamples = 50.0, kLongestShare = 0.3;
+constexpr double kUnitSamples = 10.0;  // of the recording that the catalogue is scaled to: a latency of one
 
 /// Low pass tau g' + g = f, exact for f linear between samples, started settled.
 Vector LowPass(const Vector& f, double tau_samples) {
@@ -34,16 +35,17 @@ Vector Delayed(const Vector& f, double lag_samples) {
   return g;
 }
 
-/// Applies a linear filter to the prediction and to every column that it has so far; the filter's own column is the
-/// difference quotient by its coordinate.
+/// Applies a linear filter to the prediction and to every wanted column that it has so far; the filter's own column is
+/// the difference quotient by its coordinate.
 template <class Filter>
 void Pass(const Filter& filter, double coordinate, int own, Prediction* out) {
   constexpr double kStep = 1e-4;
   const Vector before = out->y;
   out->y = filter(before, coordinate);
   for (Eigen::Index c = 0; c < out->jacobian.cols(); ++c)
-    if (!out->jacobian.col(c).isZero(0.0)) out->jacobian.col(c) = filter(out->jacobian.col(c), coordinate);
-  out->jacobian.col(own) = (filter(before, coordinate + kStep) - out->y) / kStep;
+    if (out->wanted.Has(static_cast<int>(c)) && !out->jacobian.col(c).isZero(0.0))
+      out->jacobian.col(c) = filter(out->jacobian.col(c), coordinate);
+  if (out->wanted.Has(own)) out->jacobian.col(own) = (filter(before, coordinate + kStep) - out->y) / kStep;
 }
 
 EffectForm Latency(const char* effect, const char* formula, Slot slot, const Signals& signals, const char* parameter) {
@@ -56,29 +58,31 @@ EffectForm Latency(const char* effect, const char* formula, Slot slot, const Sig
   form.slot = slot;
   form.num_amplitudes = 0;
   form.linear = false;
-  // In units of ten samples.
-  form.coordinates = {{parameter, "s", 0.0, 0.1 * longest, 0.0, 0.7, 10.0 * signals.dt, false}};
-  for (double start = 0.05; start < 0.1 * longest; start *= 2.5) form.starts.push_back({start});
+  form.coordinates = {{parameter, "s", 0.0, longest / kUnitSamples, 0.0, 0.7, kUnitSamples * signals.dt, false}};
+  for (double start = 0.05; start < longest / kUnitSamples; start *= 2.5) form.starts.push_back({start});
   return form;
 }
 
 }  // namespace
 
 std::vector<EffectForm> LatencyForms(const Signals& signals) {
+  // Other recordings may be sampled at another rate.
+  const auto samples_of_one = [dt = signals.dt](const Signals& in) { return kUnitSamples * (dt / in.dt); };
   EffectForm delay = Latency("sensor_delay", "f(t - time)", Slot::kDelay, signals, "time");
-  delay.sense = [](const Signals&, const double* c, int own, Prediction* out) {
-    Pass([](const Vector& f, double at) { return Delayed(f, 10.0 * at); }, c[0], own, out);
+  delay.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
+    Pass([one = samples_of_one(in)](const Vector& f, double at) { return Delayed(f, one * at); }, c[0], own, out);
   };
   EffectForm lag = Latency("sensor_lag", "g, time_constant g' + g = f", Slot::kLag, signals, "time_constant");
   lag.coordinates[0].lower = 1e-3;
-  lag.sense = [](const Signals&, const double* c, int own, Prediction* out) {
-    Pass([](const Vector& f, double at) { return LowPass(f, 10.0 * at); }, c[0], own, out);
+  lag.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
+    Pass([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(f, one * at); }, c[0], own, out);
   };
   EffectForm second = lag;
   second.variant = "second_order";
   second.formula = "g, (time_constant d/dt + 1)^2 g = f";
-  second.sense = [](const Signals&, const double* c, int own, Prediction* out) {
-    Pass([](const Vector& f, double at) { return LowPass(LowPass(f, 10.0 * at), 10.0 * at); }, c[0], own, out);
+  second.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
+    Pass([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(LowPass(f, one * at), one * at); },
+         c[0], own, out);
   };
   return {delay, lag, second};
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <mutex>
 #include <numeric>
+#include <sstream>
 #include <thread>
 #include <tuple>
 
@@ -87,6 +88,22 @@ double DiagnosedStrength(const PlantProcess& plant, const Case& what, const Trut
   const auto rows = static_cast<std::ptrdiff_t>(kDiagnosed * static_cast<double>(added.size()));
   const double squares = std::inner_product(added.begin(), added.begin() + rows, added.begin(), 0.0);
   return std::sqrt(squares / static_cast<double>(std::max<std::ptrdiff_t>(rows, 1))) / truth.noise_sd;
+}
+
+/// Tables of noise whose correlation over a time stays when it is sampled `ratio` times the interval apart.
+std::string Resampled(const std::string& tables, double ratio) {
+  const std::string key = "correlation = ";
+  std::istringstream lines(tables);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(key)) {
+      char number[32];
+      std::snprintf(number, sizeof(number), "%.17g", std::pow(std::stod(line.substr(key.size())), ratio));
+      line = key + number;
+    }
+    text += line + '\n';
+  }
+  return text;
 }
 
 void Score(const PlantProcess& plant, Outcome* outcome) {
@@ -171,7 +188,9 @@ Case FollowUp(const PlantProcess& plant, const Outcome& outcome) {
     parameters += line;
   }
   std::string text = WithTable(outcome.answer.result.separate_by.scenario_text, "parameters", parameters);
-  text = WithoutTables(text, "noise.") + outcome.truth.noise_tables;
+  text = WithoutTables(text, "noise.") +
+         Resampled(outcome.truth.noise_tables,
+                   outcome.answer.result.separate_by.sample_interval_s / outcome.answer.result.dt);
   // What began during the first recording goes on in the second.
   Truth truth = outcome.truth;
   for (TrueEffect& effect : truth.effects)

@@ -34,6 +34,7 @@ struct TypeMeaning {
 struct PlantWords {
   std::string output, output_unit, target_unit;
   std::vector<std::string> inputs, input_units, parameters, parameter_units, modes;
+  std::string extended_target_unit;  ///< Where a model has other parameters besides; empty: the same.
 };
 [[nodiscard]] const PlantWords& WordsOf(int plant_kind);
 

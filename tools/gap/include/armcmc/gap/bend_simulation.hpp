@@ -34,10 +34,22 @@ class BendSimulation {
   void Run(const Vector& t, const Vector& gauge, State start, const std::vector<Force>& forces, Eigen::Index rows,
            Vector* angle, Vector* rate) const;
 
+  /// Runs that differ in their forces only, from the same start; column by run. They go through the samples together: a
+  /// step of one waits for its tanh, and meanwhile the others' are at work.
+  void RunAbreast(const Vector& t, const Vector& gauge, State start, const std::vector<std::vector<Force>>& forces,
+                  Matrix* angles) const;
+
   /// What an acceleration of each row adds to the angle, from rest.
   [[nodiscard]] Vector Response(const Vector& acceleration) const;
 
  private:
+  struct Lane;
+  void Advance(const Vector& t, const Vector& gauge, Eigen::Index rows, std::vector<Lane>* lanes) const;
+  [[nodiscard]] Motion MotionOf(const Vector& t, const Vector& gauge, const State& state, Eigen::Index i) const;
+  [[nodiscard]] double Added(const Lane& lane, const Vector& t, const Vector& gauge, const State& state,
+                             Eigen::Index i) const;
+  [[nodiscard]] State Moved(const State& x, double start, double end) const;
+
   PlantConstants constants_;
   double dt_;
   std::array<double, 4> step_;            ///< State to state.

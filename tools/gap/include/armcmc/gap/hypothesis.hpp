@@ -27,7 +27,8 @@ struct Hypothesis {
                                                     const Hypothesis& hypothesis);
 
 /// Prediction and exact derivatives: law and effects pass the columns of the slots before them on.
+/// @param wanted  Derivatives that are asked for; every one of the others may be left out.
 [[nodiscard]] Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis,
-                                  const Vector& theta);
+                                  const Vector& theta, Slopes wanted = {});
 
 }  // namespace armcmc::gap

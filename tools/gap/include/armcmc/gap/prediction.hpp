@@ -1,14 +1,25 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "armcmc/gap/types.hpp"
 
 namespace armcmc::gap {
 
-/// Predicted output and its derivative by every coordinate of a hypothesis.
+/// Coordinates whose derivatives are asked for.
+struct Slopes {
+  int first = 0;
+  int end = std::numeric_limits<int>::max();
+
+  [[nodiscard]] static Slopes None() { return {0, 0}; }
+  [[nodiscard]] bool Has(int coordinate) const { return coordinate >= first && coordinate < end; }
+};
+
+/// Predicted output and its derivative by the coordinates of a hypothesis.
 struct Prediction {
   Vector y;         ///< [row]
+  Slopes wanted;    ///< Of the columns below; others may be left at zero where they cost something.
   Matrix jacobian;  ///< [row][coordinate]
   /// The part of the law that does not depend on rates (the elastic force of a contact), for effects that remember it.
   Vector elastic;

@@ -111,11 +111,12 @@ struct Budget {
 /// What separates an ambiguous set.
 struct Experiment {
   std::string words;
-  std::string scenario_file;    ///< Relative to the output folder; empty when nothing needs to be separated.
-  double nats = 0.0;            ///< Expected evidence between the closest pair.
-  std::string program{};        ///< Motion of the plant's library.
-  double pace = 1.0;            ///< Of the motion, 1 as in the library.
-  double depth = 0.0;           ///< Of its deepest press, unit of the position.
+  std::string scenario_file;  ///< Relative to the output folder; empty when nothing needs to be separated.
+  double nats = 0.0;          ///< Expected evidence between the closest pair.
+  std::string program{};      ///< Motion of the plant's library.
+  double pace = 1.0;          ///< Of the motion, 1 as in the library.
+  double depth = 0.0;         ///< Of its deepest press, unit of the position.
+  double sample_interval_s = 0.0;
   std::string scenario_text{};  ///< For the plant.
 };
 

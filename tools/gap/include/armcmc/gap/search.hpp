@@ -72,7 +72,8 @@ class Search {
   [[nodiscard]] Candidates ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const;
   /// The verdict on what shows in one to three events, by evidence: nothing can be left out.
   void JudgeEvents(const Candidates& singles, Finding* finding) const;
-  [[nodiscard]] Candidates Pairs(const Candidates& order) const;
+  /// @param parent  One whose partners are known already, `extended`; may be null.
+  [[nodiscard]] Candidates Pairs(const Candidates& order, const CandidatePtr& parent, const Candidates& extended) const;
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
   [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
