@@ -7,7 +7,10 @@
 namespace armcmc::stress {
 namespace {
 
-constexpr double kApart = 2.0;  // joint standard deviations
+constexpr double kAgrees = 2.0;    // joint standard deviations
+constexpr double kByChance = 4.0;  // beyond, no chance explains it
+constexpr double kLost = 1e9;      // what was learnt is gone
+constexpr const char* kALittleApart = "estimate 2 to 4 sd apart";
 
 }  // namespace
 
@@ -101,16 +104,18 @@ void FaultJudge::SignalBegins() {
 
 void FaultJudge::SignalEnds(std::int64_t newest) { affected_until_ = newest; }
 
-bool FaultJudge::Agrees(const Step& step, bool relearns) const {
-  if (!reference_.has_estimate) return true;  // nothing was known before
+double FaultJudge::Apart(const Step& step, bool relearns) const {
+  if (!reference_.has_estimate) return 0.0;  // nothing was known before
+  double apart = 0.0;
   for (std::size_t i = 0; i < step.value.size(); ++i) {
     const bool inside = step.value[i] >= reference_.lo[i] && step.value[i] <= reference_.hi[i];
     const double joint_sd = std::hypot(step.sd[i], reference_.sd[i]);
-    if (!inside && std::fabs(step.value[i] - reference_.value[i]) > kApart * joint_sd) return false;
+    const double distance = std::fabs(step.value[i] - reference_.value[i]);
+    if (!inside && distance > 0.0) apart = std::max(apart, joint_sd > 0.0 ? distance / joint_sd : kLost);
     const double width = step.hi[i] - step.lo[i], width_before = reference_.hi[i] - reference_.lo[i];
-    if (!relearns && width > 4.0 * width_before) return false;
+    if (!relearns && !(width <= 4.0 * width_before)) return kLost;
   }
-  return true;
+  return std::isfinite(apart) ? apart : kLost;
 }
 
 const char* FaultJudge::Hindrance(const Step& step, const FaultSpec& fault) const {
@@ -119,7 +124,9 @@ const char* FaultJudge::Hindrance(const Step& step, const FaultSpec& fault) cons
   if (step.truncated) return "truncated";
   if ((step.flags & ~background_) != 0) return "fault flags";
   if (step.miss != estimator_status_t::MISS_NONE) return "missed deadline";
-  return Agrees(step, fault.relearns) ? nullptr : "estimate apart";
+  const double apart = Apart(step, fault.relearns);
+  if (apart <= kAgrees) return nullptr;
+  return apart <= kByChance ? kALittleApart : "estimate apart";
 }
 
 void FaultJudge::FinishSlot() {
@@ -165,6 +172,7 @@ void FaultJudge::FinishSlot() {
     // The backlog of a process that stood still is part of the fault.
     outcome.stalled_steps += from_outside ? std::max(step.not_ours, step.dropped) : step.not_ours;
   }
+  outcome.a_little_apart = outcome.recovered_steps > kMostRecoverySteps && outcome.hindrance == kALittleApart;
   if (outcome.recovered_steps != kNever) outcome.recovered_steps = std::max<std::int64_t>(1, outcome.recovered_steps);
   outcomes_.push_back(outcome);
   ++next_;
