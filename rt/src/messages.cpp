@@ -29,11 +29,16 @@ void FillText(std::string_view text, std::uint8_t (&field)[kSize]) noexcept {
                  [](char c) { return static_cast<std::uint8_t>(c); });
 }
 
-/// A name that is too long keeps its head and its tail around a "~": those of one effect differ at the end.
+/// A name that is too long is cut; where that would make it another one's, it keeps its head and its tail around a "~":
+/// those of one effect differ at the end.
 template <std::size_t kSize>
-void FillName(std::string_view name, std::uint8_t (&field)[kSize]) noexcept {
+void FillName(const StepEngine& engine, int index, std::uint8_t (&field)[kSize]) noexcept {
   constexpr std::size_t kTail = 6, kHead = kSize - 2 - kTail;
-  if (name.size() < kSize) {
+  std::string_view name = engine.reported(index).name;
+  bool shared = false;
+  for (int i = 0; i < engine.num_reported(); ++i)
+    shared = shared || (i != index && engine.reported(i).name.substr(0, kSize - 1) == name.substr(0, kSize - 1));
+  if (name.size() < kSize || !shared) {
     FillText(name, field);
     return;
   }
@@ -75,7 +80,7 @@ void FillEstimate(const StepOutput& output, const StepEngine& engine, std::int64
   for (int i = 0; i < num_reported; ++i) {
     const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(i)];
     const ReportedQuantity quantity = engine.reported(i);
-    FillName(quantity.name, message->param_name[i]);
+    FillName(engine, i, message->param_name[i]);
     FillText(quantity.unit, message->param_unit[i]);
     if (!mode.known) continue;
     message->ar_map[i] = marginal.ar_map;

@@ -4,9 +4,9 @@
 
 #include <cstring>
 #include <memory>
-#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "armcmc/effects/registry.hpp"
 #include "armcmc/rt/lcm_receiver.hpp"
@@ -59,7 +59,7 @@ TEST(FillEstimate, ReportsTheActingModeWithNamesAndTimes) {
   EXPECT_EQ(message.n_modes, 1);
   EXPECT_EQ(Text(message.param_name[0]), "K");
   EXPECT_EQ(Text(message.param_unit[0]), "N/m^p");
-  EXPECT_EQ(Text(message.param_name[1]), "a_name_o~acters") << "cut, told so, and still zero terminated";
+  EXPECT_EQ(Text(message.param_name[1]), "a_name_of_more_") << "cut, and still zero terminated";
   EXPECT_EQ(message.ar_map[0], 7.0);
   EXPECT_EQ(message.ar_map_by_mode[0][0], 7.0);
   EXPECT_EQ(message.known_by_mode[0], 1);
@@ -69,34 +69,37 @@ TEST(FillEstimate, ReportsTheActingModeWithNamesAndTimes) {
   EXPECT_EQ(message.y_pred, 2.5);
 }
 
-/// Reports the name that it is given.
+/// Reports parameters of the names that it is given.
 class Naming final : public test::FakeEngine {
  public:
-  explicit Naming(std::string name) : name_(std::move(name)) {}
+  explicit Naming(std::vector<std::string> names) : names_(std::move(names)) {}
+  [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override {
+    return static_cast<int>(names_.size());
+  }
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {
-    (void)index;
-    return {name_, "-"};
+    return {names_[static_cast<std::size_t>(index)], "-"};
   }
 
  private:
-  std::string name_;
+  std::vector<std::string> names_;
 };
 
+/// Every two parameters of effects in one message.
 template <class Effects>
 void ExpectNamesApart() {
-  std::set<std::string> names, shown;
+  std::vector<std::string> names;
   for (const EffectInfo* effect : Effects::kInfos)
-    for (int a = 0; a < effect->num_amplitudes; ++a) {
-      const std::string name =
-          std::string(effect->name) + "_" + std::string(effect->amplitudes[static_cast<std::size_t>(a)].name);
-      Naming engine(name);
+    for (int a = 0; a < effect->num_amplitudes; ++a)
+      names.push_back(std::string(effect->name) + "_" +
+                      std::string(effect->amplitudes[static_cast<std::size_t>(a)].name));
+  EXPECT_GT(names.size(), 4u);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Naming engine({names[i], names[j]});
       estimate_t message;
       FillEstimate(*Output(&engine), engine, 1, &message);
-      names.insert(name);
-      shown.insert(Text(message.param_name[0]));
+      EXPECT_NE(Text(message.param_name[0]), Text(message.param_name[1])) << names[i] << " " << names[j];
     }
-  EXPECT_EQ(shown.size(), names.size());
-  EXPECT_GT(names.size(), 4u);
 }
 
 TEST(FillEstimate, TellsTheParametersOfAllEffectsApart) {
