@@ -42,12 +42,12 @@ class Process {
   Exit exit_;
 };
 
-/// Result of a program run to its end.
+/// Result of a program run to its end; code -1 when it was not over in its time.
 struct Outcome {
   int code = -1;
   std::string out, err;
 };
 [[nodiscard]] Outcome RunProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                                 std::chrono::milliseconds timeout = std::chrono::seconds(60));
+                                 std::chrono::milliseconds timeout = std::chrono::minutes(10));
 
 }  // namespace armcmc::test
