@@ -29,6 +29,11 @@ void FillText(std::string_view text, std::uint8_t (&field)[kSize]) noexcept {
                  [](char c) { return static_cast<std::uint8_t>(c); });
 }
 
+/// The first characters; what substr() does, which may throw.
+constexpr std::string_view Head(std::string_view text, std::size_t size) noexcept {
+  return {text.data(), std::min(size, text.size())};
+}
+
 /// A name that is too long is cut; where that would make it another one's, it keeps its head and its tail around a "~":
 /// those of one effect differ at the end.
 template <std::size_t kSize>
@@ -37,12 +42,12 @@ void FillName(const StepEngine& engine, int index, std::uint8_t (&field)[kSize])
   std::string_view name = engine.reported(index).name;
   bool shared = false;
   for (int i = 0; i < engine.num_reported(); ++i)
-    shared = shared || (i != index && engine.reported(i).name.substr(0, kSize - 1) == name.substr(0, kSize - 1));
+    shared = shared || (i != index && Head(engine.reported(i).name, kSize - 1) == Head(name, kSize - 1));
   if (name.size() < kSize || !shared) {
     FillText(name, field);
     return;
   }
-  FillText(name.substr(0, kHead), field);
+  FillText(Head(name, kHead), field);
   field[kHead] = static_cast<std::uint8_t>('~');
   name.remove_prefix(name.size() - kTail);
   std::transform(name.begin(), name.end(), field + kHead + 1, [](char c) { return static_cast<std::uint8_t>(c); });
