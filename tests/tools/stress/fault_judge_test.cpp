@@ -67,6 +67,18 @@ TEST_F(FaultJudgeTest, AFaultThatIsCountedAndFlaggedAndOverAtOnce) {
   EXPECT_EQ(outcome.recovered_steps, 2) << "the step that told of it, and a normal one";
 }
 
+TEST_F(FaultJudgeTest, AFaultMayBeCountedWhileItsFlagIsUpAlready) {
+  for (const bool counted : {true, false}) {
+    ++estimate_.run_id;
+    Begin("nan");
+    Step(22, estimator_status_t::FAULT_BAD_DATA);  // of another pack
+    if (counted) ++status_.rejected_value;
+    Step(24, estimator_status_t::FAULT_BAD_DATA);
+    for (std::int64_t seq = 25; seq <= 30; ++seq) Step(seq);
+    EXPECT_EQ(Outcome().detected, counted);
+  }
+}
+
 TEST_F(FaultJudgeTest, AFaultThatNobodyNoticedIsNotDetected) {
   Begin("nan");
   for (std::int64_t seq = 23; seq <= 30; ++seq) Step(seq);

@@ -136,6 +136,7 @@ void FaultJudge::FinishSlot() {
   outcome.fault = &fault;
   outcome.own_misses = evidence_.after.missed_own - evidence_.before.missed_own;
   outcome.flags = evidence_.flags = raised_ & ~background_;
+  evidence_.all_flags = raised_;
   const bool from_outside = fault.source == FaultSource::kSignal;
   std::int64_t over = slot.at() + fault.LastsPacks(static_cast<double>(period_ns_) * 1e-6) - 1;
   if (from_outside) over = affected_until_;
