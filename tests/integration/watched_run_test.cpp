@@ -57,7 +57,7 @@ class WatchedRun : public LivePair, public ::testing::WithParamInterface<int> {
 
 // On a shared virtual machine the host may take both processors in a way that no witness inside sees in full, and a run
 // at 100 Hz then counts misses as its own without any onlooker, too. Onlookers that disturb would do so in every run.
-constexpr int kRuns = 6;
+constexpr int kRuns = 2;
 
 TEST_P(WatchedRun, TheEstimatorMissesNothingOfItsOwn) {
   const int rate_hz = GetParam();
