@@ -28,8 +28,7 @@ void AdjustStage::DropUnkeepable() noexcept {
     const Nanos now_ns = MonotonicNow();
     const Nanos lacked_ns = now_ns + typical_.Get() - slot->times.deadline_ns;
     if (lacked_ns <= 0) return;
-    CountDropped(slot->pack.seq, monitor_->RecordDropped(slot->times, now_ns, typical_.Get(), held_), now_ns,
-                 lacked_ns);
+    CountDropped(slot->pack.seq, monitor_->RecordDropped(slot->times, now_ns, typical_.Get()), now_ns, lacked_ns);
     ring_->Pop();
   }
 }
@@ -52,10 +51,7 @@ bool AdjustStage::Step() noexcept {
   PackSlot* slot = ring_->Front();
   if (slot == nullptr) return false;
   const Nanos start_ns = MonotonicNow();
-  if (results_->latest.unread() && start_ns < handed_over_deadline_ns_) {
-    held_ = true;
-    return false;
-  }
+  if (results_->latest.unread() && start_ns < handed_over_deadline_ns_) return false;
   const int result = results_->latest.write_slot();
   StepInfo& info = results_->info[static_cast<std::size_t>(result)];
   info.seq = slot->pack.seq;
@@ -66,8 +62,7 @@ bool AdjustStage::Step() noexcept {
                                 MonotonicClock(), result);
   const Nanos end_ns = MonotonicNow();
   info.times.end_ns[IndexOf(Stage::kAdjust)] = end_ns;
-  monitor_->RecordAdjusted(&info.times, held_);
-  held_ = false;
+  monitor_->RecordAdjusted(&info.times);
   ring_->Pop();
   typical_.Add(end_ns - start_ns);
   NoteStatus(info);

@@ -25,36 +25,34 @@ DeadlineMonitor::DeadlineMonitor(const RtSettings& settings) noexcept
     : budget_ns_{settings.ExecuteReserveNs(), settings.adjust_budget_ns, settings.ExecuteReserveNs()} {}
 
 Nanos DeadlineMonitor::StalledTime(Stage stage, Nanos begin_ns, Nanos end_ns) const noexcept {
-  const WakeUpRing* witness = witness_[IndexOf(stage)].wake_ups;
+  const WakeUpRing* witness = witness_[IndexOf(stage)];
   return witness != nullptr && begin_ns < end_ns ? witness->StalledTime(begin_ns, end_ns, end_ns) : 0;
 }
 
-Nanos DeadlineMonitor::StallBefore(Stage stage, Nanos begin_ns, Nanos start_ns, Nanos others_ns) const noexcept {
-  const auto& [witness, foremost] = witness_[IndexOf(stage)];
-  const Nanos seen_ns = StalledTime(stage, begin_ns, start_ns);
-  if (witness == nullptr || !foremost || others_ns == kAwake) return seen_ns;
-  const Nanos delay_ns = start_ns - begin_ns - others_ns;
-  return delay_ns > WakeUpRing::kOrdinaryDelayNs ? std::max(seen_ns, delay_ns) : seen_ns;
+Nanos DeadlineMonitor::HandOverStall(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept {
+  const Stage giver = stage == Stage::kExecute ? Stage::kAdjust : Stage::kCollect;
+  return std::max(StalledTime(stage, ready_ns, start_ns), StalledTime(giver, ready_ns, start_ns));
 }
 
-StageWork DeadlineMonitor::Work(Stage stage, Nanos ready_ns, Nanos start_ns, Nanos end_ns, Nanos others_ns) noexcept {
-  Queue& queue = queue_[IndexOf(stage)];
-  return {ready_ns, start_ns, end_ns, StallBefore(stage, queue.timeline.CouldBegin(ready_ns), start_ns, others_ns),
-          queue.work.Stalled(end_ns - start_ns, StalledTime(stage, start_ns, end_ns))};
+StageWork DeadlineMonitor::Work(Stage stage, Nanos ready_ns, Nanos start_ns, Nanos end_ns) const noexcept {
+  const Nanos begin_ns = timeline_[IndexOf(stage)].CouldBegin(ready_ns);
+  const bool slept = begin_ns == ready_ns;
+  return {ready_ns, start_ns, end_ns,
+          slept ? HandOverStall(stage, begin_ns, start_ns) : StalledTime(stage, begin_ns, start_ns),
+          StalledTime(stage, start_ns, end_ns)};
 }
 
 Earlier DeadlineMonitor::Collected(const StepTimes& times) noexcept {
   const std::size_t collect = IndexOf(Stage::kCollect);
-  const StageWork work = Work(Stage::kCollect, times.arrival_ns, times.start_ns[collect], times.end_ns[collect], 0);
-  return queue_[collect].timeline.Do(work, {times.lateness_ns, 0, times.lateness_ns});
+  const StageWork work = Work(Stage::kCollect, times.arrival_ns, times.start_ns[collect], times.end_ns[collect]);
+  return timeline_[collect].Do(work, {times.lateness_ns, 0, times.lateness_ns});
 }
 
-void DeadlineMonitor::RecordAdjusted(StepTimes* times, bool held) noexcept ARMCMC_NONBLOCKING {
+void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING {
   const std::size_t adjust = IndexOf(Stage::kAdjust);
-  const StageWork work = Work(Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)], times->start_ns[adjust],
-                              times->end_ns[adjust], held ? kAwake : 0);
-  times->collect_worked_ns = collect_worked_.Get();
-  times->adjusted_earlier = queue_[adjust].timeline.Do(work, Collected(*times));
+  const StageWork work =
+      Work(Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)], times->start_ns[adjust], times->end_ns[adjust]);
+  times->adjusted_earlier = timeline_[adjust].Do(work, Collected(*times));
 }
 
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {
@@ -65,21 +63,17 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
   }
   end_to_end_.Add(times.EndToEnd());
   const std::size_t execute = IndexOf(Stage::kExecute);
-  const StageWork work = Work(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], times.start_ns[execute],
-                              times.end_ns[execute], collect_worked_.Get() - times.collect_worked_ns);
-  const MissCause cause = Attribute(-times.Slack(), queue_[execute].timeline.Do(work, times.adjusted_earlier));
+  const StageWork work =
+      Work(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], times.start_ns[execute], times.end_ns[execute]);
+  const MissCause cause = Attribute(-times.Slack(), timeline_[execute].Do(work, times.adjusted_earlier));
   if (cause != MissCause::kNone) finished_late_[static_cast<std::size_t>(cause)].Add();
   return cause;
 }
 
-MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns,
-                                         bool held) noexcept ARMCMC_NONBLOCKING {
-  StageWork work;
-  work.ready_ns = times.end_ns[IndexOf(Stage::kCollect)];
-  work.start_ns = work.end_ns = now_ns;
-  StageTimeline& timeline = queue_[IndexOf(Stage::kAdjust)].timeline;
-  work.stall_before_ns = StallBefore(Stage::kAdjust, timeline.CouldBegin(work.ready_ns), now_ns, held ? kAwake : 0);
-  const Earlier earlier = timeline.GiveUp(work, Collected(times), typical_ns);
+MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns,
+                                         Nanos typical_ns) noexcept ARMCMC_NONBLOCKING {
+  const StageWork work = Work(Stage::kAdjust, times.end_ns[IndexOf(Stage::kCollect)], now_ns, now_ns);
+  const Earlier earlier = timeline_[IndexOf(Stage::kAdjust)].GiveUp(work, Collected(times), typical_ns);
   const MissCause cause = Attribute(std::max<Nanos>(1, now_ns + typical_ns - times.deadline_ns), earlier);
   given_up_[static_cast<std::size_t>(cause)].Add();
   return cause;
@@ -87,7 +81,7 @@ MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns, N
 
 MissCause DeadlineMonitor::RecordOvertaken(const StepTimes& times, Nanos now_ns,
                                            Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING {
-  const Nanos stall = StalledTime(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], now_ns);
+  const Nanos stall = HandOverStall(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], now_ns);
   const Earlier& ready = times.adjusted_earlier;
   const MissCause cause = Attribute(std::max<Nanos>(1, lacked_ns),
                                     {ready.without_lateness, ready.without_stalls + stall, ready.without_both + stall});

@@ -74,34 +74,19 @@ void Pipeline::StartThread(RtThread* thread, const char* name, const ThreadSetti
   publish_.SetDegraded(degraded_flags_);
 }
 
-namespace {
-
-/// Whether no other stage can keep this one from its CPU; what collect works is known to execute.
-bool Foremost(const std::array<ThreadSettings, kNumStages>& stages, std::size_t stage) {
-  for (std::size_t other = 0; other < stages.size(); ++other) {
-    if (other == stage || stages[other].cpu != stages[stage].cpu) continue;
-    if (stage == IndexOf(Stage::kExecute) && other == IndexOf(Stage::kCollect)) continue;
-    if (stages[other].priority >= stages[stage].priority) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
 void Pipeline::StartWitnesses() {
-  const std::array<ThreadSettings, kNumStages> stages{settings_.collect, settings_.adjust, settings_.execute};
+  const std::array<int, kNumStages> cpu{settings_.collect.cpu, settings_.adjust.cpu, settings_.execute.cpu};
   std::vector<Witness*> views;
   for (std::size_t i = 0; i < kNumStages; ++i) {
-    const int cpu = stages[i].cpu;
-    auto found = std::find_if(witnesses_.begin(), witnesses_.end(), [&](const auto& w) { return w->cpu() == cpu; });
+    auto found = std::find_if(witnesses_.begin(), witnesses_.end(), [&](const auto& w) { return w->cpu() == cpu[i]; });
     if (found == witnesses_.end()) {
-      witnesses_.push_back(std::make_unique<Witness>(cpu, Witness::PeriodFor(settings_.deadline_ns)));
+      witnesses_.push_back(std::make_unique<Witness>(cpu[i], Witness::PeriodFor(settings_.deadline_ns)));
       witnesses_.back()->Start(settings_.witness_priority, settings_.mode);
       views.push_back(witnesses_.back().get());
       found = witnesses_.end() - 1;
     }
     if ((*found)->trustworthy()) {
-      monitor_.SetWitness(static_cast<Stage>(i), &(*found)->wake_ups(), Foremost(stages, i));
+      monitor_.SetWitness(static_cast<Stage>(i), &(*found)->wake_ups());
     } else {
       degraded_flags_ |= estimator_status_t::DEGRADED_NO_WITNESS;
     }
@@ -178,9 +163,7 @@ void Pipeline::CollectLoop() noexcept {
     Datagram datagram;
     const Nanos wait_ns = std::max<Nanos>(0, collect_.next_tick_ns() - MonotonicNow());
     watchdog_.Promise(Watched::kCollect, MonotonicNow(), wait_ns);
-    const bool readable = receiver_.WaitUntil(collect_.next_tick_ns());
-    const Nanos awake_ns = MonotonicNow();
-    if (readable) {
+    if (receiver_.WaitUntil(collect_.next_tick_ns())) {
       watchdog_.Promise(Watched::kCollect, MonotonicNow(), settings_.period_ns / 2);
       for (int i = 0; i < kMaxPacksPerWait && receiver_.TryReceive(&datagram); ++i) {
         if (collect_.Step(datagram)) adjust_waiter_.Post();
@@ -198,7 +181,6 @@ void Pipeline::CollectLoop() noexcept {
       publish_waiter_.Post();
     }
     CountHeapCalls(Stage::kCollect, baseline);
-    monitor_.AddCollectWork(MonotonicNow() - awake_ns);
   }
   watchdog_.Dismiss(Watched::kCollect);
 }

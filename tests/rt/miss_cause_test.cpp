@@ -23,7 +23,11 @@ TEST(Attribute, BlamesTheMachineForStallsAsLongAsWhatTheStepLacked) {
 TEST(Attribute, BlamesTheLargerPartWhenOnlyBothExplainIt) {
   EXPECT_EQ(Attribute(10, {4, 6, 10}), MissCause::kMachine);
   EXPECT_EQ(Attribute(10, {6, 4, 10}), MissCause::kLateData);
-  EXPECT_EQ(Attribute(10, {6, 6, 9}), MissCause::kOwn) << "they overlap";
+  EXPECT_EQ(Attribute(10, {0, 0, 10}), MissCause::kLateData) << "either alone would have made it late";
+}
+
+TEST(Attribute, IsOurOwnWhenTheyExplainItOnlyInSum) {
+  EXPECT_EQ(Attribute(10, {6, 6, 9}), MissCause::kOwn) << "they overlap: on a good day it had been late, too";
 }
 
 }  // namespace

@@ -65,8 +65,8 @@ TEST(WakeUpRing, KeepsTheNewestWhenItWrapsAround) {
 
 TEST(Witness, SeesSeveralWakeUpsInAStep) {
   EXPECT_EQ(Witness::PeriodFor(100 * kMs), kMs);
-  EXPECT_EQ(Witness::PeriodFor(10 * kMs), kMs / 2);
-  EXPECT_EQ(Witness::PeriodFor(kMs), kMs / 2);
+  EXPECT_EQ(Witness::PeriodFor(10 * kMs), kMs / 4);
+  EXPECT_EQ(Witness::PeriodFor(kMs), kMs / 4);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(FaultCatalog, ACounterWithoutItsFlagIsNotEnough) {
   evidence.after.rejected_value = 1;
   const FaultSpec& nan = *SelectFaults("nan").front();
   EXPECT_FALSE(nan.detected(evidence));
-  evidence.all_flags = estimator_status_t::FAULT_BAD_DATA;
+  evidence.flags = estimator_status_t::FAULT_BAD_DATA;
   EXPECT_TRUE(nan.detected(evidence));
 }
 

@@ -67,18 +67,6 @@ TEST_F(FaultJudgeTest, AFaultThatIsCountedAndFlaggedAndOverAtOnce) {
   EXPECT_EQ(outcome.recovered_steps, 2) << "the step that told of it, and a normal one";
 }
 
-TEST_F(FaultJudgeTest, AFaultMayBeCountedWhileItsFlagIsUpAlready) {
-  for (const bool counted : {true, false}) {
-    ++estimate_.run_id;
-    Begin("nan");
-    Step(22, estimator_status_t::FAULT_BAD_DATA);  // of another pack
-    if (counted) ++status_.rejected_value;
-    Step(24, estimator_status_t::FAULT_BAD_DATA);
-    for (std::int64_t seq = 25; seq <= 30; ++seq) Step(seq);
-    EXPECT_EQ(Outcome().detected, counted);
-  }
-}
-
 TEST_F(FaultJudgeTest, AFaultThatNobodyNoticedIsNotDetected) {
   Begin("nan");
   for (std::int64_t seq = 23; seq <= 30; ++seq) Step(seq);
@@ -96,12 +84,10 @@ TEST_P(MovedEstimate, MayMoveByTwoJointDeviations) {
   ++status_.packs_rejected;
   estimate_.ar_map[0] = 4.0 + GetParam() * 0.05 * std::sqrt(2.0);
   for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq);
-  const FaultOutcome outcome = Outcome();
-  EXPECT_EQ(outcome.recovered_steps == FaultJudge::kNever, GetParam() > 2.0);
-  EXPECT_EQ(outcome.a_little_apart, GetParam() > 2.0 && GetParam() < 4.0);
+  EXPECT_EQ(Outcome().recovered_steps == FaultJudge::kNever, GetParam() > 2.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(JointDeviations, MovedEstimate, ::testing::Values(1.0, 1.9, 2.1, 3.9, 4.1));
+INSTANTIATE_TEST_SUITE_P(JointDeviations, MovedEstimate, ::testing::Values(1.0, 1.9, 2.1));
 
 TEST_F(FaultJudgeTest, AFlagInAStatusThatDidNotComeCannotBeJudged) {
   Begin("nan");
@@ -124,7 +110,6 @@ TEST_F(FaultJudgeTest, AnEstimateThatStaysApartHasLostWhatWasLearnt) {
   for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq, seq == 24 ? estimator_status_t::FAULT_BAD_DATA : 0);
   const FaultOutcome outcome = Outcome();
   EXPECT_EQ(outcome.recovered_steps, FaultJudge::kNever);
-  EXPECT_FALSE(outcome.a_little_apart);
   EXPECT_STREQ(outcome.hindrance, "estimate apart");
 }
 

@@ -11,10 +11,10 @@ namespace {
 using S = estimator_status_t;
 using E = Evidence;
 
-bool RejectedValue(const E& e) { return e.Counted(&S::rejected_value, S::FAULT_BAD_DATA); }
-bool RejectedSize(const E& e) { return e.Counted(&S::rejected_size, S::FAULT_BAD_DATA); }
-bool RejectedType(const E& e) { return e.Counted(&S::rejected_type, S::FAULT_BAD_DATA); }
-bool Rejected(const E& e) { return e.Counted(&S::packs_rejected, S::FAULT_BAD_DATA); }
+bool RejectedValue(const E& e) { return e.Rises(&S::rejected_value) && e.Flag(S::FAULT_BAD_DATA); }
+bool RejectedSize(const E& e) { return e.Rises(&S::rejected_size) && e.Flag(S::FAULT_BAD_DATA); }
+bool RejectedType(const E& e) { return e.Rises(&S::rejected_type) && e.Flag(S::FAULT_BAD_DATA); }
+bool Rejected(const E& e) { return e.Rises(&S::packs_rejected) && e.Flag(S::FAULT_BAD_DATA); }
 bool Hung(const E& e) { return e.Flag(S::FAULT_STAGE_HUNG); }
 bool Missed(const E& e) { return e.Misses(); }
 
@@ -51,13 +51,13 @@ const std::vector<FaultSpec> kCatalog = {
     {"hang_adjust", kOwn, "hang_adjust", 3, 40, 0, true, false, kByWatchdog, Hung},
     {"hang_execute", kOwn, "hang_execute", 3, 40, 0, true, false, kByWatchdog, Hung},
     {"overload", kOwn, "squeeze", 0, 0, 0, false, false, "truncated_steps, FAULT_TRUNCATED, published on time",
-     [](const E& e) { return e.Counted(&S::truncated_steps, S::FAULT_TRUNCATED); }},
+     [](const E& e) { return e.Rises(&S::truncated_steps) && e.Flag(S::FAULT_TRUNCATED); }},
     {"collapse", kOwn, "collapse", 0, 0, 0, true, true, "mismatch above its threshold: DECISION_MODIFICATION",
      [](const E& e) { return e.modification; }},
     {"publish_failure", kOwn, "publish", 1, 0, 3, false, false, "publish_errors, FAULT_PUBLISH",
-     [](const E& e) { return e.Counted(&S::publish_errors, S::FAULT_PUBLISH); }},
+     [](const E& e) { return e.Rises(&S::publish_errors) && e.Flag(S::FAULT_PUBLISH); }},
     {"plant_stop", kSignal, "", 10, 1000, 0, true, false, "silent_periods, FAULT_PLANT_SILENT",
-     [](const E& e) { return e.Counted(&S::silent_periods, S::FAULT_PLANT_SILENT); }},
+     [](const E& e) { return e.Rises(&S::silent_periods) && e.Flag(S::FAULT_PLANT_SILENT); }},
     {"estimator_stop", kSignal, "", 10, 1000, 0, true, false, "missed deadlines, packs_dropped", Missed},
     {"bus_flood", kSignal, "", 10, 1000, 0, false, false, "FAULT_BUS_FLOOD",
      [](const E& e) { return e.Flag(S::FAULT_BUS_FLOOD); }},

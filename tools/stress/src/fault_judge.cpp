@@ -7,10 +7,7 @@
 namespace armcmc::stress {
 namespace {
 
-constexpr double kAgrees = 2.0;    // joint standard deviations
-constexpr double kByChance = 4.0;  // beyond, no chance explains it
-constexpr double kLost = 1e9;      // what was learnt is gone
-constexpr const char* kALittleApart = "estimate 2 to 4 sd apart";
+constexpr double kApart = 2.0;  // joint standard deviations
 
 }  // namespace
 
@@ -104,18 +101,16 @@ void FaultJudge::SignalBegins() {
 
 void FaultJudge::SignalEnds(std::int64_t newest) { affected_until_ = newest; }
 
-double FaultJudge::Apart(const Step& step, bool relearns) const {
-  if (!reference_.has_estimate) return 0.0;  // nothing was known before
-  double apart = 0.0;
+bool FaultJudge::Agrees(const Step& step, bool relearns) const {
+  if (!reference_.has_estimate) return true;  // nothing was known before
   for (std::size_t i = 0; i < step.value.size(); ++i) {
     const bool inside = step.value[i] >= reference_.lo[i] && step.value[i] <= reference_.hi[i];
     const double joint_sd = std::hypot(step.sd[i], reference_.sd[i]);
-    const double distance = std::fabs(step.value[i] - reference_.value[i]);
-    if (!inside && distance > 0.0) apart = std::max(apart, joint_sd > 0.0 ? distance / joint_sd : kLost);
+    if (!inside && std::fabs(step.value[i] - reference_.value[i]) > kApart * joint_sd) return false;
     const double width = step.hi[i] - step.lo[i], width_before = reference_.hi[i] - reference_.lo[i];
-    if (!relearns && !(width <= 4.0 * width_before)) return kLost;
+    if (!relearns && width > 4.0 * width_before) return false;
   }
-  return std::isfinite(apart) ? apart : kLost;
+  return true;
 }
 
 const char* FaultJudge::Hindrance(const Step& step, const FaultSpec& fault) const {
@@ -124,9 +119,7 @@ const char* FaultJudge::Hindrance(const Step& step, const FaultSpec& fault) cons
   if (step.truncated) return "truncated";
   if ((step.flags & ~background_) != 0) return "fault flags";
   if (step.miss != estimator_status_t::MISS_NONE) return "missed deadline";
-  const double apart = Apart(step, fault.relearns);
-  if (apart <= kAgrees) return nullptr;
-  return apart <= kByChance ? kALittleApart : "estimate apart";
+  return Agrees(step, fault.relearns) ? nullptr : "estimate apart";
 }
 
 void FaultJudge::FinishSlot() {
@@ -136,7 +129,6 @@ void FaultJudge::FinishSlot() {
   outcome.fault = &fault;
   outcome.own_misses = evidence_.after.missed_own - evidence_.before.missed_own;
   outcome.flags = evidence_.flags = raised_ & ~background_;
-  evidence_.all_flags = raised_;
   const bool from_outside = fault.source == FaultSource::kSignal;
   std::int64_t over = slot.at() + fault.LastsPacks(static_cast<double>(period_ns_) * 1e-6) - 1;
   if (from_outside) over = affected_until_;
@@ -173,7 +165,6 @@ void FaultJudge::FinishSlot() {
     // The backlog of a process that stood still is part of the fault.
     outcome.stalled_steps += from_outside ? std::max(step.not_ours, step.dropped) : step.not_ours;
   }
-  outcome.a_little_apart = outcome.recovered_steps > kMostRecoverySteps && outcome.hindrance == kALittleApart;
   if (outcome.recovered_steps != kNever) outcome.recovered_steps = std::max<std::int64_t>(1, outcome.recovered_steps);
   outcomes_.push_back(outcome);
   ++next_;

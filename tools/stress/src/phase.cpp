@@ -60,12 +60,8 @@ void FaultTally::Add(const FaultOutcome& outcome) {
   }
   ++injected;
   detected += outcome.detected ? 1 : 0;
-  if (outcome.a_little_apart) {
-    ++a_little_apart;
-  } else if (outcome.recovered_steps > recovered_steps) {
-    hindrance = outcome.hindrance;
-    recovered_steps = outcome.recovered_steps;
-  }
+  if (outcome.recovered_steps > recovered_steps) hindrance = outcome.hindrance;
+  recovered_steps = std::max(recovered_steps, outcome.recovered_steps);
   stalled_steps += outcome.stalled_steps;
   flags |= outcome.flags;
 }

@@ -26,12 +26,11 @@ double Ms(double ns) { return ns * 1e-6; }
 std::string Number(std::int64_t n) { return std::to_string(n); }
 
 std::string FaultTable(const std::vector<PhaseResult>& phases) {
-  support::TextTable table(
-      {"fault", "injected", "detected", "swallowed", "recovered", "2 to 4 sd", "stalled", "detected by"});
+  support::TextTable table({"fault", "injected", "detected", "swallowed", "recovered", "stalled", "detected by"});
   for (const FaultTally& fault : AllFaults(phases)) {
     const std::string steps = fault.recovered_steps >= FaultJudge::kNever ? "no" : Number(fault.recovered_steps);
     table.AddRow({fault.fault->name, Number(fault.injected), Number(fault.detected), Number(fault.swallowed), steps,
-                  Number(fault.a_little_apart), Number(fault.stalled_steps), fault.fault->detected_by});
+                  Number(fault.stalled_steps), fault.fault->detected_by});
   }
   return table.ToString();
 }
@@ -87,15 +86,10 @@ std::string HistogramText(const rt::LogHistogram& steps) {
 }
 
 Json FaultJson(const FaultTally& fault) {
-  return {{"name", fault.fault->name},
-          {"injected", fault.injected},
-          {"detected", fault.detected},
-          {"recovered_steps", fault.recovered_steps},
-          {"swallowed", fault.swallowed},
-          {"stalled_steps", fault.stalled_steps},
-          {"own_misses", fault.own_misses},
-          {"a_little_apart", fault.a_little_apart},
-          {"detected_by", fault.fault->detected_by},
+  return {{"name", fault.fault->name},      {"injected", fault.injected},
+          {"detected", fault.detected},     {"recovered_steps", fault.recovered_steps},
+          {"swallowed", fault.swallowed},   {"stalled_steps", fault.stalled_steps},
+          {"own_misses", fault.own_misses}, {"detected_by", fault.fault->detected_by},
           {"flags", FlagNames(fault.flags)}};
 }
 

@@ -69,7 +69,6 @@ class AdjustStage {
   EventLog* events_;
   RecentMinimum typical_;
   Nanos handed_over_deadline_ns_ = 0;  // of the newest result
-  bool held_ = false;                  // the next pack had to wait for execute
 };
 
 }  // namespace armcmc::rt

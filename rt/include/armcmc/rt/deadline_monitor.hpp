@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
@@ -10,7 +9,6 @@
 #include "armcmc/rt/miss_cause.hpp"
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/rt/stage_timeline.hpp"
-#include "armcmc/rt/usual_duration.hpp"
 #include "armcmc/rt/witness.hpp"
 #include "armcmc/types.hpp"
 
@@ -23,8 +21,7 @@ struct StepTimes {
   Nanos arrival_ns = 0;   ///< Kernel receive time of the pack.
   Nanos deadline_ns = 0;  ///< Absolute: release + deadline of the settings.
   std::array<Nanos, kNumStages> start_ns{}, end_ns{};
-  Earlier adjusted_earlier;     ///< How much earlier adjust would have been through.
-  Nanos collect_worked_ns = 0;  ///< What collect had worked in all when adjust was through.
+  Earlier adjusted_earlier;  ///< How much earlier adjust would have been through.
 
   [[nodiscard]] Nanos Duration(Stage stage) const noexcept { return end_ns[IndexOf(stage)] - start_ns[IndexOf(stage)]; }
   [[nodiscard]] Nanos EndToEnd() const noexcept { return end_ns[IndexOf(Stage::kExecute)] - release_ns; }
@@ -33,36 +30,26 @@ struct StepTimes {
 
 /// Judges every step against its deadline and keeps the times of all stages.
 ///
-/// The adjust thread calls RecordAdjusted() and RecordDropped(), the execute thread Record(); the miss counters may be
-/// read any time, the histograms after both have ended.
+/// The adjust thread calls RecordAdjusted(), RecordDropped() and RecordOvertaken(), the execute thread Record(); the
+/// miss counters may be read any time, the histograms after both have ended.
 class DeadlineMonitor {
  public:
   explicit DeadlineMonitor(const RtSettings& settings) noexcept;
 
   /// Wake-ups of the witness on the CPU of a stage; without one the machine is never blamed.
-  /// @param foremost  No other stage of this CPU but collect has its priority or a higher one. Then a thread that slept
-  ///                  and was woken more than WakeUpRing::kOrdinaryDelayNs after its input came is a witness itself.
-  void SetWitness(Stage stage, const WakeUpRing* wake_ups, bool foremost) noexcept {
-    witness_[IndexOf(stage)] = {wake_ups, foremost};
-  }
-
-  /// Time that the collect thread was awake; called by it before it sleeps. @rt Wait-free.
-  void AddCollectWork(Nanos duration_ns) noexcept ARMCMC_NONBLOCKING { collect_worked_.Add(duration_ns); }
+  void SetWitness(Stage stage, const WakeUpRing* wake_ups) noexcept { witness_[IndexOf(stage)] = wake_ups; }
 
   /// Notes in times->adjusted_earlier what stalls and late packs cost a step that adjust has just been through, the
-  /// steps before it included. @param held  Adjust waited for execute, not for the pack.
-  /// @rt O(wake-ups in the step).
-  void RecordAdjusted(StepTimes* times, bool held) noexcept ARMCMC_NONBLOCKING;
+  /// steps before it included. @rt O(wake-ups in the step).
+  void RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING;
 
   /// Judges a step that went through all stages. @rt O(wake-ups in execute).
   MissCause Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
 
   /// Judges a pack that adjust gives up at now_ns in favour of a newer one: always a miss.
   /// @param typical_ns  What adjust would have taken; now_ns + typical_ns is past the deadline.
-  /// @param held        Adjust waited for execute, not for the pack.
   /// @rt O(wake-ups since its arrival).
-  MissCause RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns,
-                          bool held) noexcept ARMCMC_NONBLOCKING;
+  MissCause RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns) noexcept ARMCMC_NONBLOCKING;
 
   /// Judges a result that execute did not come to before now_ns and the next result: always a miss.
   /// @param lacked_ns  By how much execute was late; at least 1 is assumed. @rt O(wake-ups since adjust).
@@ -76,29 +63,17 @@ class DeadlineMonitor {
 
  private:
   [[nodiscard]] Nanos StalledTime(Stage stage, Nanos begin_ns, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
+  /// Of a stage that sleeps until the one before it hands over: that one wakes it, so a stall of either CPU delays it.
+  [[nodiscard]] Nanos HandOverStall(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Earlier Collected(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] StageWork Work(Stage stage, Nanos ready_ns, Nanos start_ns, Nanos end_ns,
-                               Nanos others_ns) noexcept ARMCMC_NONBLOCKING;
-  /// Time in the wake-up of a stage for which the machine is to blame.
-  /// @param others_ns  What other stages worked meanwhile on its CPU, or kAwake: it did not sleep.
-  [[nodiscard]] Nanos StallBefore(Stage stage, Nanos begin_ns, Nanos start_ns,
-                                  Nanos others_ns) const noexcept ARMCMC_NONBLOCKING;
-  static constexpr Nanos kAwake = std::numeric_limits<Nanos>::max();
+  [[nodiscard]] StageWork Work(Stage stage, Nanos ready_ns, Nanos start_ns,
+                               Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
 
-  struct StageWitness {
-    const WakeUpRing* wake_ups = nullptr;
-    bool foremost = false;
-  };
-  struct Queue {
-    StageTimeline timeline;
-    UsualDuration work;
-  };
-  std::array<StageWitness, kNumStages> witness_{};
-  std::array<Queue, kNumStages> queue_;  // collect and adjust: of the adjust thread; execute: of the execute thread
+  std::array<const WakeUpRing*, kNumStages> witness_{};
+  std::array<StageTimeline, kNumStages> timeline_;  // collect, adjust: of the adjust thread; execute: of its own
   std::array<Nanos, kNumStages> budget_ns_;
   std::array<LogHistogram, kNumStages> stage_times_;
   LogHistogram end_to_end_;
-  Counter collect_worked_;  // ns; written by the collect thread
   std::array<Counter, kNumStages> overruns_;
   std::array<Counter, kNumMissCauses> finished_late_;  // written by the execute thread
   std::array<Counter, kNumMissCauses> given_up_;       // written by the adjust thread

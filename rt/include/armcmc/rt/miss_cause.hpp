@@ -18,15 +18,16 @@ inline constexpr std::size_t kNumMissCauses = 4;
 ///
 /// Late data, when that holds for the lateness of the packs alone; else the machine, when it holds for the stalls alone
 /// that the witnesses saw; when it takes both, whichever cost more. Else our own: the step would have been too late on
-/// a machine that never stood still and with every pack on time. Unseen stalls are not guessed: in doubt it is our own.
+/// a machine that never stood still and with every pack on time. What nobody saw is not guessed: in doubt it is our
+/// own.
 /// @param lacked_ns  By how much the deadline was missed; <= 0: it was not.
-/// @param earlier    When the step would have been through otherwise.
+/// @param earlier    By how much the step would have been through earlier.
 [[nodiscard]] constexpr MissCause Attribute(Nanos lacked_ns, const Earlier& earlier) noexcept {
   if (lacked_ns <= 0) return MissCause::kNone;
   if (earlier.without_lateness >= lacked_ns) return MissCause::kLateData;
   if (earlier.without_stalls >= lacked_ns) return MissCause::kMachine;
   if (earlier.without_both < lacked_ns) return MissCause::kOwn;
-  return earlier.without_lateness > earlier.without_stalls ? MissCause::kLateData : MissCause::kMachine;
+  return earlier.without_stalls > earlier.without_lateness ? MissCause::kMachine : MissCause::kLateData;
 }
 
 }  // namespace armcmc::rt

@@ -20,7 +20,7 @@ struct StageWork {
   Nanos ready_ns = 0;         ///< Its input was there.
   Nanos start_ns = 0;         ///< Begun: after the input came, the work before was done, and the thread was awake.
   Nanos end_ns = 0;           ///< Done.
-  Nanos stall_before_ns = 0;  ///< Stalls of the machine between start_ns and the moment the stage could have begun.
+  Nanos stall_before_ns = 0;  ///< Stalls of the machine from the moment that the stage could have begun to start_ns.
   Nanos stall_ns = 0;         ///< Stalls of the machine in [start_ns, end_ns].
 };
 

@@ -48,10 +48,10 @@ class WakeUpRing {
 /// the machine that stood still (hypervisor, firmware, kernel), since no thread of ours can delay it.
 class Witness {
  public:
-  /// A twentieth of the deadline, within [0.5 ms, 1 ms]: shorter slices are hardly seen, and each wake-up costs the
+  /// A fortieth of the deadline, within [0.25 ms, 1 ms]: shorter slices are hardly seen, and each wake-up costs the
   /// stages of its CPU some 10 us.
   [[nodiscard]] static constexpr Nanos PeriodFor(Nanos deadline_ns) noexcept {
-    return std::clamp<Nanos>(deadline_ns / 20, 500'000, 1'000'000);
+    return std::clamp<Nanos>(deadline_ns / 40, 250'000, 1'000'000);
   }
 
   Witness(int cpu, Nanos period_ns) noexcept : cpu_(cpu), period_ns_(period_ns) {}

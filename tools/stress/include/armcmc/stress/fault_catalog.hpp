@@ -20,16 +20,11 @@ enum class FaultSource : std::uint8_t {
 struct Evidence {
   estimator_status_t before{}, after{};  ///< Last status before the fault, last one of its slot.
   std::int32_t flags = 0;                ///< FAULT_* since the fault that were not there before it.
-  std::int32_t all_flags = 0;            ///< FAULT_* since the fault.
   bool modification = false;             ///< An estimate after the fault dropped the past.
   bool log_failure_told = false;         ///< The plant ended with an error that names its log.
 
   [[nodiscard]] bool Flag(std::int32_t flag) const { return (flags & flag) != 0; }
   [[nodiscard]] bool Rises(std::int64_t estimator_status_t::*counter) const { return after.*counter > before.*counter; }
-  /// A counter that rose, and the flag that goes with it, which another event may have raised before already.
-  [[nodiscard]] bool Counted(std::int64_t estimator_status_t::*counter, std::int32_t flag) const {
-    return Rises(counter) && (all_flags & flag) != 0;
-  }
   [[nodiscard]] bool Misses() const;  ///< Any deadline missed, or a pack dropped in favour of a newer one.
 };
 

@@ -21,7 +21,6 @@ struct FaultOutcome {
   std::int64_t stalled_steps =
       0;  ///< Steps that were not counted: the machine stood still, data came late, or we did not hear.
   std::int64_t own_misses = 0;  ///< In its slot.
-  bool a_little_apart = false;  ///< All was normal in time but the estimate: two to four joint standard deviations off.
   const char* hindrance = "";   ///< What was not normal at the last step that was not.
 };
 
@@ -33,7 +32,6 @@ struct FaultOutcome {
 /// Memory is bounded by the length of a slot.
 class FaultJudge {
  public:
-  static constexpr std::int64_t kMostRecoverySteps = 5;
   static constexpr std::int64_t kNever = 99;  ///< recovered_steps of what did not become normal in its slot.
 
   explicit FaultJudge(std::int64_t period_ns) : period_ns_(period_ns) {}
@@ -69,8 +67,7 @@ class FaultJudge {
 
   void FinishSlot();
   [[nodiscard]] std::int64_t NotOurs(const estimator_status_t& status) const;
-  /// Most that a parameter has moved from before the fault, in joint standard deviations; 0 inside its 95 % interval.
-  [[nodiscard]] double Apart(const Step& step, bool relearns) const;
+  [[nodiscard]] bool Agrees(const Step& step, bool relearns) const;
   /// nullptr for a normal step, else what it lacks.
   [[nodiscard]] const char* Hindrance(const Step& step, const FaultSpec& fault) const;
 

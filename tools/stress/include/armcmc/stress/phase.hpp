@@ -16,8 +16,7 @@ namespace armcmc::stress {
 struct FaultTally {
   const FaultSpec* fault = nullptr;
   std::int64_t injected = 0, detected = 0, swallowed = 0;
-  std::int64_t recovered_steps = 0;  ///< Most of any, but for those whose estimate was a little apart.
-  std::int64_t a_little_apart = 0;   ///< See FaultOutcome.
+  std::int64_t recovered_steps = 0;  ///< Most of any.
   std::int64_t stalled_steps = 0;
   std::int64_t own_misses = 0;
   std::int32_t flags = 0;

@@ -7,13 +7,10 @@
 
 namespace armcmc::stress {
 
+inline constexpr std::int64_t kMostRecoverySteps = 5;
+
 /// Own misses that no fault explains and that are let pass: none, and one in ten thousand steps below 10 ms.
 [[nodiscard]] std::int64_t AllowedOwnMisses(const PhaseResult& phase);
-
-/// Faults after which an estimate may be two to four joint standard deviations from the one before: one in 200, none
-/// below that. A posterior that goes on learning leaves its former 95 % interval by chance now and then, so that a
-/// run of thousands of faults cannot do without.
-[[nodiscard]] std::int64_t AllowedALittleApart(std::int64_t faults);
 
 struct Verdict {
   bool passed = true;
@@ -25,7 +22,7 @@ struct Verdict {
 [[nodiscard]] std::vector<FaultTally> AllFaults(const std::vector<PhaseResult>& phases);
 
 /// Passed: the estimator lived, no more own misses than allowed, no heap call in a stage, every fault that was
-/// injected was detected and got over within FaultJudge::kMostRecoverySteps steps.
+/// injected was detected and got over within kMostRecoverySteps steps.
 [[nodiscard]] Verdict Judge(const std::vector<PhaseResult>& phases);
 
 }  // namespace armcmc::stress
