@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -32,13 +33,14 @@ class FaultJudgeTest : public ::testing::Test {
   /// One pack with its estimate and its status.
   void Step(std::int64_t seq, std::int32_t flags = 0, std::int32_t miss = estimator_status_t::MISS_NONE) {
     estimate_.seq = seq;
+    estimate_.t_release_ns = seq * kT;
     judge_.OnEstimate(estimate_);
     Status(seq, flags, miss);
   }
   void Status(std::int64_t seq, std::int32_t flags = 0, std::int32_t miss = estimator_status_t::MISS_NONE) {
     status_.last_seq = seq;
     ++status_.step;
-    status_.t_status_ns += kT;
+    status_.t_status_ns = std::max(status_.t_status_ns + 1, seq * kT + kT / 2);
     status_.fault_flags = flags;
     status_.miss_cause = miss;
     judge_.OnStatus(status_);
@@ -65,6 +67,48 @@ TEST_F(FaultJudgeTest, AFaultThatIsCountedAndFlaggedAndOverAtOnce) {
   EXPECT_TRUE(outcome.detected);
   EXPECT_EQ(outcome.flags, estimator_status_t::FAULT_BAD_DATA);
   EXPECT_EQ(outcome.recovered_steps, 2) << "the step that told of it, and a normal one";
+}
+
+// The estimator was behind: pack 23 had come and was rejected when step 21 was through.
+TEST_F(FaultJudgeTest, AFaultThatIsToldByAnEarlierStepIsDetected) {
+  judge_.BeginRun({{SelectFaults("nan").front(), kFirst, kFirst + 10}});
+  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  status_.t_status_ns = 23 * kT + kT / 4;
+  ++status_.rejected_value;
+  Step(21, estimator_status_t::FAULT_BAD_DATA);
+  for (std::int64_t seq = 22; seq <= 30; ++seq)
+    if (seq != 23) Step(seq);
+  EXPECT_TRUE(Outcome().detected);
+}
+
+TEST_F(FaultJudgeTest, WhatWasToldBeforeTheFaultCameIsNoDetection) {
+  judge_.BeginRun({{SelectFaults("nan").front(), kFirst, kFirst + 10}});
+  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  ++status_.rejected_value;
+  Step(21, estimator_status_t::FAULT_BAD_DATA);
+  for (std::int64_t seq = 22; seq <= 30; ++seq) Step(seq);
+  EXPECT_FALSE(Outcome().detected);
+}
+
+TEST_F(FaultJudgeTest, AStepThatSaysSoItselfIsDetectedThoughOthersBeforeItSaidTheSame) {
+  judge_.BeginRun({{SelectFaults("overload").front(), kFirst, kFirst + 10}});
+  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  ++status_.truncated_steps;  // a stall of the machine
+  Step(21, estimator_status_t::FAULT_TRUNCATED);
+  Step(22);
+  ++status_.truncated_steps;
+  Step(23, estimator_status_t::FAULT_TRUNCATED);
+  for (std::int64_t seq = 24; seq <= 30; ++seq) Step(seq);
+  EXPECT_TRUE(Outcome().detected);
+}
+
+TEST_F(FaultJudgeTest, AStepBeforeTheFaultDoesNotSpeakForIt) {
+  judge_.BeginRun({{SelectFaults("overload").front(), kFirst, kFirst + 10}});
+  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  ++status_.truncated_steps;
+  Step(21, estimator_status_t::FAULT_TRUNCATED);
+  for (std::int64_t seq = 22; seq <= 30; ++seq) Step(seq);
+  EXPECT_FALSE(Outcome().detected);
 }
 
 TEST_F(FaultJudgeTest, AFaultThatNobodyNoticedIsNotDetected) {

@@ -45,6 +45,8 @@ void FaultJudge::OnEstimate(const estimate_t& estimate) {
     step.sd[i] = estimate.sd[i];
   }
   last_step_ = step;
+  newest_seq_ = estimate.seq;
+  newest_release_ns_ = estimate.t_release_ns;
   if (const Slot* slot = current(); slot != nullptr && estimate.seq >= slot->begin && estimate.seq < slot->at()) {
     reference_ = step;
   }
@@ -77,7 +79,7 @@ void FaultJudge::OnStatus(const estimator_status_t& status) {
   }
   const Slot& slot = slots_[next_];
   steps_.erase(steps_.begin(), steps_.lower_bound(slot.begin - 1));
-  if (status.last_seq + 1 < slot.at() && !signalled_) {
+  if (IsBefore(status, slot)) {
     evidence_.before = evidence_.after = status;
     has_before_ = true;
     if (status.last_seq >= slot.begin) background_ |= status.fault_flags;
@@ -92,6 +94,13 @@ void FaultJudge::OnStatus(const estimator_status_t& status) {
   step.miss = std::max(step.miss, status.miss_cause);
   step.not_ours += not_ours;
   step.dropped += dropped;
+}
+
+bool FaultJudge::IsBefore(const estimator_status_t& status, const Slot& slot) const {
+  if (status.last_seq + 1 >= slot.at() || signalled_) return false;
+  // Of an early step, but made when the stages were behind and the pack with the fault had come.
+  const std::int64_t due_ns = newest_release_ns_ + (slot.at() - newest_seq_) * period_ns_;
+  return slot.fault->source != FaultSource::kPlantPlan || status.t_status_ns < due_ns;
 }
 
 void FaultJudge::SignalBegins() {
@@ -128,7 +137,9 @@ void FaultJudge::FinishSlot() {
   FaultOutcome outcome;
   outcome.fault = &fault;
   outcome.own_misses = evidence_.after.missed_own - evidence_.before.missed_own;
-  outcome.flags = evidence_.flags = raised_ & ~background_;
+  // A flag lives in one status, so the status of the step that the estimator spoilt itself tells of that step alone.
+  const auto spoilt = fault.source == FaultSource::kEstimatorPlan ? steps_.find(slot.at()) : steps_.end();
+  outcome.flags = evidence_.flags = (raised_ & ~background_) | (spoilt != steps_.end() ? spoilt->second.flags : 0);
   const bool from_outside = fault.source == FaultSource::kSignal;
   std::int64_t over = slot.at() + fault.LastsPacks(static_cast<double>(period_ns_) * 1e-6) - 1;
   if (from_outside) over = affected_until_;

@@ -66,6 +66,7 @@ class FaultJudge {
   };
 
   void FinishSlot();
+  [[nodiscard]] bool IsBefore(const estimator_status_t& status, const Slot& slot) const;
   [[nodiscard]] std::int64_t NotOurs(const estimator_status_t& status) const;
   [[nodiscard]] bool Agrees(const Step& step, bool relearns) const;
   /// nullptr for a normal step, else what it lacks.
@@ -78,6 +79,7 @@ class FaultJudge {
   std::int64_t run_id_ = 0, last_run_id_ = 0;
   std::map<std::int64_t, Step> steps_;
   Step reference_, last_step_;
+  std::int64_t newest_seq_ = 0, newest_release_ns_ = 0;  // of the newest estimate
   estimator_status_t last_status_{};
   Evidence evidence_;
   bool has_before_ = false;
