@@ -205,6 +205,62 @@ TEST_F(FaultJudgeTest, ASignalThatWasNeverSentIsNoFault) {
   EXPECT_FALSE(Outcome().injected);
 }
 
+/// A flood of 40 packs, in which the estimate moves and its interval grows a little with every pack, and a jump.
+class FloodedEstimate : public FaultJudgeTest {
+ protected:
+  std::int64_t RecoveredSteps(double move, double grow, double jump) {
+    Begin("bus_flood", 60);
+    judge_.SignalBegins();
+    for (std::int64_t seq = 23; seq <= 80; ++seq) {
+      if (seq < 63) {
+        estimate_.ar_map[0] += move * 0.05;
+        if (seq == 40) estimate_.ar_map[0] += jump * 0.05;
+        estimate_.q025[0] = estimate_.ar_map[0] - 0.1 * std::pow(1.0 + grow, static_cast<double>(seq - 22));
+        estimate_.q975[0] = estimate_.ar_map[0] + 0.1 * std::pow(1.0 + grow, static_cast<double>(seq - 22));
+      }
+      Step(seq, seq < 63 ? estimator_status_t::FAULT_BUS_FLOOD : 0);
+      if (seq == 62) judge_.SignalEnds(62);
+    }
+    const FaultOutcome outcome = Outcome();
+    EXPECT_TRUE(outcome.detected);
+    return outcome.recovered_steps;
+  }
+};
+
+TEST_F(FloodedEstimate, MayMoveWithItsData) { EXPECT_EQ(RecoveredSteps(0.2, 0.0, 0.0), 1); }
+
+TEST_F(FloodedEstimate, MayNotJump) { EXPECT_EQ(RecoveredSteps(0.0, 0.0, 3.0), FaultJudge::kNever); }
+
+TEST_F(FloodedEstimate, MayNotForgetLittleByLittle) { EXPECT_EQ(RecoveredSteps(0.0, 0.05, 0.0), FaultJudge::kNever); }
+
+// The backlog of a plant that stood still: five packs in a row are given up, as the last late step already tells.
+TEST_F(FaultJudgeTest, PacksGivenUpRightAfterAFaultBelongToIt) {
+  Begin("plant_stop", 40);
+  judge_.SignalBegins();
+  ++status_.silent_periods;
+  Status(22, estimator_status_t::FAULT_PLANT_SILENT);
+  judge_.SignalEnds(40);
+  for (std::int64_t seq = 23; seq < 40; ++seq) Step(seq, 0, estimator_status_t::MISS_LATE_DATA);
+  status_.packs_dropped += 5;
+  Step(40, estimator_status_t::FAULT_BACKLOG, estimator_status_t::MISS_LATE_DATA);
+  for (std::int64_t seq = 46; seq <= 60; ++seq) Step(seq);
+  const FaultOutcome outcome = Outcome();
+  EXPECT_TRUE(outcome.detected);
+  EXPECT_EQ(outcome.stalled_steps, 5);
+  EXPECT_EQ(outcome.recovered_steps, 1);
+}
+
+TEST_F(FaultJudgeTest, PacksThatNobodyGaveUpAreMissing) {
+  Begin("plant_stop", 40);
+  judge_.SignalBegins();
+  ++status_.silent_periods;
+  Status(22, estimator_status_t::FAULT_PLANT_SILENT);
+  judge_.SignalEnds(40);
+  for (std::int64_t seq = 23; seq <= 40; ++seq) Step(seq, 0, estimator_status_t::MISS_LATE_DATA);
+  for (std::int64_t seq = 46; seq <= 60; ++seq) Step(seq);
+  EXPECT_EQ(Outcome().recovered_steps, 6);
+}
+
 TEST_F(FaultJudgeTest, ANewRunOfThePlantIsJudgedFromItsFirstPackOn) {
   Begin("nan");
   judge_.BeginRun({{SelectFaults("plant_death").front(), 1 - Slot::kQuietBefore, 9}});

@@ -54,6 +54,7 @@ void BusWatch::OnStatus(const lcm::ReceiveBuffer* /*buffer*/, const std::string&
     self->last_step_ = message->step;
     self->end_to_end_.Add(message->end_to_end_ns);
   }
+  if (self->recorder_ != nullptr) self->recorder_->Add(*message);
   if (self->judge_ != nullptr) self->judge_->OnStatus(*message);
 }
 

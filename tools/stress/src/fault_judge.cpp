@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace armcmc::stress {
@@ -22,7 +23,7 @@ void FaultJudge::BeginRun(std::vector<Slot> slots) {
   evidence_.before = evidence_.after = last_status_;
   has_before_ = true;
   background_ = raised_ = 0;
-  unheard_ = 0;
+  unheard_ = statuses_ = 0;
   signalled_ = false;
   affected_until_ = 0;
 }
@@ -77,6 +78,7 @@ void FaultJudge::OnStatus(const estimator_status_t& status) {
     steps_.clear();
     return;
   }
+  ++statuses_;
   const Slot& slot = slots_[next_];
   steps_.erase(steps_.begin(), steps_.lower_bound(slot.begin - 1));
   if (IsBefore(status, slot)) {
@@ -110,25 +112,41 @@ void FaultJudge::SignalBegins() {
 
 void FaultJudge::SignalEnds(std::int64_t newest) { affected_until_ = newest; }
 
-bool FaultJudge::Agrees(const Step& step, bool relearns) const {
+bool FaultJudge::Agrees(const Step& step, const Step& reference, bool relearns) const {
   if (!reference_.has_estimate) return true;  // nothing was known before
   for (std::size_t i = 0; i < step.value.size(); ++i) {
-    const bool inside = step.value[i] >= reference_.lo[i] && step.value[i] <= reference_.hi[i];
-    const double joint_sd = std::hypot(step.sd[i], reference_.sd[i]);
-    if (!inside && std::fabs(step.value[i] - reference_.value[i]) > kApart * joint_sd) return false;
+    const bool inside = step.value[i] >= reference.lo[i] && step.value[i] <= reference.hi[i];
+    const double joint_sd = std::hypot(step.sd[i], reference.sd[i]);
+    if (!inside && std::fabs(step.value[i] - reference.value[i]) > kApart * joint_sd) return false;
     const double width = step.hi[i] - step.lo[i], width_before = reference_.hi[i] - reference_.lo[i];
     if (!relearns && width > 4.0 * width_before) return false;
   }
   return true;
 }
 
-const char* FaultJudge::Hindrance(const Step& step, const FaultSpec& fault) const {
+const char* FaultJudge::Hindrance(const Step& step, const Step& reference, const FaultSpec& fault) const {
   if (!step.has_estimate) return "no estimate";
   if (!step.has_status) return "no status";
   if (step.truncated) return "truncated";
   if ((step.flags & ~background_) != 0) return "fault flags";
   if (step.miss != estimator_status_t::MISS_NONE) return "missed deadline";
-  return Agrees(step, fault.relearns) ? nullptr : "estimate apart";
+  return Agrees(step, reference, fault.relearns) ? nullptr : "estimate apart";
+}
+
+std::int64_t FaultJudge::DroppedRightAfter(std::int64_t seq) const {
+  const auto next = steps_.upper_bound(seq);
+  if (next == steps_.begin() || next == steps_.end()) return 0;
+  return std::min(std::prev(next)->second.dropped, next->first - seq - 1);
+}
+
+FaultJudge::Step FaultJudge::Followed(std::int64_t first, std::int64_t last) const {
+  Step reference = reference_;
+  for (auto found = steps_.lower_bound(first); found != steps_.end() && found->first <= last; ++found) {
+    const Step& step = found->second;
+    const bool on_time = step.has_status && step.miss == estimator_status_t::MISS_NONE && !step.truncated;
+    if (step.has_estimate && on_time && Agrees(step, reference, false)) reference = step;
+  }
+  return reference;
 }
 
 void FaultJudge::FinishSlot() {
@@ -160,11 +178,14 @@ void FaultJudge::FinishSlot() {
     if (lost || (fault.source == FaultSource::kEstimatorPlan && !computed)) outcome.injected = false;
   }
   outcome.recovered_steps = kNever;
+  if (from_outside) outcome.stalled_steps = DroppedRightAfter(over);
+  const bool data_flow_on = from_outside && !fault.misses;
+  const Step reference = data_flow_on ? Followed(slot.at(), over) : reference_;
   std::int64_t missing = 0;  // steps without any message, up to the present one
   for (std::int64_t seq = over + 1; seq < slot.end; ++seq) {
     const auto found = steps_.find(seq);
     const Step step = found != steps_.end() ? found->second : Step{};
-    const char* hindrance = Hindrance(step, fault);
+    const char* hindrance = Hindrance(step, reference, fault);
     if (hindrance == nullptr) {
       // Of those before it. Packs given up in favour of this one left no step that could have told.
       const std::int64_t given_up = from_outside ? std::min(std::max(step.not_ours, step.dropped), missing) : 0;
@@ -177,6 +198,7 @@ void FaultJudge::FinishSlot() {
     outcome.stalled_steps += from_outside ? std::max(step.not_ours, step.dropped) : step.not_ours;
   }
   if (outcome.recovered_steps != kNever) outcome.recovered_steps = std::max<std::int64_t>(1, outcome.recovered_steps);
+  outcome.statuses = std::exchange(statuses_, 0);
   outcomes_.push_back(outcome);
   ++next_;
   reference_ = last_step_;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
-#include <set>
+#include <utility>
 
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/stress/child.hpp"
 #include "armcmc/stress/files.hpp"
+#include "armcmc/stress/flight_recorder.hpp"
 #include "armcmc/stress/load.hpp"
 #include "armcmc/stress/plant_runs.hpp"
 
@@ -28,8 +29,19 @@ std::string LastLine(const std::string& text) {
 /// What the ends of a phase take: start of the estimator, two short runs of the plant, its report.
 double EndsSeconds(const StressOptions& options) { return 2.5 + 40.0 * options.period_ms * 1e-3; }
 
-void Tally(const std::vector<FaultOutcome>& outcomes, std::vector<FaultTally>* tallies) {
+/// What somebody who reads "not detected" or "own miss" wants to see next.
+void RecordTrouble(const FaultOutcome& outcome, FlightRecorder* recorder) {
+  const std::string name = outcome.fault->name;
+  const auto statuses = static_cast<std::size_t>(outcome.statuses) + 3;
+  if (outcome.injected && !outcome.detected) recorder->Write(name + " was not detected", statuses);
+  if (outcome.injected && outcome.recovered_steps > kMostRecoverySteps) {
+    recorder->Write(name + " was not got over: " + outcome.hindrance, statuses);
+  }
+}
+
+void Tally(const std::vector<FaultOutcome>& outcomes, FlightRecorder* recorder, std::vector<FaultTally>* tallies) {
   for (const FaultOutcome& outcome : outcomes) {
+    RecordTrouble(outcome, recorder);
     auto found =
         std::find_if(tallies->begin(), tallies->end(), [&](const auto& t) { return t.fault == outcome.fault; });
     if (found == tallies->end()) found = tallies->emplace(tallies->end());
@@ -82,6 +94,8 @@ PhaseResult RunPhase(const StressOptions& options, const std::string& load_name,
   std::filesystem::remove(report);
 
   BusWatch bus(options.lcm_url, options.prefix);
+  FlightRecorder recorder(options.work / ("trouble_" + load_name + ".txt"));
+  bus.SetRecorder(&recorder);
   FaultJudge judge(static_cast<std::int64_t>(options.period_ms * 1e6));
   judge.BeginRun({});
   Child estimator({(options.programs / "armcmc-estimator").string(), "--config", config.string(), "--lcm-url",
@@ -99,12 +113,16 @@ PhaseResult RunPhase(const StressOptions& options, const std::string& load_name,
   bus.BeginPhase();
   const Load load(load_name, options.lcm_url, options.work);
   result.notes = load.notes();
+  std::int64_t own_misses = 0;
   const auto tick = [&] {
+    const std::int64_t own_before = std::exchange(own_misses, judge.newest_status().missed_own);
+    const bool of_a_fault = judge.current() != nullptr && judge.current()->fault->misses;
+    if (own_misses > own_before && !of_a_fault) recorder.Write("an own miss outside of faults", 20);
     estimator.TrimLog();
     load.Tend();
     if (result.rss_start_kb == 0 && SecondsSince(start_ns) > 1.5) result.rss_start_kb = estimator.rss_kb();
     progress(std::min(1.0, SecondsSince(start_ns) / seconds));
-    Tally(judge.TakeOutcomes(), &result.faults);
+    Tally(judge.TakeOutcomes(), &recorder, &result.faults);
   };
   PlantRuns runs({&options, options.lcm_url, scenario, &bus, &judge, &estimator, tick}, layout);
   const double one_run = static_cast<double>(layout.last_pack) * options.period_ms * 1e-3;

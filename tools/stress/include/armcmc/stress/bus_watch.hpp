@@ -5,6 +5,7 @@
 
 #include "armcmc/rt/log_histogram.hpp"
 #include "armcmc/stress/fault_judge.hpp"
+#include "armcmc/stress/flight_recorder.hpp"
 
 namespace armcmc::stress {
 
@@ -16,6 +17,8 @@ class BusWatch {
 
   /// Handles what comes within so many ms; `judge` may be nullptr.
   void Poll(int ms, FaultJudge* judge);
+  /// Hears every status before the judge does; nullptr for none.
+  void SetRecorder(FlightRecorder* recorder) { recorder_ = recorder; }
 
   /// Newest pack number on the bus in this run of the plant; forgotten by BeginRun().
   [[nodiscard]] std::int64_t newest_pack() const { return newest_pack_; }
@@ -34,6 +37,7 @@ class BusWatch {
 
   lcm::LCM bus_;
   FaultJudge* judge_ = nullptr;
+  FlightRecorder* recorder_ = nullptr;
   std::int64_t newest_pack_ = 0, statuses_ = 0, last_step_ = 0;
   rt::LogHistogram end_to_end_;
 };

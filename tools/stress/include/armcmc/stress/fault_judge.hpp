@@ -11,6 +11,9 @@
 
 namespace armcmc::stress {
 
+/// Steps after a fault within which everything is normal again.
+inline constexpr std::int64_t kMostRecoverySteps = 5;
+
 /// What became of one injected fault.
 struct FaultOutcome {
   const FaultSpec* fault = nullptr;
@@ -22,6 +25,7 @@ struct FaultOutcome {
       0;  ///< Steps that were not counted: the machine stood still, data came late, or we did not hear.
   std::int64_t own_misses = 0;  ///< In its slot.
   const char* hindrance = "";   ///< What was not normal at the last step that was not.
+  std::int64_t statuses = 0;    ///< Heard in its slot.
 };
 
 /// Watches the estimator's messages of one run of the plant after another and judges every slot.
@@ -29,6 +33,8 @@ struct FaultOutcome {
 /// A step is normal when its estimate came, its status raises no flag that was not there before the fault, its
 /// deadline was kept, and its estimate agrees with the one before the fault: inside its 95 % interval or within two
 /// joint standard deviations, with an interval at most four times as wide (unless the fault makes it learn again).
+/// While the data flow on during a long fault the estimate moves with them: then every step on time must agree so with
+/// the one before it, and the interval be no wider than so since the beginning.
 /// Memory is bounded by the length of a slot.
 class FaultJudge {
  public:
@@ -68,9 +74,13 @@ class FaultJudge {
   void FinishSlot();
   [[nodiscard]] bool IsBefore(const estimator_status_t& status, const Slot& slot) const;
   [[nodiscard]] std::int64_t NotOurs(const estimator_status_t& status) const;
-  [[nodiscard]] bool Agrees(const Step& step, bool relearns) const;
+  /// Packs given up right after this one, which its status may tell already.
+  [[nodiscard]] std::int64_t DroppedRightAfter(std::int64_t seq) const;
+  /// The estimate to compare with after steps in which the data flowed on.
+  [[nodiscard]] Step Followed(std::int64_t first, std::int64_t last) const;
+  [[nodiscard]] bool Agrees(const Step& step, const Step& reference, bool relearns) const;
   /// nullptr for a normal step, else what it lacks.
-  [[nodiscard]] const char* Hindrance(const Step& step, const FaultSpec& fault) const;
+  [[nodiscard]] const char* Hindrance(const Step& step, const Step& reference, const FaultSpec& fault) const;
 
   std::int64_t period_ns_;
   std::vector<Slot> slots_;
@@ -86,6 +96,7 @@ class FaultJudge {
   std::int32_t background_ = 0;  // flags before the fault
   std::int32_t raised_ = 0;      // flags since
   std::int64_t unheard_ = 0;     // statuses that did not come since
+  std::int64_t statuses_ = 0;    // heard in this slot
   bool signalled_ = false;
   std::int64_t affected_until_ = 0;
   std::vector<FaultOutcome> outcomes_;

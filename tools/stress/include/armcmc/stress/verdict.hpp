@@ -7,8 +7,6 @@
 
 namespace armcmc::stress {
 
-inline constexpr std::int64_t kMostRecoverySteps = 5;
-
 /// Own misses that no fault explains and that are let pass: none, and one in ten thousand steps below 10 ms.
 [[nodiscard]] std::int64_t AllowedOwnMisses(const PhaseResult& phase);
 
