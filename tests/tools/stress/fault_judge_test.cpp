@@ -102,6 +102,32 @@ TEST_F(FaultJudgeTest, AStepThatSaysSoItselfIsDetectedThoughOthersBeforeItSaidTh
   EXPECT_TRUE(Outcome().detected);
 }
 
+// The machine had stopped the plant for a moment, too.
+TEST_F(FaultJudgeTest, AFlagOfAnEarlierStatusDoesNotHideAFault) {
+  judge_.BeginRun({{SelectFaults("plant_stop").front(), kFirst, kFirst + 10}});
+  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  Status(20, estimator_status_t::FAULT_PLANT_SILENT);
+  for (std::int64_t seq = 21; seq <= 22; ++seq) Step(seq);
+  judge_.SignalBegins();
+  ++status_.silent_periods;
+  Status(22, estimator_status_t::FAULT_PLANT_SILENT);
+  judge_.SignalEnds(23);
+  for (std::int64_t seq = 23; seq <= 30; ++seq) Step(seq);
+  EXPECT_TRUE(Outcome().detected);
+}
+
+TEST_F(FaultJudgeTest, AFlagThatIsStillUpIsNoDetection) {
+  judge_.BeginRun({{SelectFaults("plant_stop").front(), kFirst, kFirst + 10}});
+  for (std::int64_t seq = 1; seq <= 22; ++seq) Step(seq);
+  Status(22, estimator_status_t::FAULT_PLANT_SILENT);
+  judge_.SignalBegins();
+  ++status_.silent_periods;
+  Status(22, estimator_status_t::FAULT_PLANT_SILENT);
+  judge_.SignalEnds(23);
+  for (std::int64_t seq = 23; seq <= 30; ++seq) Step(seq);
+  EXPECT_FALSE(Outcome().detected);
+}
+
 TEST_F(FaultJudgeTest, AStepBeforeTheFaultDoesNotSpeakForIt) {
   judge_.BeginRun({{SelectFaults("overload").front(), kFirst, kFirst + 10}});
   for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);

@@ -155,9 +155,11 @@ void FaultJudge::FinishSlot() {
   FaultOutcome outcome;
   outcome.fault = &fault;
   outcome.own_misses = evidence_.after.missed_own - evidence_.before.missed_own;
-  // A flag lives in one status, so the status of the step that the estimator spoilt itself tells of that step alone.
+  // A flag lives in one status: what an earlier one said does not hide a fault that comes after a status without it,
+  // and the status of a step that the estimator spoilt itself tells of that step alone.
   const auto spoilt = fault.source == FaultSource::kEstimatorPlan ? steps_.find(slot.at()) : steps_.end();
-  outcome.flags = evidence_.flags = (raised_ & ~background_) | (spoilt != steps_.end() ? spoilt->second.flags : 0);
+  const std::int32_t of_its_step = spoilt != steps_.end() ? spoilt->second.flags : 0;
+  outcome.flags = evidence_.flags = (raised_ & ~evidence_.before.fault_flags) | of_its_step;
   const bool from_outside = fault.source == FaultSource::kSignal;
   std::int64_t over = slot.at() + fault.LastsPacks(static_cast<double>(period_ns_) * 1e-6) - 1;
   if (from_outside) over = affected_until_;

@@ -19,7 +19,7 @@ enum class FaultSource : std::uint8_t {
 /// What was seen of one fault.
 struct Evidence {
   estimator_status_t before{}, after{};  ///< Last status before the fault, last one of its slot.
-  std::int32_t flags = 0;                ///< FAULT_* since the fault that were not there before it, or are of its step.
+  std::int32_t flags = 0;                ///< FAULT_* since the fault that were not in `before`, or are of its step.
   bool modification = false;             ///< An estimate after the fault dropped the past.
   bool log_failure_told = false;         ///< The plant ended with an error that names its log.
 
