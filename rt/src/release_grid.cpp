@@ -13,6 +13,7 @@ void ReleaseGrid::ClearWindow() noexcept {
 ReleaseGrid::Point ReleaseGrid::Lock(Nanos arrival_ns) noexcept ARMCMC_NONBLOCKING {
   locked_ = true;
   proposed_ = false;
+  left_packs_ = 0;
   due_ns_ = arrival_ns;
   arrival_ns_ = arrival_ns;
   ClearWindow();
@@ -23,10 +24,22 @@ ReleaseGrid::Point ReleaseGrid::OnPack(std::int64_t steps, Nanos arrival_ns) noe
   const Nanos pause_ns = arrival_ns - arrival_ns_;
   if (proposed_) {
     proposed_ = false;
-    if (pause_ns > steps * period_ns_ - period_ns_ / 2) due_ns_ = arrival_ns_;
+    if (pause_ns > steps * period_ns_ - period_ns_ / 2) {
+      if (left_packs_ == 0) left_due_ns_ = due_ns_;
+      left_packs_ = kWindow + 1;
+      due_ns_ = arrival_ns_;
+    }
   }
   arrival_ns_ = arrival_ns;
   due_ns_ += steps * period_ns_;
+  if (left_packs_ > 0) {
+    --left_packs_;
+    left_due_ns_ += steps * period_ns_;
+    if (arrival_ns < due_ns_ - period_ns_ / 2 && arrival_ns > left_due_ns_) {
+      due_ns_ = left_due_ns_;
+      left_packs_ = 0;
+    }
+  }
   const Nanos lateness_ns = arrival_ns - due_ns_;
   if (lateness_ns <= 0) {
     due_ns_ = arrival_ns;

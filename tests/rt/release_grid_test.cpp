@@ -96,6 +96,44 @@ TEST(ReleaseGrid, KeepsItsPhaseThroughALongBurst) {
   for (Nanos i = 1; i <= 40; ++i) EXPECT_EQ(grid.OnPack(1, 6100 + i).lateness_ns, 5000 - 99 * i);
 }
 
+TEST(ReleaseGrid, ReturnsWhenThePlantOnlyHesitatedWhileItCaughtUp) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  EXPECT_EQ(grid.OnPack(1, 6100).lateness_ns, 5000);
+  EXPECT_EQ(grid.OnPack(1, 6160).lateness_ns, 0) << "a new phase, it seems";
+  EXPECT_EQ(grid.OnPack(1, 6170).lateness_ns, 4870) << "no: 90 early, and so late on the grid that was left";
+  for (Nanos i = 1; i <= 40; ++i) EXPECT_EQ(grid.OnPack(1, 6170 + 10 * i).lateness_ns, 4870 - 90 * i);
+}
+
+TEST(ReleaseGrid, ReturnsFromTwoHesitationsToTheFirstGrid) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  grid.OnPack(1, 6100);
+  EXPECT_EQ(grid.OnPack(1, 6160).lateness_ns, 0);
+  EXPECT_EQ(grid.OnPack(1, 6400).lateness_ns, 140);
+  EXPECT_EQ(grid.OnPack(1, 6460).lateness_ns, 0);
+  EXPECT_EQ(grid.OnPack(1, 6465).lateness_ns, 6465 - 1500);
+}
+
+TEST(ReleaseGrid, KeepsANewPhaseThatHeldForAWindow) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  grid.OnPack(1, 6100);
+  Nanos due = 6100;
+  for (int i = 0; i < ReleaseGrid::kWindow + 1; ++i) EXPECT_EQ(grid.OnPack(1, due += 100).lateness_ns, 0);
+  EXPECT_EQ(grid.OnPack(1, due + 20).lateness_ns, 0) << "early, and the phase moves with it";
+  EXPECT_EQ(grid.OnPack(1, due + 120).lateness_ns, 0);
+}
+
+TEST(ReleaseGrid, KeepsANewPhaseWhenAPackIsALittleEarly) {
+  ReleaseGrid grid(100);
+  grid.Lock(1000);
+  grid.OnPack(1, 6100);
+  EXPECT_EQ(grid.OnPack(1, 6200).lateness_ns, 0);
+  EXPECT_EQ(grid.OnPack(1, 6260).lateness_ns, 0);
+  EXPECT_EQ(grid.OnPack(1, 6360).lateness_ns, 0);
+}
+
 TEST(ReleaseGrid, ExpectsTheNextPackAPeriodAfterOneThatCameFarTooLate) {
   ReleaseGrid grid(100);
   grid.Lock(1000);

@@ -29,7 +29,9 @@ struct Release {
 ///   - after kWindow packs that were all late, the grid moves by the least of those delays (a slower plant
 ///     clock, a plant that hesitated once and keeps the new phase);
 ///   - a pack that is late by a period or more after a pause proposes a new phase; the next one confirms it by keeping
-///     to it, or refutes it by coming sooner: then the plant is catching up, and its packs are late on the old grid.
+///     to it, or refutes it by coming sooner: then the plant is catching up, and its packs are late on the old grid;
+///   - one of the next kWindow packs may still refute it by coming half a period early: a plant that catches up may
+///     hesitate between two packs, and what it owes is late on the grid that was left.
 class ReleaseGrid {
  public:
   static constexpr int kWindow = 8;
@@ -63,6 +65,8 @@ class ReleaseGrid {
   Nanos arrival_ns_ = 0;  // of the newest pack
   Nanos window_min_ns_ = 0;
   int window_size_ = 0;
+  Nanos left_due_ns_ = 0;  // the newest pack on the grid that was left for a new phase
+  int left_packs_ = 0;     // so many more may refute that phase
   bool locked_ = false;
   bool proposed_ = false;  // the newest pack came so late that its arrival may be the new phase
 };
