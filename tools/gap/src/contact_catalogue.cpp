@@ -130,7 +130,16 @@ void AddPeriodic(const Signals& s, std::vector<EffectForm>* out) {
       return std::vector<std::vector<double>>{start};
     };
   };
-  sine.find_starts = find_starts(2);
+  // One that begins or ends is lost in the spectrum of the whole.
+  sine.find_starts = [whole = find_starts(2)](const Signals& in, const Vector& residual) {
+    std::vector<std::vector<double>> starts = whole(in, residual);
+    const Eigen::Index part = residual.size() / 4;
+    for (const Vector& some : {Vector(residual.head(part)), Vector(residual.tail(part))}) {
+      const Line line = StrongestLine(some, in.dt);
+      if (line.frequency > 3.0 / in.duration) starts.push_back({0.0, 0.0, std::log(line.frequency)});
+    }
+    return starts;
+  };
   out->push_back(sine);
   std::vector<Coordinate> coordinates;
   for (const char* name : {"cosine", "sine", "cosine3", "sine3", "cosine5", "sine5"})

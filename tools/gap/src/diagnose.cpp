@@ -89,6 +89,10 @@ void Vote(const Finding& other, Finding* finding) {
   if (Names(other)) {
     for (const CandidatePtr& candidate : other.set)
       if (!mine.contains(candidate->names())) finding->set.push_back(candidate);
+    // Each look gave all it had to its own.
+    double total = 0.0;
+    for (const CandidatePtr& candidate : finding->set) total += candidate->probability;
+    for (const CandidatePtr& candidate : finding->set) candidate->probability /= std::max(total, 1.0);
     finding->verdict = Verdict::kAmbiguous;
   } else if (finding->approximate || finding->best->added().size() > 1) {
     finding->verdict = Verdict::kUnnamed;

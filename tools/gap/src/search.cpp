@@ -153,7 +153,52 @@ Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candida
   if (gates.size() > kMaxGated) gates.resize(kMaxGated);
   Candidates gated;
   for (const GateCandidate& gate : gates) gated.push_back(Make(fitter_->Add(parent->fit, gate.term)));
+  ShareOnset(parent, min_active, &gated);
   return gated;
+}
+
+void Search::ShareOnset(const CandidatePtr& parent, int min_active, Candidates* gated) const {
+  CandidatePtr leader;
+  for (const CandidatePtr& candidate : *gated) {
+    const bool in_time = candidate->fit.hypothesis.terms.back().when.time_s > 0.0;
+    if (in_time && (!leader || candidate->fit.score() > leader->fit.score())) leader = candidate;
+  }
+  if (!leader) return;
+  const Term first = leader->fit.hypothesis.terms.back();
+  const auto dated = [&](const EffectForm& form) {
+    return std::any_of(gated->begin(), gated->end(), [&](const CandidatePtr& candidate) {
+      const Term& term = candidate->fit.hypothesis.terms.back();
+      return term.form == &form && term.when.kind == When::Kind::kFrom;
+    });
+  };
+  for (const EffectForm& form : *catalogue_) {
+    if (!form.exact() || !form.gates_by_time || Holds(parent->fit, form.effect) || dated(form)) continue;
+    const bool misfitted = !form.linear && form.force == nullptr;
+    if (!misfitted && form.family != first.form->family) continue;
+    // Its shape as it is from that time on finds its own time.
+    const Fitted shape = fitter_->Add(parent->fit, {&form, {When::Kind::kFrom, first.when.time_s}});
+    for (const GateCandidate& gate :
+         ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &shape), min_active))
+      if (gate.term.when.kind == When::Kind::kFrom) gated->push_back(Make(fitter_->Add(parent->fit, gate.term)));
+  }
+}
+
+Search::Candidates Search::GatedAlone(const Candidates& pairs, const Candidates& singles) const {
+  Candidates alone;
+  const auto same = [](const CandidatePtr& candidate, const Term& term) {
+    const Term& other = candidate->fit.hypothesis.terms.back();
+    return other.form == term.form && other.when.kind == term.when.kind && other.when.time_s == term.when.time_s;
+  };
+  for (std::size_t i = 0; i < std::min(kRefinedPairs, pairs.size()); ++i) {
+    for (const Term& term : pairs[i]->added()) {
+      const auto known = [&](const CandidatePtr& candidate) { return same(candidate, term); };
+      if (!GatedBy(term) || std::any_of(singles.begin(), singles.end(), known) ||
+          std::any_of(alone.begin(), alone.end(), known))
+        continue;
+      alone.push_back(Make(fitter_->Add(base_->fit, term)));
+    }
+  }
+  return alone;
 }
 
 Search::Candidates Search::OnePerName(const Candidates& candidates) const {
@@ -253,7 +298,8 @@ Finding Search::Run(bool pairs) const {
           std::max(finding.p_missing, bootstrap_->ProbabilityAbove(gain, 0.1 * limits_.min_gain * rows_));
   finding.tried = singles;
   const double least = std::max(limits_.min_gain, 2.0 * limits_.min_nats / rows_);
-  const Candidates listed = Listed(singles, true), unlisted = Listed(singles, false);
+  Candidates listed = Listed(singles, true);
+  const Candidates unlisted = Listed(singles, false);
   if (!(gap > least) || finding.p_missing < limits_.p_missing) {
     finding.p_none = WeighNothing(singles);
     const double seen = bootstrap_->ProbabilityAbove(listed.front()->fit.heldout - base_->fit.heldout, 0.0);
@@ -280,13 +326,22 @@ Finding Search::Run(bool pairs) const {
   }
   if (good.empty() && pairs) {
     all_pairs = Pairs(listed, second.empty() ? nullptr : top, second);
+    // Given the other, the gate of a member may have been found that its own scan had missed: then it may do alone.
+    const Candidates alone = GatedAlone(all_pairs, listed);
+    finding.tried.insert(finding.tried.end(), alone.begin(), alone.end());
+    listed.insert(listed.end(), alone.begin(), alone.end());
+    SortByScore(&listed);
+    for (const CandidatePtr& candidate : alone)
+      if (!Better(all_pairs.front()->fit, candidate->fit) && Adequate(candidate, gap)) good.push_back(candidate);
+  }
+  if (good.empty() && !all_pairs.empty()) {
     for (const CandidatePtr& pair : Near(all_pairs, gap)) {
       const bool earned = std::all_of(listed.begin(), listed.end(), [&](const CandidatePtr& single) {
         return !Holds(pair->fit, single->fit.hypothesis.terms.back().form->effect) || Better(pair->fit, single->fit);
       });
       if (earned && Adequate(pair, gap)) good.push_back(pair);
     }
-    if (!all_pairs.empty()) top = good.empty() ? all_pairs.front() : good.front();
+    top = good.empty() ? all_pairs.front() : good.front();
   }
   // A name is not given to what physics outside the catalogue explains better, or as well with one effect less.
   if (!unlisted.empty() && Gain(unlisted.front()) > limits_.min_gain &&
