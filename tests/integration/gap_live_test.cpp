@@ -80,6 +80,44 @@ std::string ThreeEffects(const std::array<std::array<double, 2>, 3>& amplitudes)
   return text.str();
 }
 
+// The same for the actuator, whose effects enter the flow law of both valves.
+TEST_F(LiveModel, TheActuatorsEstimatorFindsItsLeak) {
+  config_ = SourceDir() / "rt/config/soft_actuator_excited.toml";
+  scenario_ = SourceDir() / "plant_sim/scenarios/soft_actuator_excited.toml";
+  const std::vector<std::string> hide = {"--hide-effect", "leak", "--effect-strength", "2"};
+  std::vector<std::string> offline = {"--scenario", scenario_.string(),  "--seed",     "3", "--csv", dir_ / "run.csv",
+                                      "--sealed",   dir_ / "truth.json", "--duration", "20"};
+  offline.insert(offline.end(), hide.begin(), hide.end());
+  ASSERT_EQ(RunProgram(Program("armcmc-plant"), offline).code, 0);
+  const Outcome gap = RunProgram(
+      Program("armcmc-gap"), {"--model", "soft_actuator_excited", "--data", dir_ / "run.csv", "--out", dir_ / "gap"});
+  ASSERT_EQ(gap.code, 0) << gap.err;
+  ASSERT_THAT(gap.out, ::testing::HasSubstr("Missing in the flow law: leak"));
+
+  auto estimator = StartEstimator({"--model", dir_ / "gap/model.toml"});
+  std::vector<std::string> again = hide;  // another leak than the recorded one, of the same law
+  again.insert(again.end(), {"--sealed", dir_ / "live_truth.json"});
+  auto plant = StartPlant("15", again);
+  ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
+  ASSERT_TRUE(recorder_->WaitForEstimates(150)) << estimator->err();
+  const nlohmann::json report = Finish(estimator.get());
+  std::ifstream sealed(dir_ / "live_truth.json");
+  const double truth = nlohmann::json::parse(sealed)["effects"][0]["parameters"]["rate"]["value"];
+
+  for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
+  if (report["rt"]["policy"] == "SCHED_FIFO") {
+    EXPECT_EQ(report["misses"]["own"], 0);
+  }
+  const estimate_t last = recorder_->estimates().back();
+  int leak = 0;
+  while (leak < last.n_params && std::string(reinterpret_cast<const char*>(last.param_name[leak])).find("leak") != 0)
+    ++leak;
+  ASSERT_LT(leak, last.n_params) << "no parameter of the leak";
+  EXPECT_NEAR(last.ar_map_by_mode[0][leak], truth, 5.0 * last.sd_by_mode[0][leak]);
+  EXPECT_LT(last.sd_by_mode[0][leak], 0.1 * truth);
+  EXPECT_EQ(recorder_->statuses().back().gap_suspected, 0);
+}
+
 // The plant has three effects more than the base equations; the estimator knows their form, not their size.
 TEST_F(LiveModel, ThreeAddedEffectsAreLearntWithoutAMissOrAnAllocation) {
   constexpr std::array<double, 3> kTruth{0.25, 0.4, 0.3};
