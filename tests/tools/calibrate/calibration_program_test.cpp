@@ -106,6 +106,17 @@ TEST_F(CalibrationProgram, RecoversImpulsiveNoise) {
   EXPECT_NEAR(Found().noise[0].outlier_scale, 10.0, 1.5);
 }
 
+// The actuator's noise is that of the measured pressure rate, 500 Pa/s, where it is regressed; both valves have it.
+TEST_F(CalibrationProgram, RecoversTheNoiseOfThePressureRate) {
+  std::ofstream(dir_ / "start.toml") << "schema = 1\n[model]\nname = \"soft_actuator_excited\"\npressure_rate = true\n"
+                                        "[noise]\nstd = 1500.0\n[sampler]\ndraws = 300\n[gap_watch]\nenabled = false\n";
+  ASSERT_EQ(Calibrate(Plant("soft_actuator_excited", 6, "20")).code, 0);
+  for (const std::size_t mode : {0U, 1U}) {
+    EXPECT_EQ(Found().noise[mode].kind, NoiseKind::kGaussian) << mode;
+    EXPECT_NEAR(Found().noise[mode].std, 500.0, 25.0) << mode;
+  }
+}
+
 // Correlated noise is what no noise law knows and what the built-in allowance is too small for: there the threshold
 // has work to do. 830 packs of calibration and 3 x 830 packs of fresh seeds at 2 %: 17 and 50 expected.
 TEST_F(CalibrationProgram, FalseModificationsOfFreshSeedsAreNearWhatWasAskedFor) {
