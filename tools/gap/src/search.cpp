@@ -153,11 +153,11 @@ Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candida
   if (gates.size() > kMaxGated) gates.resize(kMaxGated);
   Candidates gated;
   for (const GateCandidate& gate : gates) gated.push_back(Make(fitter_->Add(parent->fit, gate.term)));
-  ShareOnset(parent, min_active, &gated);
+  if (parent == base_) ShareOnset(min_active, &gated);
   return gated;
 }
 
-void Search::ShareOnset(const CandidatePtr& parent, int min_active, Candidates* gated) const {
+void Search::ShareOnset(int min_active, Candidates* gated) const {
   CandidatePtr leader;
   for (const CandidatePtr& candidate : *gated) {
     const bool in_time = candidate->fit.hypothesis.terms.back().when.time_s > 0.0;
@@ -172,14 +172,14 @@ void Search::ShareOnset(const CandidatePtr& parent, int min_active, Candidates* 
     });
   };
   for (const EffectForm& form : *catalogue_) {
-    if (!form.exact() || !form.gates_by_time || Holds(parent->fit, form.effect) || dated(form)) continue;
+    if (!form.exact() || !form.gates_by_time || dated(form)) continue;
     const bool misfitted = !form.linear && form.force == nullptr;
     if (!misfitted && form.family != first.form->family) continue;
     // Its shape as it is from that time on finds its own time.
-    const Fitted shape = fitter_->Add(parent->fit, {&form, {When::Kind::kFrom, first.when.time_s}});
+    const Fitted shape = fitter_->Add(base_->fit, {&form, {When::Kind::kFrom, first.when.time_s}});
     for (const GateCandidate& gate :
-         ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &shape), min_active))
-      if (gate.term.when.kind == When::Kind::kFrom) gated->push_back(Make(fitter_->Add(parent->fit, gate.term)));
+         ScanGates(*fitter_, base_->fit, form, Templates(*fitter_, base_->fit, form, &shape), min_active))
+      if (gate.term.when.kind == When::Kind::kFrom) gated->push_back(Make(fitter_->Add(base_->fit, gate.term)));
   }
 }
 

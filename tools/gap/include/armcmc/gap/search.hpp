@@ -70,9 +70,9 @@ class Search {
   [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
   /// Gated hypotheses whose gates leave at least so many blocks active and promise most over the ungated ones.
   [[nodiscard]] Candidates ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const;
-  /// Adds effects that may begin when the best of `gated` does: those of its family, and those whose shape an ungated
-  /// fit gets wrong, so that no scan with it finds their onset.
-  void ShareOnset(const CandidatePtr& parent, int min_active, Candidates* gated) const;
+  /// Adds single effects that may begin when the best of `gated` does: those of its family, and those whose shape an
+  /// ungated fit gets wrong, so that no scan with it finds their onset.
+  void ShareOnset(int min_active, Candidates* gated) const;
   /// The gated members of the best pairs, alone, that `singles` does not hold.
   [[nodiscard]] Candidates GatedAlone(const Candidates& pairs, const Candidates& singles) const;
   /// The verdict on what shows in one to three events, by evidence: nothing can be left out.
