@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -34,7 +35,8 @@ class FlightRecorderTest : public ::testing::Test {
     return text.str();
   }
 
-  std::filesystem::path file_ = std::filesystem::path(::testing::TempDir()) / "flight_recorder_test.txt";
+  // Of this process: tests run side by side.
+  std::filesystem::path file_ = ::testing::TempDir() + "flight_recorder_test." + std::to_string(getpid());
   FlightRecorder recorder_{file_};
   estimator_status_t status_{};
 };
