@@ -26,9 +26,11 @@ class FaultJudgeTest : public ::testing::Test {
     }
   }
 
-  void Begin(const std::string& fault, std::int64_t packs = 10) {
+  /// Quiet until this pack.
+  void Begin(const std::string& fault, std::int64_t packs = 10,
+             std::int64_t quiet_until = kFirst + Slot::kQuietBefore - 1) {
     judge_.BeginRun({{SelectFaults(fault).front(), kFirst, kFirst + packs}});
-    for (std::int64_t seq = 1; seq < kFirst + Slot::kQuietBefore; ++seq) Step(seq);
+    for (std::int64_t seq = 1; seq <= quiet_until; ++seq) Step(seq);
   }
   /// One pack with its estimate and its status.
   void Step(std::int64_t seq, std::int32_t flags = 0, std::int32_t miss = estimator_status_t::MISS_NONE) {
@@ -71,8 +73,7 @@ TEST_F(FaultJudgeTest, AFaultThatIsCountedAndFlaggedAndOverAtOnce) {
 
 // The estimator was behind: pack 23 had come and was rejected when step 21 was through.
 TEST_F(FaultJudgeTest, AFaultThatIsToldByAnEarlierStepIsDetected) {
-  judge_.BeginRun({{SelectFaults("nan").front(), kFirst, kFirst + 10}});
-  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  Begin("nan", 10, 20);
   status_.t_status_ns = 23 * kT + kT / 4;
   ++status_.rejected_value;
   Step(21, estimator_status_t::FAULT_BAD_DATA);
@@ -82,8 +83,7 @@ TEST_F(FaultJudgeTest, AFaultThatIsToldByAnEarlierStepIsDetected) {
 }
 
 TEST_F(FaultJudgeTest, WhatWasToldBeforeTheFaultCameIsNoDetection) {
-  judge_.BeginRun({{SelectFaults("nan").front(), kFirst, kFirst + 10}});
-  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  Begin("nan", 10, 20);
   ++status_.rejected_value;
   Step(21, estimator_status_t::FAULT_BAD_DATA);
   for (std::int64_t seq = 22; seq <= 30; ++seq) Step(seq);
@@ -91,8 +91,7 @@ TEST_F(FaultJudgeTest, WhatWasToldBeforeTheFaultCameIsNoDetection) {
 }
 
 TEST_F(FaultJudgeTest, AStepThatSaysSoItselfIsDetectedThoughOthersBeforeItSaidTheSame) {
-  judge_.BeginRun({{SelectFaults("overload").front(), kFirst, kFirst + 10}});
-  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  Begin("overload", 10, 20);
   ++status_.truncated_steps;  // a stall of the machine
   Step(21, estimator_status_t::FAULT_TRUNCATED);
   Step(22);
@@ -104,8 +103,7 @@ TEST_F(FaultJudgeTest, AStepThatSaysSoItselfIsDetectedThoughOthersBeforeItSaidTh
 
 // The machine had stopped the plant for a moment, too.
 TEST_F(FaultJudgeTest, AFlagOfAnEarlierStatusDoesNotHideAFault) {
-  judge_.BeginRun({{SelectFaults("plant_stop").front(), kFirst, kFirst + 10}});
-  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  Begin("plant_stop", 10, 20);
   Status(20, estimator_status_t::FAULT_PLANT_SILENT);
   for (std::int64_t seq = 21; seq <= 22; ++seq) Step(seq);
   judge_.SignalBegins();
@@ -117,8 +115,7 @@ TEST_F(FaultJudgeTest, AFlagOfAnEarlierStatusDoesNotHideAFault) {
 }
 
 TEST_F(FaultJudgeTest, AFlagThatIsStillUpIsNoDetection) {
-  judge_.BeginRun({{SelectFaults("plant_stop").front(), kFirst, kFirst + 10}});
-  for (std::int64_t seq = 1; seq <= 22; ++seq) Step(seq);
+  Begin("plant_stop", 10, 22);
   Status(22, estimator_status_t::FAULT_PLANT_SILENT);
   judge_.SignalBegins();
   ++status_.silent_periods;
@@ -129,8 +126,7 @@ TEST_F(FaultJudgeTest, AFlagThatIsStillUpIsNoDetection) {
 }
 
 TEST_F(FaultJudgeTest, AStepBeforeTheFaultDoesNotSpeakForIt) {
-  judge_.BeginRun({{SelectFaults("overload").front(), kFirst, kFirst + 10}});
-  for (std::int64_t seq = 1; seq <= 20; ++seq) Step(seq);
+  Begin("overload", 10, 20);
   ++status_.truncated_steps;
   Step(21, estimator_status_t::FAULT_TRUNCATED);
   for (std::int64_t seq = 22; seq <= 30; ++seq) Step(seq);
