@@ -136,7 +136,7 @@ bool CollectStage::Step(const Datagram& datagram) noexcept {
   codec_.CopyTo(&slot->pack);
   slot->times = {};
   slot->times.release_ns = point.release_ns;
-  slot->times.lateness_ns = point.lateness_ns;
+  slot->times.lateness_ns = std::max(point.lateness_ns, point.unsettled_ns);
   slot->times.arrival_ns = datagram.arrival_ns;
   slot->times.deadline_ns = point.release_ns + deadline_ns_;
   slot->times.start_ns[IndexOf(Stage::kCollect)] = start_ns;

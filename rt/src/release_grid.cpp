@@ -41,12 +41,13 @@ ReleaseGrid::Point ReleaseGrid::OnPack(std::int64_t steps, Nanos arrival_ns) noe
     }
   }
   const Nanos lateness_ns = arrival_ns - due_ns_;
+  const Nanos unsettled_ns = left_packs_ > 0 ? std::max<Nanos>(0, arrival_ns - left_due_ns_) : 0;
   if (lateness_ns <= 0) {
     due_ns_ = arrival_ns;
     ClearWindow();
-    return {arrival_ns, 0};
+    return {arrival_ns, 0, unsettled_ns};
   }
-  const Point point{due_ns_, lateness_ns};
+  const Point point{due_ns_, lateness_ns, unsettled_ns};
   if (pause_ns < steps * period_ns_ / 2) {
     ClearWindow();  // catching up: says nothing about the phase
     return point;

@@ -17,7 +17,7 @@ namespace armcmc::rt {
 /// Time stamps of one step, CLOCK_MONOTONIC.
 struct StepTimes {
   Nanos release_ns = 0;   ///< Point of the release grid, or the arrival when the pack came early.
-  Nanos lateness_ns = 0;  ///< Arrival minus grid point, >= 0.
+  Nanos lateness_ns = 0;  ///< Arrival minus grid point, >= 0; of the grid that was left while a new phase is unsettled.
   Nanos arrival_ns = 0;   ///< Kernel receive time of the pack.
   Nanos deadline_ns = 0;  ///< Absolute: release + deadline of the settings.
   std::array<Nanos, kNumStages> start_ns{}, end_ns{};

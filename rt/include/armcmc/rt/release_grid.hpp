@@ -39,6 +39,9 @@ class ReleaseGrid {
   struct Point {
     Nanos release_ns = 0;   ///< min(due, arrival).
     Nanos lateness_ns = 0;  ///< max(0, arrival - due).
+    /// While a new phase may still be refuted: how late the pack is on the grid that was left, if that was the right
+    /// one.
+    Nanos unsettled_ns = 0;
   };
 
   /// @param period_ns  T_s > 0.
