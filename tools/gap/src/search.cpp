@@ -160,7 +160,8 @@ Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candida
 void Search::ShareOnset(int min_active, Candidates* gated) const {
   CandidatePtr leader;
   for (const CandidatePtr& candidate : *gated) {
-    const bool in_time = candidate->fit.hypothesis.terms.back().when.time_s > 0.0;
+    const When::Kind kind = candidate->fit.hypothesis.terms.back().when.kind;
+    const bool in_time = kind == When::Kind::kFrom || kind == When::Kind::kUntil;
     if (in_time && (!leader || candidate->fit.score() > leader->fit.score())) leader = candidate;
   }
   if (!leader) return;
@@ -333,6 +334,7 @@ Finding Search::Run(bool pairs) const {
     SortByScore(&listed);
     for (const CandidatePtr& candidate : alone)
       if (!Better(all_pairs.front()->fit, candidate->fit) && Adequate(candidate, gap)) good.push_back(candidate);
+    SortByScore(&good);
   }
   if (good.empty() && !all_pairs.empty()) {
     for (const CandidatePtr& pair : Near(all_pairs, gap)) {

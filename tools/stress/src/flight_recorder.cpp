@@ -11,9 +11,8 @@ namespace armcmc::stress {
 namespace {
 
 constexpr const char* kColumns =
-    "  time_ms    pack  collect   adjust  execute  end_to_end    slack  witness  +own +machine +late +dropped "
-    "+truncated "
-    "+rejected  flags\n";
+    "  time_ms    pack  collect   adjust  execute  end_to_end    slack  witness  "
+    "+own +machine +late +dropped +truncated +rejected  flags\n";
 
 double Milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
