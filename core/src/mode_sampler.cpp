@@ -181,7 +181,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   while (made < target || made == pilot) {  // at most max_draws / kChunkDraws + 2 turns
     const int chunk = std::min(kChunkDraws, (made < target ? target : wanted) - made);
     const Nanos before = clock.Now();
-    const auto finish = static_cast<Nanos>(finish_ns_per_draw_ * (made + chunk));
+    const Nanos finish = finish_time_.Predict(made + chunk);
     if (made > pilot && before + worst_chunk_ns + finish > deadline_ns) break;
     DrawAndScore(proposal, previous, data, made, chunk, stream, ws, out);
     made += chunk;
@@ -254,11 +254,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   transition_.Accept(*next, mismatch.decision);
   out->known = next->informed;
   out->updated = true;
-  const double spent = static_cast<double>(clock.Now() - finish_start) / made;
-  // A stall of the machine in here says nothing about the next pack: it may double the prediction at most, while work
-  // that has become slower for good is followed within a few packs.
-  const double believed = finish_ns_per_draw_ > 0.0 ? std::fmin(spent, 2.0 * finish_ns_per_draw_) : spent;
-  finish_ns_per_draw_ = std::fmax(0.9 * finish_ns_per_draw_, believed);
+  finish_time_.Add(clock.Now() - finish_start, made);
   return out->truncated ? Status::kTruncated : Status::kOk;
 }
 

@@ -16,6 +16,7 @@ constexpr double kPilotEssShare = 0.24;    // of a round's draws, when there are
 constexpr double kLaplaceInflation = 1.2;  // standard deviations of the Laplace components
 constexpr double kInitialShare = 0.10;     // of P_0 in the data-driven part of q
 constexpr double kLaplaceShare = 0.15;     // of the Laplace fits there, once the pilot's fit exists
+constexpr int kDrawsPerAnchor = 16;        // of a round: finer steps than its draws can tell apart only cost time
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
 constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
 
@@ -81,22 +82,22 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
 }
 
 bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory& previous, bool use_previous,
-                                     double lambda_q, SamplerWorkspace* ws, Proposal* proposal) noexcept {
+                                     double lambda_q, int anchors, SamplerWorkspace* ws, Proposal* proposal) noexcept {
   const int dim = space_.dim;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
   // With one coordinate drawn anew the others hold the posterior together: the ridge is that of everything anew.
   const bool partial = use_previous && transition_.Offers(previous);
   const bool follow_previous = use_previous && !partial;
   const Gaussian prior = follow_previous ? Gaussian{previous.mean, Evaluate(previous.covariance.inverse())} : initial;
-  const int anchors = FollowRidge(kernels_, model_, data, noise_, space_, prior,
-                                  follow_previous ? fit_persisted_ : fit_fresh_, &ws->laplace, &anchors_);
-  if (anchors == 0) return false;
+  const int found = FollowRidge(kernels_, model_, data, noise_, space_, prior,
+                                follow_previous ? fit_persisted_ : fit_fresh_, anchors, &ws->laplace, &anchors_);
+  if (found == 0) return false;
   proposal->Clear();
   if (use_previous)
     for (int b = 0; b < previous.num_blocks; ++b)
       proposal->Add(&previous.block[static_cast<std::size_t>(b)],
                     0.5 * lambda_q * previous.weight[static_cast<std::size_t>(b)] + 1e-3);
-  for (int k = 0; k < anchors; ++k) {
+  for (int k = 0; k < found; ++k) {
     const auto i = static_cast<std::size_t>(k);
     SetElliptic(anchors_[i].mean, anchors_[i].covariance, kLaplaceInflation, &normal_table_, &ridge_blocks_[i]);
     proposal->Add(&ridge_blocks_[i], anchors_[i].share);
@@ -185,9 +186,8 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
       const Nanos now = time.clock.Now();
       worst_round_ns = std::max(worst_round_ns, now - before);
       before = now;
-      const double ahead =
-          finish_ns_per_draw_ * after_round + static_cast<double>(worst_round_ns) * (after_round - made) / size;
-      *in_haste = now + static_cast<Nanos>(ahead) > time.deadline_ns;
+      const Nanos ahead = finish_time_.Predict(after_round) + worst_round_ns * (after_round - made) / size;
+      *in_haste = now + ahead > time.deadline_ns;
       if (*in_haste) break;
     }
     DrawAndScore(*proposal, previous, data, made, size, stream, ws, out);
@@ -201,7 +201,8 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
     }
     if (on_ridge && (round > 1 || ess >= kMinimumEss)) continue;  // thin, but right: more of the same
     pooled = made;
-    on_ridge = round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, ws, proposal);
+    on_ridge =
+        round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, size / kDrawsPerAnchor, ws, proposal);
     if (!on_ridge) BuildProposal(previous, lambda_q, use_previous, blocks, proposal);
   }
   if (!on_ridge) {

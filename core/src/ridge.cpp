@@ -6,6 +6,7 @@
 namespace armcmc {
 namespace {
 
+constexpr int kFewestAnchors = 6;
 constexpr double kRidgeReach = 4.5;   // standard deviations of the worst known coordinate
 constexpr double kPinned = 1e12;      // precision that holds a coordinate
 constexpr double kEvenShare = 0.2;    // of the proposal, spread evenly over the anchors that matter
@@ -57,8 +58,8 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
 }  // namespace
 
 int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-                const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, LaplaceScratch* scratch,
-                std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept {
+                const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, int count,
+                LaplaceScratch* scratch, std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept {
   const ParamMatrix covariance = Evaluate(fit.precision.inverse());
   const int j = WorstKnown(space, covariance);
   const auto ij = static_cast<std::size_t>(j);
@@ -66,17 +67,21 @@ int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, c
   const double from = std::fmax(space.lower[ij], fit.mean[j] - kRidgeReach * sd);
   const double to = std::fmin(space.upper[ij], fit.mean[j] + kRidgeReach * sd);
   if (!(to > from)) return 0;
-  const double step = (to - from) / kRidgeAnchors;
-  // Outward from the mode in both directions, each fit starting from its neighbour.
-  const int middle = std::clamp(static_cast<int>((fit.mean[j] - from) / step), 0, kRidgeAnchors - 1);
+  count = std::clamp(count, kFewestAnchors, kRidgeAnchors);
+  const double step = (to - from) / count;
+  // Outward from the mode in both directions, each fit starting where its two neighbours point to.
+  const int middle = std::clamp(static_cast<int>((fit.mean[j] - from) / step), 0, count - 1);
   int written = 0;
   for (const int direction : {1, -1}) {
     ParamVector start = fit.mean;
-    for (int k = direction > 0 ? middle : middle - 1; k >= 0 && k < kRidgeAnchors; k += direction) {
+    ParamVector heading = ParamVector::Zero(space.dim);
+    const int first = direction > 0 ? middle : middle - 1;
+    for (int k = first; k >= 0 && k < count; k += direction) {
       RidgeAnchor& anchor = (*anchors)[static_cast<std::size_t>(written)];
-      if (!FitAnchor(kernels, model, data, noise, space, prior, j, from + (k + 0.5) * step, step, start, scratch,
-                     &anchor))
+      if (!FitAnchor(kernels, model, data, noise, space, prior, j, from + (k + 0.5) * step, step, start + heading,
+                     scratch, &anchor))
         break;
+      if (k != first) heading = anchor.mean - start;
       start = anchor.mean;
       ++written;
     }

@@ -96,9 +96,12 @@ void WarnWhenDegraded(const rt::Pipeline& pipeline) {
   for (std::size_t i = 0; i < names.size(); ++i) std::cerr << (i == 0 ? "" : ", ") << names[i];
   std::cerr << "); every status message says so.\n";
   const bool privileges_lack = std::any_of(names.begin(), names.end(), [](const std::string& name) {
-    return name != "shared_cpu" && name != "injected_faults";
+    return name != "shared_cpu" && name != "injected_faults" && name != "cpus_sleep";
   });
   if (privileges_lack) std::cerr << rt::PrivilegeRemedy() << '\n';
+  if ((pipeline.degraded_flags() & estimator_status_t::DEGRADED_CPUS_SLEEP) != 0) {
+    std::cerr << rt::CpuWakeRemedy() << '\n';
+  }
 }
 
 /// Prints events until the pipeline stops by itself or a signal of the set asks it to.

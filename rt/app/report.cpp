@@ -86,6 +86,7 @@ Json RtState(const Pipeline& p) {
           {"priorities", priorities},
           {"cpus", cpus},
           {"mlockall", p.memory_locked()},
+          {"cpus_kept_awake", p.cpus_kept_awake()},
           {"degraded", DegradedNames(p.degraded_flags())}};
 }
 

@@ -39,6 +39,10 @@ void ReadRt(StrictTable table, rt::RtSettings* settings) {
   const std::string mode = table.Choice("mode", "best_effort", {"best_effort", "enforce"});
   settings->mode = mode == "enforce" ? rt::RtMode::kEnforce : rt::RtMode::kBestEffort;
   settings->lock_memory = table.Boolean("lock_memory", settings->lock_memory);
+  const std::string idle = table.Choice("cpu_idle", "auto", {"auto", "awake", "sleep"});
+  settings->cpu_idle = idle == "awake"   ? rt::CpuIdle::kAwake
+                       : idle == "sleep" ? rt::CpuIdle::kSleep
+                                         : rt::CpuIdle::kAuto;
   ReadThread(table.Table("collect"), &settings->collect);
   ReadThread(table.Table("adjust"), &settings->adjust);
   ReadThread(table.Table("execute"), &settings->execute);

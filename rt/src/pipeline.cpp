@@ -1,6 +1,8 @@
 #include "armcmc/rt/pipeline.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/rt/clock.hpp"
@@ -17,6 +19,7 @@ std::vector<std::string> DegradedNames(std::int32_t flags) {
   if ((flags & estimator_status_t::DEGRADED_SHARED_CPU) != 0) names.emplace_back("shared_cpu");
   if ((flags & estimator_status_t::DEGRADED_NO_WITNESS) != 0) names.emplace_back("no_witness");
   if ((flags & estimator_status_t::DEGRADED_INJECTED) != 0) names.emplace_back("injected_faults");
+  if ((flags & estimator_status_t::DEGRADED_CPUS_SLEEP) != 0) names.emplace_back("cpus_sleep");
   return names;
 }
 
@@ -98,12 +101,23 @@ void Pipeline::Start() {
   Place();
   memory_locked_ = SetUpProcessMemory(settings_);
   if (!memory_locked_) degraded_flags_ |= estimator_status_t::DEGRADED_NO_MLOCK;
+  if (settings_.KeepsCpusAwake()) KeepCpusAwake();
   try {
     StartThreads();
   } catch (...) {
     RequestStop();
     Join();
     throw;
+  }
+}
+
+void Pipeline::KeepCpusAwake() {
+  if (wake_request_.Hold()) return;
+  const int error = errno;
+  degraded_flags_ |= estimator_status_t::DEGRADED_CPUS_SLEEP;
+  if (settings_.mode == RtMode::kEnforce && settings_.cpu_idle == CpuIdle::kAwake) {
+    throw PrivilegeError(std::string("cannot keep the CPUs awake (") + CpuWakeRequest::kDevice + ": " +
+                         std::strerror(error) + ").\n" + CpuWakeRemedy());
   }
 }
 

@@ -22,6 +22,13 @@ std::string PrivilegeRemedy() {
          "  or start it as root. To run without them: [rt] mode = \"best_effort\".";
 }
 
+std::string CpuWakeRemedy() {
+  return "Keep them awake in one of these ways:\n"
+         "  sudo install /usr/share/armcmc/deploy/60-armcmc.rules /etc/udev/rules.d/ && sudo udevadm trigger\n"
+         "  (the group \"realtime\" may then ask for it), or start it as root, or put idle=poll on the kernel's line.\n"
+         "To let them sleep: [rt] cpu_idle = \"sleep\".";
+}
+
 bool SetUpProcessMemory(const RtSettings& settings) {
   // One arena: each further one reserves 64 MB that mlockall would lock.
   mallopt(M_ARENA_MAX, 1);

@@ -1,9 +1,11 @@
 #include "armcmc/rt/warm_up.hpp"
 
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "armcmc/estimate.hpp"
+#include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/latest_value.hpp"
 
 namespace armcmc::rt {
@@ -12,6 +14,7 @@ namespace {
 constexpr int kPacks = 4;
 constexpr int kSamples = 100;
 constexpr double kDt = 1e-3;
+constexpr Nanos kNoDeadline = std::numeric_limits<Nanos>::max();
 
 void FillHuntCrossley(double t, std::size_t n, DataPack* pack) noexcept {
   // Contact throughout: x in [0.7, 1.3] m. K = 4 N/m^p, B = 2.3 N s/m^(p+1), p = 1.7.
@@ -63,8 +66,9 @@ void WarmUp(StepEngine* engine) noexcept {
   for (int i = 0; i < kPacks; ++i) {
     pack = SyntheticPack(engine->plant(), engine->num_inputs(), i);
     for (int slot = 0; slot < LatestValue::kSlots; ++slot) {
-      // No clock: the draws run to their full number, so that every page of the slot is touched.
-      (void)engine->Adjust(pack, 0, ClockRef{}, slot);
+      // No deadline: the draws run to their full number, so that every page of the slot is touched. With the clock, so
+      // that the first pack already knows how long the work after its draws takes.
+      (void)engine->Adjust(pack, kNoDeadline, MonotonicClock(), slot);
       engine->Execute(slot, &estimate);
     }
   }

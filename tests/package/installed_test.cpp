@@ -67,9 +67,10 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
   for (const char* path :
        {"./usr/bin/armcmc-estimator", "./usr/bin/armcmc-plant", "./usr/bin/armcmc-stress", "./usr/bin/armcmc-rtcheck",
         "./usr/share/man/man1/armcmc-estimator.1", "./usr/lib/systemd/system/armcmc-estimator.service",
-        "./usr/lib/sysctl.d/60-armcmc.conf", "./usr/share/armcmc/config/hunt_crossley.toml",
-        "./usr/share/armcmc/scenarios/hunt_crossley_paper.toml", "./usr/share/armcmc/lcm_types/armcmc_data_pack_t.lcm",
-        "./usr/share/doc/armcmc/tuning.md", "./usr/include/armcmc/estimator.hpp"}) {
+        "./usr/lib/sysctl.d/60-armcmc.conf", "./usr/share/armcmc/deploy/60-armcmc.rules",
+        "./usr/share/armcmc/config/hunt_crossley.toml", "./usr/share/armcmc/scenarios/hunt_crossley_paper.toml",
+        "./usr/share/armcmc/lcm_types/armcmc_data_pack_t.lcm", "./usr/share/doc/armcmc/tuning.md",
+        "./usr/include/armcmc/estimator.hpp"}) {
     EXPECT_NE(contents.out.find(path), std::string::npos) << path << " is missing in\n" << contents.out;
   }
   EXPECT_NE(Shell("dpkg-deb -f " + deb + " Depends").out.find("liblcm1"), std::string::npos);

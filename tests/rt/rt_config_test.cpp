@@ -44,7 +44,7 @@ TEST(ReadRtSettings, DerivesDeadlineAndBudgetFromThePeriod) {
 TEST(ReadRtSettings, ReadsEveryKey) {
   const rt::RtSettings s = Read(
       "[timing]\nperiod_ms = 1\ndeadline_ms = 2.5\nadjust_budget_ms = 0.75\n"
-      "[rt]\nmode = \"enforce\"\nlock_memory = false\n"
+      "[rt]\nmode = \"enforce\"\nlock_memory = false\ncpu_idle = \"sleep\"\n"
       "[rt.collect]\npriority = 61\ncpu = 2\n[rt.adjust]\npriority = 62\ncpu = 3\n[rt.execute]\npriority = 63\ncpu = "
       "4\n"
       "[rt.publish]\npriority = 20\ncpu = 5\n[rt.witness]\npriority = 64\n"
@@ -54,6 +54,9 @@ TEST(ReadRtSettings, ReadsEveryKey) {
   EXPECT_EQ(s.adjust_budget_ns, 750'000);
   EXPECT_EQ(s.mode, rt::RtMode::kEnforce);
   EXPECT_FALSE(s.lock_memory);
+  EXPECT_EQ(s.cpu_idle, rt::CpuIdle::kSleep);
+  EXPECT_EQ(Read("[rt]\ncpu_idle = \"awake\"\n").cpu_idle, rt::CpuIdle::kAwake);
+  EXPECT_EQ(Read("").cpu_idle, rt::CpuIdle::kAuto);
   EXPECT_EQ(s.collect.priority, 61);
   EXPECT_EQ(s.adjust.cpu, 3);
   EXPECT_EQ(s.execute.priority, 63);

@@ -41,7 +41,7 @@ if(TARGET armcmc-estimator)
   install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/armcmc-estimator.service" DESTINATION lib/systemd/system)
   install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/60-armcmc.conf" DESTINATION lib/sysctl.d)
   install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/armcmc.limits.conf" "${PROJECT_SOURCE_DIR}/rt/deploy/armcmc.default"
-    "${PROJECT_SOURCE_DIR}/rt/deploy/10-housekeeping.conf"
+    "${PROJECT_SOURCE_DIR}/rt/deploy/10-housekeeping.conf" "${PROJECT_SOURCE_DIR}/rt/deploy/60-armcmc.rules"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/armcmc/deploy")
   install(FILES "${PROJECT_SOURCE_DIR}/rt/deploy/tuning.md" "${PROJECT_SOURCE_DIR}/rt/deploy/misses.md"
     "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
+#include "armcmc/finish_time.hpp"
 #include "armcmc/forgetting.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/marginal_table.hpp"
@@ -130,9 +131,9 @@ class ModeSampler {
   int RunPilot(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda, double lambda_q,
                int wanted, const DrawTime& time, const RandomStream& stream, SamplerWorkspace* ws, Proposal* proposal,
                ModeDraws* out, bool* in_haste) noexcept ARMCMC_NONBLOCKING;
-  /// Proposal along the ridge of this pack. @return false when there is none.
+  /// Proposal along the ridge of this pack, with about so many anchors. @return false when there is none.
   bool BuildRidgeProposal(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda_q,
-                          SamplerWorkspace* ws, Proposal* proposal) noexcept ARMCMC_NONBLOCKING;
+                          int anchors, SamplerWorkspace* ws, Proposal* proposal) noexcept ARMCMC_NONBLOCKING;
   /// Mode of the target: the best draw, climbed to the top after a modification (when AR-MAP reports it) whose prior
   /// is P_0 alone.
   void FindMode(const ModeData& data, bool climb, SamplerWorkspace* ws,
@@ -168,8 +169,8 @@ class ModeSampler {
   Gaussian fit_fresh_, fit_persisted_;
   std::array<RidgeAnchor, kRidgeAnchors> anchors_;
   std::array<DensityBlock, kRidgeAnchors> ridge_blocks_;
-  double memory_inside_ = 1.0;       ///< Share of the memory's mass inside the bounds.
-  double finish_ns_per_draw_ = 0.0;  ///< Measured time of everything after the last draw; steers the deadline only.
+  double memory_inside_ = 1.0;  ///< Share of the memory's mass inside the bounds.
+  FinishTime finish_time_;      ///< Steers the deadline only.
 };
 
 }  // namespace armcmc

@@ -26,10 +26,11 @@ inline constexpr int kRidgeAnchors = 20;
 /// at every step the others are fitted given it. Mass at a step: the conditional maximum times the root of the
 /// conditional covariance's determinant. Each anchor's Gaussian has the step as its standard deviation along the ridge
 /// and the conditional covariance across it.
+/// @param count  Steps over the whole reach, raised to 6 and cut to kRidgeAnchors.
 /// @return Number of anchors written, 0 when the fits failed.
-/// @rt No heap, no lock, no throw. At most kRidgeAnchors Laplace fits.
+/// @rt No heap, no lock, no throw. At most `count` Laplace fits.
 int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-                const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, LaplaceScratch* scratch,
-                std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept ARMCMC_NONBLOCKING;
+                const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, int count,
+                LaplaceScratch* scratch, std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

@@ -41,7 +41,7 @@ class RtCheck : public ::testing::Test {
   std::vector<Finding> All() const {
     const SystemRoot root(dir_.path());
     std::vector<Finding> all = CheckProcess(root);
-    for (const auto& part : {CheckCpu(root, Demand{}), CheckSystem(root)})
+    for (const auto& part : {CheckCpu(root, demand_), CheckSystem(root)})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }
@@ -60,6 +60,7 @@ class RtCheck : public ::testing::Test {
   }
 
   test::ScratchDir dir_;
+  Demand demand_;
 };
 
 TEST_F(RtCheck, AWellSetUpComputerHasNothingToMend) {
@@ -109,6 +110,10 @@ TEST_F(RtCheck, FindsWhatAProcessorShares) {
   Expect("idle_states", Level::kAdvice);
   Put(cpu + "cpu1/cpuidle/state3/disable", "1\n");
   Expect("idle_states", Level::kOk);
+  demand_.period_ms = 1.0;
+  Expect("cpu_idle", Level::kAdvice);
+  Put("dev/cpu_dma_latency", "");
+  Expect("cpu_idle", Level::kOk);
   Put(cpu + "cpu1/topology/thread_siblings_list", "1,3\n");
   Expect("smt", Level::kAdvice);
   Put(cpu + "online", "0\n");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "armcmc/rt/settings.hpp"
 #include "armcmc/rtcheck/findings.hpp"
 
 namespace armcmc::rtcheck {
@@ -66,6 +67,16 @@ Finding IdleStates(const SystemRoot& root, const Demand& demand) {
           "sudo cpupower idle-set -D 10   # or processor.max_cstate=1 intel_idle.max_cstate=1 on the kernel's line"};
 }
 
+Finding WakeRequest(const SystemRoot& root, const Demand& demand) {
+  constexpr double kAwakeBelowMs = static_cast<double>(rt::RtSettings::kAwakeBelowNs) * 1e-6;
+  if (demand.period_ms >= kAwakeBelowMs) return {"cpu_idle", Level::kOk, "idle CPUs may sleep at this period", "", ""};
+  if (root.MayWrite("dev/cpu_dma_latency"))
+    return {"cpu_idle", Level::kOk, "the estimator may keep idle CPUs awake", "", ""};
+  return {"cpu_idle", Level::kAdvice, "nobody here may keep idle CPUs awake",
+          "0.05 to 0.1 ms at each of three wake-ups a step",
+          "sudo install /usr/share/armcmc/deploy/60-armcmc.rules /etc/udev/rules.d/ && sudo udevadm trigger"};
+}
+
 Finding Siblings(const SystemRoot& root, int cpu) {
   auto siblings = ParseCpuList(root.Text(CpuFolder(cpu) + "topology/thread_siblings_list").value_or(""));
   siblings.erase(cpu);
@@ -86,6 +97,7 @@ std::vector<Finding> CheckCpu(const SystemRoot& root, const Demand& demand) {
           Interrupts(root, demand.cpu),
           Governor(root, demand.cpu),
           IdleStates(root, demand),
+          WakeRequest(root, demand),
           Siblings(root, demand.cpu)};
 }
 

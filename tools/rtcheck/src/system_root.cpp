@@ -1,5 +1,7 @@
 #include "armcmc/rtcheck/system_root.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -34,6 +36,8 @@ std::optional<std::string> SystemRoot::Line(const std::string& path, std::string
   }
   return std::nullopt;
 }
+
+bool SystemRoot::MayWrite(const std::string& path) const { return access((root_ / path).c_str(), W_OK) == 0; }
 
 std::set<int> ParseCpuList(std::string_view text) {
   std::set<int> cpus;

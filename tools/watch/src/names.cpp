@@ -46,12 +46,13 @@ std::string DecisionName(int decision) {
 
 std::vector<std::string> DegradedWords(int flags) {
   using S = estimator_status_t;
-  return Words<6>(flags, {{{S::DEGRADED_NO_FIFO, "no real-time scheduling (SCHED_FIFO)"},
+  return Words<7>(flags, {{{S::DEGRADED_NO_FIFO, "no real-time scheduling (SCHED_FIFO)"},
                            {S::DEGRADED_NO_AFFINITY, "threads not pinned to CPUs"},
                            {S::DEGRADED_NO_MLOCK, "memory not locked"},
                            {S::DEGRADED_SHARED_CPU, "stages share one CPU"},
                            {S::DEGRADED_NO_WITNESS, "no witness"},
-                           {S::DEGRADED_INJECTED, "faults on purpose"}}});
+                           {S::DEGRADED_INJECTED, "faults on purpose"},
+                           {S::DEGRADED_CPUS_SLEEP, "CPUs sleep when idle"}}});
 }
 
 std::vector<std::string> FaultWords(int flags) {

@@ -12,6 +12,7 @@
 #include "armcmc/rt/adjust_stage.hpp"
 #include "armcmc/rt/collect_stage.hpp"
 #include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/cpu_wake_request.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/event_log.hpp"
 #include "armcmc/rt/execute_stage.hpp"
@@ -92,6 +93,7 @@ class Pipeline {
   [[nodiscard]] const std::vector<std::unique_ptr<Witness>>& witnesses() const noexcept { return witnesses_; }
   [[nodiscard]] std::vector<ThreadPlacement> placements() const;
   [[nodiscard]] std::int32_t degraded_flags() const noexcept { return degraded_flags_; }
+  [[nodiscard]] bool cpus_kept_awake() const noexcept { return wake_request_.held(); }
   [[nodiscard]] bool memory_locked() const noexcept { return memory_locked_; }
   [[nodiscard]] bool heap_calls_counted() const noexcept { return options_.heap_probe != nullptr; }
 
@@ -99,6 +101,7 @@ class Pipeline {
   void StartThreads();
   void StartWitnesses();
   void Place();
+  void KeepCpusAwake();
   void StartThread(RtThread* thread, const char* name, const ThreadSettings& settings, RtThread::Entry entry);
 
   void WarmUpEngine() noexcept;
@@ -136,6 +139,7 @@ class Pipeline {
   RtThread collect_thread_, adjust_thread_, execute_thread_, publish_thread_;
   std::int32_t degraded_flags_ = 0;
   bool memory_locked_ = false;
+  CpuWakeRequest wake_request_;
 };
 
 /// Names of the DEGRADED_* bits that are set, for people.

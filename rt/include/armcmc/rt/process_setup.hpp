@@ -17,6 +17,9 @@ class PrivilegeError : public std::runtime_error {
 /// What to do on this machine to be granted FIFO priorities and locked memory.
 [[nodiscard]] std::string PrivilegeRemedy();
 
+/// What to do on this machine to be allowed to keep the CPUs awake; see CpuWakeRequest.
+[[nodiscard]] std::string CpuWakeRemedy();
+
 /// Keeps the heap from returning memory, from mapping new arenas, and (lock_memory) all pages in memory.
 /// Call it when everything is built and before the threads start.
 /// @return true when the memory is locked.

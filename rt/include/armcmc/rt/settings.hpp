@@ -19,6 +19,13 @@ enum class OnHang : std::uint8_t {
   kExit,     ///< End the process with an error, so that a supervisor starts a new one.
 };
 
+/// What a CPU does while it has nothing to do.
+enum class CpuIdle : std::uint8_t {
+  kAuto,   ///< kAwake when the period is shorter than RtSettings::kAwakeBelowNs, else kSleep.
+  kAwake,  ///< It waits in a loop: quick to wake up, at the price of power. See CpuWakeRequest.
+  kSleep,  ///< What the kernel likes.
+};
+
 /// Priority and CPU of one thread.
 struct ThreadSettings {
   int priority = 0;  ///< SCHED_FIFO priority in [1, 99].
@@ -30,6 +37,8 @@ struct RtSettings {
   static constexpr Nanos kMinPeriodNs = 1'000'000;
   static constexpr Nanos kMaxPeriodNs = 10'000'000'000;
   static constexpr int kMaxDeadlinePeriods = 10;
+  /// Three wake-ups of 0.05 to 0.1 ms each are nothing in 10 ms, and a third of 1 ms.
+  static constexpr Nanos kAwakeBelowNs = 10'000'000;
 
   Nanos period_ns = 100'000'000;        ///< T_s, time between packs, in [1 ms, 10 s].
   Nanos deadline_ns = 100'000'000;      ///< From the release of a step to the end of execute, in (0, 10 T_s].
@@ -37,6 +46,7 @@ struct RtSettings {
 
   RtMode mode = RtMode::kBestEffort;
   bool lock_memory = true;  ///< mlockall(): a page fault is an unbounded delay.
+  CpuIdle cpu_idle = CpuIdle::kAuto;
   ThreadSettings collect{80, 0};
   ThreadSettings adjust{70, 1};
   ThreadSettings execute{75, 0};
@@ -49,6 +59,11 @@ struct RtSettings {
 
   /// Time that adjust leaves to execute when a pack came late: a fifth of the deadline, or what is left of it.
   [[nodiscard]] Nanos ExecuteReserveNs() const noexcept;
+
+  /// Whether the CPUs are to be kept awake.
+  [[nodiscard]] bool KeepsCpusAwake() const noexcept {
+    return cpu_idle == CpuIdle::kAwake || (cpu_idle == CpuIdle::kAuto && period_ns < kAwakeBelowNs);
+  }
 
   /// @throws std::invalid_argument naming the key, its value and the allowed range.
   void Validate() const;

@@ -8,7 +8,7 @@
 
 namespace armcmc::rtcheck {
 
-/// /proc and /sys, or a tree that looks like them.
+/// /proc, /sys and /dev, or a tree that looks like them.
 class SystemRoot {
  public:
   explicit SystemRoot(std::filesystem::path root) : root_(std::move(root)) {}
@@ -19,6 +19,8 @@ class SystemRoot {
   [[nodiscard]] std::optional<long> Number(const std::string& path) const;
   /// The line of a file that begins so, without that begin and without leading blanks.
   [[nodiscard]] std::optional<std::string> Line(const std::string& path, std::string_view begin) const;
+  /// true when the file is there and this process may write it.
+  [[nodiscard]] bool MayWrite(const std::string& path) const;
   [[nodiscard]] const std::filesystem::path& path() const { return root_; }
 
  private:

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+/// How long a pack takes after its last draw, foretold from the packs before it.
+///
+/// Part of that time is the same for any number of draws (fits, climbing to the mode), part grows with it. So fewer
+/// draws than the most that were timed are held to take as long as those did, more of them in proportion. A pack that
+/// was cut short does not make the next full one look longer than it is, or one cut would bring on another.
+class FinishTime {
+ public:
+  /// @param draws  > 0. @return ns; 0 before the first pack.
+  [[nodiscard]] Nanos Predict(int draws) const noexcept ARMCMC_NONBLOCKING {
+    if (draws <= draws_) return ns_;
+    return draws_ > 0 ? ns_ * draws / draws_ : 0;
+  }
+
+  /// A stall of the machine in here says nothing about the next pack: it may double the prediction at most, while work
+  /// that has become slower for good is followed within a few packs.
+  void Add(Nanos spent_ns, int draws) noexcept ARMCMC_NONBLOCKING {
+    const Nanos predicted_ns = Predict(draws);
+    const Nanos believed_ns = predicted_ns > 0 ? std::min(spent_ns, 2 * predicted_ns) : spent_ns;
+    ns_ = std::max(predicted_ns - predicted_ns / 10, believed_ns);
+    draws_ = std::max(draws_, draws);
+  }
+
+ private:
+  Nanos ns_ = 0;
+  int draws_ = 0;  // the most so far; they take ns_
+};
+
+}  // namespace armcmc
