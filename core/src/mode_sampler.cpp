@@ -233,6 +233,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   for (int k = pilot; k < made; ++k) out->weight[k] = weight[k] / sum;
   std::fill(out->weight + made, out->weight + padded, 0.0);
   out->kish_ess = sum * sum / square;
+  ReduceSamplingError(pilot, made, use_previous, ws, out);
   out->log_evidence = reference + std::log(sum / (made - pilot));
   out->decision = mismatch.decision;
   out->zeta = mismatch.zeta;

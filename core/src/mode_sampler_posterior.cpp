@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "armcmc/control_variates.hpp"
 #include "armcmc/density_fit.hpp"
 #include "simd/kernels.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 constexpr double kMinimumGroup = 2e-3;  // posterior probability below which a group of draws gets no block
 constexpr double kNoiseMemory = 0.1;    // standard deviation of log s that a posterior hands on at least
 constexpr double kInformedSd = 0.9;  // of the prior's: a posterior narrower than that in any parameter says something
-constexpr FitOptions kMemoryFit{.bandwidth_factor = 0.7, .tail_weight = 0.02, .tail_sd = 1.25};
+constexpr FitOptions kMemoryFit{
+    .bandwidth_factor = 0.7, .tail_weight = 0.02, .tail_sd = 1.25, .shrink_to_normal = true};
 
 }  // namespace
 
@@ -61,6 +63,16 @@ void ModeSampler::FindMode(const ModeData& data, bool climb, SamplerWorkspace* w
     if (fit.mean.allFinite()) best = fit.mean;
   }
   for (int d = 0; d < space_.dim; ++d) out->mode_u[static_cast<std::size_t>(d)] = best[d];
+}
+
+void ModeSampler::ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
+                                      ModeDraws* out) const noexcept {
+  const auto offset = static_cast<std::size_t>(first);
+  ProposalDraws draws{.size = last - first, .u = {}, .proposal = &ws->proposal[offset], .weight = out->weight + first};
+  for (int d = 0; d < space_.dim; ++d)
+    draws.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
+  (void)ReduceVariance(kernels_, use_previous ? fit_persisted_ : fit_fresh_, &normal_table_, draws,
+                       {&ws->group_weight[offset], &ws->first_share[offset]});  // both free until Compress
 }
 
 void ModeSampler::RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept {

@@ -167,10 +167,10 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
     Reported(info, constants, space, draws, r, value);
     for (int j = 0; j < visited; ++j) visited_value[j] = value[workspace->visited[static_cast<std::size_t>(j)]];
     const MeanAndSd weighted = Moments(workspace->kernels, value, draws.weight, draws.draws, 1.0);
-    m.is_mean = weighted.mean;
+    m.ar_ap = weighted.mean;
     m.is_sd = weighted.sd;
     const MeanAndSd chain = Moments(workspace->kernels, visited_value, visits, visited, total);
-    m.ar_ap = chain.mean;
+    m.chain_mean = chain.mean;
     m.sd = chain.sd;
     m.ar_map =
         draws.point_is_mode || draws.decision == Decision::kModification ? mode[static_cast<std::size_t>(r)] : m.ar_ap;

@@ -374,5 +374,39 @@ TEST(FitBends, FindsTheInteractionsOfCoordinatesStraightenedOneAfterTheOther) {
   EXPECT_NEAR(block.cross[3], 0.6, 0.02);
 }
 
+/// Largest difference between a marginal's density and the normal one, within three standard deviations.
+double Roughness(const Sample& sample, std::size_t i) {
+  double worst = 0.0;
+  for (double x = -3.0; x <= 3.0; x += 0.05) {
+    double density = sample.block.marginal[i]->Density((x - sample.block.center[i]) / sample.block.scale[i]);
+    density /= sample.block.scale[i];
+    worst = std::max(worst, std::fabs(density - std::exp(-0.5 * x * x) / std::sqrt(2.0 * M_PI)));
+  }
+  return worst;
+}
+
+TEST(FitBlock, RoughnessThatIsChanceIsNotHandedOn) {
+  const auto bell = [](std::mt19937_64& g, double* u) { u[0] = std::normal_distribution<double>()(g); };
+  double plain = 0.0, shrunk = 0.0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Sample sample(1, 6000, bell, seed);
+    sample.Fit({.bandwidth_factor = 0.7, .tail_weight = 0.0});
+    plain += Roughness(sample, 0) / 20.0;
+    sample.Fit({.bandwidth_factor = 0.7, .tail_weight = 0.0, .shrink_to_normal = true});
+    shrunk += Roughness(sample, 0) / 20.0;
+  }
+  EXPECT_LT(shrunk, 0.6 * plain);
+}
+
+TEST(FitBlock, AShapeBeyondChanceIsHandedOn) {
+  const auto skewed = [](std::mt19937_64& g, double* u) { u[0] = std::gamma_distribution<double>(6.0)(g); };
+  Sample sample(1, 6000, skewed);
+  sample.Fit({.bandwidth_factor = 0.7, .tail_weight = 0.0});
+  const double plain = Roughness(sample, 0);
+  sample.Fit({.bandwidth_factor = 0.7, .tail_weight = 0.0, .shrink_to_normal = true});
+  EXPECT_GT(plain, 0.05) << "a gamma law is not normal";
+  EXPECT_NEAR(Roughness(sample, 0), plain, 0.02 * plain);
+}
+
 }  // namespace
 }  // namespace armcmc

@@ -156,7 +156,7 @@ inline void ExpectUsable(const ModeEstimate& mode, const EstimatorSettings& sett
     EXPECT_LE(m.q50, m.q75);
     EXPECT_LE(m.q75, m.q975);
     EXPECT_LE(m.q975, settings.parameters[d].upper);
-    for (const double v : {m.ar_map, m.ar_ap, m.is_mean}) {
+    for (const double v : {m.ar_map, m.ar_ap, m.chain_mean}) {
       EXPECT_GE(v, settings.parameters[d].lower);
       EXPECT_LE(v, settings.parameters[d].upper);
     }

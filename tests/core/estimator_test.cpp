@@ -42,7 +42,7 @@ TEST(Estimator, LearnsTheTruthFromOneContact) {
     const MarginalSummary& m = rig.estimate().modes[0].marginal[d];
     EXPECT_NEAR(m.ar_ap, truth[d], 4.0 * m.sd) << d;
     EXPECT_LT(m.sd, 0.1) << d << ": forty packs narrow a prior of sd 2";
-    EXPECT_NEAR(m.is_mean, m.ar_ap, 0.3 * m.sd) << d << ": the weights and the chain see the same posterior";
+    EXPECT_NEAR(m.chain_mean, m.ar_ap, 0.3 * m.sd) << d << ": the weights and the chain see the same posterior";
   }
   EXPECT_EQ(rig.estimate().modes[0].decision, Decision::kReinforcement);
   EXPECT_EQ(rig.estimate().modes[0].marginal[0].ar_map, rig.estimate().modes[0].marginal[0].ar_ap);

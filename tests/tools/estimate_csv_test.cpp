@@ -53,9 +53,9 @@ TEST(EstimateCsv, HasTheColumnsOfTheInterface) {
   EstimateCsv(estimator, &out);
   EXPECT_EQ(out.str(),
             "pack,t,mode,"
-            "K,K_ap,K_sd,K_q025,K_q25,K_q50,K_q75,K_q975,K_is_mean,"
-            "B,B_ap,B_sd,B_q025,B_q25,B_q50,B_q75,B_q975,B_is_mean,"
-            "p,p_ap,p_sd,p_q025,p_q25,p_q50,p_q75,p_q975,p_is_mean,"
+            "K,K_ap,K_sd,K_q025,K_q25,K_q50,K_q75,K_q975,K_chain_mean,"
+            "B,B_ap,B_sd,B_q025,B_q25,B_q50,B_q75,B_q975,B_chain_mean,"
+            "p,p_ap,p_sd,p_q025,p_q25,p_q50,p_q75,p_q975,p_chain_mean,"
             "lambda,zeta,decision,draws,k_min,ess,kish_ess,acceptance,log_evidence,p_changed,noise_std,"
             "y_pred,y_lo,y_hi,y_free_run,y_rmse\n");
 }

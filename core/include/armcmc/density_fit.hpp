@@ -40,6 +40,7 @@ struct FitOptions {
   double tail_weight = 0.05;      ///< Share of a normal law mixed into every marginal, so that no tail is empty.
   double tail_sd = 1.25;          ///< Its standard deviation.
   double inflation = 1.0;         ///< Of every standard deviation, for use as a proposal.
+  bool shrink_to_normal = false;  ///< Marginals keep of their shape what is beyond sampling error.
 };
 
 /// Fits a block to weighted draws. The straightened coordinates get exactly the mean and standard deviation of the

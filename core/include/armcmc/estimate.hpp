@@ -18,11 +18,12 @@ enum class Decision : std::uint8_t { kHold = 0, kReinforcement = 1, kModificatio
 /// One marginal of the posterior, in the unit of the quantity.
 struct MarginalSummary {
   double ar_map = 0.0;  ///< Mode of the draws after a modification, mean after a reinforcement.
-  double ar_ap = 0.0;   ///< Mean of the draws.
+  /// Posterior mean: of the draws, each with its importance weight, sampling error reduced by control variates.
+  double ar_ap = 0.0;
   double sd = 0.0;
   double q025 = 0.0, q25 = 0.0, q50 = 0.0, q75 = 0.0, q975 = 0.0;
-  double is_mean = 0.0;  ///< Importance-sampling mean and sd from the same weights.
-  double is_sd = 0.0;
+  double chain_mean = 0.0;  ///< Of the chain itself, in which a draw counts as often as it was visited by chance.
+  double is_sd = 0.0;       ///< Standard deviation by the weights; `sd` and the quantiles are the chain's.
   double histogram_lo = 0.0, histogram_hi = 0.0;
   std::array<double, kHistogramBins> density{};  ///< Integrates to 1 over [lo, hi].
 };

@@ -138,6 +138,9 @@ class ModeSampler {
   /// is P_0 alone.
   void FindMode(const ModeData& data, bool climb, SamplerWorkspace* ws,
                 ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
+  /// Control variates on the weights [first, last) of the result; the chain keeps its own.
+  void ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
+                           ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   void Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
                 SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;

@@ -111,7 +111,7 @@ TEST(FlowEstimator, AChamberAtRestDoesNotLookLikeAnotherValve) {
 
 /// A method after all packs, told the noise in the unit of what it regresses.
 std::unique_ptr<Rig> AfterMeasured(const ValveSeries& series, Method method, bool pressure_rate, int pf_updates = 1) {
-  EstimatorSettings settings = Quick(BuiltinSettings("soft_actuator_excited"));
+  EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
   settings.method = method;
   settings.pressure_rate = pressure_rate;
   settings.forgetting.threshold = 1e9;  // nothing changes: all data count

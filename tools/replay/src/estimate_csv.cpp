@@ -8,11 +8,11 @@
 namespace armcmc::replay {
 namespace {
 
-constexpr std::array<const char*, 9> kMarginalColumns = {"",     "_ap",  "_sd",   "_q025",   "_q25",
-                                                         "_q50", "_q75", "_q975", "_is_mean"};
+constexpr std::array<const char*, 9> kMarginalColumns = {"",     "_ap",  "_sd",   "_q025",      "_q25",
+                                                         "_q50", "_q75", "_q975", "_chain_mean"};
 
 std::array<double, 9> MarginalValues(const MarginalSummary& m) {
-  return {m.ar_map, m.ar_ap, m.sd, m.q025, m.q25, m.q50, m.q75, m.q975, m.is_mean};
+  return {m.ar_map, m.ar_ap, m.sd, m.q025, m.q25, m.q50, m.q75, m.q975, m.chain_mean};
 }
 
 constexpr std::string_view kStepColumns =

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+
+#include "armcmc/laplace.hpp"
+#include "armcmc/marginal_table.hpp"
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+namespace simd {
+struct Kernels;
+}
+
+/// Draws from a proposal q with importance weights w. Rows padded to whole vectors (8), as the kernels read them.
+struct ProposalDraws {
+  int size = 0;
+  std::array<const double*, kMaxParams> u{};
+  const double* proposal = nullptr;  ///< q(u).
+  double* weight = nullptr;          ///< Sum 1, >= 0.
+};
+
+/// Takes out of importance weights what is known to be chance, by control variates.
+///
+/// With G, a Gaussian close to the target, and g = G / q, the means under q of
+///
+///   h_0 = g - 1,   h_d = g (u_d - m_d) / s_d         (m, s: mean and standard deviations of G)
+///
+/// are exactly zero; their averages over the draws are sampling error. The weights become
+///
+///   w_k (1 - lambda' h(u_k)),   lambda = (sum h h')^-1 sum h
+///
+/// the regression estimator: with w = c g, which is a Gaussian target, every mean of a linear function is then exact,
+/// and for others the error shrinks by the root of 1 - R^2 of w f on h. Consistent for any G; where G is no guide to
+/// the target, lambda is near zero. Source: Owen and Zhou, Safe and effective importance sampling, JASA 95 (2000);
+/// Deville and Saerndal, Calibration estimators in survey sampling, JASA 87 (1992).
+/// @param table    Law of G's coordinates, symmetric about 0.
+/// @param scratch  2 x size, padded like the draws.
+/// @return false, with the weights as they were, where g has less than a quarter of its effective draws: its
+/// correction would be noise itself.
+/// @rt No heap, no lock, no throw. O(size dim^2).
+bool ReduceVariance(const simd::Kernels& kernels, const Gaussian& guide, const MarginalTable* table,
+                    const ProposalDraws& draws, const std::array<double*, 2>& scratch) noexcept ARMCMC_NONBLOCKING;
+
+}  // namespace armcmc
