@@ -27,9 +27,10 @@ struct SummaryWorkspace {
 
 /// Mean, sd, quantiles, histogram of every reported quantity, point estimates and chain diagnostics.
 ///
-/// AR-AP is the mean over the chain after burn-in (its second half), AR-MAP the mode after a modification and the mean
-/// after a reinforcement. Quantiles come from a histogram of kQuantileBins bins over the range of the draws, linear
-/// within a bin.
+/// AR-AP is the mean of the draws by their importance weights, the expectation of the chain's mean with less chance in
+/// it; AR-MAP the mode after a modification and the mean after a reinforcement. Standard deviation and quantiles are
+/// those of the chain after burn-in (its second half). Quantiles come from a histogram of kQuantileBins bins over the
+/// range of the draws, linear within a bin.
 /// @pre draws.updated.
 /// @rt No heap, no lock, no throw. O(draws).
 void Summarise(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
