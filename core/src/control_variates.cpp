@@ -53,8 +53,10 @@ bool ReduceVariance(const simd::Kernels& kernels, const Gaussian& guide, const M
   if (draws.size < kLeastDrawsPerControl * (dim + 1)) return false;
   const ParamMatrix covariance = Evaluate(guide.precision.inverse());
   ParamVector sd(dim);
-  for (int d = 0; d < dim; ++d) sd[d] = std::sqrt(covariance(d, d));
-  if (!sd.allFinite() || !(sd.minCoeff() > 0.0)) return false;
+  for (int d = 0; d < dim; ++d) {
+    if (!(covariance(d, d) > 0.0) || !std::isfinite(covariance(d, d))) return false;
+    sd[d] = std::sqrt(covariance(d, d));
+  }
   DensityBlock block;
   SetElliptic(guide.mean, covariance, 1.0, table, &block);
 
