@@ -54,7 +54,7 @@ class Sample {
 };
 
 double Bell(double a, double b) { return std::exp(-0.5 * (a * a + b * b)); }
-/// Skewed in the first coordinate: its mean is 0.2 skew-normal units off.
+/// Skew-normal of shape 1.5 in the first coordinate, which no Gaussian guide matches.
 double Skewed(double a, double b) { return Bell(a, b) * 0.5 * std::erfc(-1.5 * a / std::sqrt(2.0)); }
 
 Gaussian Guide(double a, double b, double precision = 1.0) {

@@ -28,7 +28,7 @@ inline constexpr int kRidgeAnchors = 20;
 /// and the conditional covariance across it.
 /// @param count  Steps over the whole reach, raised to 6 and cut to kRidgeAnchors.
 /// @return Number of anchors written, 0 when the fits failed.
-/// @rt No heap, no lock, no throw. At most `count` Laplace fits.
+/// @rt No heap, no lock, no throw. At most kRidgeAnchors Laplace fits.
 int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                 const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, int count,
                 LaplaceScratch* scratch, std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept ARMCMC_NONBLOCKING;
