@@ -50,8 +50,8 @@ bool AdjustStage::Step() noexcept {
   DropUnkeepable();
   PackSlot* slot = ring_->Front();
   if (slot == nullptr) return false;
-  const Nanos start_ns = MonotonicNow();
-  if (results_->latest.unread() && start_ns < handed_over_deadline_ns_) return false;
+  if (results_->latest.unread() && MonotonicNow() < handed_over_deadline_ns_) return false;
+  const Nanos start_ns = cpu_time_.Start();
   const int result = results_->latest.write_slot();
   StepInfo& info = results_->info[static_cast<std::size_t>(result)];
   info.seq = slot->pack.seq;
@@ -62,6 +62,7 @@ bool AdjustStage::Step() noexcept {
                                 MonotonicClock(), result);
   const Nanos end_ns = MonotonicNow();
   info.times.end_ns[IndexOf(Stage::kAdjust)] = end_ns;
+  info.times.withheld_ns[IndexOf(Stage::kAdjust)] = cpu_time_.Withheld(end_ns);
   monitor_->RecordAdjusted(&info.times);
   ring_->Pop();
   typical_.Add(end_ns - start_ns);

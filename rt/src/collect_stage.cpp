@@ -87,7 +87,7 @@ void CollectStage::NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept {
 }
 
 bool CollectStage::Step(const Datagram& datagram) noexcept {
-  const Nanos start_ns = MonotonicNow();
+  const Nanos start_ns = cpu_time_.Start();
   traffic_ = true;
   const RejectCause cause = codec_.Decode(datagram.payload);
   if (cause != RejectCause::kNone) {
@@ -141,7 +141,9 @@ bool CollectStage::Step(const Datagram& datagram) noexcept {
   slot->times.deadline_ns = point.release_ns + deadline_ns_;
   slot->times.start_ns[IndexOf(Stage::kCollect)] = start_ns;
   if (injection_ != nullptr) injection_->Disturb(Stage::kCollect, codec_.seq());
-  slot->times.end_ns[IndexOf(Stage::kCollect)] = MonotonicNow();
+  const Nanos end_ns = MonotonicNow();
+  slot->times.end_ns[IndexOf(Stage::kCollect)] = end_ns;
+  slot->times.withheld_ns[IndexOf(Stage::kCollect)] = cpu_time_.Withheld(end_ns);
   ring_->Commit();
   return true;
 }

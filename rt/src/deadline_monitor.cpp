@@ -34,25 +34,30 @@ Nanos DeadlineMonitor::HandOverStall(Stage stage, Nanos ready_ns, Nanos start_ns
   return std::max(StalledTime(stage, ready_ns, start_ns), StalledTime(giver, ready_ns, start_ns));
 }
 
-StageWork DeadlineMonitor::Work(Stage stage, Nanos ready_ns, Nanos start_ns, Nanos end_ns) const noexcept {
+StageWork DeadlineMonitor::NoWork(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept {
   const Nanos begin_ns = timeline_[IndexOf(stage)].CouldBegin(ready_ns);
   const bool slept = begin_ns == ready_ns;
-  return {ready_ns, start_ns, end_ns,
-          slept ? HandOverStall(stage, begin_ns, start_ns) : StalledTime(stage, begin_ns, start_ns),
-          StalledTime(stage, start_ns, end_ns)};
+  return {ready_ns, start_ns, start_ns,
+          slept ? HandOverStall(stage, begin_ns, start_ns) : StalledTime(stage, begin_ns, start_ns), 0};
+}
+
+StageWork DeadlineMonitor::Work(Stage stage, Nanos ready_ns, const StepTimes& times) const noexcept {
+  const Nanos start_ns = times.start_ns[IndexOf(stage)];
+  StageWork work = NoWork(stage, ready_ns, start_ns);
+  work.end_ns = times.end_ns[IndexOf(stage)];
+  // Two views of the same time, neither of which sees too much.
+  work.stall_ns = std::max(StalledTime(stage, start_ns, work.end_ns), times.withheld_ns[IndexOf(stage)]);
+  return work;
 }
 
 Earlier DeadlineMonitor::Collected(const StepTimes& times) noexcept {
-  const std::size_t collect = IndexOf(Stage::kCollect);
-  const StageWork work = Work(Stage::kCollect, times.arrival_ns, times.start_ns[collect], times.end_ns[collect]);
-  return timeline_[collect].Do(work, {times.lateness_ns, 0, times.lateness_ns});
+  return timeline_[IndexOf(Stage::kCollect)].Do(Work(Stage::kCollect, times.arrival_ns, times),
+                                                {times.lateness_ns, 0, times.lateness_ns});
 }
 
 void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING {
-  const std::size_t adjust = IndexOf(Stage::kAdjust);
-  const StageWork work =
-      Work(Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)], times->start_ns[adjust], times->end_ns[adjust]);
-  times->adjusted_earlier = timeline_[adjust].Do(work, Collected(*times));
+  const StageWork work = Work(Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)], *times);
+  times->adjusted_earlier = timeline_[IndexOf(Stage::kAdjust)].Do(work, Collected(*times));
 }
 
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {
@@ -62,17 +67,16 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
     if (duration > budget_ns_[IndexOf(stage)]) overruns_[IndexOf(stage)].Add();
   }
   end_to_end_.Add(times.EndToEnd());
-  const std::size_t execute = IndexOf(Stage::kExecute);
-  const StageWork work =
-      Work(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], times.start_ns[execute], times.end_ns[execute]);
-  const MissCause cause = Attribute(-times.Slack(), timeline_[execute].Do(work, times.adjusted_earlier));
+  const StageWork work = Work(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], times);
+  const MissCause cause =
+      Attribute(-times.Slack(), timeline_[IndexOf(Stage::kExecute)].Do(work, times.adjusted_earlier));
   if (cause != MissCause::kNone) finished_late_[static_cast<std::size_t>(cause)].Add();
   return cause;
 }
 
 MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns,
                                          Nanos typical_ns) noexcept ARMCMC_NONBLOCKING {
-  const StageWork work = Work(Stage::kAdjust, times.end_ns[IndexOf(Stage::kCollect)], now_ns, now_ns);
+  const StageWork work = NoWork(Stage::kAdjust, times.end_ns[IndexOf(Stage::kCollect)], now_ns);
   const Earlier earlier = timeline_[IndexOf(Stage::kAdjust)].GiveUp(work, Collected(times), typical_ns);
   const MissCause cause = Attribute(std::max<Nanos>(1, now_ns + typical_ns - times.deadline_ns), earlier);
   given_up_[static_cast<std::size_t>(cause)].Add();

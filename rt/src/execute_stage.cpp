@@ -26,7 +26,7 @@ void ExecuteStage::CountSampling(const Estimate& estimate) noexcept {
 
 bool ExecuteStage::Step() noexcept {
   if (!results_->latest.Acquire()) return false;
-  const Nanos start_ns = MonotonicNow();
+  const Nanos start_ns = cpu_time_.Start();
   const int result = results_->latest.read_slot();
   StepOutput* claimed = outputs_->Claim();
   StepOutput* output = claimed != nullptr ? claimed : spare_.get();
@@ -34,12 +34,14 @@ bool ExecuteStage::Step() noexcept {
   output->info = results_->info[static_cast<std::size_t>(result)];
   StepTimes& times = output->info.times;
   times.start_ns[IndexOf(Stage::kExecute)] = start_ns;
-  times.end_ns[IndexOf(Stage::kExecute)] = MonotonicNow();
+  const Nanos end_ns = MonotonicNow();
+  times.end_ns[IndexOf(Stage::kExecute)] = end_ns;
+  times.withheld_ns[IndexOf(Stage::kExecute)] = cpu_time_.Withheld(end_ns);
 
   output->miss = monitor_->Record(times);
   if (output->miss != MissCause::kNone) {
-    events_->Add({times.end_ns[IndexOf(Stage::kExecute)], EventKind::kDeadlineMissed,
-                  static_cast<std::uint8_t>(output->miss), output->info.seq, -times.Slack()});
+    events_->Add({end_ns, EventKind::kDeadlineMissed, static_cast<std::uint8_t>(output->miss), output->info.seq,
+                  -times.Slack()});
   }
   CountSampling(output->estimate);
   counters_->execute.steps.Add();

@@ -66,7 +66,8 @@ void Pipeline::Place() {
   }
 }
 
-void Pipeline::StartThread(RtThread* thread, const char* name, const ThreadSettings& settings, RtThread::Entry entry) {
+const ThreadPlacement& Pipeline::StartThread(RtThread* thread, const char* name, const ThreadSettings& settings,
+                                             RtThread::Entry entry) {
   ThreadRequest request;
   request.name = name;
   request.priority = settings.priority;
@@ -75,6 +76,7 @@ void Pipeline::StartThread(RtThread* thread, const char* name, const ThreadSetti
   if (!placement.fifo) degraded_flags_ |= estimator_status_t::DEGRADED_NO_FIFO;
   if (!placement.pinned) degraded_flags_ |= estimator_status_t::DEGRADED_NO_AFFINITY;
   publish_.SetDegraded(degraded_flags_);
+  return placement;
 }
 
 void Pipeline::StartWitnesses() {
@@ -95,6 +97,24 @@ void Pipeline::StartWitnesses() {
     }
   }
   publish_.SetWitnesses(std::move(views));
+}
+
+void Pipeline::ShareCpuTimes() {
+  std::vector<std::pair<const RtThread*, int>> threads{{&collect_thread_, settings_.collect.cpu},
+                                                       {&adjust_thread_, settings_.adjust.cpu},
+                                                       {&execute_thread_, settings_.execute.cpu},
+                                                       {&publish_thread_, settings_.publish.cpu},
+                                                       {&watchdog_.thread(), watchdog_.cpu()}};
+  for (const auto& witness : witnesses_) threads.emplace_back(&witness->thread(), witness->cpu());
+  const std::array<std::pair<CpuTimeMeter*, const RtThread*>, kNumStages> stages{
+      {{collect_.cpu_time(), &collect_thread_},
+       {adjust_.cpu_time(), &adjust_thread_},
+       {execute_.cpu_time(), &execute_thread_}}};
+  for (std::size_t stage = 0; stage < kNumStages; ++stage) {
+    const auto& [meter, own] = stages[stage];
+    for (const auto& [thread, cpu] : threads)
+      if (thread != own && cpu == threads[stage].second) meter->AddOther(&thread->cpu_time_ns());
+  }
 }
 
 void Pipeline::Start() {
@@ -124,19 +144,23 @@ void Pipeline::KeepCpusAwake() {
 void Pipeline::StartThreads() {
   // Adjust first: it warms the engine up before anything can be released. Collect last: it releases.
   // The monitor knows its witnesses before a thread that asks it starts.
-  StartThread(&adjust_thread_, "adjust", settings_.adjust, [](void* self) noexcept {
-    static_cast<Pipeline*>(self)->WarmUpEngine();
-    static_cast<Pipeline*>(self)->AdjustLoop();
-  });
+  const auto trust = [](CpuTimeMeter* meter, const ThreadPlacement& placement) {
+    meter->SetTrusted(placement.fifo && placement.pinned);
+  };
+  trust(adjust_.cpu_time(), StartThread(&adjust_thread_, "adjust", settings_.adjust, [](void* self) noexcept {
+          static_cast<Pipeline*>(self)->WarmUpEngine();
+          static_cast<Pipeline*>(self)->AdjustLoop();
+        }));
   while (!warm_waiter_.WaitUntil(MonotonicNow() + kNanosPerSecond)) {
   }
   StartWitnesses();
-  StartThread(&execute_thread_, "execute", settings_.execute,
-              [](void* self) noexcept { static_cast<Pipeline*>(self)->ExecuteLoop(); });
+  ShareCpuTimes();
+  trust(execute_.cpu_time(), StartThread(&execute_thread_, "execute", settings_.execute,
+                                         [](void* self) noexcept { static_cast<Pipeline*>(self)->ExecuteLoop(); }));
   StartThread(&publish_thread_, "publish", settings_.publish,
               [](void* self) noexcept { static_cast<Pipeline*>(self)->PublishLoop(); });
-  StartThread(&collect_thread_, "collect", settings_.collect,
-              [](void* self) noexcept { static_cast<Pipeline*>(self)->CollectLoop(); });
+  trust(collect_.cpu_time(), StartThread(&collect_thread_, "collect", settings_.collect,
+                                         [](void* self) noexcept { static_cast<Pipeline*>(self)->CollectLoop(); }));
   watchdog_.Start();
 }
 
@@ -195,6 +219,7 @@ void Pipeline::CollectLoop() noexcept {
       publish_waiter_.Post();
     }
     CountHeapCalls(Stage::kCollect, baseline);
+    collect_thread_.NoteCpuTime();
   }
   watchdog_.Dismiss(Watched::kCollect);
 }
@@ -215,6 +240,7 @@ void Pipeline::AdjustLoop() noexcept {
       watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
     }
     CountHeapCalls(Stage::kAdjust, baseline);
+    adjust_thread_.NoteCpuTime();
   }
   watchdog_.Dismiss(Watched::kAdjust);
 }
@@ -232,6 +258,7 @@ void Pipeline::ExecuteLoop() noexcept {
       if (options_.max_steps > 0 && counters_.execute.steps.Get() >= options_.max_steps) RequestStop();
     }
     CountHeapCalls(Stage::kExecute, baseline);
+    execute_thread_.NoteCpuTime();
   }
   watchdog_.Dismiss(Watched::kExecute);
 }
@@ -247,6 +274,7 @@ void Pipeline::PublishLoop() noexcept {
     const int published = publish_.PublishSteps();
     const bool due = status_due_.exchange(false, std::memory_order_acq_rel);
     if (published == 0 && (due || !posted)) publish_.PublishIdleStatus();
+    publish_thread_.NoteCpuTime();
     if (ended) break;
   }
   watchdog_.Dismiss(Watched::kPublish);

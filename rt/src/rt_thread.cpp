@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/process_setup.hpp"
 
 namespace armcmc::rt {
@@ -116,6 +117,10 @@ void* RtThread::Main(void* self) {
   }
   if (!thread->refused_) entry(context);
   return nullptr;
+}
+
+void RtThread::NoteCpuTime() noexcept ARMCMC_NONBLOCKING {
+  cpu_time_ns_.store(ThreadCpuTime(), std::memory_order_relaxed);
 }
 
 void RtThread::ReadBack() {

@@ -102,6 +102,21 @@ TEST_F(DeadlineMonitorTest, ManyShortStallsAreTheMachineToo) {
   EXPECT_EQ(Judge(Step(129)), MissCause::kOwn) << "30 ms lacked";
 }
 
+TEST_F(DeadlineMonitorTest, WhatWasWithheldFromAStageIsTheMachineAlsoWhereTheWitnessSawLess) {
+  Fill(cpu0_.get(), 0, 0);
+  Fill(cpu1_.get(), 1040, 15);
+  StepTimes times = Step(119);  // lacks 20 ms
+  times.withheld_ns[1] = 19 * kMs;
+  EXPECT_EQ(Judge(times), MissCause::kOwn) << "15 and 19 ms are two views of one stall";
+  StartAnew();
+  times.withheld_ns[1] = 21 * kMs;
+  EXPECT_EQ(Judge(times), MissCause::kMachine);
+  EXPECT_EQ(Judge(Step(1100, 0, 1120, 1190)), MissCause::kNone);
+  StartAnew();
+  times.withheld_ns = {0, 15 * kMs, 6 * kMs};
+  EXPECT_EQ(Judge(times), MissCause::kMachine) << "half of it in execute";
+}
+
 TEST_F(DeadlineMonitorTest, AStallOfTheOtherCpuIsNoExcuse) {
   Fill(cpu0_.get(), 1040, 60);  // while adjust runs on CPU 1
   Fill(cpu1_.get(), 0, 0);

@@ -9,6 +9,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/step_engine.hpp"
 
 namespace armcmc::rt::test {
@@ -53,7 +54,11 @@ class FakeEngine : public StepEngine {
     result.last_y = pack.y[static_cast<std::size_t>(pack.num_samples - 1)];
     adjusted.fetch_add(1);
     last_budget_ns.store(deadline_ns - clock.Now());
-    if (clock.read != nullptr) SleepUntil(clock.Now() + adjust_sleep_ns.load());
+    if (const Nanos sleep_ns = adjust_sleep_ns.load(); sleep_ns > 0) SleepUntil(clock.Now() + sleep_ns);
+    if (const Nanos work_ns = adjust_work_ns.load(); work_ns > 0) {
+      for (const Nanos end = ThreadCpuTime() + work_ns; ThreadCpuTime() < end;) {
+      }
+    }
     PlantedFault(planted.load());
     return status.load();
   }
@@ -81,6 +86,7 @@ class FakeEngine : public StepEngine {
   void Reset() noexcept ARMCMC_NONBLOCKING override { adjusted.store(0); }
 
   std::atomic<Nanos> adjust_sleep_ns{0};
+  std::atomic<Nanos> adjust_work_ns{0};  // CPU time
   std::atomic<Nanos> last_budget_ns{0};
   std::atomic<int> adjusted{0};
   std::atomic<Planted> planted{Planted::kNothing};

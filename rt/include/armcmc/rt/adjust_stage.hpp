@@ -6,6 +6,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/event_log.hpp"
 #include "armcmc/rt/hand_over.hpp"
@@ -52,8 +53,11 @@ class AdjustStage {
   /// one waits; the newest is always computed. A result that execute has not taken is not overtaken before its
   /// deadline.
   /// @return true when a result was handed over; false when the ring is empty or execute has to come first.
-  /// @rt No heap, no lock, no throw, no system call. Bounded by the adjust budget plus the ring's capacity.
+  /// @rt No heap, no lock, no throw, no system call but those of the CPU time meter. Bounded by the adjust budget plus
+  /// the ring's capacity.
   [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
+
+  [[nodiscard]] CpuTimeMeter* cpu_time() noexcept { return &cpu_time_; }
 
  private:
   void DropUnkeepable() noexcept ARMCMC_NONBLOCKING;
@@ -68,6 +72,7 @@ class AdjustStage {
   Counters* counters_;
   EventLog* events_;
   RecentMinimum typical_;
+  CpuTimeMeter cpu_time_;
   Nanos handed_over_deadline_ns_ = 0;  // of the newest result
 };
 

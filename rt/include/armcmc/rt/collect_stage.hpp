@@ -4,6 +4,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/event_log.hpp"
 #include "armcmc/rt/hand_over.hpp"
 #include "armcmc/rt/injection.hpp"
@@ -26,8 +27,11 @@ class CollectStage {
   /// Faults of this stage on purpose. Set before the thread starts.
   void SetInjection(Injection* injection) noexcept { injection_ = injection; }
 
-  /// @return true when a pack was handed on. @rt No heap, no lock, no throw, no system call. O(pack).
+  /// @return true when a pack was handed on. @rt No heap, no lock, no throw, no system call but those of the CPU time
+  /// meter. O(pack).
   [[nodiscard]] bool Step(const Datagram& datagram) noexcept ARMCMC_NONBLOCKING;
+
+  [[nodiscard]] CpuTimeMeter* cpu_time() noexcept { return &cpu_time_; }
 
   /// Begins to wait for the plant. Call once, right before the loop.
   void Begin(Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
@@ -50,6 +54,7 @@ class CollectStage {
   PackCodec codec_;
   SequenceTracker tracker_;
   ReleaseGrid grid_;
+  CpuTimeMeter cpu_time_;
   PackRing* ring_;
   RecordRing* record_ = nullptr;
   Injection* injection_ = nullptr;

@@ -21,7 +21,8 @@ struct StepTimes {
   Nanos arrival_ns = 0;   ///< Kernel receive time of the pack.
   Nanos deadline_ns = 0;  ///< Absolute: release + deadline of the settings.
   std::array<Nanos, kNumStages> start_ns{}, end_ns{};
-  Earlier adjusted_earlier;  ///< How much earlier adjust would have been through.
+  std::array<Nanos, kNumStages> withheld_ns{};  ///< Between them, of the CPU; see CpuTimeMeter. 0: nothing, or unknown.
+  Earlier adjusted_earlier;                     ///< How much earlier adjust would have been through.
 
   [[nodiscard]] Nanos Duration(Stage stage) const noexcept { return end_ns[IndexOf(stage)] - start_ns[IndexOf(stage)]; }
   [[nodiscard]] Nanos EndToEnd() const noexcept { return end_ns[IndexOf(Stage::kExecute)] - release_ns; }
@@ -66,8 +67,10 @@ class DeadlineMonitor {
   /// Of a stage that sleeps until the one before it hands over: that one wakes it, so a stall of either CPU delays it.
   [[nodiscard]] Nanos HandOverStall(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Earlier Collected(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] StageWork Work(Stage stage, Nanos ready_ns, Nanos start_ns,
-                               Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
+  /// Of a step that went through a stage.
+  [[nodiscard]] StageWork Work(Stage stage, Nanos ready_ns, const StepTimes& times) const noexcept ARMCMC_NONBLOCKING;
+  /// Of one that a stage came to at start_ns, and did not do.
+  [[nodiscard]] StageWork NoWork(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept ARMCMC_NONBLOCKING;
 
   std::array<const WakeUpRing*, kNumStages> witness_{};
   std::array<StageTimeline, kNumStages> timeline_;  // collect, adjust: of the adjust thread; execute: of its own

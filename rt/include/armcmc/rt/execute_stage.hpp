@@ -4,6 +4,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/event_log.hpp"
 #include "armcmc/rt/hand_over.hpp"
@@ -19,8 +20,10 @@ class ExecuteStage {
                Counters* counters, EventLog* events);
 
   /// @return true when a step was finished; false when there is no new result.
-  /// @rt No heap, no lock, no throw, no system call. O(draws).
+  /// @rt No heap, no lock, no throw, no system call but those of the CPU time meter. O(draws).
   [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
+
+  [[nodiscard]] CpuTimeMeter* cpu_time() noexcept { return &cpu_time_; }
 
   /// Draws and effective sample size of every posterior that was updated. @pre the stage has ended.
   [[nodiscard]] const LogHistogram& draws() const noexcept { return draws_; }
@@ -36,6 +39,7 @@ class ExecuteStage {
   Counters* counters_;
   EventLog* events_;
   std::unique_ptr<StepOutput> spare_;  // the output when the publisher is so late that its ring is full
+  CpuTimeMeter cpu_time_;
   LogHistogram draws_, ess_;
 };
 

@@ -17,7 +17,7 @@ inline constexpr std::size_t kNumMissCauses = 4;
 /// Exactly one cause per miss: what, had it not happened, would have let the step keep its deadline.
 ///
 /// Late data, when that holds for the lateness of the packs alone; else the machine, when it holds for the stalls alone
-/// that the witnesses saw; when it takes both, whichever cost more. Else our own: the step would have been too late on
+/// that were seen; when it takes both, whichever cost more. Else our own: the step would have been too late on
 /// a machine that never stood still and with every pack on time. What nobody saw is not guessed: in doubt it is our
 /// own.
 /// @param lacked_ns  By how much the deadline was missed; <= 0: it was not.

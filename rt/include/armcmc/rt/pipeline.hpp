@@ -100,9 +100,12 @@ class Pipeline {
  private:
   void StartThreads();
   void StartWitnesses();
+  /// Tells the meter of every stage which other threads run on its CPU.
+  void ShareCpuTimes();
   void Place();
   void KeepCpusAwake();
-  void StartThread(RtThread* thread, const char* name, const ThreadSettings& settings, RtThread::Entry entry);
+  const ThreadPlacement& StartThread(RtThread* thread, const char* name, const ThreadSettings& settings,
+                                     RtThread::Entry entry);
 
   void WarmUpEngine() noexcept;
   // Everything between two waits is checked to be non-blocking; the waits are in Waiter, LcmReceiver and SleepUntil().

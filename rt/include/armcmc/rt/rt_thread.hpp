@@ -2,11 +2,14 @@
 
 #include <pthread.h>
 
+#include <atomic>
 #include <cstddef>
 #include <string>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/rt/waiter.hpp"
+#include "armcmc/types.hpp"
 
 namespace armcmc::rt {
 
@@ -44,6 +47,12 @@ class RtThread {
   void Join() noexcept;
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return placement_; }
 
+  /// Says how much CPU time the thread has had, for cpu_time_ns(). By the thread itself, before it waits.
+  /// @rt One system call, bounded.
+  void NoteCpuTime() noexcept ARMCMC_NONBLOCKING;
+  /// CPU time, ns, of the thread up to its newest wait. Any time, from any thread.
+  [[nodiscard]] const std::atomic<Nanos>& cpu_time_ns() const noexcept { return cpu_time_ns_; }
+
  private:
   static void* Main(void* self);
   [[nodiscard]] int Create(bool fifo, bool pin) noexcept;
@@ -58,6 +67,7 @@ class RtThread {
   bool refused_ = false;  // written before go_
   pthread_t thread_{};
   bool running_ = false;
+  std::atomic<Nanos> cpu_time_ns_{0};
 };
 
 }  // namespace armcmc::rt

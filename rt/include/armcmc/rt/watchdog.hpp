@@ -57,6 +57,8 @@ class Watchdog {
   [[nodiscard]] bool TakeHung() noexcept { return unread_.exchange(false, std::memory_order_acq_rel) || hung() != 0; }
   [[nodiscard]] Nanos check_period_ns() const noexcept { return check_period_ns_; }
   [[nodiscard]] Nanos slack_ns() const noexcept { return slack_ns_; }
+  [[nodiscard]] int cpu() const noexcept { return request_.cpu; }
+  [[nodiscard]] const RtThread& thread() const noexcept { return thread_; }
 
  private:
   void Run() noexcept;

@@ -45,7 +45,8 @@ class WakeUpRing {
 };
 
 /// A timer thread above every stage on one CPU. It does nothing but notice when it is woken late: then it was
-/// the machine that stood still (hypervisor, firmware, kernel), since no thread of ours can delay it.
+/// the machine that stood still (hypervisor, firmware, kernel), since no thread of ours can delay it. What is taken
+/// from a stage while it works, CpuTimeMeter sees better.
 class Witness {
  public:
   /// A fortieth of the deadline, within [0.25 ms, 1 ms]: shorter slices are hardly seen, and each wake-up costs the
@@ -67,6 +68,7 @@ class Witness {
   [[nodiscard]] bool trustworthy() const noexcept { return thread_.placement().fifo && thread_.placement().pinned; }
   [[nodiscard]] const WakeUpRing& wake_ups() const noexcept { return wake_ups_; }
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return thread_.placement(); }
+  [[nodiscard]] const RtThread& thread() const noexcept { return thread_; }
   /// Worst delay since the last call, ns.
   [[nodiscard]] Nanos TakeWorst() noexcept ARMCMC_NONBLOCKING {
     return worst_ns_.exchange(0, std::memory_order_relaxed);

@@ -1,0 +1,88 @@
+#include "armcmc/rt/cpu_time_meter.hpp"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <thread>
+
+#include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/process_setup.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+/// Keeps the CPU until the calling thread has had so much more of it.
+void WorkFor(Nanos cpu_time_ns) {
+  for (const Nanos end = ThreadCpuTime() + cpu_time_ns; ThreadCpuTime() < end;) {
+  }
+}
+
+void PinTo(int cpu) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(static_cast<unsigned>(cpu), &set);
+  ASSERT_EQ(pthread_setaffinity_np(pthread_self(), sizeof set, &set), 0);
+}
+
+TEST(CpuTimeMeter, WithoutTheRightToTheCpuNothingIsWithheld) {
+  CpuTimeMeter meter;
+  const Nanos start_ns = meter.Start();
+  WorkFor(kNanosPerMilli);
+  EXPECT_EQ(meter.Withheld(start_ns + kNanosPerSecond), 0);
+}
+
+TEST(CpuTimeMeter, WhatAThreadDidNotGetWasWithheld) {
+  CpuTimeMeter meter;
+  meter.SetTrusted(true);
+  const Nanos start_ns = meter.Start();
+  const Nanos used_ns = ThreadCpuTime();
+  WorkFor(kNanosPerMilli);
+  const Nanos withheld_ns = meter.Withheld(start_ns + kNanosPerSecond);  // had it been a second
+  EXPECT_LE(withheld_ns, kNanosPerSecond - kNanosPerMilli);
+  EXPECT_GE(withheld_ns, kNanosPerSecond - (ThreadCpuTime() - used_ns) - kNanosPerMilli);
+}
+
+TEST(CpuTimeMeter, WhoSleepsHasNothingWithheld) {
+  CpuTimeMeter meter;
+  meter.SetTrusted(true);
+  meter.Start();
+  SleepUntil(MonotonicNow() + 5 * kNanosPerMilli);
+  EXPECT_EQ(meter.Withheld(MonotonicNow()), 0);
+  const Nanos start_ns = meter.Start();
+  EXPECT_GT(meter.Withheld(start_ns + kNanosPerSecond), 0) << "the sleep before it does not matter";
+}
+
+TEST(CpuTimeMeter, AThreadOfOursIsNotTheMachine) {
+  const int cpu = AvailableCpus().front();
+  std::atomic<Nanos> rival_used_ns{0};
+  std::atomic<bool> stop{false};
+  std::thread rival([&] {
+    PinTo(cpu);
+    while (!stop.load()) rival_used_ns.store(ThreadCpuTime());
+  });
+  std::thread worker([&] {
+    PinTo(cpu);
+    CpuTimeMeter blind, knowing;
+    blind.SetTrusted(true);
+    knowing.SetTrusted(true);
+    knowing.AddOther(&rival_used_ns);
+    while (rival_used_ns.load() == 0) std::this_thread::yield();
+    const Nanos rival_before_ns = rival_used_ns.load();
+    blind.Start();
+    knowing.Start();
+    WorkFor(50 * kNanosPerMilli);
+    const Nanos end_ns = MonotonicNow();
+    const Nanos by_blind = blind.Withheld(end_ns), by_knowing = knowing.Withheld(end_ns);
+    const Nanos rival_had_ns = rival_used_ns.load() - rival_before_ns;
+    EXPECT_GT(rival_had_ns, 10 * kNanosPerMilli) << "two ordinary threads share a CPU";
+    EXPECT_GE(by_blind, rival_had_ns - 2 * kNanosPerMilli);
+    EXPECT_LE(by_knowing, by_blind - rival_had_ns + 2 * kNanosPerMilli);
+  });
+  worker.join();
+  stop.store(true);
+  rival.join();
+}
+
+}  // namespace
+}  // namespace armcmc::rt

@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <memory>
+#include <thread>
+
+#include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/pipeline.hpp"
+#include "armcmc/rt/process_setup.hpp"
+#include "fake_engine.hpp"
+#include "support/paths.hpp"
+#include "test_packs.hpp"
+
+namespace armcmc::rt {
+namespace {
+
+/// Takes three quarters of a CPU like a hypervisor that is short of time: in slices shorter than a period of the
+/// witness, above every thread of the pipeline.
+void TakeInSlices(int cpu, Nanos until_ns) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(static_cast<unsigned>(cpu), &set);
+  ASSERT_EQ(pthread_setaffinity_np(pthread_self(), sizeof set, &set), 0);
+  sched_param param{};
+  param.sched_priority = 99;
+  ASSERT_EQ(pthread_setschedparam(pthread_self(), SCHED_FIFO, &param), 0);
+  while (MonotonicNow() < until_ns) {
+    for (const Nanos episode_end = MonotonicNow() + 60 * kNanosPerMilli; MonotonicNow() < episode_end;) {
+      for (const Nanos slice_end = MonotonicNow() + 300 * kNanosPerMicro; MonotonicNow() < slice_end;) {
+      }
+      SleepUntil(MonotonicNow() + 100 * kNanosPerMicro);
+    }
+    SleepUntil(MonotonicNow() + 200 * kNanosPerMilli);
+  }
+}
+
+TEST(StolenCpu, WhatIsTakenInShortSlicesIsNotOurOwn) {
+  ARMCMC_REQUIRE_MULTICAST();
+  if (AvailableCpus().size() < 2) GTEST_SKIP() << "needs two CPUs: the thief takes one";
+  const armcmc::test::TestBus bus;
+  RtSettings settings;
+  settings.lcm_url = bus.url();
+  settings.lock_memory = false;
+  settings.period_ns = settings.deadline_ns = 20 * kNanosPerMilli;
+  settings.adjust_budget_ns = 15 * kNanosPerMilli;
+  test::FakeEngine engine;
+  engine.adjust_work_ns = 12 * kNanosPerMilli;
+  Pipeline pipeline(settings, &engine, {});
+  pipeline.Start();
+  const ThreadPlacement adjust = pipeline.placements()[IndexOf(Stage::kAdjust)];
+  if (!adjust.fifo || !adjust.pinned) GTEST_SKIP() << "needs the right to real-time priorities";
+
+  const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm(lcm_create(bus.url().c_str()), &lcm_destroy);
+  const Nanos end_ns = MonotonicNow() + 2 * kNanosPerSecond;
+  std::thread thief([&] { TakeInSlices(adjust.cpu, end_ns); });
+  Nanos due_ns = MonotonicNow();
+  for (std::int64_t seq = 1; due_ns < end_ns; ++seq, due_ns += settings.period_ns) {
+    SleepUntil(due_ns);
+    const auto bytes = test::Encode(test::ValidPack(seq));
+    EXPECT_EQ(lcm_publish(lcm.get(), "PLANT_PACK", bytes.data(), static_cast<unsigned>(bytes.size())), 0);
+  }
+  thief.join();
+  pipeline.RequestStop();
+  pipeline.Join();
+  EXPECT_GE(pipeline.monitor().misses(MissCause::kMachine), 4);
+  // Without the CPU time of the stages more than half of them are taken for our own.
+  EXPECT_LE(10 * pipeline.monitor().misses(MissCause::kOwn), pipeline.monitor().misses(MissCause::kMachine));
+}
+
+}  // namespace
+}  // namespace armcmc::rt
