@@ -28,7 +28,9 @@ void AdjustStage::DropUnkeepable() noexcept {
     const Nanos now_ns = MonotonicNow();
     const Nanos lacked_ns = now_ns + typical_.Get() - slot->times.deadline_ns;
     if (lacked_ns <= 0) return;
-    CountDropped(slot->pack.seq, monitor_->RecordDropped(slot->times, now_ns, typical_.Get()), now_ns, lacked_ns);
+    const MissCause cause =
+        monitor_->RecordDropped(slot->times, now_ns, typical_.Get(), cpu_time_.WithheldWaiting(now_ns));
+    CountDropped(slot->pack.seq, cause, now_ns, lacked_ns);
     ring_->Pop();
   }
 }
@@ -62,7 +64,8 @@ bool AdjustStage::Step() noexcept {
                                 MonotonicClock(), result);
   const Nanos end_ns = MonotonicNow();
   info.times.end_ns[IndexOf(Stage::kAdjust)] = end_ns;
-  info.times.withheld_ns[IndexOf(Stage::kAdjust)] = cpu_time_.Withheld(end_ns);
+  info.times.withheld_before_ns[IndexOf(Stage::kAdjust)] = cpu_time_.withheld_before_ns();
+  info.times.withheld_ns[IndexOf(Stage::kAdjust)] = cpu_time_.End(end_ns);
   monitor_->RecordAdjusted(&info.times);
   ring_->Pop();
   typical_.Add(end_ns - start_ns);

@@ -87,6 +87,7 @@ void CollectStage::NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept {
 }
 
 bool CollectStage::Step(const Datagram& datagram) noexcept {
+  cpu_time_.NoteWoken(datagram.arrival_ns);
   const Nanos start_ns = cpu_time_.Start();
   traffic_ = true;
   const RejectCause cause = codec_.Decode(datagram.payload);
@@ -143,7 +144,8 @@ bool CollectStage::Step(const Datagram& datagram) noexcept {
   if (injection_ != nullptr) injection_->Disturb(Stage::kCollect, codec_.seq());
   const Nanos end_ns = MonotonicNow();
   slot->times.end_ns[IndexOf(Stage::kCollect)] = end_ns;
-  slot->times.withheld_ns[IndexOf(Stage::kCollect)] = cpu_time_.Withheld(end_ns);
+  slot->times.withheld_before_ns[IndexOf(Stage::kCollect)] = cpu_time_.withheld_before_ns();
+  slot->times.withheld_ns[IndexOf(Stage::kCollect)] = cpu_time_.End(end_ns);
   ring_->Commit();
   return true;
 }

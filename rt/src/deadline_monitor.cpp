@@ -34,18 +34,18 @@ Nanos DeadlineMonitor::HandOverStall(Stage stage, Nanos ready_ns, Nanos start_ns
   return std::max(StalledTime(stage, ready_ns, start_ns), StalledTime(giver, ready_ns, start_ns));
 }
 
-StageWork DeadlineMonitor::NoWork(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept {
+StageWork DeadlineMonitor::NoWork(Stage stage, Nanos ready_ns, Nanos start_ns, Nanos withheld_ns) const noexcept {
   const Nanos begin_ns = timeline_[IndexOf(stage)].CouldBegin(ready_ns);
   const bool slept = begin_ns == ready_ns;
-  return {ready_ns, start_ns, start_ns,
-          slept ? HandOverStall(stage, begin_ns, start_ns) : StalledTime(stage, begin_ns, start_ns), 0};
+  const Nanos seen_ns = slept ? HandOverStall(stage, begin_ns, start_ns) : StalledTime(stage, begin_ns, start_ns);
+  // Two views of the same time, neither of which sees too much.
+  return {ready_ns, start_ns, start_ns, std::max(seen_ns, std::min(withheld_ns, start_ns - begin_ns)), 0};
 }
 
 StageWork DeadlineMonitor::Work(Stage stage, Nanos ready_ns, const StepTimes& times) const noexcept {
   const Nanos start_ns = times.start_ns[IndexOf(stage)];
-  StageWork work = NoWork(stage, ready_ns, start_ns);
+  StageWork work = NoWork(stage, ready_ns, start_ns, times.withheld_before_ns[IndexOf(stage)]);
   work.end_ns = times.end_ns[IndexOf(stage)];
-  // Two views of the same time, neither of which sees too much.
   work.stall_ns = std::max(StalledTime(stage, start_ns, work.end_ns), times.withheld_ns[IndexOf(stage)]);
   return work;
 }
@@ -74,9 +74,9 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
   return cause;
 }
 
-MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns,
-                                         Nanos typical_ns) noexcept ARMCMC_NONBLOCKING {
-  const StageWork work = NoWork(Stage::kAdjust, times.end_ns[IndexOf(Stage::kCollect)], now_ns);
+MissCause DeadlineMonitor::RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns,
+                                         Nanos withheld_ns) noexcept ARMCMC_NONBLOCKING {
+  const StageWork work = NoWork(Stage::kAdjust, times.end_ns[IndexOf(Stage::kCollect)], now_ns, withheld_ns);
   const Earlier earlier = timeline_[IndexOf(Stage::kAdjust)].GiveUp(work, Collected(times), typical_ns);
   const MissCause cause = Attribute(std::max<Nanos>(1, now_ns + typical_ns - times.deadline_ns), earlier);
   given_up_[static_cast<std::size_t>(cause)].Add();

@@ -36,7 +36,8 @@ bool ExecuteStage::Step() noexcept {
   times.start_ns[IndexOf(Stage::kExecute)] = start_ns;
   const Nanos end_ns = MonotonicNow();
   times.end_ns[IndexOf(Stage::kExecute)] = end_ns;
-  times.withheld_ns[IndexOf(Stage::kExecute)] = cpu_time_.Withheld(end_ns);
+  times.withheld_before_ns[IndexOf(Stage::kExecute)] = cpu_time_.withheld_before_ns();
+  times.withheld_ns[IndexOf(Stage::kExecute)] = cpu_time_.End(end_ns);
 
   output->miss = monitor_->Record(times);
   if (output->miss != MissCause::kNone) {

@@ -100,20 +100,24 @@ void Pipeline::StartWitnesses() {
 }
 
 void Pipeline::ShareCpuTimes() {
-  std::vector<std::pair<const RtThread*, int>> threads{{&collect_thread_, settings_.collect.cpu},
-                                                       {&adjust_thread_, settings_.adjust.cpu},
-                                                       {&execute_thread_, settings_.execute.cpu},
-                                                       {&publish_thread_, settings_.publish.cpu},
-                                                       {&watchdog_.thread(), watchdog_.cpu()}};
-  for (const auto& witness : witnesses_) threads.emplace_back(&witness->thread(), witness->cpu());
-  const std::array<std::pair<CpuTimeMeter*, const RtThread*>, kNumStages> stages{
-      {{collect_.cpu_time(), &collect_thread_},
-       {adjust_.cpu_time(), &adjust_thread_},
-       {execute_.cpu_time(), &execute_thread_}}};
-  for (std::size_t stage = 0; stage < kNumStages; ++stage) {
-    const auto& [meter, own] = stages[stage];
-    for (const auto& [thread, cpu] : threads)
-      if (thread != own && cpu == threads[stage].second) meter->AddOther(&thread->cpu_time_ns());
+  struct StageThread {
+    CpuTimeMeter* meter;
+    const RtThread* thread;
+    const ThreadSettings* settings;
+  };
+  const std::array<StageThread, kNumStages> stages{{{collect_.cpu_time(), &collect_thread_, &settings_.collect},
+                                                    {adjust_.cpu_time(), &adjust_thread_, &settings_.adjust},
+                                                    {execute_.cpu_time(), &execute_thread_, &settings_.execute}}};
+  for (const StageThread& stage : stages) {
+    const auto share = [&](const RtThread& thread, int cpu, bool goes_first) {
+      if (cpu == stage.settings->cpu) stage.meter->AddOther(&thread.cpu_time_ns(), goes_first);
+    };
+    for (const StageThread& other : stages)
+      if (other.thread != stage.thread)
+        share(*other.thread, other.settings->cpu, other.settings->priority >= stage.settings->priority);
+    share(publish_thread_, settings_.publish.cpu, false);
+    share(watchdog_.thread(), watchdog_.cpu(), false);
+    for (const auto& witness : witnesses_) share(witness->thread(), witness->cpu(), false);
   }
 }
 
@@ -234,6 +238,7 @@ void Pipeline::AdjustLoop() noexcept {
   while (!stopping()) {
     watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.period_ns);
     (void)adjust_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
+    adjust_.cpu_time()->NoteWoken(adjust_waiter_.TakePostTime());
     watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
     while (!stopping() && adjust_.Step()) {
       execute_waiter_.Post();
@@ -250,6 +255,7 @@ void Pipeline::ExecuteLoop() noexcept {
   while (!stopping()) {
     watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns);
     (void)execute_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
+    execute_.cpu_time()->NoteWoken(execute_waiter_.TakePostTime());
     watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
     while (!stopping() && execute_.Step()) {
       watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);

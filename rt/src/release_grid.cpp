@@ -26,7 +26,7 @@ ReleaseGrid::Point ReleaseGrid::OnPack(std::int64_t steps, Nanos arrival_ns) noe
     proposed_ = false;
     if (pause_ns > steps * period_ns_ - period_ns_ / 2) {
       if (left_packs_ == 0) left_due_ns_ = due_ns_;
-      left_packs_ = kWindow + 1;
+      left_packs_ = settling_packs_ + 1;
       due_ns_ = arrival_ns_;
     }
   }

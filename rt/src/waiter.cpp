@@ -18,6 +18,8 @@ Waiter::~Waiter() { sem_destroy(&semaphore_); }
 ARMCMC_TRUST_NONBLOCKING_BEGIN
 
 void Waiter::Post() noexcept ARMCMC_NONBLOCKING {
+  Nanos none = 0;
+  first_post_ns_.compare_exchange_strong(none, MonotonicNow(), std::memory_order_relaxed);
   posts_.fetch_add(1, std::memory_order_release);
   // The only possible error is an overflow of the count, and then the waiter is awake anyway.
   const SystemCall wake_up;

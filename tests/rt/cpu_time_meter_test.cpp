@@ -29,7 +29,7 @@ TEST(CpuTimeMeter, WithoutTheRightToTheCpuNothingIsWithheld) {
   CpuTimeMeter meter;
   const Nanos start_ns = meter.Start();
   WorkFor(kNanosPerMilli);
-  EXPECT_EQ(meter.Withheld(start_ns + kNanosPerSecond), 0);
+  EXPECT_EQ(meter.End(start_ns + kNanosPerSecond), 0);
 }
 
 TEST(CpuTimeMeter, WhatAThreadDidNotGetWasWithheld) {
@@ -38,7 +38,7 @@ TEST(CpuTimeMeter, WhatAThreadDidNotGetWasWithheld) {
   const Nanos start_ns = meter.Start();
   const Nanos used_ns = ThreadCpuTime();
   WorkFor(kNanosPerMilli);
-  const Nanos withheld_ns = meter.Withheld(start_ns + kNanosPerSecond);  // had it been a second
+  const Nanos withheld_ns = meter.End(start_ns + kNanosPerSecond);  // had it been a second
   EXPECT_LE(withheld_ns, kNanosPerSecond - kNanosPerMilli);
   EXPECT_GE(withheld_ns, kNanosPerSecond - (ThreadCpuTime() - used_ns) - kNanosPerMilli);
 }
@@ -48,9 +48,34 @@ TEST(CpuTimeMeter, WhoSleepsHasNothingWithheld) {
   meter.SetTrusted(true);
   meter.Start();
   SleepUntil(MonotonicNow() + 5 * kNanosPerMilli);
-  EXPECT_EQ(meter.Withheld(MonotonicNow()), 0);
+  EXPECT_EQ(meter.End(MonotonicNow()), 0);
   const Nanos start_ns = meter.Start();
-  EXPECT_GT(meter.Withheld(start_ns + kNanosPerSecond), 0) << "the sleep before it does not matter";
+  EXPECT_GT(meter.End(start_ns + kNanosPerSecond), 0) << "the sleep before it does not matter";
+}
+
+TEST(CpuTimeMeter, WhoIsToldOfWorkWantsTheCpu) {
+  constexpr Nanos kMs = kNanosPerMilli;
+  CpuTimeMeter meter;
+  meter.SetTrusted(true);
+  std::atomic<Nanos> stage_ns{0}, witness_ns{0};
+  meter.AddOther(&stage_ns, /*goes_first=*/true);
+  meter.AddOther(&witness_ns, /*goes_first=*/false);
+  (void)meter.End(meter.Start());
+  const Nanos begin_ns = MonotonicNow();
+  const auto after = [&](Nanos wait_ns) { return meter.WithheldWaiting(begin_ns + wait_ns); };
+  EXPECT_EQ(after(kNanosPerSecond), 0) << "nobody told it";
+  meter.NoteWoken(begin_ns);
+  EXPECT_LE(after(kNanosPerSecond), kNanosPerSecond - kMs / 10) << "an ordinary wake-up is none";
+  EXPECT_GE(after(kNanosPerSecond), kNanosPerSecond - 100 * kMs);
+  EXPECT_EQ(after(kMs / 20), 0);
+  witness_ns = 400 * kMs;
+  EXPECT_GE(after(kNanosPerSecond), kNanosPerSecond - 100 * kMs) << "in many short turns";
+  stage_ns = 400 * kMs;
+  EXPECT_LE(after(kNanosPerSecond), 600 * kMs) << "a stage above had the CPU";
+  meter.NoteWoken(begin_ns - kNanosPerSecond);
+  EXPECT_LE(after(kNanosPerSecond), 600 * kMs) << "told while it still did the work before";
+  meter.SetTrusted(false);
+  EXPECT_EQ(after(kNanosPerSecond), 0);
 }
 
 TEST(CpuTimeMeter, AThreadOfOursIsNotTheMachine) {
@@ -66,14 +91,14 @@ TEST(CpuTimeMeter, AThreadOfOursIsNotTheMachine) {
     CpuTimeMeter blind, knowing;
     blind.SetTrusted(true);
     knowing.SetTrusted(true);
-    knowing.AddOther(&rival_used_ns);
+    knowing.AddOther(&rival_used_ns, /*goes_first=*/true);
     while (rival_used_ns.load() == 0) std::this_thread::yield();
     const Nanos rival_before_ns = rival_used_ns.load();
     blind.Start();
     knowing.Start();
     WorkFor(50 * kNanosPerMilli);
     const Nanos end_ns = MonotonicNow();
-    const Nanos by_blind = blind.Withheld(end_ns), by_knowing = knowing.Withheld(end_ns);
+    const Nanos by_blind = blind.End(end_ns), by_knowing = knowing.End(end_ns);
     const Nanos rival_had_ns = rival_used_ns.load() - rival_before_ns;
     EXPECT_GT(rival_had_ns, 10 * kNanosPerMilli) << "two ordinary threads share a CPU";
     EXPECT_GE(by_blind, rival_had_ns - 2 * kNanosPerMilli);

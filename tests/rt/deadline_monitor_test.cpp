@@ -117,6 +117,26 @@ TEST_F(DeadlineMonitorTest, WhatWasWithheldFromAStageIsTheMachineAlsoWhereTheWit
   EXPECT_EQ(Judge(times), MissCause::kMachine) << "half of it in execute";
 }
 
+TEST_F(DeadlineMonitorTest, WhatWasWithheldFromAStageThatWaitedIsTheMachine) {
+  Fill(cpu0_.get(), 0, 0);
+  Fill(cpu1_.get(), 0, 0);
+  StepTimes times = Step(1000, 0, 1030, 1119);  // adjust woken 30 ms late; lacks 20 ms
+  times.withheld_before_ns[1] = 29 * kMs;
+  EXPECT_EQ(Judge(times), MissCause::kMachine);
+  StartAnew();
+  times.withheld_before_ns[1] = 19 * kMs;
+  EXPECT_EQ(Judge(times), MissCause::kOwn);
+  StartAnew();
+  times = Step(1000, 0, 1005, 1119);
+  times.withheld_before_ns[1] = 29 * kMs;
+  EXPECT_EQ(Judge(times), MissCause::kOwn) << "no longer than it waited";
+  StartAnew();
+  StepTimes dropped = Step(100);
+  EXPECT_EQ(monitor_->RecordDropped(dropped, 1040 * kMs, 65 * kMs, 30 * kMs), MissCause::kMachine);
+  StartAnew();
+  EXPECT_EQ(monitor_->RecordDropped(dropped, 1040 * kMs, 65 * kMs, 3 * kMs), MissCause::kOwn);
+}
+
 TEST_F(DeadlineMonitorTest, AStallOfTheOtherCpuIsNoExcuse) {
   Fill(cpu0_.get(), 1040, 60);  // while adjust runs on CPU 1
   Fill(cpu1_.get(), 0, 0);

@@ -22,6 +22,19 @@ TEST(Waiter, GivesUpAtItsTimeAndNotBefore) {
   EXPECT_GE(MonotonicNow(), end);
 }
 
+TEST(Waiter, TellsWhenTheFirstPostCame) {
+  Waiter waiter;
+  EXPECT_EQ(waiter.TakePostTime(), 0);
+  const Nanos before = MonotonicNow();
+  waiter.Post();
+  const Nanos between = MonotonicNow();
+  waiter.Post();
+  const Nanos told = waiter.TakePostTime();
+  EXPECT_GE(told, before);
+  EXPECT_LE(told, between);
+  EXPECT_EQ(waiter.TakePostTime(), 0) << "taken";
+}
+
 TEST(Waiter, IsWokenByAnotherThread) {
   Waiter waiter;
   std::thread other([&waiter] { waiter.Post(); });

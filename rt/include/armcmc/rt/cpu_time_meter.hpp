@@ -14,38 +14,61 @@ namespace armcmc::rt {
 /// hypervisor says so (steal time). @rt One system call, bounded.
 [[nodiscard]] Nanos ThreadCpuTime() noexcept ARMCMC_NONBLOCKING;
 
-/// How long the machine withheld the CPU from a stage while it worked.
+/// How long the machine withheld the CPU from a stage that wanted it.
 ///
-/// A stage that works never waits: from its start to its end it wants its CPU. What it did not get of it,
-///   withheld = (end - start) - its own CPU time - that of our other threads on this CPU,
+/// A stage wants its CPU from the moment that it is told of work until that is done: it never waits in between. What it
+/// did not get,
+///   withheld = time - its own CPU time - that of our other threads on this CPU,
 /// was taken by a hypervisor, the kernel or a thread that is not ours. A witness only samples: of stalls that come in
-/// slices it sees what is left of each at its next wake-up. This sees all of them, but only while the stage works.
+/// slices it sees what is left of each at its next wake-up. This sees all of them, but only while the stage has work.
 ///
-/// Of a stage that went to sleep by itself, once, in that time, it says nothing: then waiting was its own doing. Used
-/// by the thread of the stage; everything but SetTrusted() before that starts.
+/// Never too much. Until the work begins only a stage above can be in the way for long: all that this thread and those
+/// stages used of the CPU since the work before is taken off, and a tenth of a millisecond for an ordinary wake-up and
+/// the short turns of witness and watchdog. Of work in which the thread went to sleep by itself, once, it says nothing:
+/// then waiting was its own doing. Used by the thread of the stage; everything but SetTrusted() before that starts.
 class CpuTimeMeter {
  public:
   static constexpr std::size_t kMaxOthers = 8;
 
   /// Another thread of ours on the CPU of this stage. @param cpu_time_ns  See RtThread::cpu_time_ns(); outlives this.
-  void AddOther(const std::atomic<Nanos>* cpu_time_ns) noexcept;
+  /// @param goes_first  It is a stage of this or a higher priority.
+  void AddOther(const std::atomic<Nanos>* cpu_time_ns, bool goes_first) noexcept;
   /// Whether the thread is pinned to its CPU, above everything ordinary: otherwise it merely waits for its turn, and
   /// nothing is ever withheld.
   void SetTrusted(bool trusted) noexcept { trusted_.store(trusted, std::memory_order_relaxed); }
 
+  /// The thread was told at woken_ns that there is work. 0: it was not, but looked by itself.
+  void NoteWoken(Nanos woken_ns) noexcept ARMCMC_NONBLOCKING { woken_ns_ = woken_ns; }
   /// @return now, at which the work begins. @rt Two system calls, bounded.
   Nanos Start() noexcept ARMCMC_NONBLOCKING;
-  /// @param end_ns  Now: the end of the work that began with Start(). @return ns >= 0. @rt Two system calls, bounded.
-  [[nodiscard]] Nanos Withheld(Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
+  /// Withheld from when there was work until Start(), ns >= 0.
+  [[nodiscard]] Nanos withheld_before_ns() const noexcept { return withheld_before_ns_; }
+  /// Withheld from when there was work until now, instead of Start(): the work is not done. @rt A system call, bounded.
+  [[nodiscard]] Nanos WithheldWaiting(Nanos now_ns) const noexcept ARMCMC_NONBLOCKING;
+  /// @param end_ns  Now: the end of the work that began with Start().
+  /// @return withheld in between, ns >= 0. @rt Two system calls, bounded.
+  [[nodiscard]] Nanos End(Nanos end_ns) noexcept ARMCMC_NONBLOCKING;
 
  private:
-  /// @return CPU time of the thread and of the others.
-  [[nodiscard]] Nanos Used() const noexcept ARMCMC_NONBLOCKING;
+  /// CPU times up to a moment.
+  struct Use {
+    Nanos all_ns = 0;    ///< Of the thread and of all others.
+    Nanos first_ns = 0;  ///< Of the thread and of those that go first.
+  };
+  [[nodiscard]] Use Used() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Nanos WithheldWaiting(Nanos now_ns, const Use& used) const noexcept ARMCMC_NONBLOCKING;
 
-  std::array<const std::atomic<Nanos>*, kMaxOthers> others_{};
+  struct Other {
+    const std::atomic<Nanos>* cpu_time_ns = nullptr;
+    bool goes_first = false;
+  };
+  std::array<Other, kMaxOthers> others_{};
   std::size_t num_others_ = 0;
   std::atomic<bool> trusted_{false};
-  Nanos start_ns_ = 0, used_at_start_ns_ = 0;
+  Nanos woken_ns_ = 0, withheld_before_ns_ = 0;
+  Nanos start_ns_ = 0;
+  Nanos end_ns_ = 0;  // of the work before
+  Use used_at_start_, used_at_end_;
   std::int64_t sleeps_at_start_ = 0;
 };
 

@@ -21,8 +21,10 @@ struct StepTimes {
   Nanos arrival_ns = 0;   ///< Kernel receive time of the pack.
   Nanos deadline_ns = 0;  ///< Absolute: release + deadline of the settings.
   std::array<Nanos, kNumStages> start_ns{}, end_ns{};
-  std::array<Nanos, kNumStages> withheld_ns{};  ///< Between them, of the CPU; see CpuTimeMeter. 0: nothing, or unknown.
-  Earlier adjusted_earlier;                     ///< How much earlier adjust would have been through.
+  /// Of the CPU, while there was work: until start_ns, and from there to end_ns. See CpuTimeMeter. 0: nothing, or
+  /// unknown.
+  std::array<Nanos, kNumStages> withheld_before_ns{}, withheld_ns{};
+  Earlier adjusted_earlier;  ///< How much earlier adjust would have been through.
 
   [[nodiscard]] Nanos Duration(Stage stage) const noexcept { return end_ns[IndexOf(stage)] - start_ns[IndexOf(stage)]; }
   [[nodiscard]] Nanos EndToEnd() const noexcept { return end_ns[IndexOf(Stage::kExecute)] - release_ns; }
@@ -48,9 +50,10 @@ class DeadlineMonitor {
   MissCause Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
 
   /// Judges a pack that adjust gives up at now_ns in favour of a newer one: always a miss.
-  /// @param typical_ns  What adjust would have taken; now_ns + typical_ns is past the deadline.
-  /// @rt O(wake-ups since its arrival).
-  MissCause RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns) noexcept ARMCMC_NONBLOCKING;
+  /// @param typical_ns   What adjust would have taken; now_ns + typical_ns is past the deadline.
+  /// @param withheld_ns  Of the CPU of adjust, while it waited. @rt O(wake-ups since its arrival).
+  MissCause RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns,
+                          Nanos withheld_ns = 0) noexcept ARMCMC_NONBLOCKING;
 
   /// Judges a result that execute did not come to before now_ns and the next result: always a miss.
   /// @param lacked_ns  By how much execute was late; at least 1 is assumed. @rt O(wake-ups since adjust).
@@ -70,7 +73,8 @@ class DeadlineMonitor {
   /// Of a step that went through a stage.
   [[nodiscard]] StageWork Work(Stage stage, Nanos ready_ns, const StepTimes& times) const noexcept ARMCMC_NONBLOCKING;
   /// Of one that a stage came to at start_ns, and did not do.
-  [[nodiscard]] StageWork NoWork(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] StageWork NoWork(Stage stage, Nanos ready_ns, Nanos start_ns,
+                                 Nanos withheld_ns) const noexcept ARMCMC_NONBLOCKING;
 
   std::array<const WakeUpRing*, kNumStages> witness_{};
   std::array<StageTimeline, kNumStages> timeline_;  // collect, adjust: of the adjust thread; execute: of its own

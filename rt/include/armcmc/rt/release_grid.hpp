@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "armcmc/nonblocking.hpp"
@@ -30,11 +31,14 @@ struct Release {
 ///     clock, a plant that hesitated once and keeps the new phase);
 ///   - a pack that is late by a period or more after a pause proposes a new phase; the next one confirms it by keeping
 ///     to it, or refutes it by coming sooner: then the plant is catching up, and its packs are late on the old grid;
-///   - one of the next kWindow packs may still refute it by coming half a period early: a plant that catches up may
-///     hesitate between two packs, and what it owes is late on the grid that was left.
+///   - for kSettleNs, at least kWindow packs, it may still be refuted by one that comes half a period early: a plant
+///   that
+///     catches up may hesitate between packs as long as the machine stutters, and what it owes is late on the grid that
+///     was left.
 class ReleaseGrid {
  public:
   static constexpr int kWindow = 8;
+  static constexpr Nanos kSettleNs = 100'000'000;  ///< As long as a machine may stutter.
 
   struct Point {
     Nanos release_ns = 0;   ///< min(due, arrival).
@@ -45,7 +49,8 @@ class ReleaseGrid {
   };
 
   /// @param period_ns  T_s > 0.
-  explicit ReleaseGrid(Nanos period_ns) noexcept : period_ns_(period_ns) {}
+  explicit ReleaseGrid(Nanos period_ns) noexcept
+      : period_ns_(period_ns), settling_packs_(std::max<Nanos>(kWindow, kSettleNs / period_ns)) {}
 
   /// Locks the grid on the first pack of a run of the plant.
   Point Lock(Nanos arrival_ns) noexcept ARMCMC_NONBLOCKING;
@@ -64,12 +69,13 @@ class ReleaseGrid {
   void ClearWindow() noexcept ARMCMC_NONBLOCKING;
 
   Nanos period_ns_;
+  std::int64_t settling_packs_;
   Nanos due_ns_ = 0;      // grid point of the newest pack
   Nanos arrival_ns_ = 0;  // of the newest pack
   Nanos window_min_ns_ = 0;
   int window_size_ = 0;
-  Nanos left_due_ns_ = 0;  // the newest pack on the grid that was left for a new phase
-  int left_packs_ = 0;     // so many more may refute that phase
+  Nanos left_due_ns_ = 0;        // the newest pack on the grid that was left for a new phase
+  std::int64_t left_packs_ = 0;  // so many more may refute that phase
   bool locked_ = false;
   bool proposed_ = false;  // the newest pack came so late that its arrival may be the new phase
 };

@@ -26,11 +26,17 @@ class Waiter {
   /// Blocks until a Post() or until the time is reached. @return true for a Post().
   [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING;
 
+  /// When the first Post() since the last call came, 0 if none did. By the thread that waits.
+  [[nodiscard]] Nanos TakePostTime() noexcept ARMCMC_NONBLOCKING {
+    return first_post_ns_.exchange(0, std::memory_order_relaxed);
+  }
+
  private:
   sem_t semaphore_;
   // Orders what the poster wrote before what the waiter reads. So does the semaphore, but ThreadSanitizer does not
   // know sem_clockwait().
   std::atomic<unsigned> posts_{0};
+  std::atomic<Nanos> first_post_ns_{0};
 };
 
 }  // namespace armcmc::rt
