@@ -2,6 +2,7 @@
 
 #include <sched.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -119,8 +120,11 @@ void* RtThread::Main(void* self) {
   return nullptr;
 }
 
-void RtThread::NoteCpuTime() noexcept ARMCMC_NONBLOCKING {
-  cpu_time_ns_.store(ThreadCpuTime(), std::memory_order_relaxed);
+void RtThread::NoteCpuTime(Nanos most_ns) noexcept ARMCMC_NONBLOCKING {
+  const Nanos charged_ns = ThreadCpuTime();
+  const Nanos turn_ns = std::min(charged_ns - charged_ns_, most_ns);
+  charged_ns_ = charged_ns;
+  cpu_time_ns_.store(cpu_time_ns_.load(std::memory_order_relaxed) + turn_ns, std::memory_order_relaxed);
 }
 
 void RtThread::ReadBack() {

@@ -73,7 +73,7 @@ void Watchdog::Run() noexcept {
     const Nanos now_ns = MonotonicNow();
     Check(due_ns, now_ns);
     due_ns = NextRelease(due_ns, now_ns, check_period_ns_).time_ns;
-    thread_.NoteCpuTime();
+    thread_.NoteCpuTime(RtThread::kShortTurnNs);
   }
 }
 

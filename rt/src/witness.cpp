@@ -62,7 +62,7 @@ void Witness::Run() noexcept {
       if (worst_ns_.compare_exchange_weak(worst, delay_ns, std::memory_order_relaxed)) break;
     }
     due_ns = next.time_ns;
-    thread_.NoteCpuTime();
+    thread_.NoteCpuTime(RtThread::kShortTurnNs);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/process_setup.hpp"
 
 namespace armcmc::rt {
@@ -25,6 +26,37 @@ TEST(RtThread, RunsAndReportsWhatTheKernelSays) {
   EXPECT_EQ(placement.fifo, placement.priority == 10) << "either granted, or said not to be";
   thread.Join();
   EXPECT_TRUE(ran.load());
+}
+
+/// Works for 5 ms of CPU time between two notes: once as much as it likes to say, once no more than a short turn.
+struct Turns {
+  RtThread thread;
+  Nanos long_turn_ns = 0, short_turn_ns = 0;
+
+  static void Run(void* context) noexcept {
+    auto& turns = *static_cast<Turns*>(context);
+    turns.thread.NoteCpuTime();
+    const Nanos first_ns = turns.Work();
+    turns.thread.NoteCpuTime();
+    const Nanos second_ns = turns.Work();
+    turns.long_turn_ns = second_ns - first_ns;
+    turns.thread.NoteCpuTime(RtThread::kShortTurnNs);
+    turns.short_turn_ns = turns.thread.cpu_time_ns().load() - second_ns;
+  }
+  [[nodiscard]] Nanos Work() const noexcept {
+    for (const Nanos end = ThreadCpuTime() + 5'000'000; ThreadCpuTime() < end;) {
+    }
+    return thread.cpu_time_ns().load();
+  }
+};
+
+TEST(RtThread, SaysHowMuchCpuTimeItHad) {
+  Turns turns;
+  EXPECT_EQ(turns.thread.cpu_time_ns().load(), 0);
+  turns.thread.Start({"test", 0, -1}, RtMode::kBestEffort, &Turns::Run, &turns);
+  turns.thread.Join();
+  EXPECT_GE(turns.long_turn_ns, 5'000'000);
+  EXPECT_EQ(turns.short_turn_ns, RtThread::kShortTurnNs) << "what is charged beyond that is a stall";
 }
 
 TEST(RtThread, RunsUnpinnedAndSaysSoWhenTheCpuDoesNotExist) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include "armcmc/nonblocking.hpp"
@@ -34,6 +35,8 @@ struct ThreadPlacement {
 class RtThread {
  public:
   using Entry = void (*)(void* context) noexcept;
+  static constexpr Nanos kNoLimit = std::numeric_limits<Nanos>::max();
+  static constexpr Nanos kShortTurnNs = 100'000;  ///< Of a thread that only looks at the clock and at a few numbers.
 
   RtThread() = default;
   ~RtThread() { Join(); }
@@ -48,8 +51,10 @@ class RtThread {
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return placement_; }
 
   /// Says how much CPU time the thread has had, for cpu_time_ns(). By the thread itself, before it waits.
+  /// @param most_ns  That a turn since the last call can have needed. A stall that the hypervisor does not own up to is
+  ///                 charged to whoever ran when it came: what is more is none of the thread's.
   /// @rt One system call, bounded.
-  void NoteCpuTime() noexcept ARMCMC_NONBLOCKING;
+  void NoteCpuTime(Nanos most_ns = kNoLimit) noexcept ARMCMC_NONBLOCKING;
   /// CPU time, ns, of the thread up to its newest wait. Any time, from any thread.
   [[nodiscard]] const std::atomic<Nanos>& cpu_time_ns() const noexcept { return cpu_time_ns_; }
 
@@ -68,6 +73,7 @@ class RtThread {
   pthread_t thread_{};
   bool running_ = false;
   std::atomic<Nanos> cpu_time_ns_{0};
+  Nanos charged_ns_ = 0;  // by the kernel, at the last note
 };
 
 }  // namespace armcmc::rt
