@@ -7,7 +7,8 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr std::size_t kListed = 20;
+constexpr std::size_t kListed = 20;     // by their scores,
+constexpr double kWorthListing = 1e-3;  // and all that are as probable
 constexpr double kLikely = 0.5;
 
 std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePtr& candidate, int min_active) {
@@ -97,8 +98,10 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
     for (const CandidatePtr& candidate : finding.set) result->ambiguous_set.push_back(candidate->names());
   const double full = std::max(finding.gap, 1e-12);
   const auto rows = static_cast<double>(diagnosis.look->signals.rows());
-  for (std::size_t i = 0; i < std::min(kListed, finding.tried.size()); ++i) {
+  for (std::size_t i = 0; i < finding.tried.size(); ++i) {
     const CandidatePtr& c = finding.tried[i];
+    // What shows in few events only may be probable although no score on blocks left out says so.
+    if (i >= kListed && c->probability < kWorthListing) continue;
     const double score = c->fit.score() - finding.base->fit.score();
     std::vector<std::string> texts = Texts(c);
     const std::vector<Term> added = c->added();

@@ -1,6 +1,7 @@
 #include "armcmc/gap/diagnose.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -81,6 +82,42 @@ bool Names(const Finding& finding) {
   return finding.verdict == Verdict::kNamed || finding.verdict == Verdict::kAmbiguous;
 }
 
+/// The same hypothesis with its scores counted from another base, as those of its look are.
+CandidatePtr CountedFrom(const Candidate& base, const Candidate& own_base, const Candidate& candidate) {
+  auto counted = std::make_shared<Candidate>(candidate);
+  counted->fit.log_evidence += base.fit.log_evidence - own_base.fit.log_evidence;
+  counted->fit.heldout += base.fit.heldout - own_base.fit.heldout;
+  return counted;
+}
+
+/// The looks are two models of the same data, as probable as each other: what is said is the mean of what they say.
+void MeanProbabilities(const Finding& other, Finding* finding) {
+  std::map<std::vector<std::string>, double> mean;
+  for (const CandidatePtr& candidate : finding->tried) mean[candidate->names()] += 0.5 * candidate->probability;
+  for (const CandidatePtr& candidate : other.tried) mean[candidate->names()] += 0.5 * candidate->probability;
+  finding->p_missing = 0.5 * (finding->p_missing + other.p_missing);
+  finding->p_unnamed = 0.5 * (finding->p_unnamed + other.p_unnamed);
+  for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
+  for (const CandidatePtr& candidate : finding->set)
+    if (std::find(finding->tried.begin(), finding->tried.end(), candidate) == finding->tried.end())
+      finding->tried.push_back(candidate);
+  const auto give = [&](const CandidatePtr& candidate) {
+    const auto it = mean.find(candidate->names());
+    if (it == mean.end()) return;
+    candidate->probability = it->second;
+    mean.erase(it);
+  };
+  for (const CandidatePtr& candidate : finding->set) give(candidate);
+  for (const CandidatePtr& candidate : finding->tried) give(candidate);
+  for (const CandidatePtr& candidate : other.tried) {
+    if (!mean.contains(candidate->names())) continue;
+    finding->tried.push_back(CountedFrom(*finding->base, *other.base, *candidate));
+    give(finding->tried.back());
+  }
+  std::stable_sort(finding->tried.begin(), finding->tried.end(),
+                   [](const auto& a, const auto& b) { return a->fit.score() > b->fit.score(); });
+}
+
 /// Applies the vote of the narrow look.
 void Vote(const Finding& other, Finding* finding) {
   if (!Names(*finding)) return;
@@ -88,16 +125,15 @@ void Vote(const Finding& other, Finding* finding) {
   if (mine == theirs) return;
   if (Names(other)) {
     for (const CandidatePtr& candidate : other.set)
-      if (!mine.contains(candidate->names())) finding->set.push_back(candidate);
-    // Each look gave all it had to its own.
-    double total = 0.0;
-    for (const CandidatePtr& candidate : finding->set) total += candidate->probability;
-    for (const CandidatePtr& candidate : finding->set) candidate->probability /= std::max(total, 1.0);
+      if (!mine.contains(candidate->names()))
+        finding->set.push_back(CountedFrom(*finding->base, *other.base, *candidate));
+    MeanProbabilities(other, finding);
     finding->verdict = Verdict::kAmbiguous;
   } else if (finding->approximate || finding->best->added().size() > 1) {
     finding->verdict = Verdict::kUnnamed;
     finding->approximate = false;
     finding->set.clear();
+    MeanProbabilities(other, finding);
   }
 }
 

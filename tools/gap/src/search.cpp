@@ -15,6 +15,7 @@ constexpr std::size_t kMaxGated = 4;      // gated hypotheses that are fitted, b
 constexpr std::size_t kPairBeam = 4;      // singles that get partners
 constexpr std::size_t kRefinedPairs = 3;  // pairs whose formulas and gates are tried anew
 constexpr std::size_t kJudged = 6;
+constexpr double kUnnamedAtLeast = 0.5;  // where the verdict is that
 
 void SortByScore(std::vector<CandidatePtr>* candidates) {
   std::stable_sort(candidates->begin(), candidates->end(),
@@ -308,6 +309,7 @@ Finding Search::Run(bool pairs) const {
                        Ratio(listed.front()) > limits_.visible_ratio;
     if (!clear) {
       JudgeEvents(singles, &finding);
+      if (finding.verdict == Verdict::kNone && !finding.events_s.empty()) DoubtNothing(singles, &finding);
       return finding;
     }
     finding.p_missing = 1.0 - finding.p_none;
@@ -377,7 +379,11 @@ Finding Search::Run(bool pairs) const {
   finding.p_unnamed = bootstrap_->ProbabilityAbove(Judge(finding.best).gain,
                                                    rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap));
   if (finding.approximate) finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
-  if (finding.verdict == Verdict::kUnnamed) finding.p_unnamed = std::max(finding.p_unnamed, 0.5);
+  // No name was given because something is left, be it little.
+  if (finding.verdict == Verdict::kUnnamed)
+    finding.p_unnamed =
+        std::max({finding.p_unnamed, kUnnamedAtLeast,
+                  bootstrap_->ProbabilityAbove(Judge(finding.best).gain, 0.1 * limits_.min_gain * rows_)});
   AssignProbabilities(&finding);
   if (finding.verdict == Verdict::kNamed && !finding.approximate) Hedge(&finding);
   return finding;

@@ -59,9 +59,24 @@ void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
   finding->gap = 2.0 * evidence(finding->best) / rows_;
   finding->p_missing = 1.0;
   for (const CandidatePtr& c : finding->tried) c->probability = 0.0;
+  for (const CandidatePtr& c : finding->set)
+    if (std::find(finding->tried.begin(), finding->tried.end(), c) == finding->tried.end()) finding->tried.push_back(c);
   double total = 0.0;
   for (const CandidatePtr& c : finding->set) total += std::exp(evidence(c) - evidence(finding->best));
   for (const CandidatePtr& c : finding->set) c->probability = std::exp(evidence(c) - evidence(finding->best)) / total;
+}
+
+void Search::DoubtNothing(const Candidates& singles, Finding* finding) const {
+  const CandidatePtr likely = *std::max_element(
+      singles.begin(), singles.end(), [](const auto& a, const auto& b) { return a->probability < b->probability; });
+  if (finding->p_none > limits_.clear_nothing || Ratio(likely) < limits_.visible_ratio) return;
+  finding->verdict = Verdict::kUnnamed;
+  finding->best = likely;
+  finding->p_missing = 1.0 - finding->p_none;
+  // Every effect of the catalogue was asked about these events, and none makes them ordinary.
+  finding->p_unnamed = finding->p_missing;
+  for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
+  (void)Judge(likely);
 }
 
 void Search::Hedge(Finding* finding) const {

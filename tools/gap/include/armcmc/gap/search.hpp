@@ -77,6 +77,8 @@ class Search {
   [[nodiscard]] Candidates GatedAlone(const Candidates& pairs, const Candidates& singles) const;
   /// The verdict on what shows in one to three events, by evidence: nothing can be left out.
   void JudgeEvents(const Candidates& singles, Finding* finding) const;
+  /// Where a few events stand out that nothing explains, and "nothing is missing" is out of the question: unnamed.
+  void DoubtNothing(const Candidates& singles, Finding* finding) const;
   /// @param parent  One whose partners are known already, `extended`; may be null.
   [[nodiscard]] Candidates Pairs(const Candidates& order, const CandidatePtr& parent, const Candidates& extended) const;
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
