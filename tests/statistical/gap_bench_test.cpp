@@ -53,6 +53,21 @@ class Scored {
   std::vector<Outcome> outcomes_;
 };
 
+/// What is listed has all the probability there is, and in a tie no member has almost all of it.
+void ExpectProbabilitiesToAddUp(const std::vector<Outcome>& outcomes) {
+  for (const Outcome& outcome : outcomes) {
+    const gap::Result& result = outcome.answer.result;
+    double sum = result.probability_none + result.probability_unnamed, most = 0.0;
+    for (const gap::CandidateScore& candidate : result.candidates) {
+      sum += candidate.probability;
+      most = std::max(most, candidate.probability);
+    }
+    EXPECT_NEAR(sum, 1.0, 0.02) << Line(outcome);
+    if (result.verdict != gap::Verdict::kAmbiguous) continue;
+    EXPECT_LT(most, 0.98) << Line(outcome);
+  }
+}
+
 TEST(GapBench, NothingIsFoundWhereNothingIsHidden) {
   const Scored null("null");
   ASSERT_EQ(null.counted(), 20);
@@ -116,6 +131,7 @@ TEST(GapBench, OnsetsAreFound) {
   const Scored onset("onset");
   ASSERT_GE(onset.counted(), 12);
   EXPECT_EQ(onset.Wrong(), 0) << onset.Others();
+  ExpectProbabilitiesToAddUp(onset.outcomes());
   int in_time = 0;
   for (const Outcome& outcome : onset.outcomes())
     if (outcome.onset_error_s && *outcome.onset_error_s <= 0.02) ++in_time;
@@ -125,6 +141,7 @@ TEST(GapBench, OnsetsAreFound) {
 TEST(GapBench, TheProposedExperimentResolvesTies) {
   const Scored poor("poor", "contact_sine");
   EXPECT_EQ(poor.Wrong(), 0) << poor.Others();
+  ExpectProbabilitiesToAddUp(poor.outcomes());
   int ties = 0, resolved = 0;
   std::string lines;
   for (const Outcome& outcome : poor.outcomes()) {

@@ -12,6 +12,7 @@ namespace armcmc::gap {
 namespace {
 
 using armcmc::test::HiddenEffect;
+using test::Made;
 using test::Measure;
 
 Diagnosis Judge(const std::vector<HiddenEffect>& effects, double noise_sd, unsigned seed) {
@@ -45,6 +46,25 @@ TEST(WeakEffects, AnEffectTooWeakToBeNamedIsHeldProbable) {
   }
   EXPECT_NEAR(total, 1.0, 1e-9);
   EXPECT_GT(of_bias, 0.5);
+}
+
+TEST(WeakEffects, EventsThatNoEffectExplainsAreNotNothing) {
+  // A limit that only the deepest tap reaches, and that the catalogue lacks.
+  const Made made = Measure({}, 6000, 0.05, 31);
+  const double limit = 0.95 * made.clean.maxCoeff();
+  Vector f = made.recording.Column("f");
+  f.array() -= (made.clean.array() - limit).max(0.0);
+  const auto equation = std::move(MakeEquations("hunt_crossley").front());
+  DiagnoseOptions options;
+  options.without = {"sensor_saturation"};
+  const Recording clipped =
+      test::MakeRecording(made.recording.Column("t"), made.recording.Column("x"), made.recording.Column("v"), f);
+  const Finding finding = Diagnose(*equation, clipped, options).finding;
+  EXPECT_EQ(finding.verdict, Verdict::kUnnamed);
+  EXPECT_GE(finding.events_s.size(), 1U);
+  double total = 1.0 - finding.p_missing * (1.0 - finding.p_unnamed);
+  for (const CandidatePtr& candidate : finding.tried) total += candidate->probability;
+  EXPECT_NEAR(total, 1.0, 1e-9);
 }
 
 }  // namespace

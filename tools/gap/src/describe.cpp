@@ -92,7 +92,7 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
   const Finding& finding = diagnosis.finding;
   result->verdict = finding.verdict;
   result->probability_none = finding.verdict == Verdict::kNone ? finding.p_none : 1.0 - finding.p_missing;
-  result->probability_unnamed = finding.p_unnamed;
+  result->probability_unnamed = finding.p_missing * finding.p_unnamed;
   if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active);
   if (finding.verdict == Verdict::kAmbiguous)
     for (const CandidatePtr& candidate : finding.set) result->ambiguous_set.push_back(candidate->names());

@@ -67,16 +67,15 @@ void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
 }
 
 void Search::DoubtNothing(const Candidates& singles, Finding* finding) const {
-  const CandidatePtr likely = *std::max_element(
-      singles.begin(), singles.end(), [](const auto& a, const auto& b) { return a->probability < b->probability; });
-  if (finding->p_none > limits_.clear_nothing || Ratio(likely) < limits_.visible_ratio) return;
+  if (finding->p_none > limits_.clear_nothing) return;
   finding->verdict = Verdict::kUnnamed;
-  finding->best = likely;
+  finding->best = *std::max_element(singles.begin(), singles.end(),
+                                    [](const auto& a, const auto& b) { return a->probability < b->probability; });
   finding->p_missing = 1.0 - finding->p_none;
   // Every effect of the catalogue was asked about these events, and none makes them ordinary.
-  finding->p_unnamed = finding->p_missing;
+  finding->p_unnamed = 1.0;
   for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
-  (void)Judge(likely);
+  (void)Judge(finding->best);
 }
 
 void Search::Hedge(Finding* finding) const {

@@ -44,7 +44,7 @@ struct Finding {
   double p_missing = 0.0;           ///< That anything is missing.
   double p_none = 1.0;              ///< Of a verdict of none: that nothing is missing, however weak.
   double remainder = 0.0;           ///< Share of the noise variance that `best` leaves explainable.
-  double p_unnamed = 0.0;           ///< That `best` leaves something, or that physics without a name explains it.
+  double p_unnamed = 0.0;           ///< Of what is missing: that `best` leaves some, or that it has no name.
 };
 
 /// The third step: names what is missing.
