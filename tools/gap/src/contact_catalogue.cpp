@@ -130,8 +130,8 @@ void AddPeriodic(const Signals& s, std::vector<EffectForm>* out) {
       return std::vector<std::vector<double>>{start};
     };
   };
-  // One that begins or ends is lost in the spectrum of the whole.
   sine.gates_by_mode = true;
+  // One that begins or ends is lost in the spectrum of the whole.
   sine.find_starts = [whole = find_starts(2)](const Signals& in, const Vector& residual) {
     std::vector<std::vector<double>> starts = whole(in, residual);
     const Eigen::Index part = residual.size() / 4;

@@ -95,8 +95,11 @@ void MeanProbabilities(const Finding& other, Finding* finding) {
   std::map<std::vector<std::string>, double> mean;
   for (const CandidatePtr& candidate : finding->tried) mean[candidate->names()] += 0.5 * candidate->probability;
   for (const CandidatePtr& candidate : other.tried) mean[candidate->names()] += 0.5 * candidate->probability;
-  finding->p_missing = 0.5 * (finding->p_missing + other.p_missing);
-  finding->p_unnamed = 0.5 * (finding->p_unnamed + other.p_unnamed);
+  // Of a verdict of none the weighing of weak effects is what its candidates' probabilities belong to.
+  const double other_missing = other.verdict == Verdict::kNone ? 1.0 - other.p_none : other.p_missing;
+  const double unnamed = 0.5 * (finding->p_missing * finding->p_unnamed + other_missing * other.p_unnamed);
+  finding->p_missing = 0.5 * (finding->p_missing + other_missing);
+  finding->p_unnamed = finding->p_missing > 0.0 ? unnamed / finding->p_missing : 0.0;
   for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
   for (const CandidatePtr& candidate : finding->set)
     if (std::find(finding->tried.begin(), finding->tried.end(), candidate) == finding->tried.end())
