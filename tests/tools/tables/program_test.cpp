@@ -67,6 +67,29 @@ TEST(TablesProgram, PutsArmcmcAheadOnTheAuthorsRecordingsAndDrawsEveryFigure) {
   }
 }
 
+TEST(TablesProgram, ShowsTheCoverageAloneOfSeedsThatAreAskedFor) {
+  const test::ScratchDir folder;
+  const auto run = [&](const char* first_seed) {
+    const test::Outcome outcome = test::RunProgram(
+        test::Program("armcmc-tables"),
+        {"--coverage", "--seeds", "2", "--first-seed", first_seed, "--out", (folder / first_seed).string()},
+        std::chrono::minutes(2));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(Contents(folder / first_seed / "tables.json")).at("likelihoods");
+  };
+  const json one = run("40001"), again = run("40001"), other = run("40101");
+  EXPECT_EQ(one.size(), 4u);
+  for (const auto& [noise, believed] : one.items()) {
+    EXPECT_EQ(believed.size(), 1u) << noise;
+    EXPECT_EQ(believed.at(noise).at("seeds"), 2);
+    const auto force = [&noise = noise](const json& one_run) {
+      return one_run.at(noise).at(noise).at("clean_force_mae_mN");
+    };
+    EXPECT_EQ(force(one), force(again)) << noise;
+    EXPECT_NE(force(one), force(other)) << noise;
+  }
+}
+
 TEST(TablesProgram, SaysWhatADataFolderMustHold) {
   const test::ScratchDir folder;
   const test::Outcome outcome = test::RunProgram(

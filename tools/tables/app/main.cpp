@@ -20,13 +20,14 @@ namespace {
 struct Arguments {
   std::string data, out;
   int seeds = 1;
-  bool paper_only = false, likelihoods = false;
+  std::uint64_t first_seed = 1001;  // the baselines were tuned on others
+  bool paper_only = false, likelihoods = false, coverage = false;
 };
 
 /// A folder for simulated recordings, removed at the end.
 class ScratchFolder {
  public:
-  ScratchFolder() {
+  explicit ScratchFolder(std::uint64_t first_seed) : first_seed_(first_seed) {
     std::string name = (std::filesystem::temp_directory_path() / "armcmc-tables-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
     path_ = name;
@@ -37,16 +38,15 @@ class ScratchFolder {
   }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
-  /// Seeds of the tables start at 1001: the baselines were tuned on others.
   [[nodiscard]] Recording Simulated(const std::string& scenario, PlantKind plant, double p_atm, int seed) const {
-    constexpr std::uint64_t kFirstSeed = 1001;
-    const std::filesystem::path csv = Simulate(scenario, kFirstSeed + static_cast<std::uint64_t>(seed), path_);
+    const std::filesystem::path csv = Simulate(scenario, first_seed_ + static_cast<std::uint64_t>(seed), path_);
     Recording r = ReadRecording(csv, plant, p_atm);
     std::filesystem::remove(csv);
     return r;
   }
 
  private:
+  std::uint64_t first_seed_;
   std::filesystem::path path_;
 };
 
@@ -93,26 +93,32 @@ int Run(const Arguments& a) {
       if (!plan.file.empty() && !std::filesystem::exists(std::filesystem::path(a.data) / plan.file))
         throw support::InputError("--data " + a.data + ": expected a folder with " + plan.file);
   std::filesystem::create_directories(a.out);
-  const ScratchFolder scratch;
+  const ScratchFolder scratch(a.first_seed);
   Result result;
   {
     support::Progress progress("tables");
-    double done = 0.0;
-    std::vector<Plan> plans = kPlans;
+    std::vector<Plan> plans = a.coverage ? std::vector<Plan>{} : kPlans;
     // The paper's scenario on fresh noise, when --data gave the one realisation and more seeds are asked for.
-    if (!a.data.empty() && a.seeds > 1)
+    if (!a.data.empty() && a.seeds > 1 && !a.coverage)
       plans.insert(plans.begin() + 1,
                    {"hunt_crossley_seeds", "Hunt-Crossley contact, the paper's scenario, fresh noise",
                     "hunt_crossley_paper", ""});
     if (a.paper_only) std::erase_if(plans, [](const Plan& p) { return p.file.empty(); });
+    const int cells = a.likelihoods ? 16 : a.coverage ? 4 : 0;
+    constexpr double kPlansPerCell = 0.25;  // a plan runs every method, a cell one
+    const double all = static_cast<double>(plans.size()) + kPlansPerCell * cells;
+    double done = 0.0;
     for (const Plan& plan : plans) {
       result.experiments.push_back(RunPlan(plan, a, scratch, &result));
-      progress.Update(done += 1.0 / static_cast<double>(plans.size() + (a.likelihoods ? 4 : 0)));
+      progress.Update((done += 1.0) / all);
     }
-    if (a.likelihoods)
-      result.likelihoods = RunLikelihoods(a.seeds, [&](const std::string& scenario, int seed) {
-        return scratch.Simulated(scenario, PlantKind::kHuntCrossley, 0.0, seed);
-      });
+    if (cells > 0)
+      result.likelihoods = RunLikelihoods(
+          a.seeds, a.likelihoods ? Believed::kAll : Believed::kOwn,
+          [&](const std::string& scenario, int seed) {
+            return scratch.Simulated(scenario, PlantKind::kHuntCrossley, 0.0, seed);
+          },
+          [&] { progress.Update((done += kPlansPerCell) / all); });
   }
   const std::filesystem::path out = a.out;
   Write(out / "tables.json", ToJson(result).dump(2) + "\n");
@@ -135,11 +141,17 @@ int main(int argc, char** argv) {
   app.add_option("--out", a.out, "Folder for the results")->required();
   app.add_option("--seeds", a.seeds, "Noise realisations of every simulated scenario; tables show means")
       ->check(CLI::Range(1, 1000));
+  app.add_option("--first-seed", a.first_seed, "Seed of the first realisation, the others follow")
+      ->capture_default_str();
   app.add_flag("--paper-only", a.paper_only, "Only the paper's two experiments");
   app.add_flag("--likelihoods", a.likelihoods, "Also the coverage under right and wrong noise laws (16 runs a seed)");
+  app.add_flag(
+      "--coverage", a.coverage,
+      "Only the coverage, of each noise law under its own likelihood: many seeds in little time (4 runs a seed)");
   app.footer(
       "Example:\n"
       "  armcmc-tables --out tables\n"
-      "  armcmc-tables --seeds 20 --likelihoods --out tables");
+      "  armcmc-tables --seeds 20 --likelihoods --out tables\n"
+      "  armcmc-tables --coverage --seeds 300 --first-seed 40001 --out coverage");
   return armcmc::support::RunProgram(app, "armcmc-tables", argc, argv, [&a] { return armcmc::tables::Run(a); });
 }

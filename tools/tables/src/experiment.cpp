@@ -108,7 +108,9 @@ Experiment RunExperiment(const std::string& key, const std::string& title, int s
   return e;
 }
 
-std::vector<LikelihoodCell> RunLikelihoods(int seeds, const std::function<Recording(const std::string&, int)>& source) {
+std::vector<LikelihoodCell> RunLikelihoods(int seeds, Believed which,
+                                           const std::function<Recording(const std::string&, int)>& source,
+                                           const std::function<void()>& done) {
   const std::vector<std::pair<std::string, std::string>> noises = {{"gaussian", "hunt_crossley_paper"},
                                                                    {"student_t", "hunt_crossley_heavy_tailed"},
                                                                    {"laplace", "hunt_crossley_laplace"},
@@ -116,6 +118,7 @@ std::vector<LikelihoodCell> RunLikelihoods(int seeds, const std::function<Record
   std::vector<LikelihoodCell> cells;
   for (const auto& [noise, scenario] : noises) {
     for (const auto& [believed, other] : noises) {
+      if (which == Believed::kOwn && believed != noise) continue;
       const MethodSpec spec = PaperMethods(ScenarioSettings(other)).front();
       std::vector<ContactScore> scores;
       Row row;
@@ -126,6 +129,7 @@ std::vector<LikelihoodCell> RunLikelihoods(int seeds, const std::function<Record
         scores.push_back(ScoreContact(recording, RunMethod(recording, spec), Point::kMap, spec.settings));
       }
       cells.push_back({noise, believed, seeds, MeanRow(std::move(row), scores, {})});
+      if (done) done();
     }
   }
   return cells;

@@ -155,8 +155,12 @@ void Lead(const Result& result, plots::Page* page) {
 
 std::string ToHtml(const Result& result) {
   plots::Page page("ARMCMC: the paper's experiments, all methods");
-  page.Html("<h1>The paper's two experiments, every method, one run</h1>\n");
-  Lead(result, &page);
+  if (result.experiments.empty()) {
+    page.Html("<h1>What the credible intervals hold</h1>\n");
+  } else {
+    page.Html("<h1>The paper's two experiments, every method, one run</h1>\n");
+    Lead(result, &page);
+  }
   for (const Experiment& e : result.experiments) {
     page.Html("<section class=\"card\"><h2>" + EscapeHtml(e.title) + "</h2>\n");
     PaperBlocks(e, &page);

@@ -67,7 +67,9 @@ void LikelihoodTable(const Result& result, std::ostringstream* out) {
       table.AddRow(cells);
     }
   }
-  Put(out, "Right and wrong likelihoods: coverage in percent with its standard error; off by more than two is said",
+  Put(out,
+      "Each noise law under the likelihood that is believed: coverage in percent with its standard error; off by more "
+      "than two is said",
       table);
 }
 
@@ -95,6 +97,7 @@ std::string ToText(const Result& result) {
     if (e.key == "soft_actuator") out << ActuatorNote() << "\n\n";
   }
   if (!result.likelihoods.empty()) LikelihoodTable(result, &out);
+  if (result.experiments.empty()) return out.str();
   const std::vector<std::string> lost = LostRows(result);
   out << (lost.empty() ? "AR-MAP is ahead of every other online method on every row.\n" : "Rows that AR-MAP loses:\n");
   for (const std::string& row : lost) out << "  " << row << '\n';

@@ -45,7 +45,15 @@ struct LikelihoodCell {
   int seeds = 1;
   Row row;
 };
+/// Which laws the estimator is made to believe in.
+enum class Believed {
+  kOwn,  ///< That of the noise: four cells.
+  kAll,  ///< Each of the four under each: sixteen.
+};
+/// @param source  Scenario and number of the seed in [0, seeds) to recording.
+/// @param done    Called after each cell.
 [[nodiscard]] std::vector<LikelihoodCell> RunLikelihoods(
-    int seeds, const std::function<Recording(const std::string&, int)>& source);
+    int seeds, Believed which, const std::function<Recording(const std::string&, int)>& source,
+    const std::function<void()>& done);
 
 }  // namespace armcmc::tables
