@@ -25,6 +25,11 @@ EstimatorSettings Regressed(EstimatorSettings settings) {
   return settings;
 }
 
+/// Of each watch: a soft actuator has two, which share the rate that is asked for.
+double FalseAlarmRate(const EstimatorSettings& settings, const ModelInfo& info) {
+  return settings.gap_watch.false_alarm_rate / (info.plant == PlantKind::kSoftActuator ? 2.0 : 1.0);
+}
+
 }  // namespace
 
 Estimator::Impl::Impl(const EstimatorSettings& s)
@@ -35,7 +40,10 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       kernels(simd::Best()),
       predictor(info, s.constants, composition.flow()),
       summary(s.sampler.max_draws),
-      gap_watch(settings, model, kernels) {
+      gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
+      bend_watch(info.plant == PlantKind::kSoftActuator
+                     ? std::make_unique<BendWatch>(settings, FalseAlarmRate(settings, info))
+                     : nullptr) {
   dim = info.num_parameters;
   samplers.reserve(static_cast<std::size_t>(info.num_modes));
   for (int m = 0; m < info.num_modes; ++m) {
@@ -163,6 +171,7 @@ void Estimator::Reset() noexcept {
   s.predictor.Reset();
   s.composition.Reset();
   s.gap_watch.Reset();
+  if (s.bend_watch) s.bend_watch->Reset();
   s.report_mode = 0;
 }
 

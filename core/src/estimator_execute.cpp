@@ -123,7 +123,17 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
   gap_watch.Step(pack, estimate, changed);
-  e->gap = gap_watch.state();
+  if (bend_watch) bend_watch->Step(pack, predictor, shown[0]);
+  e->gap = Gap();
+}
+
+const GapState& Estimator::Impl::Gap() const noexcept {
+  const GapState& fitted = gap_watch.state();
+  if (!bend_watch) return fitted;
+  const GapState& bend = bend_watch->state();
+  if (fitted.suspected != bend.suspected) return bend.suspected ? bend : fitted;
+  if (fitted.num_blocks == 0 || bend.num_blocks == 0) return bend.num_blocks == 0 ? fitted : bend;
+  return bend.log_evidence - bend.log_threshold > fitted.log_evidence - fitted.log_threshold ? bend : fitted;
 }
 
 void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
@@ -164,7 +174,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   if (result.status == Status::kBadPack) {
     e->y_pred = e->y_lo = e->y_hi = e->y_free_run = kUnknown;
     e->y_rmse = 0.0;
-    e->gap = s.gap_watch.state();
+    e->gap = s.Gap();
     return;
   }
   s.WatchGap(pack, e);

@@ -9,6 +9,7 @@
 #include "armcmc/baselines/pack_filter.hpp"
 #include "armcmc/effects/composition.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/gap_watch/bend_watch.hpp"
 #include "armcmc/gap_watch/gap_watch.hpp"
 #include "armcmc/mode_sampler.hpp"
 #include "armcmc/output_predictor.hpp"
@@ -69,10 +70,13 @@ struct Estimator::Impl {
   std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
   GapWatch gap_watch;
+  std::unique_ptr<BendWatch> bend_watch;  ///< Of a plant that has a second equation.
 
   /// The effects of a contact act on the output that is predicted; those of the actuator on what bends it.
   [[nodiscard]] bool contact_effects() const noexcept { return !composition.empty() && composition.flow().empty; }
   void WatchGap(const DataPack& pack, Estimate* e) noexcept;
+  /// What is published: the watch that has an alarm, or the one that is closer to it.
+  [[nodiscard]] const GapState& Gap() const noexcept;
   /// Output at every sample of the pack with the estimates on display, for a contact with effects.
   void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
   void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;

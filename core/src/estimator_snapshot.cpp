@@ -32,6 +32,7 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
     }
   }
   s.gap_watch.Save(&out);
+  if (s.bend_watch) s.bend_watch->Save(&out);
   return out.size();
 }
 
@@ -58,6 +59,7 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
     }
   }
   s.gap_watch.Restore(&display);
+  if (s.bend_watch) s.bend_watch->Restore(&display);
   if (posterior.finished() && display.finished()) return true;
   Reset();
   return false;

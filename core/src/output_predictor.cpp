@@ -16,40 +16,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 OutputPredictor::OutputPredictor(const ModelInfo& info, const PlantConstants& constants, const FlowPlan& flow)
-    : info_(info), constants_(constants), flow_(flow) {}
-
-void OutputPredictor::Discretise(double dt) noexcept {
-  if (dt == dt_) return;
-  dt_ = dt;
-  // Taylor series of exp(M) for the augmented system (alpha, rate, p, slope of p): 30 terms of a matrix with norm
-  // q3 dt + q2 dt of order one, scaled by 2^-6 and squared back, leave rounding error only.
-  constexpr int kN = 4;
-  constexpr int kSquarings = 6;
-  using Matrix = std::array<double, kN * kN>;
-  const auto multiply = [](const Matrix& a, const Matrix& b) noexcept {
-    Matrix c{};
-    for (std::size_t i = 0; i < kN; ++i)
-      for (std::size_t k = 0; k < kN; ++k)
-        for (std::size_t j = 0; j < kN; ++j) c[i * kN + j] += a[i * kN + k] * b[k * kN + j];
-    return c;
-  };
-  const double h = dt / (1 << kSquarings);
-  const Matrix m{
-      0.0, h,   0.0, 0.0, -constants_.q3 * h, -constants_.q2 * h, constants_.q1 * h, 0.0, 0.0, 0.0, 0.0, h / dt,
-      0.0, 0.0, 0.0, 0.0};
-  Matrix term{};
-  Matrix sum{};
-  for (std::size_t i = 0; i < kN; ++i) term[i * kN + i] = sum[i * kN + i] = 1.0;
-  for (int k = 1; k <= 30; ++k) {
-    term = multiply(term, m);
-    for (auto& t : term) t /= k;
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += term[i];
-  }
-  for (int k = 0; k < kSquarings; ++k) sum = multiply(sum, sum);
-  transition_ = {sum[0], sum[1], sum[4], sum[5]};
-  // p(t) = p_0 + (p_1 - p_0) t / dt: column 2 acts on p_0, column 3 on p_1 - p_0.
-  gain_ = {sum[2] - sum[3], sum[3], sum[6] - sum[7], sum[7]};
-}
+    : info_(info), constants_(constants), flow_(flow), motion_(constants) {}
 
 bool OutputPredictor::NextPressure(const Input& input, const ShownEstimates& shown, const State& state,
                                    double* p) const noexcept {
@@ -64,7 +31,7 @@ bool OutputPredictor::NextPressure(const Input& input, const ShownEstimates& sho
     return gain != 0.0 ? u * SoftActuator::Head(at, mode, constants_) / gain : 0.0;
   };
   const double first = rate(state.p);
-  *p = state.p + 0.5 * dt_ * (first + rate(state.p + dt_ * first));  // Heun
+  *p = state.p + 0.5 * motion_.interval() * (first + rate(state.p + motion_.interval() * first));  // Heun
   return true;
 }
 
@@ -92,7 +59,8 @@ bool OutputPredictor::NextPressureWithEffects(const Input& input, const ShownEst
   if (!shown.known[told]) return false;
   double opening = command, spool = state->spool;
   if (flow_.lag().there()) {
-    const ValveLag::Spool<ScalarOps> law(shown.theta[told][static_cast<std::size_t>(flow_.lag().parameter)], dt_);
+    const ValveLag::Spool<ScalarOps> law(shown.theta[told][static_cast<std::size_t>(flow_.lag().parameter)],
+                                         motion_.interval());
     spool = law.Next(spool, command);
     if (flow_.lag().ActsAt(input.t_s)) opening = spool;
   }
@@ -114,7 +82,7 @@ bool OutputPredictor::NextPressureWithEffects(const Input& input, const ShownEst
     return point.rate + (gain != 0.0 ? flow / gain : 0.0);
   };
   const double first = rate(state->p);
-  *p = state->p + 0.5 * dt_ * (first + rate(state->p + dt_ * first));  // Heun
+  *p = state->p + 0.5 * motion_.interval() * (first + rate(state->p + motion_.interval() * first));  // Heun
   return true;
 }
 
@@ -132,11 +100,7 @@ void OutputPredictor::AdvanceOrHold(const Input& input, const ShownEstimates& sh
 }
 
 void OutputPredictor::Bend(double next_p, State* state) const noexcept {
-  const double p0 = state->p - constants_.p_atm;
-  const double p1 = next_p - constants_.p_atm;
-  const State old = *state;
-  state->alpha = transition_[0] * old.alpha + transition_[1] * old.rate + gain_[0] * p0 + gain_[1] * p1;
-  state->rate = transition_[2] * old.alpha + transition_[3] * old.rate + gain_[2] * p0 + gain_[3] * p1;
+  state->bend = motion_.Next(state->bend, state->p, next_p);
   state->p = next_p;
 }
 
@@ -155,14 +119,14 @@ void OutputPredictor::Predict(const DataPack& pack, const ShownEstimates& shown,
     }
     return;
   }
-  Discretise(pack.dt);
+  motion_.SetInterval(pack.dt);
   const bool continues = pack.seq == last_seq_ + 1 && pack.run_id == last_run_;
   last_seq_ = pack.seq;
   last_run_ = pack.run_id;
   const double first_s = pack.t_last_s - (pack.num_samples - 1) * pack.dt;
   if (!continues) {
     restarted_ = {};
-    restarted_.alpha = pack.y[0];
+    restarted_.bend.angle = pack.y[0];
     restarted_.p = TruePressure(pack.u[0][2], first_s, restarted_.valve, shown);
     free_run_ = restarted_;
     backlog_size_ = 0;
@@ -172,8 +136,8 @@ void OutputPredictor::Predict(const DataPack& pack, const ShownEstimates& shown,
   for (int n = 0; n < pack.num_samples; ++n) {
     const auto i = static_cast<std::size_t>(n);
     // The state is the prediction for this sample; the input of this sample carries it to the next one.
-    (*output)[i] = restarted_.alpha;
-    (*free_run)[i] = free_run_.alpha;
+    (*output)[i] = restarted_.bend.angle;
+    (*free_run)[i] = free_run_.bend.angle;
     const Input input{pack.u[i][0], pack.u[i][1], first_s + n * pack.dt};
     AdvanceOrHold(input, shown, &restarted_);
     if (backlog_size_ < static_cast<int>(backlog_.size())) backlog_[static_cast<std::size_t>(backlog_size_++)] = input;
@@ -202,7 +166,7 @@ double OutputPredictor::LastAngle(const DataPack& pack, const ShownEstimates& sh
     const Input input{pack.u[i][0], pack.u[i][1], pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt};
     AdvanceOrHold(input, changed, &state);
   }
-  return state.alpha;
+  return state.bend.angle;
 }
 
 }  // namespace armcmc

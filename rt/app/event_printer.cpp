@@ -67,7 +67,7 @@ std::string EventText(const rt::Event& event) {
     case EventKind::kPublishFailed: return "publishing failed, " + a + " times so far";
     case EventKind::kGapSuspected:
       return "GAP SUSPECTED: the model misses something since pack " + a + ", seen in " +
-             std::string(FamilyOf(static_cast<PlantKind>(event.b)).check(event.detail));
+             std::string(GapCheckName(static_cast<PlantKind>(event.b), event.detail));
     case EventKind::kClockJumped: return "the plant's clock jumped by " + Millis(event.b) + " at pack " + a;
     case EventKind::kBusFlooded: return "the bus is flooded: " + Count(event.a, "message") + " of other channels";
     case EventKind::kStageHung:

@@ -80,6 +80,17 @@ TEST(GapWatchPower, FindsWhatTheValvesOfTheActuatorHide) {
   }
 }
 
+TEST(GapWatchPower, FindsWhatBendsTheActuator) {
+  constexpr double kSeconds = 40.0;
+  for (const char* effect : {"joint_friction", "cubic_stiffness", "gravity_load", "hysteresis", "payload_step",
+                             "periodic_disturbance", "pressure_bias", "angle_bias", "sensor_delay"}) {
+    const GapState state =
+        Watch(Hiding("soft_actuator_excited", effect, 1.0, 1, kSeconds), 1, kSeconds, "soft_actuator_excited");
+    EXPECT_TRUE(state.suspected) << effect << ": log evidence " << state.log_evidence;
+    EXPECT_NE(state.where.find("bend"), std::string_view::npos) << effect << ": " << state.where;
+  }
+}
+
 TEST(GapWatchPower, IsSilentWithoutAHiddenEffect) {
   constexpr double kSeconds = 120.0;
   for (const char* name : {"hunt_crossley_paper", "hunt_crossley_drift", "hunt_crossley_step", "hunt_crossley_chatter",
@@ -93,6 +104,8 @@ TEST(GapWatchPower, IsSilentWithoutAHiddenEffect) {
     const GapState state = Watch(Scenario("soft_actuator_excited", kSeconds), seed, kSeconds, "soft_actuator_excited");
     EXPECT_FALSE(state.suspected) << seed << ": " << state.where;
   }
+  const GapState quiet = Watch(Scenario("soft_actuator_paper", kSeconds), 1, kSeconds, "soft_actuator");
+  EXPECT_FALSE(quiet.suspected) << quiet.where;
 }
 
 }  // namespace

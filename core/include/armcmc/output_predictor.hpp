@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "armcmc/bend_motion.hpp"
 #include "armcmc/data_pack.hpp"
 #include "armcmc/effects/flow_plan.hpp"
 #include "armcmc/model.hpp"
@@ -45,9 +46,15 @@ class OutputPredictor {
   [[nodiscard]] double LastAngle(const DataPack& pack, const ShownEstimates& shown, int mode,
                                  const double* theta) const noexcept ARMCMC_NONBLOCKING;
 
+  /// Pressure (Pa) that the chamber of the actuator holds when the sensor says `measured`: without the sensor's zero,
+  /// where the model knows one. @param mode  Whose parameters say so; where it has none, those of the other valve.
+  [[nodiscard]] double TruePressure(double measured, double t_s, int mode,
+                                    const ShownEstimates& shown) const noexcept ARMCMC_NONBLOCKING;
+
  private:
   struct State {
-    double p = 0.0, alpha = 0.0, rate = 0.0;
+    double p = 0.0;
+    BendMotion::State bend;
     double spool = 0.0;  ///< Of slow valves.
     int valve = 2;       ///< Open last; 2: none yet.
   };
@@ -60,12 +67,8 @@ class OutputPredictor {
   /// The same with effects; moves the spool.
   [[nodiscard]] bool NextPressureWithEffects(const Input& input, const ShownEstimates& shown, State* state,
                                              double* p) const noexcept ARMCMC_NONBLOCKING;
-  /// What the chamber holds when the sensor says `measured`.
-  [[nodiscard]] double TruePressure(double measured, double t_s, int mode,
-                                    const ShownEstimates& shown) const noexcept ARMCMC_NONBLOCKING;
   /// Amplitude of an effect at a time, of the parameters theta.
   [[nodiscard]] double Amplitude(std::size_t effect, double t_s, const double* theta) const noexcept ARMCMC_NONBLOCKING;
-  void Discretise(double dt) noexcept ARMCMC_NONBLOCKING;
   /// @return false, and nothing changed, when a mode that acts is not known.
   [[nodiscard]] bool Advance(const Input& input, const ShownEstimates& shown,
                              State* state) const noexcept ARMCMC_NONBLOCKING;
@@ -77,9 +80,7 @@ class OutputPredictor {
   const ModelInfo& info_;
   PlantConstants constants_;
   FlowPlan flow_;
-  double dt_ = 0.0;
-  std::array<double, 4> transition_{};  ///< exp(A dt), row major.
-  std::array<double, 4> gain_{};        ///< Effect of p - p_atm at the start and the end of a step.
+  BendMotion motion_;
   std::int64_t last_seq_ = -1, last_run_ = 0;
   State restarted_, free_run_, before_pack_;
   std::array<Input, kBacklogPacks * kMaxPackSamples> backlog_{};

@@ -59,7 +59,7 @@ void GapBlock::AddRegions(int k, const GapRows& rows, double tau, bool changed, 
   AddFit(k, rows, tau, changed);
   PackSums& pack = packs_[At(k)];
   const int n = rows.num_samples;
-  for (int r = 0; r < family_.num_regions; ++r) {
+  for (int r = 0; r < checks_.num_regions; ++r) {
     const double* phi = regions[At(r)].data();
     RegionSums& sums = pack.region[At(r)];
     sums.error = Dot(phi, rows.error.data(), n);
@@ -246,20 +246,22 @@ CheckScore GapBlock::ScoreEcho(int lag, double tolerance, double* explained) con
   return result;
 }
 
-CheckScore GapBlock::ScoreWander(double tolerance, double* explained) const noexcept {
-  double sum = 0.0, square = 0.0, fourth = 0.0, last = 0.0, variance = 0.0;
+CheckScore GapBlock::ScoreWander(int lag, double tolerance, double* explained) const noexcept {
+  double sum = 0.0, square = 0.0, fourth = 0.0, variance = 0.0;
   int count = 0, pairs = 0;
-  bool neighbour = false;
+  std::array<double, 2> before{};  // means, in turns
+  int run = 0;                     // packs without a gap before this one
   for (int k = 0; k < kGapBlockPacks; ++k) {
     const PackSums& pack = packs_[At(k)];
     if (!pack.used || pack.count == 0) {
-      neighbour = false;
+      run = 0;
       continue;
     }
     const double total = pack.region[0].error - Dot(pack.region[0].slope.data(), fit_[At(k)].data(), columns_);
     const double mean = total / std::sqrt(static_cast<double>(pack.count));
-    if (neighbour) {
-      const double product = mean * last;
+    const double earlier = before[At((k + lag) % 2)];
+    if (run >= lag) {
+      const double product = mean * earlier;
       sum += product;
       square += product * product;
       fourth += product * product * product * product;
@@ -267,8 +269,8 @@ CheckScore GapBlock::ScoreWander(double tolerance, double* explained) const noex
       ++pairs;
       count += pack.count;
     }
-    last = mean;
-    neighbour = true;
+    before[At(k % 2)] = mean;
+    ++run;
   }
   CheckScore result;
   *explained = 0.0;
@@ -303,10 +305,11 @@ void GapBlock::BeginScores() noexcept {
 CheckScore GapBlock::Score(int check, double tolerance) noexcept {
   double* explained = &explained_[At(check)];
   CheckScore score;
-  switch (check - family_.num_regions) {
+  switch (check - checks_.num_regions) {
     case 0: score = ScoreEcho(1, tolerance, explained); break;
     case 1: score = ScoreEcho(2, tolerance, explained); break;
-    case 2: score = ScoreWander(tolerance, explained); break;
+    case 2: score = ScoreWander(1, tolerance, explained); break;
+    case 3: score = ScoreWander(2, tolerance, explained); break;
     default: score = ScoreRegion(check, tolerance, explained); break;
   }
   // Data without any noise: what is left is rounding, and its squares may underflow.

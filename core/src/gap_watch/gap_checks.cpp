@@ -83,12 +83,17 @@ void FillContact(const DataPack& pack, const std::array<int, kMaxPackSamples>&, 
   }
 }
 
+constexpr std::array<std::string_view, kNumSerialChecks> kSerialChecks{
+    "repeats_after_a_pack", "repeats_after_two_packs", "slow_wander", "wander_after_two_packs"};
+
 constexpr GapFamily kContactFamily{
+    .checks = {.first = 0,
+               .num_regions = kNumContactRegions,
+               .regions = {"everywhere", "free", "contact_direction", "free_direction", "contact_speed", "free_speed",
+                           "shallow_contact", "deep_contact", "shallow_retracting", "early_contact",
+                           "contact_acceleration", "free_acceleration", "output_rate", "high_output"},
+               .serial = kSerialChecks},
     .passive_is_zero = true,
-    .num_regions = kNumContactRegions,
-    .regions = {"everywhere", "free", "contact_direction", "free_direction", "contact_speed", "free_speed",
-                "shallow_contact", "deep_contact", "shallow_retracting", "early_contact", "contact_acceleration",
-                "free_acceleration", "output_rate", "high_output"},
     .fill = &FillContact,
 };
 
@@ -127,11 +132,21 @@ void FillActuator(const DataPack& pack, const std::array<int, kMaxPackSamples>& 
 }
 
 constexpr GapFamily kActuatorFamily{
+    .checks = {.first = 0,
+               .num_regions = kNumActuatorRegions,
+               .regions = {"any_valve", "venting", "high_pressure_filling", "high_pressure_venting", "small_opening",
+                           "early_opening", "pressure"},
+               .serial = kSerialChecks},
     .passive_is_zero = false,
-    .num_regions = kNumActuatorRegions,
-    .regions = {"any_valve", "venting", "high_pressure_filling", "high_pressure_venting", "small_opening",
-                "early_opening", "pressure"},
     .fill = &FillActuator,
+};
+
+constexpr GapChecks kBendChecks{
+    .first = kActuatorFamily.checks.size(),
+    .num_regions = kNumBendRegions,
+    .regions = {"bending", "bend_direction", "bend_speed", "bend_angle", "bend_large_angle", "bend_acceleration"},
+    .serial = {"bend_repeats_after_a_pack", "bend_repeats_after_two_packs", "bend_slow_wander",
+               "bend_wander_after_two_packs"},
 };
 
 }  // namespace
@@ -142,6 +157,16 @@ const GapFamily& FamilyOf(PlantKind plant) noexcept {
     case PlantKind::kSoftActuator: return kActuatorFamily;
   }
   return kContactFamily;
+}
+
+const GapChecks& BendChecks() noexcept { return kBendChecks; }
+
+std::string_view GapCheckName(PlantKind plant, int check) noexcept {
+  const GapChecks& fitted = FamilyOf(plant).checks;
+  if (check < 0) return "";
+  if (check < fitted.size()) return fitted.name(check);
+  const int bend = check - kBendChecks.first;
+  return plant == PlantKind::kSoftActuator && bend < kBendChecks.size() ? kBendChecks.name(bend) : "";
 }
 
 }  // namespace armcmc

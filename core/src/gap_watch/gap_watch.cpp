@@ -4,53 +4,28 @@
 #include <cmath>
 
 #include "armcmc/models/registry.hpp"
-#include "armcmc/snapshot.hpp"
 
 namespace armcmc {
 namespace {
 
 constexpr int kFirstChange = 3;    // an earlier one just shortens the block
 constexpr int kPacksOfChange = 3;  // that the estimator may need to settle
-constexpr double kLeastEvidence = 1e-12;
-constexpr double kFade = 0.9;  // of the shares, from block to block
 
 std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-GapWatch::GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels)
+GapWatch::GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels, double rate)
     : settings_(settings.gap_watch),
       family_(FamilyOf(AllModels::kInfos[At(model)]->plant)),
       first_(settings, model, kernels),
       second_(settings, model, kernels),
       enabled_(settings.gap_watch.enabled && first_.num_columns() <= kGapColumns),
-      block_(family_, std::min(first_.num_columns(), kGapColumns)),
-      evidence_(family_.num_checks(), settings.gap_watch.false_alarm_rate) {
+      block_(family_.checks, std::min(first_.num_columns(), kGapColumns)),
+      judge_(family_.checks, rate) {
   if (enabled_)
     for (Recording& recording : recordings_) recording.packs.resize(kGapBlockPacks);
-  state_.watched = enabled_;
-}
-
-void GapWatch::Save(SnapshotWriter* out) const noexcept {
-  out->PutFlag(state_.suspected);
-  out->Put(std::int64_t{state_.check});
-  for (const std::int64_t v : {state_.since_seq, state_.alarm_seq, state_.num_blocks}) out->Put(v);
-  for (const double v : {state_.log_evidence, state_.log_threshold, state_.share, excess_}) out->Put(v);
-  out->PutRow(explained_.data(), explained_.size());
-  for (const std::int64_t v : since_) out->Put(v);
-  evidence_.Save(out);
-}
-
-void GapWatch::Restore(SnapshotReader* in) noexcept {
-  constexpr std::int64_t kMostPacks = std::int64_t{1} << 62;
-  state_.suspected = in->Flag();
-  state_.check = static_cast<int>(in->Integer(-1, family_.num_checks() - 1));
-  if (state_.check >= 0) state_.where = family_.check(state_.check);
-  for (std::int64_t* v : {&state_.since_seq, &state_.alarm_seq, &state_.num_blocks}) *v = in->Integer(0, kMostPacks);
-  for (double* v : {&state_.log_evidence, &state_.log_threshold, &state_.share, &excess_}) *v = in->Number();
-  in->Row(explained_.data(), explained_.size());
-  for (std::int64_t& v : since_) v = in->Integer(0, kMostPacks);
-  evidence_.Restore(in);
+  judge_.Reset(enabled_);
 }
 
 void GapWatch::Reset() noexcept {
@@ -58,16 +33,11 @@ void GapWatch::Reset() noexcept {
   analysed_ = nullptr;
   first_.Reset();
   second_.Reset();
-  evidence_.Reset();
+  judge_.Reset(enabled_);
   memory_ = RegionMemory{};
-  explained_ = {};
-  excess_ = 0.0;
-  since_ = {};
   last_number_ = -1;
   last_seq_ = last_run_ = 0;
   joining_ = false;
-  state_ = GapState{};
-  state_.watched = enabled_;
 }
 
 void GapWatch::Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept {
@@ -95,7 +65,7 @@ void GapWatch::AnalysePiece() noexcept {
     AnalysePack(piece - kSecondPass, true);
   } else if (piece == kScores) {
     block_.BeginScores();
-  } else if (const int check = piece - kScores - 1; check < family_.num_checks()) {
+  } else if (const int check = piece - kScores - 1; check < family_.checks.size()) {
     new_scores_[At(check)] = block_.Score(check, settings_.tolerance);
   } else {
     Judge();
@@ -173,7 +143,7 @@ void GapWatch::AnalysePack(int k, bool second_pass) noexcept {
     return;
   }
   family_.fill(pack, modes_, rows_.output.data(), &memory_, &regions_);
-  for (int r = 0; r < family_.num_regions; ++r)
+  for (int r = 0; r < family_.checks.num_regions; ++r)
     for (std::size_t n = 0; n < At(pack.num_samples); ++n)
       if (!rows_.used[n]) regions_[At(r)][n] = 0.0;
   if (!usable || left_out_[At(k)]) {
@@ -200,29 +170,8 @@ void GapWatch::Judge() noexcept {
   scores_ = new_scores_;
   const DataPack& first = analysed_->packs.front();
   const DataPack& last = analysed_->packs.back();
-  const double even = evidence_.stakes() / family_.num_checks();
-  for (int c = 0; c < family_.num_checks(); ++c)
-    if (since_[At(c)] == 0 || evidence_.of(c) <= even) since_[At(c)] = analysed_seq_;
-  evidence_.Add(scores_, (last.t_last_s - first.t_last_s + first.num_samples * first.dt) / 3600.0);
-
-  int best = 0;
-  excess_ = kFade * excess_ + std::max(block_.excess(), 0.0);
-  for (int c = 0; c < family_.num_checks(); ++c) {
-    explained_[At(c)] = kFade * explained_[At(c)] + block_.explained(c);
-    if (evidence_.of(c) > evidence_.of(best)) best = c;
-  }
-  state_.num_blocks += 1;
-  state_.check = best;
-  state_.where = family_.check(best);
-  state_.log_evidence = std::log(std::max(evidence_.total() / evidence_.stakes(), kLeastEvidence));
-  state_.log_threshold = -std::log(evidence_.stakes());
-  const double all = std::max(excess_, explained_[At(best)]);
-  state_.share = all > 0.0 ? explained_[At(best)] / all : 0.0;
-  if (!state_.suspected && evidence_.total() >= 1.0) {
-    state_.suspected = true;
-    state_.alarm_seq = last_seq_;
-  }
-  state_.since_seq = since_[At(best)];
+  const double seconds = last.t_last_s - first.t_last_s + first.num_samples * first.dt;
+  judge_.Add(scores_, block_, {analysed_seq_, last_seq_, seconds / 3600.0});
 }
 
 }  // namespace armcmc

@@ -50,7 +50,8 @@ inline NoiseLaw MakeNoise(const std::string& law, std::uint64_t seed) {
 class GapRig {
  public:
   explicit GapRig(double tolerance = GapWatchSettings{}.tolerance)
-      : settings_(BuiltinSettings("hunt_crossley")), watch_(Prepared(tolerance, &settings_), 0, simd::Best()) {
+      : settings_(BuiltinSettings("hunt_crossley")),
+        watch_(Prepared(tolerance, &settings_), 0, simd::Best(), settings_.gap_watch.false_alarm_rate) {
     told.known[0] = true;
     told.theta[0] = {4.05, 2.27, 1.705};
     told.noise_std[0] = 0.1;

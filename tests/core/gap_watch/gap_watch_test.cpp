@@ -205,7 +205,7 @@ TEST(GapWatch, StaysFiniteWithoutNoise) {
 TEST(GapWatch, CanBeSwitchedOff) {
   EstimatorSettings settings = BuiltinSettings("hunt_crossley");
   settings.gap_watch.enabled = false;
-  GapWatch watch(settings, 0, simd::Best());
+  GapWatch watch(settings, 0, simd::Best(), settings.gap_watch.false_alarm_rate);
   const GapRig rig;
   watch.Step(rig.Pack(1, TruthAlone, MakeNoise("white", 1)), rig.told, false);
   EXPECT_FALSE(watch.state().watched);

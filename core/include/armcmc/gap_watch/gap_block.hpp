@@ -39,12 +39,12 @@ using GapShift = std::array<double, kGapColumns>;
 /// from pack to pack, coloured within a pack), z is conditionally sub-Gaussian with variance 1 (Efron 1969, de la Pena
 /// 1999); the leverage makes up for psi_k being computed from residuals. The two repeating checks score
 /// sum_k d_k' d_{k-1} and sum_k d_k' d_{k-2} the same way, with d_k the errors of a pack without their mean and slope;
-/// the wander scores products of neighbouring pack means. What coloured noise carries from one pack into the next is
-/// allowed for up to AR(1) noise with coefficient 0.8 from sample to sample: neighbouring means of n samples then
-/// correlate by 0.8 / (0.36 n).
+/// the two wanders score products of the means of neighbouring packs, and of those two apart. What coloured noise
+/// carries from one pack into the next is allowed for up to AR(1) noise with coefficient 0.8 from sample to sample:
+/// neighbouring means of n samples then correlate by 0.8 / (0.36 n).
 class GapBlock {
  public:
-  GapBlock(const GapFamily& family, int num_columns) noexcept : family_(family), columns_(num_columns) {}
+  GapBlock(const GapChecks& checks, int num_columns) noexcept : checks_(checks), columns_(num_columns) {}
 
   void Clear() noexcept ARMCMC_NONBLOCKING;
   /// First pass: errors and slopes of pack k alone. @param tau  Place in the block, [-1, 1].
@@ -99,10 +99,10 @@ class GapBlock {
   [[nodiscard]] CheckScore ScoreRegion(int region, double tolerance,
                                        double* explained) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] CheckScore ScoreEcho(int lag, double tolerance, double* explained) const noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] CheckScore ScoreWander(double tolerance, double* explained) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] CheckScore ScoreWander(int lag, double tolerance, double* explained) const noexcept ARMCMC_NONBLOCKING;
   void Detrend(const GapRows& rows, std::array<double, kMaxPackSamples>* out) const noexcept ARMCMC_NONBLOCKING;
 
-  const GapFamily& family_;
+  const GapChecks& checks_;
   int columns_;
   std::array<PackSums, kGapBlockPacks> packs_{};
   std::array<std::array<double, kMaxPackSamples>, 3> detrended_{};  ///< Of this pack and the two before, in turns.

@@ -12,11 +12,9 @@ namespace armcmc {
 
 inline constexpr int kMaxRegions = 14;  ///< Templates of one plant family.
 /// Checks that need no region and that every family has: errors of one pack come back in the next or in the one after
-/// it, and means of packs that wander.
-inline constexpr int kNumSerialChecks = 3;
+/// it, and so do means of packs.
+inline constexpr int kNumSerialChecks = 4;
 inline constexpr int kMaxGapChecks = kMaxRegions + kNumSerialChecks;
-inline constexpr std::array<std::string_view, kNumSerialChecks> kSerialChecks{"repeats_after_a_pack",
-                                                                              "repeats_after_two_packs", "slow_wander"};
 
 /// Value of every region's template at every sample of one pack.
 using RegionTemplates = std::array<std::array<double, kMaxPackSamples>, kMaxRegions>;
@@ -30,26 +28,51 @@ struct RegionMemory {
   double highest_prediction = 0.0;  ///< Of its absolute value.
 };
 
-/// The regions in which the errors of a plant family are looked at. A region is a template: a function of the inputs
-/// and of time, zero outside the region. A new family is one entry in FamilyOf() (gap_checks.cpp).
+/// What the errors of one equation are checked for: regions, and how errors follow each other. A region is a template:
+/// a function of the inputs and of time, zero outside the region.
 ///
 /// Region 0 is the constant everywhere, from which the wander of pack means is computed, too.
-struct GapFamily {
-  bool passive_is_zero;  ///< The passive mode predicts 0: its samples are judged, too.
+struct GapChecks {
+  int first;  ///< Of the checks of the plant, which may have several equations.
   int num_regions;
   std::array<std::string_view, kMaxRegions> regions;
+  std::array<std::string_view, kNumSerialChecks> serial;
+
+  [[nodiscard]] constexpr int size() const noexcept { return num_regions + kNumSerialChecks; }
+  /// @param index  In [0, size()).
+  [[nodiscard]] constexpr std::string_view name(int index) const noexcept {
+    return index < num_regions ? regions[static_cast<std::size_t>(index)]
+                               : serial[static_cast<std::size_t>(index - num_regions)];
+  }
+};
+
+/// The checks of the equation that the estimator of a plant family fits. A new family is one entry in FamilyOf()
+/// (gap_checks.cpp).
+struct GapFamily {
+  GapChecks checks;
+  bool passive_is_zero;  ///< The passive mode predicts 0: its samples are judged, too.
   /// @param modes       Mode of every sample.
   /// @param prediction  Output of the model at every sample, in units of the noise.
   void (*fill)(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double* prediction,
                RegionMemory* memory, RegionTemplates* out) noexcept ARMCMC_NONBLOCKING;
-
-  [[nodiscard]] int num_checks() const noexcept { return num_regions + kNumSerialChecks; }
-  [[nodiscard]] std::string_view check(int index) const noexcept {
-    return index < num_regions ? regions[static_cast<std::size_t>(index)]
-                               : kSerialChecks[static_cast<std::size_t>(index - num_regions)];
-  }
 };
 
 [[nodiscard]] const GapFamily& FamilyOf(PlantKind plant) noexcept ARMCMC_NONBLOCKING;
+
+/// Regions of the bend equation of the soft actuator, in the order of BendChecks().
+enum BendRegion : std::uint8_t {
+  kBending,
+  kBendDirection,
+  kBendSpeed,
+  kBendAngle,
+  kBendLargeAngle,
+  kBendAcceleration,
+  kNumBendRegions
+};
+/// The checks of the bend equation of the soft actuator.
+[[nodiscard]] const GapChecks& BendChecks() noexcept ARMCMC_NONBLOCKING;
+
+/// Name of a check of a plant by its index in GapState; empty for none.
+[[nodiscard]] std::string_view GapCheckName(PlantKind plant, int check) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

@@ -7,7 +7,7 @@
 #include "armcmc/data_pack.hpp"
 #include "armcmc/gap_watch/gap_block.hpp"
 #include "armcmc/gap_watch/gap_checks.hpp"
-#include "armcmc/gap_watch/gap_evidence.hpp"
+#include "armcmc/gap_watch/gap_judge.hpp"
 #include "armcmc/gap_watch/gap_rows.hpp"
 #include "armcmc/gap_watch/gap_settings.hpp"
 #include "armcmc/gap_watch/gap_state.hpp"
@@ -15,9 +15,6 @@
 #include "armcmc/settings.hpp"
 
 namespace armcmc {
-
-class SnapshotReader;
-class SnapshotWriter;
 
 /// Watches for a persistent gap between a model and its plant, while the estimator runs.
 ///
@@ -35,18 +32,18 @@ class SnapshotWriter;
 /// The estimates decide only where to linearise, so the number of draws hardly matters here.
 class GapWatch {
  public:
-  /// Allocates. @param settings  Valid; outlives the watch.
-  GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels);
+  /// Allocates. @param settings  Valid; outlives the watch. @param rate  Of false alarms, see GapEvidence.
+  GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels, double rate);
 
   /// One pack, in the order of the estimator. @param changed  The estimator dropped its past at this pack.
   /// @pre pack.Validate() == kOk, and the pack is of the model's plant.
   /// @rt No heap, no lock, no throw. O(samples).
   void Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept ARMCMC_NONBLOCKING;
   void Reset() noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] const GapState& state() const noexcept { return state_; }
+  [[nodiscard]] const GapState& state() const noexcept { return judge_.state(); }
   /// The evidence of the blocks that were judged, and the alarm. The block under way is not kept.
-  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
-  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING { judge_.Save(out); }
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING { judge_.Restore(in); }
   /// Of the last block.
   [[nodiscard]] const std::array<CheckScore, kMaxGapChecks>& scores() const noexcept { return scores_; }
 
@@ -80,8 +77,7 @@ class GapWatch {
   GapLineariser first_, second_;  ///< One for each pass: each sees every pack once, in order.
   bool enabled_;
   GapBlock block_;
-  GapEvidence evidence_;
-  GapState state_;
+  GapJudge judge_;
   std::array<CheckScore, kMaxGapChecks> scores_{}, new_scores_{};
 
   std::array<Recording, 2> recordings_;
@@ -102,10 +98,7 @@ class GapWatch {
   std::array<int, kMaxPackSamples> modes_{};
   RegionTemplates regions_{};
   RegionMemory memory_;
-  std::int64_t last_number_ = -1;                  ///< Of the packs that were scored.
-  std::array<double, kMaxGapChecks> explained_{};  ///< Of the last blocks.
-  double excess_ = 0.0;
-  std::array<std::int64_t, kMaxGapChecks> since_{};
+  std::int64_t last_number_ = -1;  ///< Of the packs that were scored.
 };
 
 }  // namespace armcmc
