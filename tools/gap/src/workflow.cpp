@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "armcmc/gap/aliases.hpp"
 #include "armcmc/gap/figures.hpp"
 #include "armcmc/gap/joint.hpp"
 #include "armcmc/gap/localise.hpp"
@@ -233,6 +234,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     for (Where& where : result.where)
       if (!equation->name().empty()) where.feature = equation->name() + ": " + where.feature;
   }
+  if (can_name) result.aliases = Aliases(*equation, look);
   const HeldOut heldout(*equation, look, parts.shown, parts.first_shown);
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
     clock.Begin("confirm", 0.72);

@@ -1,0 +1,116 @@
+#include "armcmc/gap/aliases.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "armcmc/gap/gate_scan.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr double kAbsorbed = 0.999;
+constexpr double kAlike = 0.98;
+constexpr double kNothing = 1e-12;  // of the prediction's square
+
+/// Signatures of one effect, one for each shape that fits start from; whitened.
+struct Signatures {
+  std::string effect;
+  std::vector<Vector> of;
+};
+
+class Tangent {
+ public:
+  explicit Tangent(const Fitted& base)
+      : basis_(OrthonormalBasis(base.whitened_jacobian)), jacobian_(&base.whitened_jacobian) {}
+
+  [[nodiscard]] Vector Outside(const Vector& g) const { return g - basis_ * (basis_.transpose() * g); }
+  [[nodiscard]] double Absorbed(const Vector& g) const {
+    return (basis_.transpose() * g).squaredNorm() / g.squaredNorm();
+  }
+  /// The change of the coordinates that an effect passes for.
+  [[nodiscard]] Vector Bias(const Vector& g) const { return jacobian_->colPivHouseholderQr().solve(g); }
+
+ private:
+  Matrix basis_;
+  const Matrix* jacobian_;
+};
+
+/// "K +1.2 %, B -0.4 %": parameters that move by more than a thousandth.
+std::string BiasText(const Equation& equation, const Look& look, const Vector& change) {
+  const Fitted& base = look.finding.base->fit;
+  const Matrix none = Matrix::Zero(base.theta.size(), base.theta.size());
+  const auto before = equation.Report(look.signals, base.theta, none);
+  const auto after = equation.Report(look.signals, Vector(base.theta + change), none);
+  std::string text;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double percent = 100.0 * (after[i].mean / before[i].mean - 1.0);
+    if (!(std::abs(percent) >= 0.05)) continue;
+    char one[80];
+    std::snprintf(one, sizeof(one), "%s%s %+.2g %%", text.empty() ? "" : ", ", before[i].name.c_str(), percent);
+    text += one;
+  }
+  return text.empty() ? "no parameter by a thousandth" : text;
+}
+
+std::vector<Signatures> SignaturesOf(const Look& look) {
+  const Fitted& base = look.finding.base->fit;
+  std::vector<Signatures> all;
+  for (const EffectForm& form : look.catalogue) {
+    const bool known = std::any_of(base.hypothesis.terms.begin(), base.hypothesis.terms.end(),
+                                   [&](const Term& term) { return term.form->effect == form.effect; });
+    if (form.exact() && !known) all.push_back({form.effect, Templates(*look.fitter, base, form, nullptr)});
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> Aliases(const Equation& equation, const Look& look) {
+  const Fitted& base = look.finding.base->fit;
+  const Tangent tangent(base);
+  const Vector predicted = look.fitter->whitener().Apply(base.predicted);
+  const double noise = std::sqrt(look.fitter->whitener().s2 * static_cast<double>(predicted.size()));
+  std::vector<std::string> texts;
+  if (predicted.squaredNorm() > 0.0 && tangent.Absorbed(predicted) > kAbsorbed)
+    texts.push_back("a wrong gain or unit of the " + equation.output_name() +
+                    ": the parameters absorb it. One percent too much passes for " +
+                    BiasText(equation, look, Vector(0.01 * tangent.Bias(predicted))));
+  std::vector<std::pair<std::string, std::vector<Vector>>> visible;  // with the parts that no parameter absorbs
+  for (const Signatures& signatures : SignaturesOf(look)) {
+    std::vector<Vector> outside;
+    const Vector* strongest = nullptr;
+    bool absorbed = true;
+    for (const Vector& g : signatures.of) {
+      if (!(g.squaredNorm() > kNothing * predicted.squaredNorm())) continue;
+      if (strongest == nullptr || g.squaredNorm() > strongest->squaredNorm()) strongest = &g;
+      absorbed = absorbed && tangent.Absorbed(g) > kAbsorbed;
+      outside.push_back(tangent.Outside(g));
+    }
+    if (strongest == nullptr)
+      texts.push_back(signatures.effect + ": never acts in this motion");
+    else if (absorbed)
+      texts.push_back(signatures.effect + ": the parameters absorb it. As strong as the noise it passes for " +
+                      BiasText(equation, look, Vector(tangent.Bias(*strongest) * (noise / strongest->norm()))));
+    else
+      visible.emplace_back(signatures.effect, std::move(outside));
+  }
+  for (std::size_t i = 0; i < visible.size(); ++i)
+    for (std::size_t j = i + 1; j < visible.size(); ++j) {
+      double alike = 0.0;
+      for (const Vector& g : visible[i].second)
+        for (const Vector& h : visible[j].second)
+          alike = std::max(alike, std::abs(g.dot(h)) / (g.norm() * h.norm() + 1e-300));
+      if (!(alike > kAlike)) continue;
+      char text[200];
+      std::snprintf(text, sizeof(text),
+                    "%s and %s look alike in this motion (correlation up to %.3f): it takes another to tell them apart",
+                    visible[i].first.c_str(), visible[j].first.c_str(), alike);
+      texts.emplace_back(text);
+    }
+  return texts;
+}
+
+}  // namespace armcmc::gap
