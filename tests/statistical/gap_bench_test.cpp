@@ -122,6 +122,15 @@ TEST(GapBench, OtherFormulasOfAnEffectKeepItsFamily) {
   EXPECT_GE(variants.Of({Grade::kRight, Grade::kTie, Grade::kFamily}), variants.counted() - 2) << variants.Others();
 }
 
+TEST(GapBench, EffectsOfTheActuatorAreNamedInTheirEquation) {
+  const Scored actuator("actuator", "R 1");
+  ASSERT_GE(actuator.counted(), 12);
+  EXPECT_EQ(actuator.Wrong(), 0) << actuator.Others();
+  EXPECT_GE(actuator.Covered(), actuator.counted() - 1) << actuator.Others();
+  for (const Outcome& outcome : actuator.outcomes())
+    EXPECT_TRUE(outcome.equation_right.value_or(false)) << Line(outcome) << ", " << outcome.answer.result.equation;
+}
+
 TEST(GapBench, OnsetsAreFound) {
   const Scored onset("onset");
   ASSERT_GE(onset.counted(), 12);

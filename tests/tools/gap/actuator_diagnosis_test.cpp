@@ -91,10 +91,25 @@ TEST(PlantDiagnosis, LetsTheFlowLawDecideBetweenTheTwoBiases) {
   const Recording pressure = RecordPlant(kModel, {{"pressure_bias", 1.0, {1500.0}}}, 63, kSeconds);
   const PlantDiagnosis one = DiagnosePlant(kModel, pressure);
   EXPECT_EQ(Names(one.carrying().diagnosis.finding), (std::vector<std::vector<std::string>>{{"pressure_bias"}}));
+  EXPECT_GT(one.carrying().diagnosis.finding.best->probability, 0.95);
   const Recording angle = RecordPlant(kModel, {{"angle_bias", 1.0, {0.0318}}}, 63, kSeconds);
   const PlantDiagnosis other = DiagnosePlant(kModel, angle);
   EXPECT_TRUE(Contains(other.carrying().diagnosis.finding, "angle_bias"));
   EXPECT_FALSE(Contains(other.carrying().diagnosis.finding, "pressure_bias"));
+  EXPECT_GT(other.carrying().diagnosis.finding.best->probability, 0.95);
+}
+
+TEST(PlantDiagnosis, HoldsTwoBiasesThatNothingTellsApartForEquallyProbable) {
+  // Both begin with the recording: what the state at the start hides must not favour one of them.
+  for (const char* effect : {"pressure_bias", "angle_bias"}) {
+    const PlantDiagnosis plant = DiagnosePlant(kModel, RecordPlant(kModel, {{effect, 2.0, {}}}, 69, kSeconds));
+    const Finding& finding = plant.carrying().diagnosis.finding;
+    for (const CandidatePtr& candidate : finding.set)
+      if (candidate->families().front() == "sensor zero") {
+        EXPECT_NEAR(candidate->probability, 0.5, 0.1) << effect << ": " << candidate->names().front();
+      }
+    EXPECT_TRUE(Contains(finding, effect));
+  }
 }
 
 TEST(PlantDiagnosis, SaysThatTheConstantsAreWrongRatherThanToNameAnEffect) {

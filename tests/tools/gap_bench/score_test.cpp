@@ -77,6 +77,36 @@ TEST(GradeOf, WhatTheCatalogueLacksHasNoRightName) {
   EXPECT_EQ(GradeOf(ablated, truth, Said({{"inertia"}})), Grade::kWrong);
 }
 
+TEST(GradeOf, EffectsOfTheActuatorHaveFamiliesOfTheirOwnCatalogue) {
+  const Truth truth = Hidden({"joint_friction"}, "variant");
+  EXPECT_EQ(GradeOf({}, truth, Said({{"joint_friction"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"hysteresis"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, Hidden({"pressure_bias"}), Said({{"angle_bias"}})), Grade::kFamily);
+  gap::Result result = Said({{"leak"}});
+  result.probability_none = 0.0;
+  result.candidates = {{{"leak"}, 0, 0, 0.6, 0}, {{"other constants"}, 0, 0, 0.4, 0}};
+  EXPECT_EQ(TopLabel(result), (std::pair<std::string, double>{"leak", 0.6}));
+}
+
+TEST(EquationRight, IsThatWhichTheEffectChanges) {
+  gap::Result flow = Said({{"leak"}}), bend = Said({{"angle_bias"}});
+  flow.equation = "flow law";
+  bend.equation = "bend equation";
+  EXPECT_EQ(EquationRight(Hidden({"leak"}), flow), true);
+  EXPECT_EQ(EquationRight(Hidden({"leak"}), bend), false);
+  EXPECT_EQ(EquationRight(Hidden({"sensor_delay"}), flow), false);
+  EXPECT_EQ(EquationRight(Hidden({"sensor_delay"}), bend), true);
+  // Both read the pressure.
+  EXPECT_EQ(EquationRight(Hidden({"pressure_bias"}), flow), true);
+  EXPECT_EQ(EquationRight(Hidden({"pressure_bias"}), bend), true);
+  EXPECT_EQ(EquationRight(Hidden({"obstacle"}, "outside"), bend), std::nullopt);
+  EXPECT_EQ(EquationRight({}, bend), std::nullopt);
+  EXPECT_EQ(EquationRight(Hidden({"inertia"}), Said({{"inertia"}})), std::nullopt);
+  gap::Result silent = Said(gap::Verdict::kNone);
+  silent.equation = "flow law";
+  EXPECT_EQ(EquationRight(Hidden({"leak"}), silent), std::nullopt);
+}
+
 TEST(TopLabel, AddsUpFormulasAndTimesAndCallsUnlistedPhysicsUnnamed) {
   gap::Result result = Said({{"inertia"}});
   result.probability_none = 0.0;

@@ -61,6 +61,27 @@ TEST(Gates, AnAnswerThatFailedCountsAsWrong) {
   EXPECT_EQ(Find(gates, "pairs", "wrong")->value, 0.5);
 }
 
+TEST(Gates, OfTheActuatorAreByWhatIsHidden) {
+  Outcome nothing = Made("actuator", Grade::kUnnamed, 0.9, false);
+  nothing.what.effect = "none";
+  Outcome found = Made("actuator", Grade::kRight, 0.9, true), misled = Made("actuator", Grade::kTie, 0.9, true);
+  Outcome outside = Made("actuator", Grade::kWrong, 0.9, false);
+  for (Outcome* one : {&found, &misled, &outside}) one->truth.effects.resize(1);
+  found.equation_right = true;
+  misled.equation_right = false;
+  outside.truth.effects.front().kind = "outside";
+  outside.answer.result.verdict = gap::Verdict::kNamed;
+  outside.answer.result.effects.resize(1);
+  const std::vector<Gate> gates = Gates({nothing, found, misled, outside});
+  const auto value = [&](const char* metric) { return Find(gates, "actuator", metric)->value; };
+  EXPECT_EQ(value("nothing hidden: named"), 0.0);
+  EXPECT_EQ(value("nothing hidden: flagged"), 1.0);
+  EXPECT_EQ(value("truth in the set"), 1.0);
+  EXPECT_EQ(value("wrong"), 0.0);
+  EXPECT_EQ(value("right equation"), 0.5);
+  EXPECT_EQ(value("outside the catalogue: false name"), 1.0);
+}
+
 Outcome Begun(Grade grade, std::optional<double> error_s, std::optional<double> off_s) {
   Outcome outcome = Made("onset", grade, 0.9, true);
   outcome.onset_error_s = error_s;

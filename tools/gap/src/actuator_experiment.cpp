@@ -21,6 +21,7 @@ struct Program {
   const char* words;
   std::vector<double> levels;  ///< Pa above p_atm; empty: the controller knows none.
   double dwell_s;
+  double opening_per_pa = 1e-5;  ///< Of the valves, for what the pressure is off.
 };
 
 const Program kSwings = {"pressure_steps",
@@ -38,10 +39,12 @@ const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       {{"pressure_bias", "angle_bias"},
        {"pressure_steps",
-        "vent down to 2 kPa above the atmosphere and fill again: near p_atm the vent flow feels every pascal of a "
-        "pressure bias, and an angle bias not at all",
-        {40e3, 2e3, 20e3, 2e3, 60e3, 4e3},
-        1.0}},
+        "vent with a wide open valve to a few hundred pascals above the atmosphere, and fill again: near p_atm the "
+        "vent "
+        "flow feels every pascal of a pressure bias, and an angle bias not at all",
+        {15e3, 300.0, 25e3, 200.0, 40e3, 400.0},
+        0.5,
+        1e-4}},
       {{"leak", "pressure_bias"},
        {"closed_valve_hold", "hold with both valves shut, after steps to several pressures", {80e3, 40e3, 60e3}, 0.5}},
       {{"leak", "supply_droop"},
@@ -89,6 +92,7 @@ Experiment ActuatorExperiment(const Signals& signals, const PlantConstants& cons
   const Program& program = Choose(candidates);
   Experiment experiment;
   experiment.program = program.controller;
+  experiment.sample_interval_s = signals.dt;
   experiment.words = std::string(candidates.empty() ? "To make the flow law identifiable: " : "To separate them: ") +
                      program.words + ".";
   // A gain that bends the actuator around itself at these pressures is not one of them.
@@ -105,7 +109,7 @@ Experiment ActuatorExperiment(const Signals& signals, const PlantConstants& cons
       << (absurd ? "   # rad/s^2 per Pa: the model's own would bend it by more than 3 rad" : "")
       << "\nq2 = " << constants.q2 << "\nq3 = " << constants.q3 << "\nmax_step_s = " << 0.1 * signals.dt
       << "\n\n[motion]\ncontroller = \"" << program.controller << "\"\ndwell_s = " << program.dwell_s
-      << "\nopening_per_pa = 1e-5   # 1/Pa\nmax_opening = 0.1\n";
+      << "\nopening_per_pa = " << program.opening_per_pa << "   # 1/Pa\nmax_opening = 0.1\n";
   if (!program.levels.empty()) {
     out << "pressure_levels = [";
     for (std::size_t i = 0; i < program.levels.size(); ++i) out << (i > 0 ? ", " : "") << program.levels[i];

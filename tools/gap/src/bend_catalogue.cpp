@@ -155,6 +155,8 @@ void AddUnlisted(const Signals& s, double strength, const PlantConstants& consta
   wrong.num_amplitudes = 3;
   wrong.coordinates = {AmplitudeOf("share_of_q1", "-", 1.0, false), AmplitudeOf("share_of_q2", "-", 1.0, false),
                        AmplitudeOf("share_of_q3", "-", 1.0, false)};
+  // A joint without stiffness or damping runs away.
+  for (Coordinate& share : wrong.coordinates) share.lower = -0.95;
   wrong.force = [constants](const Motion& m, const double* v, const double*) {
     return v[0] * m.drive - v[1] * constants.q2 * m.rate - v[2] * constants.q3 * m.angle;
   };

@@ -15,7 +15,9 @@ namespace armcmc::gap {
 namespace {
 
 constexpr double kStep = 1e-4;        // of a coordinate of order one
-constexpr double kSettling_s = 0.1;   // in which a state at the start is felt
+constexpr double kSettling_s = 0.1;   // in which a state at the start is felt,
+constexpr double kForgotten_s = 0.5;  // and after which it is forgotten
+constexpr int kStartCoordinates = 2;
 constexpr int kWiden = 4;             // the error of the angle has no corners
 constexpr double kNegligible = 1e-4;  // error over angle, below which it is rounding, not physics
 
@@ -64,14 +66,17 @@ class BendEquation final : public Equation {
     return {false, text, false};
   }
 
+  // The state at the first row, from where StartOf() puts it: an effect that acts from the beginning moves it. Only the
+  // first rows know it, so scores take it as known.
   std::vector<Coordinate> base(const Signals& s) const override {
-    (void)s;
-    return {};
+    constexpr double kMost = 10.0;
+    return {{"start_angle", "rad", -kMost, kMost, 0.0, 1.0, s.scale_of(Role::kPosition), false, true},
+            {"start_rate", "rad/s", -kMost, kMost, 0.0, 1.0, s.scale_of(Role::kVelocity), false, true}};
   }
 
   Vector Start(const Signals& s) const override {
     (void)s;
-    return {};
+    return Vector::Zero(kStartCoordinates);
   }
 
   void Law(const Signals& s, const double* theta, const LawInput& input, Prediction* out) const override {
@@ -79,7 +84,9 @@ class BendEquation final : public Equation {
     const Vector& gauge = s.at(Role::kPressure);
     std::vector<BendSimulation::Force> forces;
     for (const LawInput::Force& force : input.forces) forces.push_back({force.form, Values(force), &force.gate});
-    (void)theta;
+    BendSimulation::State start = StartOf(s, simulation);
+    start.angle += theta[0] * s.scale_of(Role::kPosition);
+    start.rate += theta[1] * s.scale_of(Role::kVelocity);
     // One run as it is, then one for every slope.
     std::vector<std::vector<BendSimulation::Force>> runs{forces};
     std::vector<int> columns;
@@ -94,11 +101,20 @@ class BendEquation final : public Equation {
       }
     }
     Matrix angles;
-    simulation.RunAbreast(s.t, gauge, StartOf(s, simulation), runs, &angles);
+    simulation.RunAbreast(s.t, gauge, start, runs, &angles);
     out->y = angles.col(0);
     out->elastic = Vector::Zero(s.rows());
     for (std::size_t i = 0; i < columns.size(); ++i)
       out->jacobian.col(columns[i]) = (angles.col(static_cast<Eigen::Index>(i) + 1) - out->y) / kStep;
+    const Vector at_rest = Vector::Zero(s.rows());
+    const auto felt = std::min<Eigen::Index>(s.rows(), static_cast<Eigen::Index>(kForgotten_s / s.dt) + 2);
+    for (int column = 0; column < kStartCoordinates; ++column) {
+      if (!out->wanted.Has(column)) continue;
+      Vector answer = Vector::Zero(s.rows());
+      const double size = s.scale_of(column == 0 ? Role::kPosition : Role::kVelocity);
+      simulation.Run(s.t, at_rest, {column == 0 ? size : 0.0, column == 1 ? size : 0.0}, {}, felt, &answer, nullptr);
+      out->jacobian.col(column) = answer;
+    }
   }
 
   std::vector<ParameterEstimate> Report(const Signals& s, const Vector& theta,
@@ -155,6 +171,17 @@ class BendEquation final : public Equation {
     return {state[0], state[1]};
   }
 
+  /// How much of a smoothed error is put into the motion. It holds noise of the very samples that the flexible model
+  /// explains from this motion, so none of it where it is not large: a noise of variance s^2 weighs as much as an error
+  /// of that mean square.
+  static double ShareOfMotion(const Vector& error, const Vector& slow, int window) {
+    constexpr double kCubic = 2.25;  // variance of smoothed white noise: 9 / (4 window)
+    const Eigen::Index n = error.size();
+    const double noise = 0.5 * (error.tail(n - 1) - error.head(n - 1)).squaredNorm() / static_cast<double>(n - 1);
+    const double motion = std::max(slow.squaredNorm() / static_cast<double>(n) - kCubic / window * noise, 0.0);
+    return motion > 0.0 ? motion / (motion + noise) : 0.0;
+  }
+
   Signals WithMotion(const Recording& recording, int window) const {
     Signals s = ActuatorSignals(recording, window, constants_);
     s.output = recording.Column("alpha");
@@ -164,8 +191,10 @@ class BendEquation final : public Equation {
     simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, &rate);
     const int wide = kWiden * window + 1;
     const Vector error = s.output - angle;
-    const Vector error_rate = SavitzkyGolay(error, wide, 1) / s.dt;
-    s.at(Role::kPosition) = angle + SavitzkyGolay(error, wide, 0);
+    const Vector slow = SavitzkyGolay(error, wide, 0);
+    const double share = ShareOfMotion(error, slow, wide);
+    const Vector error_rate = share / s.dt * SavitzkyGolay(error, wide, 1);
+    s.at(Role::kPosition) = angle + share * slow;
     s.at(Role::kVelocity) = rate + error_rate;
     s.at(Role::kAcceleration) = constants_.q1 * s.at(Role::kPressure) - constants_.q2 * rate - constants_.q3 * angle +
                                 SavitzkyGolay(error_rate, wide, 1) / s.dt;

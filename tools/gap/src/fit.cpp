@@ -187,6 +187,14 @@ void Fitter::Score(Fitted* fitted) const {
   fitted->log_evidence = -0.5 * fitted->squares / whitener_.s2 + log_prior - 0.5 * pivots.array().log().sum();
 }
 
+void Fitter::Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const {
+  constexpr int kMostHalvings = 20;
+  for (int i = 0; i < kMostHalvings; ++i) {
+    if (Evaluate(*equation_, *signals_, hypothesis, *theta, Slopes::None()).y.allFinite()) return;
+    theta->segment(first, count) *= 0.5;
+  }
+}
+
 Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
   const EffectForm& form = *term.form;
   Hypothesis hypothesis = parent.hypothesis;
@@ -228,6 +236,7 @@ Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
       squares = (parent.whitened_residual - project(step).col(0)).squaredNorm();
     }
     Clamp(coordinates, &theta);
+    if (form.linear && form.slot == Slot::kForce) Tame(hypothesis, first, form.num_amplitudes, &theta);
     starts.emplace_back(squares, theta);
   }
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

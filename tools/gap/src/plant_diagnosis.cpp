@@ -1,6 +1,7 @@
 #include "armcmc/gap/plant_diagnosis.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +10,7 @@ namespace armcmc::gap {
 namespace {
 
 constexpr double kDecisive = 5.0;  // nats by which another equation strikes or confirms an effect
+constexpr double kMostOdds = 50.0;
 
 bool HasGap(const EquationDiagnosis& one) { return one.diagnosis.finding.verdict != Verdict::kNone; }
 
@@ -34,6 +36,20 @@ std::optional<double> Evidence(const EquationDiagnosis& asked, const std::string
   return std::nullopt;
 }
 
+/// Multiplies the odds of one candidate against all others that are told of.
+void Weigh(const CandidatePtr& candidate, double log_odds, Finding* finding) {
+  double rest = finding->p_missing * finding->p_unnamed;
+  for (const CandidatePtr& other : finding->tried) rest += other == candidate ? 0.0 : other->probability;
+  const double all = rest + candidate->probability;
+  if (!(candidate->probability > 0.0) || !(rest > 0.0)) return;
+  const double odds = std::exp(std::min(log_odds, kMostOdds)) * candidate->probability / rest;
+  const double given = all * odds / (1.0 + odds), share = (all - given) / rest;
+  for (const CandidatePtr& other : finding->tried)
+    if (other != candidate) other->probability *= share;
+  finding->p_unnamed *= share;
+  candidate->probability = given;
+}
+
 /// Asks the other equations, none of which has a gap, on the members of an ambiguous set.
 void Consult(PlantDiagnosis* plant) {
   EquationDiagnosis& carrier = plant->equations[plant->carrier];
@@ -55,6 +71,7 @@ void Consult(PlantDiagnosis* plant) {
         finding.set = {candidate};
       else
         std::erase(finding.set, candidate);
+      Weigh(candidate, *evidence, &finding);
       char note[200];
       std::snprintf(note, sizeof(note), "%s: %s %s by %.0f nats at the value that the %s found",
                     asked.equation->name().c_str(), *evidence > 0.0 ? "confirms" : "strikes", form.effect.c_str(),
@@ -82,6 +99,14 @@ void KeepShared(PlantDiagnosis* plant) {
                       [&](const CandidatePtr& theirs) { return theirs->names() == mine->names(); }))
         shared.push_back(mine);
     if (shared.empty()) continue;
+    // What one equation alone would allow is not what is missing in both.
+    double lost = 0.0;
+    for (const CandidatePtr& mine : finding.set) {
+      if (std::find(shared.begin(), shared.end(), mine) != shared.end()) continue;
+      lost += mine->probability;
+      mine->probability = 0.0;
+    }
+    for (const CandidatePtr& kept : shared) kept->probability += lost / static_cast<double>(shared.size());
     finding.set = shared;
     finding.best = shared.front();
     finding.verdict = shared.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;

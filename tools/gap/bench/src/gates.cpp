@@ -83,6 +83,23 @@ void AddNames(Gatherer* g) {
   g->Share("variants", "wrong", In({"variants"}), Wrong, 0.02, false);
 }
 
+/// The second plant, by what is hidden: nothing, an effect of its catalogue, or another one.
+void AddActuator(Gatherer* g) {
+  const Test all = In({"actuator"});
+  const auto kind = [](const Outcome& o) { return o.truth.effects.empty() ? "" : o.truth.effects.front().kind; };
+  const Test null = [=](const Outcome& o) { return all(o) && o.what.effect == "none"; };
+  const Test outside = [=](const Outcome& o) { return all(o) && kind(o) == "outside"; };
+  const Test hidden = [=](const Outcome& o) { return all(o) && !null(o) && !outside(o); };
+  g->Share("actuator", "nothing hidden: named", null, Wrong, 0.005, false);
+  g->Share("actuator", "nothing hidden: flagged", null, Flagged, 0.02, false);
+  g->Share("actuator", "truth in the set", hidden, Covers, 0.95, true);
+  g->Share("actuator", "wrong", hidden, Wrong, 0.02, false);
+  g->Share(
+      "actuator", "right equation", [=](const Outcome& o) { return hidden(o) && o.equation_right.has_value(); },
+      [](const Outcome& o) { return o.equation_right.value_or(false); }, 0.98, true);
+  g->Share("actuator", "outside the catalogue: false name", outside, Names, 0.03, false);
+}
+
 void AddMotions(Gatherer* g) {
   const Test onset = In({"onset"}), poor = In({"poor"}), modes = In({"modes"}), paper = In({"paper"});
   g->Share("onset", "truth in the set", onset, Covers, 0.97, true);
@@ -154,6 +171,7 @@ std::vector<Gate> Gates(const std::vector<Outcome>& outcomes) {
   Gatherer g(outcomes);
   AddNames(&g);
   AddMotions(&g);
+  AddActuator(&g);
   AddOnsets(LocateOnsets(outcomes), &g);
   AddProof(&g);
   AddBias(outcomes, &g);

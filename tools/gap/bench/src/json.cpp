@@ -15,6 +15,7 @@ json CaseJson(const Outcome& o) {
   std::string plant = "armcmc-plant", tool = "armcmc-gap --data " + o.what.Name() + ".csv --out " + o.what.Name();
   for (const std::string& argument : PlantProcess::Arguments(o.what)) plant += " " + argument;
   if (o.what.earlier) tool += " --earlier " + o.what.earlier->Name() + ".csv";
+  if (o.what.model != Case{}.model) tool += " --model " + o.what.model;
   for (const std::string& name : o.what.without) tool += " --without " + name;
   json effects = json::array();
   for (const TrueEffect& effect : o.truth.effects) {
@@ -39,6 +40,7 @@ json CaseJson(const Outcome& o) {
   if (o.onset_off_s) out["onset_off_s"] = *o.onset_off_s;
   if (o.diagnosed_strength) out["diagnosed_strength"] = *o.diagnosed_strength;
   if (o.when_right) out["when_right"] = *o.when_right;
+  if (o.equation_right) out["equation_right"] = *o.equation_right;
   return out;
 }
 

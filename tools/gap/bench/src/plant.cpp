@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "armcmc/gap/equation.hpp"
+#include "armcmc/gap/recording.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/subprocess.hpp"
 
@@ -19,14 +21,13 @@ std::string Contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Leaves t,x,v,f, the columns that a robot would record: those after them are the plant's own truth.
-void HideTruth(const std::filesystem::path& path) {
-  constexpr int kColumns = 4;
+/// Leaves the first columns, those that a robot would record: the ones after them are the plant's own truth.
+void HideTruth(const std::filesystem::path& path, std::size_t columns) {
   std::istringstream lines(Contents(path));
   std::string kept;
   for (std::string line; std::getline(lines, line);) {
     std::size_t end = 0;
-    for (int c = 0; c < kColumns && end != std::string::npos; ++c) end = line.find(',', end + (c > 0 ? 1 : 0));
+    for (std::size_t c = 0; c < columns && end != std::string::npos; ++c) end = line.find(',', end + (c > 0 ? 1 : 0));
     kept.append(line, 0, end);
     kept += '\n';
   }
@@ -81,32 +82,32 @@ bool PlantProcess::Make(const Case& what) const {
   // Out of reach is the one bad input that a case may be.
   if (end.code == support::kExitBadInput && end.errors.find("gap ratio") != std::string::npos) return false;
   if (end.code != 0) throw std::runtime_error(program_.string() + " for " + what.Name() + ": " + end.errors);
-  HideTruth(Recording(what));
+  HideTruth(Recording(what), gap::ColumnsOf(what.model).size());
   return true;
 }
 
-std::vector<double> PlantProcess::Output(const Case& what, const std::string& scenario_text) const {
+std::vector<std::vector<double>> PlantProcess::Outputs(const Case& what, const std::string& scenario_text) const {
   const std::string name = what.Name() + "_contribution";
   const std::filesystem::path scenario = folder_ / (name + ".toml"), csv = folder_ / (name + ".csv");
   std::ofstream(scenario, std::ios::binary) << scenario_text;
   const support::SubprocessEnd end = support::RunSubprocess(
       program_, {"--scenario", scenario.string(), "--seed", std::to_string(what.seed), "--csv", csv.string()}, folder_);
-  std::vector<double> output;
-  std::ifstream rows(csv);
-  std::string row;
-  std::getline(rows, row);
-  while (std::getline(rows, row)) {
-    std::istringstream fields(row);
-    std::string field;
-    for (int c = 0; c < 4; ++c) std::getline(fields, field, ',');
-    output.push_back(std::stod(field));
-  }
-  for (const std::filesystem::path& path : {scenario, csv}) std::filesystem::remove(path);
   if (end.code != 0) throw std::runtime_error(program_.string() + " for " + name + ": " + end.errors);
-  return output;
+  const gap::Recording recording = gap::ReadRecording(csv, gap::ColumnsOf(what.model), false);
+  for (const std::filesystem::path& path : {scenario, csv}) std::filesystem::remove(path);
+  std::vector<std::vector<double>> outputs;
+  for (const std::string& output : OutputsOf(what.model)) {
+    const gap::Vector& column = recording.Column(output);
+    outputs.emplace_back(column.begin(), column.end());
+  }
+  return outputs;
 }
 
-Truth ReadSealed(const std::filesystem::path& path) {
+std::vector<std::string> OutputsOf(const std::string& model) {
+  return model == "hunt_crossley" ? std::vector<std::string>{"f"} : std::vector<std::string>{"pdot", "alpha"};
+}
+
+Truth ReadSealed(const std::filesystem::path& path, const std::string& model) {
   try {
     const Json sealed = Json::parse(Contents(path));
     Truth truth;
@@ -124,7 +125,8 @@ Truth ReadSealed(const std::filesystem::path& path) {
     for (const auto& [name, value] : sealed.at("base_parameters").items())
       truth.base_parameters.emplace_back(name, value.get<double>());
     truth.noise_tables = NoiseTables(sealed.at("noise"));
-    truth.noise_sd = sealed.at("noise").at("f").at("sd");
+    for (const std::string& output : OutputsOf(model))
+      truth.noise_sd.push_back(sealed.at("noise").at(output).at("sd").get<double>());
     return truth;
   } catch (const Json::exception& error) {
     throw std::runtime_error(path.string() + ": " + error.what());

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <numeric>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 #include <tuple>
 
@@ -22,8 +23,6 @@
 
 namespace armcmc::gap_bench {
 namespace {
-
-constexpr const char* kModel = "hunt_crossley";
 
 /// Processor time of this thread: on a machine that others use, too, the clock on the wall tells little.
 double CpuSeconds() {
@@ -37,17 +36,17 @@ std::string Contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// All that the tool is given: a recording, after a tie the one before it, and which effects its catalogue lacks.
-Answer Ask(const std::filesystem::path& recording, const std::filesystem::path& earlier,
-           const std::vector<std::string>& without) {
+/// All that the tool is given: the model, a recording, after a tie the one before it, and which effects its catalogue
+/// lacks.
+Answer Ask(const std::filesystem::path& recording, const std::filesystem::path& earlier, const Case& what) {
   Answer answer;
   const double start = CpuSeconds();
   try {
     gap::WorkflowRequest request;
-    request.model = kModel;
-    request.data = gap::ReadRecording(recording, gap::ColumnsOf(kModel), false);
-    if (!earlier.empty()) request.earlier = gap::ReadRecording(earlier, gap::ColumnsOf(kModel), false);
-    request.diagnose.without = without;
+    request.model = what.model;
+    request.data = gap::ReadRecording(recording, gap::ColumnsOf(what.model), false);
+    if (!earlier.empty()) request.earlier = gap::ReadRecording(earlier, gap::ColumnsOf(what.model), false);
+    request.diagnose.without = what.without;
     answer.result = gap::RunWorkflow(request).result;
     answer.result.figures = {};
   } catch (const std::exception& error) {
@@ -62,13 +61,15 @@ std::string ScenarioOf(const PlantProcess& plant, const Case& what) {
   return Contents(std::filesystem::exists(own) ? own : support::FindSharedFile("scenarios", what.scenario));
 }
 
-/// What the effects add to the output, [row].
+/// What the effects add to the outputs, [output][row].
 /// @param gates  Whether they keep their gates; otherwise they act from the first sample to the last.
-std::vector<double> Contribution(const PlantProcess& plant, const Case& what, const Truth& truth, bool gates) {
+std::vector<std::vector<double>> Contributions(const PlantProcess& plant, const Case& what, const Truth& truth,
+                                               bool gates) {
   const std::string scenario = WithoutTables(ScenarioOf(plant, what), "hidden_effect");
-  std::vector<double> with = plant.Output(what, scenario + EffectTables(truth, gates));
-  const std::vector<double> base = plant.Output(what, scenario);
-  for (std::size_t i = 0; i < with.size(); ++i) with[i] -= base[i];
+  std::vector<std::vector<double>> with = plant.Outputs(what, scenario + EffectTables(truth, gates));
+  const std::vector<std::vector<double>> base = plant.Outputs(what, scenario);
+  for (std::size_t k = 0; k < with.size(); ++k)
+    for (std::size_t i = 0; i < with[k].size(); ++i) with[k][i] -= base[k][i];
   return with;
 }
 
@@ -84,10 +85,16 @@ Truth NotFound(const Truth& truth, const gap::Result& result) {
 
 double DiagnosedStrength(const PlantProcess& plant, const Case& what, const Truth& truth) {
   constexpr double kDiagnosed = 0.7;  // of the recording
-  const std::vector<double> added = Contribution(plant, what, truth, true);
-  const auto rows = static_cast<std::ptrdiff_t>(kDiagnosed * static_cast<double>(added.size()));
-  const double squares = std::inner_product(added.begin(), added.begin() + rows, added.begin(), 0.0);
-  return std::sqrt(squares / static_cast<double>(std::max<std::ptrdiff_t>(rows, 1))) / truth.noise_sd;
+  const std::vector<std::vector<double>> outputs = Contributions(plant, what, truth, true);
+  double strength = 0.0;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const std::vector<double>& added = outputs[k];
+    const auto rows = static_cast<std::ptrdiff_t>(kDiagnosed * static_cast<double>(added.size()));
+    const double squares = std::inner_product(added.begin(), added.begin() + rows, added.begin(), 0.0);
+    const double rms = std::sqrt(squares / static_cast<double>(std::max<std::ptrdiff_t>(rows, 1)));
+    strength = std::max(strength, rms / truth.noise_sd[k]);
+  }
+  return strength;
 }
 
 /// Tables of noise whose correlation over a time stays when it is sampled `ratio` times the interval apart.
@@ -110,17 +117,20 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
   const gap::Result& result = outcome->answer.result;
   outcome->grade = GradeOf(outcome->what, outcome->truth, result);
   std::tie(outcome->label, outcome->label_probability) = TopLabel(result);
+  if (!std::isfinite(outcome->label_probability))
+    throw std::runtime_error("the probability of " + outcome->label + " is not a number");
   outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label);
   if (outcome->grade == Grade::kNone || outcome->grade == Grade::kPartial) {
     outcome->diagnosed_strength = DiagnosedStrength(plant, outcome->what, NotFound(outcome->truth, result));
     if (*outcome->diagnosed_strength < kTrace) outcome->grade = Grade::kNotShown;
   }
+  outcome->equation_right = EquationRight(outcome->truth, result);
   if (outcome->truth.effects.size() != 1) return;
   const TrueEffect& effect = outcome->truth.effects.front();
   if (effect.onset_s && !result.effects.empty()) {
     outcome->onset_error_s = OnsetError(result, effect.name,
-                                        OnsetInterval(Contribution(plant, outcome->what, outcome->truth, false),
-                                                      result.dt, *effect.onset_s, outcome->truth.noise_sd));
+                                        OnsetInterval(Contributions(plant, outcome->what, outcome->truth, false)[0],
+                                                      result.dt, *effect.onset_s, outcome->truth.noise_sd[0]));
     outcome->onset_off_s = OnsetError(result, effect.name, {*effect.onset_s, *effect.onset_s});
   }
   const bool contact = effect.gate == "contact";
@@ -137,8 +147,8 @@ Outcome RunCase(const PlantProcess& plant, const Case& what, bool keep) {
   try {
     if (!plant.Make(what) || (what.earlier && !plant.Make(*what.earlier))) return outcome;
     outcome.grade = Grade::kFailed;
-    outcome.answer = Ask(plant.Recording(what), what.earlier ? plant.Recording(*what.earlier) : "", what.without);
-    outcome.truth = ReadSealed(plant.Sealed(what));
+    outcome.answer = Ask(plant.Recording(what), what.earlier ? plant.Recording(*what.earlier) : "", what);
+    outcome.truth = ReadSealed(plant.Sealed(what), what.model);
     if (outcome.answer.error.empty()) Score(plant, &outcome);
   } catch (const std::exception& error) {
     outcome.grade = Grade::kFailed;

@@ -11,6 +11,19 @@ namespace {
 
 constexpr double kUnnoticed = 9.0;  // noise variances
 
+/// An effect of any plant's catalogue; null for what is in none.
+const EffectInfo* Listed(std::string_view name) {
+  for (const PlantKind plant : {PlantKind::kHuntCrossley, PlantKind::kSoftActuator})
+    if (const EffectInfo* info = FindEffect(plant, name)) return info;
+  return nullptr;
+}
+
+/// Whether an effect of the soft actuator changes what an equation predicts. The pressure that is measured enters both.
+bool Changes(const std::string& effect, const std::string& equation) {
+  const bool in_flow = FlowEffects::Find(effect) >= 0;
+  return equation == "flow law" ? in_flow : !in_flow || effect == PressureBias::kInfo.name;
+}
+
 std::string Joined(const Names& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
@@ -57,9 +70,8 @@ Names NamesOf(const Truth& truth) {
 Names FamiliesOf(const Names& names) {
   Names families;
   for (const std::string& name : names) {
-    const int index = ContactEffects::Find(name);
-    families.emplace_back(index < 0 ? name
-                                    : std::string(ContactEffects::kInfos[static_cast<std::size_t>(index)]->family));
+    const EffectInfo* info = Listed(name);
+    families.emplace_back(info == nullptr ? name : std::string(info->family));
   }
   std::sort(families.begin(), families.end());
   return families;
@@ -82,6 +94,14 @@ Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result) {
   return nameable && nothing_false ? Grade::kPartial : Grade::kWrong;
 }
 
+std::optional<bool> EquationRight(const Truth& truth, const gap::Result& result) {
+  if (result.equation.empty() || result.verdict == gap::Verdict::kNone) return std::nullopt;
+  const auto listed = [](const TrueEffect& effect) { return Listed(effect.name) != nullptr; };
+  if (std::none_of(truth.effects.begin(), truth.effects.end(), listed)) return std::nullopt;
+  return std::any_of(truth.effects.begin(), truth.effects.end(),
+                     [&](const TrueEffect& effect) { return Changes(effect.name, result.equation); });
+}
+
 std::pair<std::string, double> TopLabel(const gap::Result& result) {
   std::map<std::string, double> probability = {{"none", result.probability_none},
                                                {"unnamed", result.probability_unnamed}};
@@ -91,7 +111,7 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
     std::sort(names.begin(), names.end());
     // Physics that competes without a name in the catalogue.
     const bool unlisted =
-        std::any_of(names.begin(), names.end(), [](const std::string& name) { return ContactEffects::Find(name) < 0; });
+        std::any_of(names.begin(), names.end(), [](const std::string& name) { return Listed(name) == nullptr; });
     probability[unlisted ? "unnamed" : Joined(names)] += candidate.probability;
   }
   const auto top = std::max_element(probability.begin(), probability.end(),

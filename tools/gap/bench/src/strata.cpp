@@ -34,8 +34,23 @@ const Words kVariants = {"coulomb_friction:sign",
 const Words kOutside = {"quadratic_drag", "strain_stiffening", "backlash", "dead_zone", "spatial_ripple"};
 const Words kActingInOneMode = {"coulomb_friction:tanh", "presliding_friction:dahl", "viscous_friction:linear",
                                 "inertia:rigid", "periodic_disturbance:sine"};
+const Words kActuator = {"leak:linear",
+                         "valve_dead_band:rescaled",
+                         "valve_lag:spool",
+                         "supply_droop:opening",
+                         "pressure_bias:constant",
+                         "angle_bias:constant",
+                         "sensor_delay:dead_time",
+                         "joint_friction:tanh",
+                         "cubic_stiffness:cubic",
+                         "gravity_load:sine",
+                         "hysteresis:bouc_wen",
+                         "payload_step:inertia",
+                         "periodic_disturbance:sine"};
+const Words kActuatorOutside = {"quadratic_drag", "obstacle"};
 constexpr const char* kRich = "contact_rich";
-constexpr int kPairCells = 10, kUnequalPairCells = 3;
+constexpr const char* kExcited = "soft_actuator_excited";
+constexpr int kPairCells = 10, kUnequalPairCells = 3, kActuatorNullCells = 5;
 
 struct NoiseVariant {
   const char* name;
@@ -190,6 +205,21 @@ void Poor(Builder* b) {
     for (const std::string& effect : kCatalogue) b->Cell(Like(scenario, scenario, effect, 1.0), effect);
 }
 
+/// The soft actuator, excited: nothing hidden, one effect of either equation, and what its catalogue lacks.
+void Actuator(Builder* b) {
+  const auto like = [](const std::string& group, const std::string& effect, double strength) {
+    Case one = Like(group, kExcited, effect, strength);
+    one.model = kExcited;
+    return one;
+  };
+  for (int cell = 0; cell < kActuatorNullCells; ++cell) b->Cell(like("nothing", "none", 1.0), std::to_string(cell));
+  for (const double strength : {0.3, 1.0, 3.0})
+    for (const std::string& effect : kActuator) b->Cell(like(GroupOf(strength), effect, strength), effect);
+  for (const double strength : {1.0, 3.0})
+    for (const std::string& effect : kActuatorOutside)
+      b->Cell(like("outside, " + GroupOf(strength), effect, strength), effect);
+}
+
 void OneScenario(Builder* b, const char* scenario) {
   for (const std::string& effect : kCatalogue) b->Cell(Like("R 1", scenario, effect, 1.0), effect);
 }
@@ -216,6 +246,7 @@ const std::vector<std::pair<std::string, Fill>>& Strata() {
          Each(b, kVariants, {0.3, 1.0, 3.0});
        }},
       {"poor", Poor},
+      {"actuator", Actuator},
       {"paper", [](Builder* b) { OneScenario(b, "hunt_crossley_paper"); }}};
   return strata;
 }

@@ -56,6 +56,8 @@ class Fitter {
   [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
 
  private:
+  /// Halves amplitudes [first, first + count) until the plant that they make does not run away.
+  void Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const;
   /// Fills at_bound, heldout and log_evidence.
   void Score(Fitted* fitted) const;
 

@@ -13,11 +13,12 @@ namespace armcmc::gap_bench {
 
 /// One recording that is to be made and diagnosed. What it says about the hidden effect goes to the plant alone.
 struct Case {
-  std::string stratum;   ///< "singles"
-  std::string group;     ///< Row of the table within the stratum: "R 0.3".
-  std::string scenario;  ///< Of the plant: a name, or a file relative to the folder of the run.
-  std::string effect;    ///< --hide-effect; empty: the scenario hides effects of its own.
-  std::string gate;      ///< --effect-gate; empty: none.
+  std::string stratum;                  ///< "singles"
+  std::string group;                    ///< Row of the table within the stratum: "R 0.3".
+  std::string scenario;                 ///< Of the plant: a name, or a file relative to the folder of the run.
+  std::string model = "hunt_crossley";  ///< That the tool is given.
+  std::string effect;                   ///< --hide-effect; empty: the scenario hides effects of its own.
+  std::string gate;                     ///< --effect-gate; empty: none.
   double strength = 1.0;
   std::uint64_t seed = 1;
   std::vector<std::string> without;  ///< Effects that are taken out of the catalogue of the tool.
@@ -40,8 +41,8 @@ struct TrueEffect {
 struct Truth {
   std::vector<TrueEffect> effects;
   std::vector<std::pair<std::string, double>> base_parameters;
-  std::string noise_tables;  ///< As tables of a scenario file.
-  double noise_sd = 0.0;     ///< Of the output, in its unit.
+  std::string noise_tables;      ///< As tables of a scenario file.
+  std::vector<double> noise_sd;  ///< Of each output (OutputsOf the model), in its unit.
 };
 
 /// What the tool said, its curves left out.
@@ -84,6 +85,8 @@ struct Outcome {
   std::optional<double> onset_error_s;  ///< Beyond the times at which the data cannot tell the onset apart.
   std::optional<double> onset_off_s;    ///< From the true onset itself, at which the effect need not leave a trace.
   std::optional<bool> when_right;       ///< Contact-only and free-only effects: said so.
+  /// Of a plant with several equations, where a gap was found: it was found in one that the effect changes.
+  std::optional<bool> equation_right;
   /// Of effects that were not found: rms of what they add to the output in the diagnosed part of the recording, over
   /// the noise. A bound of R there, since the base parameters absorb some of it.
   std::optional<double> diagnosed_strength;

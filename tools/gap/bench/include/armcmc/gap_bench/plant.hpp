@@ -19,8 +19,8 @@ class PlantProcess {
   /// @return false when the effect cannot reach its strength in this motion.
   /// @throws std::runtime_error when the plant fails.
   [[nodiscard]] bool Make(const Case& what) const;
-  /// The measured output of a scenario of `what`'s seed; what it hides is what the scenario file says.
-  [[nodiscard]] std::vector<double> Output(const Case& what, const std::string& scenario_text) const;
+  /// The measured outputs of a scenario of `what`'s seed, [output][row]; what it hides is what the scenario file says.
+  [[nodiscard]] std::vector<std::vector<double>> Outputs(const Case& what, const std::string& scenario_text) const;
 
   [[nodiscard]] std::filesystem::path Recording(const Case& what) const;
   [[nodiscard]] std::filesystem::path Sealed(const Case& what) const;
@@ -34,9 +34,12 @@ class PlantProcess {
   std::filesystem::path program_, folder_;
 };
 
-/// Reads a sealed file.
+/// Columns of a recording in which the equations of a model predict something: one for each equation.
+[[nodiscard]] std::vector<std::string> OutputsOf(const std::string& model);
+
+/// Reads a sealed file of a plant that `model` describes.
 /// @throws std::runtime_error when it cannot be read.
-[[nodiscard]] Truth ReadSealed(const std::filesystem::path& path);
+[[nodiscard]] Truth ReadSealed(const std::filesystem::path& path, const std::string& model);
 
 /// The hidden effects of a truth as tables of a scenario file, every parameter fixed.
 /// @param gates  Whether effects keep their gates; otherwise they act always.

@@ -22,6 +22,10 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 /// name.
 [[nodiscard]] Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result);
 
+/// Whether the equation that carries the gap is one that a true effect changes. Nothing where the plant has one
+/// equation only, hides nothing of the catalogue, or no gap was found.
+[[nodiscard]] std::optional<bool> EquationRight(const Truth& truth, const gap::Result& result);
+
 /// What the tool holds most probable, of: "none", "unnamed", and each set of names ("a + b", summed over formulas and
 /// times), with the probability that it prints.
 [[nodiscard]] std::pair<std::string, double> TopLabel(const gap::Result& result);
