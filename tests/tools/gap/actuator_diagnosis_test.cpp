@@ -157,6 +157,19 @@ TEST(ActuatorWorkflow, FindsAPayloadThatComesAfterThePartThatIsDiagnosed) {
                           [](const std::string& note) { return note.find("sealed") != std::string::npos; }));
 }
 
+TEST(ActuatorWorkflow, FindsAPayloadOfWhichThePartThatIsDiagnosedShowsTheBeginningOnly) {
+  WorkflowRequest request;
+  request.model = kModel;
+  request.data = RecordPlant(kModel, {{"payload_step", 1.0, {3.0, 0.68 * kSeconds}}}, 68, kSeconds);
+  const Result result = RunWorkflow(request).result;
+  ASSERT_EQ(result.verdict, Verdict::kNamed) << result.sentence;
+  EXPECT_EQ(result.effects[0].name, "payload_step");
+  // While the pressure holds, half a second at a time, a load is not felt.
+  EXPECT_NEAR(result.effects[0].parameters[1].mean, 0.68 * kSeconds, 0.5);
+  EXPECT_TRUE(std::any_of(result.notes.begin(), result.notes.end(),
+                          [](const std::string& note) { return note.find("sealed") != std::string::npos; }));
+}
+
 TEST(ActuatorWorkflow, NamesNothingInAFlowLawThatIsNotExcitedAndProposesTheExcitation) {
   ARMCMC_REQUIRE_DATA("paper/soft_actuator.csv");
   WorkflowRequest request;

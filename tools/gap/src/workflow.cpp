@@ -168,13 +168,18 @@ Parts Divide(const WorkflowRequest& request) {
   return parts;
 }
 
-/// Where the first part of a recording lacks nothing in any equation, all of it is looked at: a load may come late.
-/// @return whether something is missing then; `plant` is what all of the recording says.
+/// Where the first part of a recording lacks nothing in any equation, or shows single events that nothing explains, all
+/// of it is looked at: a load may come late.
+/// @return whether something is missing then, or named instead of the events; `plant` is what all of the recording
+/// says.
 bool BeginsLate(const WorkflowRequest& request, PlantDiagnosis* plant) {
   if (request.heldout || plant->equations.size() < 2 || !plant->carrying().suitability.can_name) return false;
-  if (plant->carrying().diagnosis.finding.verdict != Verdict::kNone) return false;
+  const Finding& first = plant->carrying().diagnosis.finding;
+  const bool nothing = first.verdict == Verdict::kNone;
+  if (!nothing && (first.verdict != Verdict::kUnnamed || first.events_s.empty())) return false;
   PlantDiagnosis whole = DiagnosePlant(request.model, request.data, request.diagnose);
-  if (whole.carrying().diagnosis.finding.verdict == Verdict::kNone) return false;
+  const Finding& all = whole.carrying().diagnosis.finding;
+  if (nothing ? all.verdict == Verdict::kNone : all.set.empty()) return false;
   *plant = std::move(whole);
   return true;
 }
