@@ -39,12 +39,12 @@ const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       {{"pressure_bias", "angle_bias"},
        {"pressure_steps",
-        "vent with a wide open valve to a few hundred pascals above the atmosphere, and fill again: near p_atm the "
-        "vent "
-        "flow feels every pascal of a pressure bias, and an angle bias not at all",
-        {15e3, 300.0, 25e3, 200.0, 40e3, 400.0},
-        0.5,
-        1e-4}},
+        "vent with a wide open valve to a few ten pascals above the atmosphere, and fill again: near p_atm the vent "
+        "flow "
+        "feels every pascal of a pressure bias, and an angle bias not at all",
+        {4e3, 30.0, 15e3, 40.0, 30e3, 50.0},
+        0.35,
+        2e-4}},
       {{"leak", "pressure_bias"},
        {"closed_valve_hold", "hold with both valves shut, after steps to several pressures", {80e3, 40e3, 60e3}, 0.5}},
       {{"leak", "supply_droop"},

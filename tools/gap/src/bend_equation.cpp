@@ -106,14 +106,14 @@ class BendEquation final : public Equation {
     out->elastic = Vector::Zero(s.rows());
     for (std::size_t i = 0; i < columns.size(); ++i)
       out->jacobian.col(columns[i]) = (angles.col(static_cast<Eigen::Index>(i) + 1) - out->y) / kStep;
-    const Vector at_rest = Vector::Zero(s.rows());
     const auto felt = std::min<Eigen::Index>(s.rows(), static_cast<Eigen::Index>(kForgotten_s / s.dt) + 2);
     for (int column = 0; column < kStartCoordinates; ++column) {
       if (!out->wanted.Has(column)) continue;
-      Vector answer = Vector::Zero(s.rows());
-      const double size = s.scale_of(column == 0 ? Role::kPosition : Role::kVelocity);
-      simulation.Run(s.t, at_rest, {column == 0 ? size : 0.0, column == 1 ? size : 0.0}, {}, felt, &answer, nullptr);
-      out->jacobian.col(column) = answer;
+      BendSimulation::State other = start;
+      (column == 0 ? other.angle : other.rate) += kStep * s.scale_of(column == 0 ? Role::kPosition : Role::kVelocity);
+      Vector moved = out->y;
+      simulation.Run(s.t, gauge, other, forces, felt, &moved, nullptr);
+      out->jacobian.col(column) = (moved - out->y) / kStep;
     }
   }
 
