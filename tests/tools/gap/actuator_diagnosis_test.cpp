@@ -112,6 +112,19 @@ TEST(PlantDiagnosis, HoldsTwoBiasesThatNothingTellsApartForEquallyProbable) {
   }
 }
 
+TEST(PlantDiagnosis, GivesProbabilitiesThatAreNumbersWhereARivalWouldRunAway) {
+  // A load that triples the inertia: constants that explain its beginning have no stiffness left.
+  for (const unsigned long long seed : {1u, 2u, 3u}) {
+    const PlantDiagnosis plant =
+        DiagnosePlant(kModel, RecordPlant(kModel, {{"payload_step", 1.0, {2.18, 0.35 * kSeconds}}}, seed, kSeconds));
+    for (const EquationDiagnosis& one : plant.equations)
+      for (const CandidatePtr& candidate : one.diagnosis.finding.tried) {
+        EXPECT_TRUE(std::isfinite(candidate->probability)) << candidate->names().front() << ", seed " << seed;
+        EXPECT_TRUE(std::isfinite(candidate->fit.score())) << candidate->names().front() << ", seed " << seed;
+      }
+  }
+}
+
 TEST(PlantDiagnosis, SaysThatTheConstantsAreWrongRatherThanToNameAnEffect) {
   // The recording is of the excited plant; the angle is scaled as if q1 were 3 % larger.
   Recording recording = RecordPlant(kModel, {}, 64, kSeconds);

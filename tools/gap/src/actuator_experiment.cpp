@@ -39,9 +39,8 @@ const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       {{"pressure_bias", "angle_bias"},
        {"pressure_steps",
-        "vent with a wide open valve to a few ten pascals above the atmosphere, and fill again: near p_atm the vent "
-        "flow "
-        "feels every pascal of a pressure bias, and an angle bias not at all",
+        "vent with a wide open valve to a few ten pascals above the atmosphere, and fill again: near p_atm the "
+        "vent flow feels every pascal of a pressure bias, and an angle bias not at all",
         {4e3, 30.0, 15e3, 40.0, 30e3, 50.0},
         0.35,
         2e-4}},

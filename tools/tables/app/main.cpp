@@ -135,19 +135,24 @@ int Run(const Arguments& a) {
 int main(int argc, char** argv) {
   CLI::App app{"The paper's two experiments with every method on the same data: tables, tables.json, report.html."};
   armcmc::tables::Arguments a;
-  app.add_option("--data", a.data,
-                 "Folder with hunt_crossley.csv (t,x,v,f,f_true) and soft_actuator.csv "
-                 "(t,u_c,u_d,p,pdot,alpha,flow,theta1_true,theta2_true). Default: armcmc-plant simulates them");
+  CLI::Option* data =
+      app.add_option("--data", a.data,
+                     "Folder with hunt_crossley.csv (t,x,v,f,f_true) and soft_actuator.csv "
+                     "(t,u_c,u_d,p,pdot,alpha,flow,theta1_true,theta2_true). Default: armcmc-plant simulates them");
   app.add_option("--out", a.out, "Folder for the results")->required();
   app.add_option("--seeds", a.seeds, "Noise realisations of every simulated scenario; tables show means")
       ->check(CLI::Range(1, 1000));
   app.add_option("--first-seed", a.first_seed, "Seed of the first realisation, the others follow")
       ->capture_default_str();
-  app.add_flag("--paper-only", a.paper_only, "Only the paper's two experiments");
-  app.add_flag("--likelihoods", a.likelihoods, "Also the coverage under right and wrong noise laws (16 runs a seed)");
+  CLI::Option* paper_only = app.add_flag("--paper-only", a.paper_only, "Only the paper's two experiments");
+  CLI::Option* likelihoods = app.add_flag("--likelihoods", a.likelihoods,
+                                          "Also the coverage under right and wrong noise laws (16 runs a seed)");
   app.add_flag(
-      "--coverage", a.coverage,
-      "Only the coverage, of each noise law under its own likelihood: many seeds in little time (4 runs a seed)");
+         "--coverage", a.coverage,
+         "Only the coverage, of each noise law under its own likelihood: many seeds in little time (4 runs a seed)")
+      ->excludes(data)
+      ->excludes(paper_only)
+      ->excludes(likelihoods);
   app.footer(
       "Example:\n"
       "  armcmc-tables --out tables\n"
