@@ -71,30 +71,47 @@ void PrincipalAxes(const ParamMatrix& covariance, ParamMatrix* whiten, ParamMatr
   }
 }
 
-/// Mass that a normal law has at a node.
-double NormalMass(double x, double sd) noexcept {
-  return std::exp(-0.5 * x * x / (sd * sd)) / (sd * 2.5066282746310002 * MarginalTable::kNodesPerUnit);
+/// exp(-n^2 h^2 / 2) for n = 0 .. size - 1: neighbours differ by factors that are a geometric sequence themselves, so
+/// that two exponentials do for all.
+void TabulateBell(double h, int size, double* bell) noexcept {
+  double value = 1.0;
+  double factor = std::exp(-0.5 * h * h);
+  const double change = factor * factor;
+  for (int n = 0; n < size; ++n) {
+    bell[n] = value;
+    value *= factor;
+    factor *= change;
+  }
+}
+
+/// Masses that a normal law has at the nodes.
+std::array<double, kNodes> NormalMasses(double sd) noexcept {
+  constexpr std::size_t kCentre = kNodes / 2;
+  std::array<double, kCentre + 1> bell;
+  TabulateBell(1.0 / (sd * MarginalTable::kNodesPerUnit), kCentre + 1, bell.data());
+  const double scale = 1.0 / (sd * 2.5066282746310002 * MarginalTable::kNodesPerUnit);
+  std::array<double, kNodes> mass;
+  for (std::size_t n = 0; n <= kCentre; ++n) mass[kCentre + n] = mass[kCentre - n] = scale * bell[n];
+  return mass;
 }
 
 /// Gaussian smoothing of node masses, in place, with a kernel of standard deviation h (node units h * 8).
 void Smooth(double h, std::array<double, kNodes>* values) noexcept {
   const double h_nodes = h * MarginalTable::kNodesPerUnit;
   const int reach = std::min(static_cast<int>(std::ceil(4.0 * h_nodes)), kNodes - 1);
-  std::array<double, kNodes> kernel{};
-  double total = 0.0;
-  for (int j = 0; j <= reach; ++j) {
-    const double x = j / h_nodes;
-    kernel[static_cast<std::size_t>(j)] = std::exp(-0.5 * x * x);
-    total += (j == 0 ? 1.0 : 2.0) * kernel[static_cast<std::size_t>(j)];
-  }
+  std::array<double, kNodes> kernel;
+  TabulateBell(1.0 / h_nodes, reach + 1, kernel.data());
+  double total = kernel[0];
+  for (int j = 1; j <= reach; ++j) total += 2.0 * kernel[static_cast<std::size_t>(j)];
   std::array<double, kNodes> out{};
   for (int i = 0; i < kNodes; ++i) {
     const double v = (*values)[static_cast<std::size_t>(i)] / total;
     if (v == 0.0) continue;
-    const int from = std::max(0, i - reach);
-    const int to = std::min(kNodes - 1, i + reach);
-    for (int j = from; j <= to; ++j)
-      out[static_cast<std::size_t>(j)] += v * kernel[static_cast<std::size_t>(j < i ? i - j : j - i)];
+    double* const at = &out[static_cast<std::size_t>(i)];
+    const int below = std::min(reach, i);
+    const int above = std::min(reach, kNodes - 1 - i);
+    for (int j = 1; j <= below; ++j) at[-j] += v * kernel[static_cast<std::size_t>(j)];
+    for (int j = 0; j <= above; ++j) at[j] += v * kernel[static_cast<std::size_t>(j)];
   }
   *values = out;
 }
@@ -233,15 +250,16 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
     }
   }
   const double bandwidth = options.bandwidth_factor * 1.06 * std::pow(ess, -0.2);
+  const std::array<double, kNodes> normal = NormalMasses(1.0);
+  const std::array<double, kNodes> tail = NormalMasses(options.tail_sd);
   for (int i = 0; i < dim; ++i) {
     const auto ii = static_cast<std::size_t>(i);
     const double own = options.shrink_to_normal ? ShareOfOwnShape(histogram[ii], moments.sum, ess) : 1.0;
     Smooth(bandwidth, &histogram[ii]);
-    for (int n = 0; n < kNodes; ++n) {
-      const double x = n / MarginalTable::kNodesPerUnit - kReach;
-      auto& value = histogram[ii][static_cast<std::size_t>(n)];
-      const double shape = own * value / moments.sum + (own < 1.0 ? (1.0 - own) * NormalMass(x, 1.0) : 0.0);
-      value = (1.0 - options.tail_weight) * shape + options.tail_weight * NormalMass(x, options.tail_sd);
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      auto& value = histogram[ii][n];
+      const double shape = own * value / moments.sum + (1.0 - own) * normal[n];
+      value = (1.0 - options.tail_weight) * shape + options.tail_weight * tail[n];
     }
     tables[i].Build(histogram[ii].data(), kNodes, -kReach);
     block->marginal[ii] = &tables[i];

@@ -94,7 +94,15 @@ std::unique_ptr<AdjustResult> Estimator::MakeResult() const {
 
 Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                          const DrawLimits& limits) noexcept {
+  const Status status = Draw(pack, deadline_ns, clock, result, limits);
+  Remember(clock);
+  return status;
+}
+
+Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+                       const DrawLimits& limits) noexcept {
   Impl& s = *impl_;
+  s.Remember(clock);
   for (int m = 0; m < s.info.num_modes; ++m) {
     ModeDraws& draws = result->modes[static_cast<std::size_t>(m)];
     draws.updated = false;
@@ -132,7 +140,9 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
         clock.read != nullptr ? now + (deadline_ns - now) / pending : std::numeric_limits<Nanos>::max() / 2;
     --pending;
     const Status mode_status =
-        s.AdjustMode(i, static_cast<std::uint64_t>(pack.seq), mode_deadline, clock, limits[i], result);
+        s.DrawMode(i, static_cast<std::uint64_t>(pack.seq), mode_deadline, clock, limits[i], result);
+    // The next mode needs the workspace; and whether anything is known is part of the result.
+    if (pending > 0 || !result->modes[i].known) s.Remember(clock);
     if (mode_status == Status::kNonFinite) {
       status = Status::kNonFinite;
       continue;
@@ -146,24 +156,38 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
   return status;
 }
 
-Status Estimator::Impl::AdjustMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
-                                   AdjustResult* result) noexcept {
+void Estimator::Remember(ClockRef clock) noexcept { impl_->Remember(clock); }
+
+Status Estimator::Impl::DrawMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
+                                 AdjustResult* result) noexcept {
   ModeDraws* draws = &result->modes[m];
   if (!filters.empty()) {
     if (!acted[m]) filters[m]->Resume();
     return filters[m]->Run(adjust_data[m], pack, m, deadline_ns, clock, limit, draws);
   }
-  ModeMemory& memory = *memories[m];
+  const ModeMemory& memory = *memories[m];
   const Status status = samplers[m]->Run(adjust_data[m], memory.slot[memory.current], pack, m, deadline_ns, clock,
-                                         limit, workspace.get(), &memory.slot[1 - memory.current], draws);
-  if (status != Status::kNonFinite) memory.current = 1 - memory.current;
+                                         limit, workspace.get(), draws);
+  if (status != Status::kNonFinite) {
+    not_remembered = draws;
+    not_remembered_mode = m;
+  }
   return status;
+}
+
+void Estimator::Impl::Remember(ClockRef clock) noexcept {
+  if (not_remembered == nullptr) return;
+  ModeMemory& memory = *memories[not_remembered_mode];
+  memory.current = 1 - memory.current;
+  samplers[not_remembered_mode]->Remember(clock, workspace.get(), &memory.slot[memory.current], not_remembered);
+  not_remembered = nullptr;
 }
 
 void Estimator::Reset() noexcept {
   Impl& s = *impl_;
   for (auto& filter : s.filters) filter->Reset();
   s.acted.fill(false);
+  s.not_remembered = nullptr;
   for (auto& memory : s.memories) memory->slot[0].valid = memory->slot[1].valid = false;
   for (auto& estimate : s.last_estimates) estimate = ModeEstimate{};
   s.ShowPrior();

@@ -42,8 +42,10 @@ struct Estimator::Impl {
   int dim = 0;
 
   /// One step of mode m with the method of the settings.
-  Status AdjustMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
-                    AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
+  Status DrawMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
+                  AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
+  /// What the newest DrawMode() left to be done, if anything.
+  void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
   /// A baseline with one vector of parameters shows it for every mode.
   void ShareVector(Estimate* e) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool one_vector() const noexcept {
@@ -56,6 +58,8 @@ struct Estimator::Impl {
   std::vector<std::unique_ptr<ModeSampler>> samplers;
   std::vector<std::unique_ptr<ModeMemory>> memories;
   std::unique_ptr<SamplerWorkspace> workspace;
+  ModeDraws* not_remembered = nullptr;  ///< Draws that no memory has been made of.
+  std::size_t not_remembered_mode = 0;
   std::array<ModeData, kMaxModes> adjust_data;
 
   // Execute stage.

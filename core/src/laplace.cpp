@@ -11,6 +11,7 @@ namespace {
 constexpr std::array<double, 4> kDampings{0.0, 1e-2, 1.0, 100.0};
 constexpr std::array<double, 8> kLengths{1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 1.5, 0.0};
 constexpr double kDifference = 1e-4;  // in prior standard deviations; error of central differences about 1e-8
+constexpr double kConverged = 1e-6;   // nats that a Newton step promises
 
 /// Writes one candidate into a lane of the batch.
 void SetLane(const ParameterSpace& space, const ParamVector& u, int lane, ThetaTile* theta,
@@ -31,9 +32,38 @@ bool IsPressed(const ParameterSpace& space, const ParamVector& u, const ParamVec
   return (u[d] <= space.lower[i] && gradient[d] > 0.0) || (u[d] >= space.upper[i] && gradient[d] < 0.0);
 }
 
+/// The others move as if those that are pressed against their bounds stay there (projected Newton steps).
+void HoldPressed(const ParameterSpace& space, const ParamVector& u, ParamVector* gradient,
+                 ParamMatrix* hessian) noexcept {
+  for (int d = 0; d < space.dim; ++d) {
+    if (!IsPressed(space, u, *gradient, d)) continue;
+    (*gradient)[d] = 0.0;
+    hessian->row(d).setZero();
+    hessian->col(d).setZero();
+    (*hessian)(d, d) = 1.0;
+  }
+}
+
+/// -(H + mu diag H)^-1 g, or none where that is not finite.
+ParamVector DampedStep(const ParamMatrix& hessian, const ParamVector& gradient, double damping) noexcept {
+  ParamMatrix damped = hessian;
+  damped.diagonal() *= 1.0 + damping;
+  ParamVector step = -Solve(FactorSymmetric(damped), gradient);
+  if (!step.allFinite()) step.setZero();
+  return step;
+}
+
+/// Of every candidate of a batch: a product of matrix and vector for each by itself would cost as much as the batch.
 double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
-  const ParamVector d = u - prior.mean;
-  return -0.5 * d.dot(Evaluate(prior.precision * d));
+  const auto dim = u.size();
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < dim; ++i) {
+    const double di = u[i] - prior.mean[i];
+    double row = 0.5 * prior.precision(i, i) * di;
+    for (Eigen::Index j = 0; j < i; ++j) row += prior.precision(i, j) * (u[j] - prior.mean[j]);
+    sum += di * row;
+  }
+  return -sum;
 }
 
 /// Gradient and Gauss-Newton Hessian of minus the log posterior at u.
@@ -99,22 +129,24 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
   ParamVector gradient(dim);
   ParamMatrix hessian(dim, dim);
   double best = -HUGE_VAL;
+  bool linearised = false;  // at u, or so close to it that it makes no difference
   for (int iteration = 0; iteration < kLaplaceIterations; ++iteration) {
     Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
-    // The others move as if those that are pressed against their bounds stay there (projected Newton steps).
-    for (int d = 0; d < dim; ++d) {
-      if (!IsPressed(space, u, gradient, d)) continue;
-      gradient[d] = 0.0;
-      hessian.row(d).setZero();
-      hessian.col(d).setZero();
-      hessian(d, d) = 1.0;
+    ParamVector free_gradient = gradient;
+    ParamMatrix free_hessian = hessian;
+    HoldPressed(space, u, &free_gradient, &free_hessian);
+    const ParamVector newton = DampedStep(free_hessian, free_gradient, 0.0);
+    const double promised = -0.5 * free_gradient.dot(newton);
+    linearised = iteration > 0 && promised < kConverged;
+    if (linearised) {
+      best += std::fmax(promised, 0.0);
+      u += newton;
+      Clamp(space, &u);
+      break;
     }
     int lane = 0;
     for (const double damping : kDampings) {
-      ParamMatrix damped = hessian;
-      damped.diagonal() *= 1.0 + damping;
-      ParamVector step = -Solve(FactorSymmetric(damped), gradient);
-      if (!step.allFinite()) step.setZero();
+      const ParamVector step = damping > 0.0 ? DampedStep(free_hessian, free_gradient, damping) : newton;
       for (const double length : kLengths) {
         ParamVector& candidate = trial[static_cast<std::size_t>(lane)];
         candidate = u + length * step;
@@ -139,7 +171,7 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
     u = trial[static_cast<std::size_t>(chosen)];
     if (converged) break;
   }
-  Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+  if (!linearised) Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
   // Pressed against a bound with slope g the posterior falls off like exp(-g x), with standard deviation 1 / g.
   for (int d = 0; d < dim; ++d)
     if (IsPressed(space, u, gradient, d)) hessian(d, d) += gradient[d] * gradient[d];

@@ -55,11 +55,12 @@ void MarginalTable::Build(const double* values, int num_nodes, double lower) noe
 }
 
 void MarginalTable::BuildGuide() noexcept {
-  int node = 0;
-  for (int g = 0; g < kGuideSize; ++g) {
-    const double u = static_cast<double>(g) / kGuideSize;
-    while (node < num_nodes_ - 2 && cdf_[static_cast<std::size_t>(node) + 1] <= u) ++node;
-    guide_[static_cast<std::size_t>(g)] = node;
+  int from = 0;  // first entry that is not written
+  for (int node = 0; node < num_nodes_ - 1; ++node) {
+    const double end = node < num_nodes_ - 2 ? cdf_[static_cast<std::size_t>(node) + 1] * kGuideSize : kGuideSize;
+    const int to = static_cast<int>(std::fmin(std::fmax(std::ceil(end), from), kGuideSize));
+    std::fill(guide_.begin() + from, guide_.begin() + to, static_cast<double>(node));
+    from = to;
   }
 }
 

@@ -145,8 +145,7 @@ int ModeSampler::DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noex
 }
 
 Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::uint64_t pack, std::uint64_t mode,
-                        Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* ws, PosteriorMemory* next,
-                        ModeDraws* out) noexcept {
+                        Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* ws, ModeDraws* out) noexcept {
   const auto stream_of = [&](Purpose purpose) noexcept {
     return RandomStream(sampler_.seed, pack, mode * kNumPurposes + purpose);
   };
@@ -164,31 +163,43 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
                               ? sampler_.lambda_q_min
                               : std::clamp(lambda, sampler_.lambda_q_min, sampler_.lambda_q_max);
 
+  const bool informed = last.valid && last.informed;  // else the result has to wait for Remember()
+  const Nanos fit_start = clock.Now();
   FitLaplace(data, previous, use_previous, ws);
+  const Nanos anchor_ns = (clock.Now() - fit_start) / 2;  // they start nearer to where they end
   Proposal proposal;
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);
   const RandomStream stream = stream_of(kDrawStream);
   memory_inside_ = 1.0;
   bool in_haste = false;
-  int pilot = RunPilot(data, previous, use_previous, lambda, lambda_q, wanted, {deadline_ns, clock, limit}, stream, ws,
-                       &proposal, out, &in_haste);
+  int pilot = RunPilot(data, previous, use_previous, lambda, lambda_q, wanted,
+                       {deadline_ns, clock, limit, anchor_ns, informed}, stream, ws, &proposal, out, &in_haste);
   if (in_haste) target = pilot + DrawsInHaste(pilot, wanted);
 
   // Nothing above or below depends on `limit` but where the loop ends, so that a truncated run repeats to the bit.
   int made = pilot;
   bool refitted = false;
-  Nanos worst_chunk_ns = 0;
-  while (made < target || made == pilot) {  // at most max_draws / kChunkDraws + 2 turns
-    const int chunk = std::min(kChunkDraws, (made < target ? target : wanted) - made);
+  double worst_draw_ns = 0.0;
+  Nanos draw_ns = 0;
+  int timed = 0;
+  double slowness = 1.0;
+  while (made < target || made == pilot) {  // at most max(8, max_draws / kChunkDraws) + 2 turns
+    // A replay tells from what came after the pilot how many rounds that had: no less than a pack in haste draws.
+    const int several = made == pilot ? std::max(DrawsInHaste(pilot, wanted), ChunkDraws(wanted)) : ChunkDraws(wanted);
+    const int chunk = std::min(several, (made < target ? target : wanted) - made);
     const Nanos before = clock.Now();
-    const Nanos finish = finish_time_.Predict(made + chunk);
-    if (made > pilot && before + worst_chunk_ns + finish > deadline_ns) break;
+    const double ahead = worst_draw_ns * chunk + slowness * static_cast<double>(TimeAfter(made + chunk, informed));
+    if (made > pilot && before + static_cast<Nanos>(ahead) > deadline_ns) break;
     DrawAndScore(proposal, previous, data, made, chunk, stream, ws, out);
     made += chunk;
-    worst_chunk_ns = std::max(worst_chunk_ns, clock.Now() - before);
+    timed += chunk;
+    const Nanos spent = clock.Now() - before;
+    draw_ns += spent;
+    worst_draw_ns = std::max(worst_draw_ns, static_cast<double>(spent) / chunk);
+    slowness = draw_pace_.Slowness(draw_ns, timed);
     // One late correction, still inside the half of the chain that is thrown away: what was drawn so far is a better
     // guide than the pilot where that was a poor match.
-    if (!refitted && made >= wanted / 4 && made + kChunkDraws <= wanted) {
+    if (!refitted && wanted > 2 * kChunkDraws && made >= wanted / 4 && made + kChunkDraws <= wanted) {
       refitted = true;
       double ess = 0.0;
       if (std::isnan(Weigh(previous, lambda, pilot, made, ws))) continue;
@@ -242,21 +253,35 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   out->num_samples = data.num_samples;
   FindMode(data, !use_previous, ws, out);
   RunChain(stream_of(kAcceptStream), ws, out);
-  Compress(previous, lambda, pilot, stream_of(kNoiseStream), ws, next, out);
+  unfinished_ = {.previous = &previous,
+                 .lambda = lambda,
+                 .first = pilot,
+                 .mass_first = 0.0,
+                 .mass_new = 1.0,
+                 .noise_stream = stream_of(kNoiseStream)};
+  ShareAmongPriors(ws, out);
+  out->known = informed;
+  out->updated = true;
+  // Each at the usual pace: a pack that was slow throughout does not make the next one look so.
+  finish_time_.Add(static_cast<Nanos>(static_cast<double>(clock.Now() - finish_start) / slowness), made);
+  draw_pace_.Add(draw_ns, timed);
+  return out->truncated ? Status::kTruncated : Status::kOk;
+}
+
+void ModeSampler::Remember(ClockRef clock, SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {
+  const Nanos start = clock.Now();
+  Compress(ws, next, out);
   double log_scale = space_.log_noise_scale;
   if (space_.samples_noise_scale()) {
     const auto d = static_cast<std::size_t>(space_.dim - 1);
     double mean = 0.0;
-    for (int k = 0; k < made; ++k) mean += out->weight[k] * out->u[d][k];
+    for (int k = 0; k < out->draws; ++k) mean += out->weight[k] * out->u[d][k];
     log_scale = space_.Theta(space_.dim - 1, mean);
   }
   next->log_noise_scale = log_scale;
-  if (mismatch.decision == Decision::kModification) out->p_changed = 1.0;
-  transition_.Accept(*next, mismatch.decision);
-  out->known = next->informed;
-  out->updated = true;
-  finish_time_.Add(clock.Now() - finish_start, made);
-  return out->truncated ? Status::kTruncated : Status::kOk;
+  transition_.Accept(*next, out->decision);
+  if (!out->known) out->known = next->informed;  // once it is, the result may be read by another thread
+  remember_time_.Add(clock.Now() - start, out->draws);
 }
 
 }  // namespace armcmc

@@ -122,8 +122,23 @@ const double* ModeSampler::SpreadNoiseScale(int first, const RandomStream& strea
   return row;
 }
 
-void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
-                           SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {
+void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept {
+  // The first block of the memory, the second, or drawn anew.
+  if (unfinished_.lambda > 0.0) {
+    const int first = unfinished_.first;
+    const auto offset = static_cast<std::size_t>(first);
+    std::array<double, 2> masses{};
+    kernels_.share_prior(Prior(*unfinished_.previous, unfinished_.lambda, first, *ws), out->weight + first,
+                         RoundUpToTile(out->draws - first), ws->first_share.data() + offset, masses.data());
+    unfinished_.mass_first = masses[0];
+    unfinished_.mass_new = masses[1];
+  }
+  out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(unfinished_.mass_new, 0.0, 1.0);
+}
+
+void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {
+  const bool use_previous = unfinished_.lambda > 0.0;
+  const int first = unfinished_.first;
   const int count = out->draws - first;
   const auto offset = static_cast<std::size_t>(first);
   WeightedDraws group{.dim = space_.dim, .size = count, .u = {}, .weight = ws->group_weight.data() + offset};
@@ -132,18 +147,10 @@ void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int f
   // The level of the noise is carried on loosely. Held as tightly as thousands of samples allow, a quieter or louder
   // stretch could only be explained by everything having changed, and the parameters would be forgotten with it.
   if (space_.samples_noise_scale())
-    group.u[static_cast<std::size_t>(space_.dim - 1)] = SpreadNoiseScale(first, stream, ws, *out) + first;
+    group.u[static_cast<std::size_t>(space_.dim - 1)] =
+        SpreadNoiseScale(first, unfinished_.noise_stream, ws, *out) + first;
 
-  // Where a draw's prior came from: the first block of the memory, the second, or drawn anew.
-  const bool use_previous = lambda > 0.0;
-  std::array<double, 2> masses{};
-  if (use_previous)
-    kernels_.share_prior(Prior(previous, lambda, first, *ws), out->weight + first, RoundUpToTile(count),
-                         ws->first_share.data() + offset, masses.data());
-  const double mass_first = masses[0];
-  const double mass_new = masses[1];
-  out->p_changed = use_previous ? std::clamp(mass_new, 0.0, 1.0) : 1.0;
-
+  const double mass_first = unfinished_.mass_first;
   next->num_blocks = 0;
   for (int k = out->draws; k < first + RoundUpToTile(count); ++k) ws->group_weight[static_cast<std::size_t>(k)] = 0.0;
   // A group's weights are (constant + slope x share of the first block) of the draws' weights.
@@ -185,6 +192,7 @@ void ModeSampler::Compress(const PosteriorMemory& previous, double lambda, int f
   next->mean = MeanOf(next->block[0]);
   next->covariance = CovarianceOf(next->block[0]);
   next->valid = true;
+  const PosteriorMemory& previous = *unfinished_.previous;
   next->informed = previous.valid && previous.informed;
   for (int d = 0; d < space_.num_parameters; ++d)
     next->informed = next->informed ||

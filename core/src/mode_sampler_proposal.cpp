@@ -26,12 +26,16 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
                              SamplerWorkspace* ws) noexcept {
   const int dim = space_.dim;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
-  double best = LaplaceFit(kernels_, model_, data, noise_, space_, initial, initial.mean, &ws->laplace, &fit_fresh_);
-  if (previous.valid) {
+  const auto fit_from = [&](const ParamVector& start, Gaussian* fit) noexcept ARMCMC_NONBLOCKING {
+    return LaplaceFit(kernels_, model_, data, noise_, space_, initial, start, &ws->laplace, fit);
+  };
+  // Data that agree with the previous posterior have their mode near its mean.
+  if (use_previous && !transition_.Offers(previous)) {
+    (void)fit_from(previous.mean, &fit_fresh_);
+  } else {
+    const double best = fit_from(initial.mean, &fit_fresh_);
     Gaussian other;
-    const double value =
-        LaplaceFit(kernels_, model_, data, noise_, space_, initial, previous.mean, &ws->laplace, &other);
-    if (value > best) fit_fresh_ = other;
+    if (previous.valid && fit_from(previous.mean, &other) > best) fit_fresh_ = other;
   }
   SetElliptic(fit_fresh_.mean, Evaluate(fit_fresh_.precision.inverse()), kLaplaceInflation, &student_table_,
               &laplace_fresh_);
@@ -172,24 +176,14 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
                           SamplerWorkspace* ws, Proposal* proposal, ModeDraws* out, bool* in_haste) noexcept {
   const int size = std::min(kPilotDraws, wanted / (2 * kPilotRounds) / kTileLanes * kTileLanes);
   const double enough = std::fmin(kPilotEss, kPilotEssShare * size);
+  const int anchors = size / kDrawsPerAnchor;
   int made = 0;
   int pooled = 0;  // first draw of those that share the proposal of this round
   int blocks = 0;
   bool on_ridge = false;
   Nanos worst_round_ns = 0;
-  Nanos before = time.clock.Now();
   for (int round = 0; round < kMaxPilotRounds; ++round) {
-    if (round >= kPilotRounds && made + size > wanted / 2) break;
-    if (round > 0 && size > 2 * kTileLanes) {  // shorter rounds cost nothing
-      const int after_round = made + size + DrawsInHaste(made + size, wanted);
-      if (after_round > time.limit) break;
-      const Nanos now = time.clock.Now();
-      worst_round_ns = std::max(worst_round_ns, now - before);
-      before = now;
-      const Nanos ahead = finish_time_.Predict(after_round) + worst_round_ns * (after_round - made) / size;
-      *in_haste = now + ahead > time.deadline_ns;
-      if (*in_haste) break;
-    }
+    const Nanos before = time.clock.Now();
     DrawAndScore(*proposal, previous, data, made, size, stream, ws, out);
     made += size;
     double ess = 0.0;
@@ -199,11 +193,25 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
       on_ridge = false;
       break;
     }
-    if (on_ridge && (round > 1 || ess >= kMinimumEss)) continue;  // thin, but right: more of the same
-    pooled = made;
-    on_ridge =
-        round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, size / kDrawsPerAnchor, ws, proposal);
-    if (!on_ridge) BuildProposal(previous, lambda_q, use_previous, blocks, proposal);
+    const bool last = round + 1 == kMaxPilotRounds || (round + 1 >= kPilotRounds && made + size > wanted / 2);
+    if (!last && size > 2 * kTileLanes) {  // shorter rounds cost nothing
+      const int after_round = made + size + DrawsInHaste(made + size, wanted);
+      if (after_round > time.limit) break;
+      const Nanos now = time.clock.Now();
+      worst_round_ns = std::max(worst_round_ns, now - before);
+      const Nanos ridge_ns = round == 0 ? anchors * time.anchor_ns : 0;
+      const Nanos ahead =
+          ridge_ns + worst_round_ns * (after_round - made) / size + TimeAfter(after_round, time.informed);
+      *in_haste = now + ahead > time.deadline_ns;
+      if (*in_haste) break;
+    }
+    const bool thin_but_right = on_ridge && (round > 1 || ess >= kMinimumEss);
+    if (!thin_but_right) {  // else more of the same
+      pooled = made;
+      on_ridge = round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, anchors, ws, proposal);
+      if (!on_ridge) BuildProposal(previous, lambda_q, use_previous, blocks, proposal);
+    }
+    if (last) break;
   }
   if (!on_ridge) {
     BuildProposal(previous, lambda_q, use_previous, blocks, proposal);

@@ -48,11 +48,17 @@ void AdjustStage::NoteStatus(const StepInfo& info) noexcept {
   }
 }
 
+void AdjustStage::Remember() noexcept {
+  engine_->Remember(MonotonicClock());
+  const Nanos end_ns = MonotonicNow();
+  monitor_->RecordRemembered(handed_over_, end_ns, cpu_time_.GoOn(end_ns));
+}
+
 bool AdjustStage::Step() noexcept {
   DropUnkeepable();
   PackSlot* slot = ring_->Front();
   if (slot == nullptr) return false;
-  if (results_->latest.unread() && MonotonicNow() < handed_over_deadline_ns_) return false;
+  if (results_->latest.unread() && MonotonicNow() < handed_over_.deadline_ns) return false;
   const Nanos start_ns = cpu_time_.Start();
   const int result = results_->latest.write_slot();
   StepInfo& info = results_->info[static_cast<std::size_t>(result)];
@@ -70,7 +76,7 @@ bool AdjustStage::Step() noexcept {
   ring_->Pop();
   typical_.Add(end_ns - start_ns);
   NoteStatus(info);
-  handed_over_deadline_ns_ = info.times.deadline_ns;
+  handed_over_ = info.times;
   if (results_->latest.Publish()) {
     // Execute did not come to the result before: it is lost, and its note is in the slot that is ours again.
     const StepInfo& lost = results_->info[static_cast<std::size_t>(results_->latest.write_slot())];

@@ -68,11 +68,20 @@ Nanos CpuTimeMeter::Start() noexcept ARMCMC_NONBLOCKING {
   return start_ns_;
 }
 
-Nanos CpuTimeMeter::End(Nanos end_ns) noexcept ARMCMC_NONBLOCKING {
+Nanos CpuTimeMeter::Withheld(Nanos begin_ns, const Use& at_begin, Nanos end_ns) noexcept {
   end_ns_ = end_ns;
   used_at_end_ = Used();
   if (!trusted_.load(std::memory_order_relaxed) || Sleeps() != sleeps_at_start_) return 0;
-  return std::max<Nanos>(0, end_ns - start_ns_ - (used_at_end_.all_ns - used_at_start_.all_ns));
+  return std::max<Nanos>(0, end_ns - begin_ns - (used_at_end_.all_ns - at_begin.all_ns));
+}
+
+Nanos CpuTimeMeter::End(Nanos end_ns) noexcept ARMCMC_NONBLOCKING {
+  return Withheld(start_ns_, used_at_start_, end_ns);
+}
+
+Nanos CpuTimeMeter::GoOn(Nanos end_ns) noexcept ARMCMC_NONBLOCKING {
+  const Use at_begin = used_at_end_;
+  return Withheld(end_ns_, at_begin, end_ns);
 }
 
 }  // namespace armcmc::rt

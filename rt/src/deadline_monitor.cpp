@@ -60,6 +60,12 @@ void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKI
   times->adjusted_earlier = timeline_[IndexOf(Stage::kAdjust)].Do(work, Collected(*times));
 }
 
+void DeadlineMonitor::RecordRemembered(const StepTimes& times, Nanos end_ns,
+                                       Nanos withheld_ns) noexcept ARMCMC_NONBLOCKING {
+  const Nanos begin_ns = times.end_ns[IndexOf(Stage::kAdjust)];
+  timeline_[IndexOf(Stage::kAdjust)].GoOn(end_ns, std::max(StalledTime(Stage::kAdjust, begin_ns, end_ns), withheld_ns));
+}
+
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {
   for (const Stage stage : {Stage::kCollect, Stage::kAdjust, Stage::kExecute}) {
     const Nanos duration = times.Duration(stage);

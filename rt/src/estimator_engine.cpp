@@ -16,13 +16,17 @@ int EstimatorEngine::num_reported() const noexcept { return estimator_.num_repor
 ReportedQuantity EstimatorEngine::reported(int index) const noexcept { return estimator_.reported(index); }
 
 Status EstimatorEngine::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept {
-  const Status status = estimator_.Adjust(pack, deadline_ns, clock, results_[static_cast<std::size_t>(slot)].get());
-  const bool learnt = status == Status::kOk || status == Status::kTruncated;
-  if (snapshots_ != nullptr && warm_ && learnt) {
-    snapshots_->adjusted.Write(pack.seq,
-                               [this](std::span<std::byte> out) noexcept { return estimator_.SaveAdjusted(out); });
-  }
+  const Status status = estimator_.Draw(pack, deadline_ns, clock, results_[static_cast<std::size_t>(slot)].get());
+  learnt_ = status == Status::kOk || status == Status::kTruncated;
+  seq_ = pack.seq;
   return status;
+}
+
+void EstimatorEngine::Remember(ClockRef clock) noexcept {
+  estimator_.Remember(clock);
+  if (snapshots_ == nullptr || !warm_ || !learnt_) return;
+  learnt_ = false;
+  snapshots_->adjusted.Write(seq_, [this](std::span<std::byte> out) noexcept { return estimator_.SaveAdjusted(out); });
 }
 
 void EstimatorEngine::Execute(int slot, Estimate* estimate) noexcept {

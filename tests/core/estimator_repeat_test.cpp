@@ -73,6 +73,26 @@ TEST(Repeat, ExecuteMayLagBehindAdjust) {
   }
 }
 
+TEST(Repeat, AResultIsWholeBeforeItIsRemembered) {
+  const EstimatorSettings models[] = {BuiltinSettings("hunt_crossley"), test::ActuatorSettings()};
+  for (const EstimatorSettings& settings : models) {
+    const auto pack = [&](std::int64_t seq) {
+      return settings.model == "hunt_crossley" ? Contact{}.Pack(seq) : test::Actuator{}.Pack(seq, seq % 2 ? 60 : 100);
+    };
+    Rig whole(settings);
+    Estimator in_parts(settings);
+    const auto estimate = std::make_unique<Estimate>();
+    const auto slot = in_parts.MakeResult();
+    for (std::int64_t seq = 1; seq <= 12; ++seq) {
+      whole.Step(pack(seq));
+      (void)in_parts.Draw(pack(seq), 0, {}, slot.get());
+      in_parts.Execute(*slot, estimate.get());
+      if (seq % 3 != 0) in_parts.Remember({});  // else the next Draw() makes up for it
+      test::ExpectSameBits(whole.estimate(), *estimate);
+    }
+  }
+}
+
 TEST(Repeat, ResetEqualsAFreshEstimator) {
   const EstimatorSettings models[] = {BuiltinSettings("hunt_crossley"), test::ActuatorSettings()};
   for (const EstimatorSettings& settings : models) {

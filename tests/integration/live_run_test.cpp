@@ -73,6 +73,16 @@ void ExpectEqualToTheBit(const std::vector<estimate_t>& live, Table& replay) {
 
 class LiveRun : public LivePair {
  protected:
+  /// Every pack of the plant has its estimate, or the test is over: skipped, when the machine stood still for longer
+  /// than a period, so that packs had to be given up, and failed else.
+  void WaitForAll(std::size_t count, Process* estimator) {
+    if (recorder_->WaitForEstimates(count)) return;
+    const nlohmann::json report = Finish(estimator);
+    if (report["packs"]["dropped"] > 0 && report["misses"]["own"] == 0 && report["misses"]["machine"] > 0)
+      GTEST_SKIP() << "the machine stood still, and " << report["packs"]["dropped"] << " packs were given up";
+    FAIL() << "estimates are missing\n" << estimator->err();
+  }
+
   Table Replay(const std::vector<std::string>& data_arguments) {
     std::vector<std::string> arguments = {"--config", (SourceDir() / "rt/config/hunt_crossley.toml").string(), "--out",
                                           dir_ / "replay.csv"};
@@ -87,7 +97,8 @@ TEST_F(LiveRun, TwentySecondsMeetEveryDeadlineAndReplayToTheBit) {
   auto estimator = StartEstimator();
   auto plant = StartPlant("20");
   ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
-  ASSERT_TRUE(recorder_->WaitForEstimates(200)) << estimator->err();
+  WaitForAll(200, estimator.get());
+  if (IsSkipped() || HasFatalFailure()) return;
   const nlohmann::json report = Finish(estimator.get());
 
   EXPECT_EQ(report["packs"]["received"], 200);
@@ -132,7 +143,8 @@ TEST_F(LiveRun, ALogOfLcmLoggerIsVerifiedToTheBit) {
   })) << recording.err();
   auto plant = StartPlant("20");
   ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
-  ASSERT_TRUE(recorder_->WaitForEstimates(200)) << estimator->err();
+  WaitForAll(200, estimator.get());
+  if (IsSkipped() || HasFatalFailure()) return;
   // It drops what it has not written when it is stopped; the health of the estimator goes on behind the estimates.
   const auto size = std::filesystem::file_size(log);
   ASSERT_TRUE(recorder_->WaitUntil([&log, size] { return std::filesystem::file_size(log) > size; }));

@@ -125,6 +125,15 @@ TEST_F(AdjustStageTest, CountsAResultThatExecuteTookNotInTime) {
   EXPECT_EQ(counters_->Dropped(), 1);
 }
 
+TEST_F(AdjustStageTest, RemembersWhatItHasHandedOver) {
+  Push(1, kHour);
+  EXPECT_TRUE(stage_.Step());
+  EXPECT_EQ(AdjustedSeq(), 1) << "the result does not wait for it";
+  EXPECT_EQ(engine_.remembered.load(), 0);
+  stage_.Remember();
+  EXPECT_EQ(engine_.remembered.load(), 1);
+}
+
 TEST_F(AdjustStageTest, FlagsTruncationAndNumericTrouble) {
   engine_.status = Status::kTruncated;
   Push(1, kHour);

@@ -177,6 +177,24 @@ TEST_F(DeadlineMonitorTest, StepsThatWaitBehindAnOwnOverrunAreOurOwn) {
   EXPECT_EQ(JudgeBacklog(), std::vector(3, MissCause::kOwn)) << "20 of 111 ms were the machine";
 }
 
+TEST_F(DeadlineMonitorTest, AStallAfterTheHandOverDelaysTheNextStep) {
+  // The second pack comes at 1100; adjust is busy with what follows the first until 1130, and needs 80 ms for it.
+  const auto judge_second = [&](Nanos busy_until_ms, Nanos withheld_ms) {
+    StartAnew();
+    StepTimes first = Step(1000, 0, 1000, 1090);
+    EXPECT_EQ(Judge(first), MissCause::kNone);
+    monitor_->RecordRemembered(first, busy_until_ms * kMs, withheld_ms * kMs);
+    return Judge(Step(1100, 0, busy_until_ms, busy_until_ms + 80));
+  };
+  Fill(cpu0_.get(), 0, 0);
+  Fill(cpu1_.get(), 0, 0);
+  EXPECT_EQ(judge_second(1130, 0), MissCause::kOwn) << "its own doing";
+  EXPECT_EQ(judge_second(1130, 5), MissCause::kOwn) << "lacks 11 ms";
+  EXPECT_EQ(judge_second(1130, 30), MissCause::kMachine);
+  Fill(cpu1_.get(), 1095, 30);
+  EXPECT_EQ(judge_second(1130, 0), MissCause::kMachine) << "the witness saw it, too";
+}
+
 TEST_F(DeadlineMonitorTest, StepsThatWaitBehindALatePackAreLateData) {
   Fill(cpu0_.get(), 0, 0);
   Fill(cpu1_.get(), 0, 0);

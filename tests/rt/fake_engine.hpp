@@ -63,6 +63,8 @@ class FakeEngine : public StepEngine {
     return status.load();
   }
 
+  void Remember(ClockRef) noexcept ARMCMC_NONBLOCKING override { remembered.fetch_add(1); }
+
   void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override {
     const auto& result = results_[static_cast<std::size_t>(slot)];
     *estimate = Estimate{};
@@ -89,6 +91,7 @@ class FakeEngine : public StepEngine {
   std::atomic<Nanos> adjust_work_ns{0};  // CPU time
   std::atomic<Nanos> last_budget_ns{0};
   std::atomic<int> adjusted{0};
+  std::atomic<int> remembered{0};
   std::atomic<Planted> planted{Planted::kNothing};
   std::atomic<Status> status{Status::kOk};
 

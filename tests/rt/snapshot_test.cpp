@@ -230,6 +230,7 @@ TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
   for (int i = 0; i < 4; ++i) {
     ASSERT_EQ(engine.Adjust(rt::SyntheticPack(engine.plant(), 2, 10 + i), 0, ClockRef{}, 0), Status::kOk);
     engine.Execute(0, estimate.get());
+    engine.Remember(ClockRef{});
   }
   const rt::SnapshotPart* adjusted = parts->adjusted.Take();
   const rt::SnapshotPart* executed = parts->executed.Take();

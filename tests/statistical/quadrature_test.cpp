@@ -133,8 +133,10 @@ Agreement WarmPacks(const ContactTruth& after, std::uint64_t seed, int* modifica
       HuntCrossley::Prepare(pack, s.constants, 0, &data);
       data.weight.fill(1.0);
       constexpr Nanos kNever = std::numeric_limits<Nanos>::max() / 2;
-      return sampler.Run(data, previous, static_cast<std::uint64_t>(pack.seq), 0, kNever, {}, kMaxDraws, &workspace,
-                         next, &draws);
+      const Status status = sampler.Run(data, previous, static_cast<std::uint64_t>(pack.seq), 0, kNever, {}, kMaxDraws,
+                                        &workspace, &draws);
+      sampler.Remember({}, &workspace, next, &draws);
+      return status;
     };
     const MarginalTable normal_table = MarginalTable::Normal();
     const NoiseModel noise_model(noise);

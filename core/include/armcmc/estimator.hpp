@@ -53,6 +53,15 @@ class Estimator {
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                 const DrawLimits& limits = kNoDrawLimits) noexcept ARMCMC_NONBLOCKING;
 
+  /// Adjust() in two parts, so that a result need not wait for what only the next pack needs: Draw() fills it, and
+  /// while another thread reads it Remember() turns its draws into the posterior that the next pack starts from. The
+  /// result has to stay as it is until then; the next Draw() makes up for a Remember() that was left out.
+  /// @return as Adjust(). @rt As Adjust().
+  Status Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+              const DrawLimits& limits = kNoDrawLimits) noexcept ARMCMC_NONBLOCKING;
+  /// @param clock  Of that Draw(). @rt No heap, no lock, no throw. O(max_draws).
+  void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
+
   /// Stage C: summary of the posterior, predicted output with band.
   /// @rt No heap, no lock, no throw. O(draws).
   void Execute(const AdjustResult& result, Estimate* estimate) noexcept ARMCMC_NONBLOCKING;
@@ -64,9 +73,9 @@ class Estimator {
   /// Bytes that one of the two Save functions may need.
   static constexpr std::size_t kSnapshotBytes = 256 * 1024;
   /// What Adjust() carries from pack to pack, the posteriors of all modes, and what Execute() carries: the estimates on
-  /// display and the evidence of the gap watch. Each is called by the thread of its stage. Restored, an estimator goes
-  /// on to the bit; what only spans neighbouring packs (memory of effects, free run of the actuator, the unfinished
-  /// block of the gap watch) starts afresh, as after a lost pack.
+  /// display and the evidence of the gap watch. Each is called by the thread of its stage, the first after Remember().
+  /// Restored, an estimator goes on to the bit; what only spans neighbouring packs (memory of effects, free run of the
+  /// actuator, the unfinished block of the gap watch) starts afresh, as after a lost pack.
   /// @param out  At least kSnapshotBytes. @return bytes written, 0 when they did not fit.
   /// @rt No heap, no lock, no throw. O(kSnapshotBytes).
   [[nodiscard]] std::size_t SaveAdjusted(std::span<std::byte> out) const noexcept ARMCMC_NONBLOCKING;

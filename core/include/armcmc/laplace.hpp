@@ -30,7 +30,8 @@ struct LaplaceScratch {
 ///
 /// W are the reweighted-least-squares weights of the noise law. J comes from central differences evaluated as lanes of
 /// one batch, so a model needs no derivatives; 4 dampings x 8 step lengths are tried as lanes of a second batch.
-/// Steps are clamped to the bounds of `space`.
+/// Steps are clamped to the bounds of `space`. A step that promises less than a millionth of a nat is the last, and is
+/// taken without a trial; H is then that at its beginning.
 /// @param start      Where to begin, [dim].
 /// @param[out] fit   Mean = mode found, precision = H there. Positive definite because P is.
 /// @return Log of likelihood x prior at the mode (without the prior's constant).

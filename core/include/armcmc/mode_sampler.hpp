@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
+#include "armcmc/draw_pace.hpp"
 #include "armcmc/finish_time.hpp"
 #include "armcmc/forgetting.hpp"
 #include "armcmc/laplace.hpp"
@@ -63,21 +64,31 @@ class ModeSampler {
   static constexpr int kPilotDraws = 1024;  ///< In one round.
   static constexpr int kPilotRounds = 3;
   static constexpr int kMaxPilotRounds = 7;  ///< Where there are draws enough.
-  static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock.
+  static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock, at most.
   static constexpr int kMismatchDraws = 256;
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
               const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise);
 
-  /// @param previous   Posterior before this pack; !valid before the first.
+  /// Draws from the posterior after a pack. Remember() has to follow before the next call, unless kNonFinite is
+  /// returned.
+  /// @param previous   Posterior before this pack; !valid before the first. Stays as it is until Remember().
   /// @param data       At least forgetting.min_samples samples.
   /// @param limit      Upper bound on the draws, to repeat a truncated run.
-  /// @param[out] next  Posterior after this pack; untouched unless kOk or kTruncated is returned.
   /// @return kOk, kTruncated or kNonFinite.
   /// @rt No heap, no lock, no throw. O(max_draws samples).
   Status Run(const ModeData& data, const PosteriorMemory& previous, std::uint64_t pack, std::uint64_t mode,
-             Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* workspace, PosteriorMemory* next,
+             Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* workspace,
              ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// What the next pack starts from: the draws of the newest Run(), as densities.
+  ///
+  /// Nothing in `out` depends on it but out->known, and that only until something is known: before that it has to be
+  /// called before `out` is handed on.
+  /// @param workspace, out  Of that Run(), as it left them.
+  /// @rt No heap, no lock, no throw. O(max_draws).
+  void Remember(ClockRef clock, SamplerWorkspace* workspace, PosteriorMemory* next,
+                ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] const ParameterSpace& space() const noexcept { return space_; }
   [[nodiscard]] const NoiseModel& noise() const noexcept { return noise_; }
@@ -90,15 +101,34 @@ class ModeSampler {
   /// Draws after a pilot that there was no time to finish. made + DrawsInHaste(made) rises with every round of more
   /// than two tiles, and so tells how many rounds there were.
   static constexpr int DrawsInHaste(int made, int wanted) noexcept {
-    return std::min(kChunkDraws, (wanted - made) / 2 / kTileLanes * kTileLanes);
+    return std::min(kChunkDraws, (wanted - made) / 8 / kTileLanes * kTileLanes);
   }
+  /// Between two looks at the clock: a quarter of the draws, whole tiles.
+  static constexpr int ChunkDraws(int wanted) noexcept {
+    return std::clamp(wanted / 4 / kTileLanes * kTileLanes, kTileLanes, kChunkDraws);
+  }
+
+  /// What Run() leaves to Remember().
+  struct Unfinished {
+    const PosteriorMemory* previous = nullptr;
+    double lambda = 0.0;                      ///< Its share in the prior.
+    int first = 0;                            ///< Draw that counts, after the pilot.
+    double mass_first = 0.0, mass_new = 0.0;  ///< Of the first block of `previous`, and of what was drawn anew.
+    RandomStream noise_stream;
+  };
 
   /// Until when a pack may draw, and how much at most.
   struct DrawTime {
     Nanos deadline_ns;
     ClockRef clock;
     int limit;
+    Nanos anchor_ns;  ///< What an anchor of a ridge may take.
+    bool informed;    ///< The result need not wait for Remember().
   };
+  /// From the last of so many draws until the result can be handed over, at the usual pace.
+  [[nodiscard]] Nanos TimeAfter(int draws, bool informed) const noexcept ARMCMC_NONBLOCKING {
+    return finish_time_.Predict(draws) + (informed ? 0 : remember_time_.Predict(draws));
+  }
 
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
                    SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
@@ -142,8 +172,9 @@ class ModeSampler {
   void ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
                            ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
-  void Compress(const PosteriorMemory& previous, double lambda, int first, const RandomStream& stream,
-                SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+  /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
+  void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+  void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   /// Spreads the noise scale's coordinate of the draws [first, draws) to a standard deviation of log s of at least
   /// kNoiseMemory, with the tails of a t law, so that a level six standard deviations away is not held to be
   /// impossible.
@@ -173,7 +204,11 @@ class ModeSampler {
   std::array<RidgeAnchor, kRidgeAnchors> anchors_;
   std::array<DensityBlock, kRidgeAnchors> ridge_blocks_;
   double memory_inside_ = 1.0;  ///< Share of the memory's mass inside the bounds.
-  FinishTime finish_time_;      ///< Steers the deadline only.
+  Unfinished unfinished_;
+  // They steer the deadline only.
+  FinishTime finish_time_;    ///< From the last draw to the end of Run().
+  FinishTime remember_time_;  ///< Of Remember().
+  DrawPace draw_pace_;
 };
 
 }  // namespace armcmc

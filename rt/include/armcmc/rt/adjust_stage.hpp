@@ -56,6 +56,9 @@ class AdjustStage {
   /// @rt No heap, no lock, no throw, no system call but those of the CPU time meter. Bounded by the adjust budget plus
   /// the ring's capacity.
   [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
+  /// After a Step() that handed over a result, and after whoever takes it was woken: what only the next pack needs.
+  /// @rt As Step(), bounded by the draws.
+  void Remember() noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] CpuTimeMeter* cpu_time() noexcept { return &cpu_time_; }
 
@@ -73,7 +76,7 @@ class AdjustStage {
   EventLog* events_;
   RecentMinimum typical_;
   CpuTimeMeter cpu_time_;
-  Nanos handed_over_deadline_ns_ = 0;  // of the newest result
+  StepTimes handed_over_;  // of the newest result
 };
 
 }  // namespace armcmc::rt

@@ -48,6 +48,8 @@ class CpuTimeMeter {
   /// @param end_ns  Now: the end of the work that began with Start().
   /// @return withheld in between, ns >= 0. @rt Two system calls, bounded.
   [[nodiscard]] Nanos End(Nanos end_ns) noexcept ARMCMC_NONBLOCKING;
+  /// The work went on after its End(), to end_ns: now. @return withheld in between, ns >= 0. @rt As End().
+  [[nodiscard]] Nanos GoOn(Nanos end_ns) noexcept ARMCMC_NONBLOCKING;
 
  private:
   /// CPU times up to a moment.
@@ -57,6 +59,8 @@ class CpuTimeMeter {
   };
   [[nodiscard]] Use Used() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Nanos WithheldWaiting(Nanos now_ns, const Use& used) const noexcept ARMCMC_NONBLOCKING;
+  /// From begin_ns, when `at_begin` had been used, to end_ns: now, which ends the work.
+  [[nodiscard]] Nanos Withheld(Nanos begin_ns, const Use& at_begin, Nanos end_ns) noexcept ARMCMC_NONBLOCKING;
 
   struct Other {
     const std::atomic<Nanos>* cpu_time_ns = nullptr;

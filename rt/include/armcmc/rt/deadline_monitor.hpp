@@ -46,6 +46,10 @@ class DeadlineMonitor {
   /// steps before it included. @rt O(wake-ups in the step).
   void RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING;
 
+  /// Adjust was busy until end_ns with what follows the hand-over of its result.
+  /// @param withheld_ns  Of its CPU, since that. @rt O(wake-ups in between).
+  void RecordRemembered(const StepTimes& times, Nanos end_ns, Nanos withheld_ns) noexcept ARMCMC_NONBLOCKING;
+
   /// Judges a step that went through all stages. @rt O(wake-ups in execute).
   MissCause Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
 

@@ -21,6 +21,7 @@ class DisturbedEngine final : public StepEngine {
     return engine_->reported(index);
   }
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept ARMCMC_NONBLOCKING override;
+  void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING override { engine_->Remember(clock); }
   void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;
   void Reset() noexcept ARMCMC_NONBLOCKING override { engine_->Reset(); }
 

@@ -43,6 +43,7 @@ class LcmReceiver {
     std::int64_t foreign = 0;    ///< Datagrams of other channels.
     std::int64_t fragments = 0;  ///< Fragments of messages above kMaxShortMessage.
     std::int64_t malformed = 0;  ///< Not LCM.
+    [[nodiscard]] std::int64_t passed_over() const noexcept { return foreign + fragments + malformed; }
   };
 
   /// @throws std::runtime_error saying what to do when the machine has no multicast route.

@@ -53,10 +53,15 @@ class StageTimeline {
   /// Work that was done. @return how much earlier it would have been. @rt O(1).
   Earlier Do(const StageWork& work, const Earlier& ready) noexcept ARMCMC_NONBLOCKING {
     free_ = Begin(work, ready);
-    free_.without_stalls += work.stall_ns;
-    free_.without_both += work.stall_ns;
-    free_ns_ = work.end_ns;
+    GoOn(work.end_ns, work.stall_ns);
     return free_;
+  }
+
+  /// The stage was busy with what it did last until end_ns, of which stalls took stall_ns. @rt O(1).
+  void GoOn(Nanos end_ns, Nanos stall_ns) noexcept ARMCMC_NONBLOCKING {
+    free_.without_stalls += stall_ns;
+    free_.without_both += stall_ns;
+    free_ns_ = end_ns;
   }
 
   /// Work that was given up at start_ns instead of being done: it would have taken work_ns on the other time lines.

@@ -34,6 +34,9 @@ class StepEngine {
   /// Computes the posterior after `pack` into a slot; stops before deadline_ns. @rt No heap, no lock, no throw.
   virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock,
                         int slot) noexcept ARMCMC_NONBLOCKING = 0;
+  /// What of the newest Adjust() only the next one needs: its slot is handed over first. Called by the thread of
+  /// Adjust(), before that slot is written again. @rt No heap, no lock, no throw.
+  virtual void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING = 0;
   /// Summarises a slot. @rt No heap, no lock, no throw.
   virtual void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING = 0;
   /// Comes back to what it was at the start. Ends the warm-up.
@@ -53,6 +56,7 @@ class EstimatorEngine final : public StepEngine {
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override;
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept ARMCMC_NONBLOCKING override;
+  void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING override;
   void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;
   void Reset() noexcept ARMCMC_NONBLOCKING override;
 
@@ -70,7 +74,9 @@ class EstimatorEngine final : public StepEngine {
   Estimator estimator_;
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
   SnapshotHandOver* snapshots_ = nullptr;
-  bool warm_ = false;  // what the warm-up learns is handed to nobody
+  bool warm_ = false;    // what the warm-up learns is handed to nobody
+  bool learnt_ = false;  // by the newest Adjust()
+  std::int64_t seq_ = 0;
   std::vector<std::byte> resumed_adjusted_, resumed_executed_;
 };
 
