@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/gap/gap_rig.hpp"
@@ -118,6 +119,38 @@ TEST(Fitter, AnAmplitudeThatPhysicsForbidsRestsAtItsBound) {
     EXPECT_TRUE(fit.heldout.allFinite());
     EXPECT_NEAR(fit.score(), base.score(), 1e-3 * std::abs(base.score())) << "it says nothing more than the base";
   }
+}
+
+/// A relaxation whose memory of the time before the recording is pushed to its bound, of a contact that is at first
+/// `depth` deep.
+Fitted WithMemoryAtItsBound(double depth) {
+  armcmc::test::Series series(kRows);
+  series.dt = 1e-3;
+  for (int n = 0; n < kRows; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const double s = series.dt * n;
+    series.t[i] = s;
+    series.x[i] = depth + 0.6 * std::sin(3.1 * s) + 0.3 * std::sin(7.3 * s);
+    series.v[i] = 0.6 * 3.1 * std::cos(3.1 * s) + 0.3 * 7.3 * std::cos(7.3 * s);
+  }
+  armcmc::test::Simulate({Hidden("stress_relaxation")}, &series);
+  const auto column = [](const std::vector<double>& values) -> Vector {
+    return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  const Bench bench(test::MakeRecording(column(series.t), column(series.x), column(series.v),
+                                        column(series.f) + kNoise * test::Noise(kRows, 3)));
+  const Fitter fitter(*bench.equation, bench.signals, White(kNoise));
+  Fitted fit = fitter.Add(bench.Base(fitter), {&bench.Form("stress_relaxation"), {}});
+  const auto memory = std::find_if(fit.coordinates.begin(), fit.coordinates.end(),
+                                   [](const Coordinate& c) { return c.name == "start"; });
+  fit.theta[memory - fit.coordinates.begin()] = memory->upper;
+  return fit;
+}
+
+TEST(Fitter, ABoundThatTheDataDoNotFeelMakesNoOtherEffect) {
+  // A contact that begins at the surface remembers nothing: any memory of the time before predicts the same.
+  EXPECT_FALSE(WithMemoryAtItsBound(0.0).on_edge());
+  EXPECT_TRUE(WithMemoryAtItsBound(0.4).on_edge());
 }
 
 TEST(Fitter, KeepsEveryCoordinateInsideItsBounds) {

@@ -80,12 +80,27 @@ Matrix OrthonormalBasis(const Matrix& columns) {
   return qr.householderQ() * Matrix::Identity(scaled.rows(), qr.rank());
 }
 
+double Fitted::CostOfLeaving(Eigen::Index coordinate) const {
+  std::vector<Eigen::Index> others = FreeOf(at_bound);
+  std::erase(others, coordinate);
+  const Matrix basis = OrthonormalBasis(whitened_jacobian(Eigen::all, others));
+  Vector column = whitened_jacobian.col(coordinate);
+  column -= basis * (basis.transpose() * column);
+  const double way =
+      coordinates[static_cast<std::size_t>(coordinate)].prior_mean - theta[coordinate];  // to where nothing is known
+  const double variance = squares / static_cast<double>(whitened_residual.size()) + 1e-300;
+  return (0.5 * way * way * column.squaredNorm() - way * column.dot(whitened_residual)) / variance;
+}
+
 bool Fitted::on_edge() const {
-  constexpr double kNear = 1e-3;  // of the range
+  constexpr double kNear = 1e-3;   // of the range
+  constexpr double kSilent = 0.1;  // nats; less says that the data do not care where the coordinate is
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const Coordinate& c = coordinates[i];
-    const double at = theta[static_cast<Eigen::Index>(i)], near = kNear * (c.upper - c.lower);
-    if ((c.other_below && at < c.lower + near) || (c.other_above && at > c.upper - near)) return true;
+    const auto k = static_cast<Eigen::Index>(i);
+    const double at = theta[k], near = kNear * (c.upper - c.lower);
+    const bool rests = (c.other_below && at < c.lower + near) || (c.other_above && at > c.upper - near);
+    if (rests && CostOfLeaving(k) > kSilent) return true;
   }
   return false;
 }

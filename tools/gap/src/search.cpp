@@ -54,6 +54,11 @@ bool Candidate::exact() const {
                      [](const Term& term) { return term.form->exact(); });
 }
 
+bool Candidate::always() const {
+  const std::vector<Term> effects = added();
+  return std::none_of(effects.begin(), effects.end(), GatedBy);
+}
+
 Search::Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const BlockBootstrap& bootstrap,
                const Thresholds& thresholds, Fitted base)
     : fitter_(&fitter),
@@ -111,9 +116,10 @@ Search::Candidates Search::Near(const Candidates& sorted, double gap) const {
   Candidates near;
   for (std::size_t i = 0; i < std::min(kJudged, sorted.size()); ++i) {
     const Vector difference = sorted.front()->fit.heldout - sorted[i]->fit.heldout;
-    const double margin = Margin(gap, sorted[i]->families() == sorted.front()->families());
-    if (difference.sum() < margin || bootstrap_->ProbabilityAbove(difference, margin) < limits_.p_reject)
-      near.push_back(sorted[i]);
+    const bool kin = sorted[i]->families() == sorted.front()->families();
+    const bool needs_gate = sorted.front()->always() && !sorted[i]->always();
+    const double margin = Margin(gap, kin), sure = kin || needs_gate ? limits_.p_reject_lightly : limits_.p_reject;
+    if (difference.sum() < margin || bootstrap_->ProbabilityAbove(difference, margin) < sure) near.push_back(sorted[i]);
   }
   return near;
 }
@@ -355,9 +361,7 @@ Finding Search::Run(bool pairs) const {
   }
   finding.tried.insert(finding.tried.end(), all_pairs.begin(), all_pairs.end());
   SortByScore(&finding.tried);
-  // Where the catalogue's own formulas do, others are not needed.
-  if (std::any_of(good.begin(), good.end(), [](const CandidatePtr& c) { return c->exact(); }))
-    std::erase_if(good, [](const CandidatePtr& c) { return !c->exact(); });
+  PreferCatalogue(&good);
   finding.set = OnePerName(good);
   if (!finding.set.empty()) {
     finding.verdict = finding.set.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;

@@ -1,4 +1,4 @@
-// What the scores of a search amount to: few events, rivals without a name, probabilities, doubt.
+// What the scores of a search amount to: formulas, few events, rivals without a name, probabilities, doubt.
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,16 @@
 #include "armcmc/gap/search.hpp"
 
 namespace armcmc::gap {
+
+void Search::PreferCatalogue(Candidates* good) {
+  // Where the catalogue's own formulas do, others are not needed. One that acts at times only, which are fitted, too,
+  // is no simpler than another formula that always acts.
+  const auto exact = [](const CandidatePtr& c) { return c->exact(); };
+  const auto simple = [](const CandidatePtr& c) { return c->exact() && c->always(); };
+  if (std::none_of(good->begin(), good->end(), exact)) return;
+  const bool all = std::any_of(good->begin(), good->end(), simple);
+  std::erase_if(*good, [&](const CandidatePtr& c) { return !c->exact() && (all || !c->always()); });
+}
 
 bool Search::Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const {
   if (named->added().size() > 1) return !Better(named->fit, unlisted->fit);

@@ -27,8 +27,10 @@ struct Fitted {
   double log_evidence = 0.0;   ///< Laplace, with the catalogue's priors, nats.
 
   [[nodiscard]] double score() const { return heldout.sum(); }
-  /// Whether a coordinate rests on a bound beyond which the effect would be another.
+  /// Whether the data push a coordinate against a bound beyond which the effect would be another.
   [[nodiscard]] bool on_edge() const;
+  /// Nats that a coordinate's way to its prior mean would cost, the others following it; of the linearised fit.
+  [[nodiscard]] double CostOfLeaving(Eigen::Index coordinate) const;
   /// s2 H^-1 of the whitened fit, zero for coordinates at a bound.
   [[nodiscard]] Matrix Covariance(double s2) const;
 };

@@ -26,7 +26,8 @@ struct Candidate {
   [[nodiscard]] std::vector<std::string> names() const;
   /// Families of the added effects, sorted.
   [[nodiscard]] std::vector<std::string> families() const;
-  [[nodiscard]] bool exact() const;  ///< Every effect by the catalogue's own formula.
+  [[nodiscard]] bool exact() const;   ///< Every effect by the catalogue's own formula.
+  [[nodiscard]] bool always() const;  ///< Every effect from the first sample to the last, in every mode.
 };
 using CandidatePtr = std::shared_ptr<Candidate>;
 
@@ -105,6 +106,8 @@ class Search {
   double WeighNothing(const Candidates& singles) const;
   [[nodiscard]] bool FamilyHolds(const CandidatePtr& best, const Candidates& singles) const;
   [[nodiscard]] Candidates OnePerName(const Candidates& candidates) const;
+  /// Leaves out of equally good hypotheses the formulas that need not be there.
+  static void PreferCatalogue(Candidates* good);
 
   const Fitter* fitter_;
   const std::vector<EffectForm>* catalogue_;

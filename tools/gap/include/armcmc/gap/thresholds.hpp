@@ -4,24 +4,25 @@ namespace armcmc::gap {
 
 /// Every number that a verdict hangs on. Gains are shares of the noise variance: 2 nats / rows.
 struct Thresholds {
-  double min_gain = 0.005;        ///< What is predictable beyond the model below this is never named.
-  double min_remainder = 0.0015;  ///< What stays predictable below this is nothing.
-  double min_nats = 20.0;         ///< Nor is what is worth less than this: a line found by looking at every frequency
-                                  ///< of a short recording is worth half of it by chance.
-  double visible_ratio = 0.15;    ///< Rms over noise from which an effect is named although the colour of the noise
-                                  ///< keeps its gain below the two above,
-  double clear_nothing = 5e-3;    ///< where the probability of nothing is below this.
-  double largest_ratio = 30.0;    ///< Rms over noise that an effect may have.
-  double remainder_share = 0.03;  ///< An adequate hypothesis leaves less than this share of the gap.
-  double p_missing = 0.95;        ///< Bootstrap probability that anything is missing, to say so.
-  double p_reject = 0.98;         ///< Bootstrap probability that a rival is worse, to reject it.
-  double adequate_closure = 0.8;  ///< An adequate hypothesis closes this share of the gap, whatever is significant.
-  double p_remainder = 0.70;      ///< Bootstrap probability that something is left, to call a hypothesis inadequate.
+  double min_gain = 0.005;         ///< What is predictable beyond the model below this is never named.
+  double min_remainder = 0.0015;   ///< What stays predictable below this is nothing.
+  double min_nats = 20.0;          ///< Nor is what is worth less than this: a line found by looking at every frequency
+                                   ///< of a short recording is worth half of it by chance.
+  double visible_ratio = 0.15;     ///< Rms over noise from which an effect is named although the colour of the noise
+                                   ///< keeps its gain below the two above,
+  double clear_nothing = 5e-3;     ///< where the probability of nothing is below this.
+  double largest_ratio = 30.0;     ///< Rms over noise that an effect may have.
+  double remainder_share = 0.03;   ///< An adequate hypothesis leaves less than this share of the gap.
+  double p_missing = 0.95;         ///< Bootstrap probability that anything is missing, to say so.
+  double p_reject = 0.98;          ///< Bootstrap probability that a rival is worse, to reject it.
+  double p_reject_lightly = 0.95;  ///< Or one of the same family, which does less harm, or with a time to choose.
+  double adequate_closure = 0.8;   ///< An adequate hypothesis closes this share of the gap, whatever is significant.
+  double p_remainder = 0.70;       ///< Bootstrap probability that something is left, to call a hypothesis inadequate.
   double p_outdone = 0.90;       ///< Bootstrap probability that physics without a name is better, to withhold the name.
   double tie_nats = 3.0;         ///< Differences below the largest of these three are ties:
   double tie_effect = 0.03;      ///< predictions that differ by this share of the noise sd,
   double tie_share = 0.015;      ///< and this share of the gap, where formula errors decide,
-  double tie_share_kin = 0.003;  ///< or this share between effects of the same family.
+  double tie_share_kin = 0.001;  ///< or this share between effects of the same family.
   double sure = 0.80;            ///< Probability that a single name must have,
   double sure_set = 0.90;        ///< or the set that it is widened to,
   double doubt = 0.50;           ///< and below which no name is given.
