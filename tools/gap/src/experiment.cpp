@@ -17,6 +17,7 @@ constexpr double kSeconds = 6.0;
 constexpr Eigen::Index kMaxRows = 6000;
 constexpr std::size_t kCompared = 3;      // candidates; more ties are resolved by a second experiment
 constexpr double kEnough = 10.0;          // nats that decide
+constexpr double kHopeless = 1.0;         // nats that no few repetitions make enough
 constexpr double kLeastWeight = 0.1;      // of a candidate, however improbable
 constexpr Eigen::Index kResponse = 2000;  // samples in which noise forgets
 constexpr double kSmoothing_s = 0.015;
@@ -157,7 +158,9 @@ Experiment SeparatingExperiment(const Equation& equation, const Look& look,
   char evidence[160];
   std::snprintf(evidence, sizeof(evidence),
                 "; %.0f s of it bring about %.0f nats of evidence between the closest pair%s", kSeconds, best.nats,
-                best.nats < kEnough ? ", which may not be enough: repeat it, or press deeper" : "");
+                best.nats < kHopeless ? ", so little that repeating it would hardly help"
+                : best.nats < kEnough ? ", which may not be enough: repeat it, or press deeper"
+                                      : "");
   char quicker[48] = "";
   if (best.pace > 1.0) std::snprintf(quicker, sizeof(quicker), ", all %.0f times as fast", best.pace);
   char finer[80] = "";
