@@ -94,5 +94,24 @@ TEST_P(OwnFormula, OfTheTruthIsNotOutdoneByAnEffectThatActsForAWhile) {
 INSTANTIATE_TEST_SUITE_P(Seeds, OwnFormula, ::testing::Values(496954201, 3001, 3002, 3003),
                          [](const auto& at) { return std::to_string(at.param); });
 
+// Adhesion that seems to end where the recording has no more retractions to show it by fits a nat better than adhesion
+// that stays. Data from later then contradict it, and the pair would be struck off for its gate.
+TEST_F(Names, AGateThatEarnsNothingIsNotKept) {
+  const json result = Diagnose(
+      "248090749", {"--hide-effect", "adhesion:exponential,presliding_friction:dahl", "--sealed", dir_ / "truth.json"});
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::UnorderedElementsAre("adhesion", "presliding_friction")))
+      << result["sentence"];
+  for (const json& effect : result["effects"]) EXPECT_EQ(effect["when"], "always");
+}
+
+// Friction in free motion, of which the first seven seconds have hardly any: they lack nothing, but they do not explain
+// the rest.
+TEST_F(Names, WhatOnlyTheRestOfTheRecordingShowsIsNotCalledNothing) {
+  const json result = Diagnose("425160732", {"--hide-effect", "coulomb_friction:tanh", "--effect-gate", "free",
+                                             "--sealed", dir_ / "truth.json"});
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::ElementsAre("coulomb_friction"))) << result["sentence"];
+  EXPECT_THAT(result["notes"].dump(), ::testing::HasSubstr("in the last 30 % of the recording only"));
+}
+
 }  // namespace
 }  // namespace armcmc::test

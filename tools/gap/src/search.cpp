@@ -220,7 +220,9 @@ Search::Candidates Search::OnePerName(const Candidates& candidates) const {
       order.push_back(names);
       continue;
     }
-    if (candidate->exact() && !it->second->exact()) it->second = candidate;
+    const bool drops_gate =
+        candidate->exact() && candidate->always() && !it->second->always() && !Better(it->second->fit, candidate->fit);
+    if (drops_gate || (candidate->exact() && !it->second->exact())) it->second = candidate;
   }
   Candidates result;
   for (const auto& names : order) result.push_back(best[names]);
@@ -261,7 +263,9 @@ CandidatePtr Search::Refined(const CandidatePtr& pair) const {
         CandidatePtr other = Make(fitter_->Add(parent->fit, term));
         const bool simpler = !GatedBy(term) && form.exact();
         const double lead = other->fit.score() - best->fit.score();
-        if (simpler ? lead > 0.0 : Better(other->fit, best->fit)) best = other;
+        const bool drops_gate =
+            simpler && GatedBy(best->fit.hypothesis.terms[member]) && !Better(best->fit, other->fit);
+        if (drops_gate || (simpler ? lead > 0.0 : Better(other->fit, best->fit))) best = other;
       }
     }
   }

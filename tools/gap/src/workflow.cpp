@@ -24,6 +24,8 @@ namespace {
 
 constexpr double kDiagnosisShare = 0.7;  // of the recording; the rest stays sealed to the end
 constexpr double kUnseenRatio = 0.15;    // gap over noise on the sealed data, below which they can confirm nothing
+constexpr double kLeastCoverage = 0.85;  // of the 95 % bands on the sealed data, and
+constexpr double kMostWhiteness = 5.0;   // Ljung-Box over its degrees of freedom there, for a model that holds
 constexpr double kWorse = 1.005;         // times the error of the model before, that a named effect must not exceed
 
 /// Time of each step, and what is told of it.
@@ -168,15 +170,25 @@ Parts Divide(const WorkflowRequest& request) {
   return parts;
 }
 
+/// Whether the rest of the recording contradicts the model that explains its first part: most of the time the bands do
+/// not hold what comes, or what they leave follows a pattern.
+bool RestContradicts(const EquationDiagnosis& one, const Parts& parts) {
+  const HeldOut rest(*one.equation, *one.diagnosis.look, parts.shown, parts.first_shown);
+  const Fit fit = rest.Judge(rest.Try(one.diagnosis.finding.base->fit));
+  return fit.coverage95 < kLeastCoverage || fit.whiteness > kMostWhiteness;
+}
+
 /// Where the first part of a recording lacks nothing in any equation, or shows single events that nothing explains, all
-/// of it is looked at: a load may come late.
+/// of it is looked at: a load may come late, and what acts in free motion only needs free motion. Where there is
+/// nothing besides, only if the rest contradicts the first part: the second look costs as much as the first.
 /// @return whether something is missing then, or named instead of the events; `plant` is what all of the recording
 /// says.
-bool BeginsLate(const WorkflowRequest& request, PlantDiagnosis* plant) {
-  if (request.heldout || plant->equations.size() < 2 || !plant->carrying().suitability.can_name) return false;
+bool BeginsLate(const WorkflowRequest& request, const Parts& parts, PlantDiagnosis* plant) {
+  if (request.heldout || !plant->carrying().suitability.can_name) return false;
   const Finding& first = plant->carrying().diagnosis.finding;
   const bool nothing = first.verdict == Verdict::kNone;
   if (!nothing && (first.verdict != Verdict::kUnnamed || first.events_s.empty())) return false;
+  if (plant->equations.size() < 2 && !(nothing && RestContradicts(plant->carrying(), parts))) return false;
   PlantDiagnosis whole = DiagnosePlant(request.model, request.data, request.diagnose);
   const Finding& all = whole.carrying().diagnosis.finding;
   if (nothing ? all.verdict == Verdict::kNone : all.set.empty()) return false;
@@ -216,10 +228,10 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
 
   clock.Begin("compare and name", 0.0);
   PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
-  if (BeginsLate(request, &plant))
+  if (BeginsLate(request, parts, &plant))
     result.notes.push_back(
-        "what is missing begins in the last 30 % of the recording: nothing could be kept sealed, and the gap is shown "
-        "on data that were diagnosed, too. Record another run for --heldout");
+        "what is missing shows in the last 30 % of the recording only: nothing could be kept sealed, and the gap is "
+        "shown on data that were diagnosed, too. Record another run for --heldout");
   std::optional<PlantDiagnosis> earlier;
   if (request.earlier) earlier = JoinEarlier(request, parts.diagnosis, &plant);
   const Equation* equation = plant.carrying().equation.get();
