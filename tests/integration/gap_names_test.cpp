@@ -33,15 +33,17 @@ std::vector<std::vector<std::string>> Reported(const json& result) {
 
 class Names : public ::testing::Test {
  protected:
-  json Diagnose(const std::string& seed, const std::vector<std::string>& more) {
+  json Diagnose(const std::string& seed, const std::vector<std::string>& more,
+                const std::vector<std::string>& of_the_workflow = {}) {
     std::vector<std::string> plant = {"--scenario", (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string(),
                                       "--seed",     seed,
                                       "--csv",      dir_ / "run.csv"};
     plant.insert(plant.end(), more.begin(), more.end());
     const Outcome made = RunProgram(Program("armcmc-plant"), plant);
     EXPECT_EQ(made.code, 0) << made.err;
-    const Outcome found =
-        RunProgram(Program("armcmc-gap"), {"--data", dir_ / "run.csv", "--out", dir_ / "gap"}, std::chrono::minutes(3));
+    std::vector<std::string> gap = {"--data", dir_ / "run.csv", "--out", dir_ / "gap"};
+    gap.insert(gap.end(), of_the_workflow.begin(), of_the_workflow.end());
+    const Outcome found = RunProgram(Program("armcmc-gap"), gap, std::chrono::minutes(3));
     EXPECT_EQ(found.code, 0) << found.err;
     return ReadJson(dir_ / "gap/result.json");
   }
@@ -102,6 +104,17 @@ TEST_F(Names, AGateThatEarnsNothingIsNotKept) {
   EXPECT_THAT(Reported(result), ::testing::Contains(::testing::UnorderedElementsAre("adhesion", "presliding_friction")))
       << result["sentence"];
   for (const json& effect : result["effects"]) EXPECT_EQ(effect["when"], "always");
+}
+
+// A relaxation far slower than the recording is long looks like a drift: where the drift is not in the catalogue, none
+// of the formulas of the relaxation may take its name.
+TEST_F(Names, ADriftThatTheCatalogueLacksIsNoSlowRelaxation) {
+  for (const char* seed : {"977806592", "15508109"}) {
+    const json result = Diagnose(
+        seed, {"--hide-effect", "force_drift:linear", "--effect-strength", "3", "--sealed", dir_ / "truth.json"},
+        {"--without", "force_drift"});
+    EXPECT_EQ(result["verdict"], "unnamed") << seed << ": " << result["sentence"];
+  }
 }
 
 // Friction in free motion, of which the first seven seconds have hardly any: they lack nothing, but they do not explain

@@ -153,6 +153,29 @@ TEST(Fitter, ABoundThatTheDataDoNotFeelMakesNoOtherEffect) {
   EXPECT_TRUE(WithMemoryAtItsBound(0.4).on_edge());
 }
 
+/// A delay, fitted to a force that comes so many samples late.
+Fitted WithDelay(double samples, const char* effect) {
+  constexpr double kLittleNoise = 1e-3;
+  test::Made made = Measure({}, kRows, 0.0, 3);
+  const Vector& f = made.clean;
+  Vector late = f;
+  late.tail(kRows - 1) += samples * (f.head(kRows - 1) - f.tail(kRows - 1));
+  made.recording.columns[3] = late + kLittleNoise * test::Noise(kRows, 4);
+  const Bench bench(made.recording);
+  const Fitter fitter(*bench.equation, bench.signals, White(kLittleNoise));
+  return fitter.Add(bench.Base(fitter), {&bench.Form(effect), {}});
+}
+
+TEST(Fitter, ALatencyOfAFewHundredthsOfASampleIsNone) {
+  for (const char* effect : {"sensor_delay", "sensor_lag"}) {
+    const Fitted fit = WithDelay(0.02, effect);
+    EXPECT_TRUE(fit.on_edge()) << effect << " = " << fit.theta[3];
+    const Fitted longer = WithDelay(0.5, effect);
+    EXPECT_FALSE(longer.on_edge()) << effect;
+    EXPECT_NEAR(longer.coordinates[3].Value(longer.theta[3]), 0.5e-3, 0.05e-3) << effect;
+  }
+}
+
 TEST(Fitter, KeepsEveryCoordinateInsideItsBounds) {
   // Data that no contact made: the fit goes to the edges and stays there.
   Recording recording = Measure({}, 1500, kNoise, 3).recording;

@@ -51,8 +51,10 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
                    2);
   two.slot = Slot::kMemory;
   two.filter = [two](const Signals& in, const Vector& series, int amplitude, const double* shape) -> Vector {
-    const double fast = ShapeValue(two, 0, shape);
-    const double tau_s = amplitude == 0 ? fast : fast * ShapeValue(two, 1, shape);
+    // The slow one is the coordinate, and at its bound the branch is another effect: it must not hide behind a fast one
+    // that takes no share.
+    const double slow = ShapeValue(two, 0, shape);
+    const double tau_s = amplitude == 0 ? slow / ShapeValue(two, 1, shape) : slow;
     return series - Leaky(series, tau_s / in.dt);
   };
   SetStarts(&two, {4, 1});

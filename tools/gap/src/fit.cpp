@@ -100,7 +100,8 @@ bool Fitted::on_edge() const {
     const auto k = static_cast<Eigen::Index>(i);
     const double at = theta[k], near = kNear * (c.upper - c.lower);
     const bool rests = (c.other_below && at < c.lower + near) || (c.other_above && at > c.upper - near);
-    if (rests && CostOfLeaving(k) > kSilent) return true;
+    const bool mean_beyond = c.prior_mean < c.lower || c.prior_mean > c.upper;  // there is no way back to it
+    if (rests && (mean_beyond || CostOfLeaving(k) > kSilent)) return true;
   }
   return false;
 }

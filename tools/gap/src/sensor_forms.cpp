@@ -8,7 +8,9 @@
 namespace armcmc::gap {
 namespace {
 
-// A latency is sought up to this many samples, and up to this share of the time in which the motion changes.
+// A latency is sought up to this many samples, and up to this share of the time in which the motion changes. A shorter
+// one than the shortest is none: smoothing noisy inputs moves a prediction by as much.
+constexpr double kShortestSamples = 0.1;
 constexpr double kLongestSamples = 50.0, kLongestShare = 0.3;
 constexpr double kUnitSamples = 10.0;  // of the recording that the catalogue is scaled to: a latency of one
 
@@ -58,7 +60,9 @@ EffectForm Latency(const char* effect, const char* formula, Slot slot, const Sig
   form.slot = slot;
   form.num_amplitudes = 0;
   form.linear = false;
-  form.coordinates = {{parameter, "s", 0.0, longest / kUnitSamples, 0.0, 0.7, kUnitSamples * signals.dt, false}};
+  form.coordinates = {
+      {parameter, "s", kShortestSamples / kUnitSamples, longest / kUnitSamples, 0.0, 0.7, kUnitSamples * signals.dt}};
+  form.coordinates.front().other_below = true;
   for (double start = 0.05; start < longest / kUnitSamples; start *= 2.5) form.starts.push_back({start});
   return form;
 }
@@ -73,7 +77,6 @@ std::vector<EffectForm> LatencyForms(const Signals& signals) {
     Pass([one = samples_of_one(in)](const Vector& f, double at) { return Delayed(f, one * at); }, c[0], own, out);
   };
   EffectForm lag = Latency("sensor_lag", "g, time_constant g' + g = f", Slot::kLag, signals, "time_constant");
-  lag.coordinates[0].lower = 1e-3;
   lag.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
     Pass([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(f, one * at); }, c[0], own, out);
   };
