@@ -96,8 +96,8 @@ TEST_P(OwnFormula, OfTheTruthIsNotOutdoneByAnEffectThatActsForAWhile) {
 INSTANTIATE_TEST_SUITE_P(Seeds, OwnFormula, ::testing::Values(496954201, 3001, 3002, 3003),
                          [](const auto& at) { return std::to_string(at.param); });
 
-// Adhesion that seems to end where the recording has no more retractions to show it by fits a nat better than adhesion
-// that stays. Data from later then contradict it, and the pair would be struck off for its gate.
+// Adhesion that seems to end where the diagnosed part has hardly a retraction left to show it by fits a nat better than
+// adhesion that stays. Data from later then contradict it, and the pair would be struck off for its gate.
 TEST_F(Names, AGateThatEarnsNothingIsNotKept) {
   const json result = Diagnose(
       "248090749", {"--hide-effect", "adhesion:exponential,presliding_friction:dahl", "--sealed", dir_ / "truth.json"});

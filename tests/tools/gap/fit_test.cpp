@@ -166,10 +166,12 @@ Fitted WithDelay(double samples, const char* effect) {
   return fitter.Add(bench.Base(fitter), {&bench.Form(effect), {}});
 }
 
-TEST(Fitter, ALatencyOfAFewHundredthsOfASampleIsNone) {
+TEST(Fitter, ALatencyBelowATenthOfASampleIsNone) {
   for (const char* effect : {"sensor_delay", "sensor_lag"}) {
-    const Fitted fit = WithDelay(0.02, effect);
-    EXPECT_TRUE(fit.on_edge()) << effect << " = " << fit.theta[3];
+    for (const double samples : {0.02, 0.08}) {
+      const Fitted fit = WithDelay(samples, effect);
+      EXPECT_TRUE(fit.on_edge()) << effect << " of " << samples << " samples = " << fit.theta[3];
+    }
     const Fitted longer = WithDelay(0.5, effect);
     EXPECT_FALSE(longer.on_edge()) << effect;
     EXPECT_NEAR(longer.coordinates[3].Value(longer.theta[3]), 0.5e-3, 0.05e-3) << effect;

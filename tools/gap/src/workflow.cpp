@@ -170,8 +170,8 @@ Parts Divide(const WorkflowRequest& request) {
   return parts;
 }
 
-/// Whether the rest of the recording contradicts the model that explains its first part: most of the time the bands do
-/// not hold what comes, or what they leave follows a pattern.
+/// Whether the rest of the recording contradicts the model that explains its first part: the 95 % bands hold less than
+/// they should by far, or what the model leaves follows a pattern.
 bool RestContradicts(const EquationDiagnosis& one, const Parts& parts) {
   const HeldOut rest(*one.equation, *one.diagnosis.look, parts.shown, parts.first_shown);
   const Fit fit = rest.Judge(rest.Try(one.diagnosis.finding.base->fit));
