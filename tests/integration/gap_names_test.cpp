@@ -35,9 +35,26 @@ class Names : public ::testing::Test {
  protected:
   json Diagnose(const std::string& seed, const std::vector<std::string>& more,
                 const std::vector<std::string>& of_the_workflow = {}) {
-    std::vector<std::string> plant = {"--scenario", (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string(),
-                                      "--seed",     seed,
-                                      "--csv",      dir_ / "run.csv"};
+    return DiagnoseScenario(SourceDir() / "plant_sim/scenarios/contact_rich.toml", seed, more, of_the_workflow);
+  }
+  struct Hidden {
+    std::string name, formula;
+  };
+  /// Two effects of unequal size.
+  json DiagnosePair(const std::string& seed, const Hidden& weak, const Hidden& strong) {
+    std::ifstream rich(SourceDir() / "plant_sim/scenarios/contact_rich.toml");
+    std::ofstream scenario(dir_ / "pair.toml");
+    const auto table = [](const Hidden& effect, double strength) {
+      return "\n[[hidden_effect]]\nname = \"" + effect.name + "\"\nvariant = \"" + effect.formula +
+             "\"\nstrength = " + std::to_string(strength) + "\n";
+    };
+    scenario << rich.rdbuf() << table(weak, 0.3) << "seed = " << seed << "\n" << table(strong, 3.0);
+    scenario.close();
+    return DiagnoseScenario(dir_ / "pair.toml", seed, {}, {});
+  }
+  json DiagnoseScenario(const std::filesystem::path& scenario, const std::string& seed,
+                        const std::vector<std::string>& more, const std::vector<std::string>& of_the_workflow) {
+    std::vector<std::string> plant = {"--scenario", scenario.string(), "--seed", seed, "--csv", dir_ / "run.csv"};
     plant.insert(plant.end(), more.begin(), more.end());
     const Outcome made = RunProgram(Program("armcmc-plant"), plant);
     EXPECT_EQ(made.code, 0) << made.err;
@@ -124,6 +141,69 @@ TEST_F(Names, WhatOnlyTheRestOfTheRecordingShowsIsNotCalledNothing) {
                                              "--sealed", dir_ / "truth.json"});
   EXPECT_THAT(Reported(result), ::testing::Contains(::testing::ElementsAre("coulomb_friction"))) << result["sentence"];
   EXPECT_THAT(result["notes"].dump(), ::testing::HasSubstr("in the last 30 % of the recording only"));
+}
+
+// A drift that is over before it is seen is a bias. Resting on that bound, it must not take the bias's probability.
+TEST_F(Names, AFormulaAtTheBoundOfAnotherEffectIsNoRival) {
+  const json result = DiagnosePair("184122956", {"force_bias", "constant"}, {"sensor_saturation", "clip"});
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::UnorderedElementsAre("force_bias", "sensor_saturation")))
+      << result["sentence"];
+}
+
+// One sample that noise moves out of the contact, before adhesion lets go, is no surface in another place.
+TEST_F(Names, AdhesionIsNotMistakenForAMovedSurfaceForOneSample) {
+  const json result = Diagnose("556764019", {"--hide-effect", "adhesion:exponential", "--effect-strength", "3",
+                                             "--sealed", dir_ / "truth.json"});
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::ElementsAre("adhesion"))) << result["sentence"];
+}
+
+// What the branch remembers of the time before the recording is known by its first samples only.
+TEST_F(Names, ARelaxationIsNotMistakenForAnotherBesideAWeakFriction) {
+  const json result = DiagnosePair("497207867", {"presliding_friction", "dahl"}, {"stress_relaxation", "linear"});
+  EXPECT_THAT(Reported(result),
+              ::testing::Contains(::testing::UnorderedElementsAre("presliding_friction", "stress_relaxation")))
+      << result["sentence"];
+}
+
+// Noise moves what a weak branch remembers to its bound, a standard deviation away: that makes it no other effect.
+TEST_F(Names, AWeakRelaxationBesideAStrongFrictionKeepsItsName) {
+  const json result = DiagnosePair("477769003", {"stress_relaxation", "linear"}, {"coulomb_friction", "tanh"});
+  EXPECT_THAT(Reported(result),
+              ::testing::Contains(::testing::UnorderedElementsAre("coulomb_friction", "stress_relaxation")))
+      << result["sentence"];
+}
+
+// Red noise that looks like an effect for seven seconds does not for ten. The rest is too quiet to confirm or
+// contradict so little by itself.
+TEST_F(Names, ChanceThatTheRestCannotConfirmIsNoEffect) {
+  std::ifstream rich(SourceDir() / "plant_sim/scenarios/contact_rich_mm.toml");
+  std::ofstream red(dir_ / "red.toml");
+  for (std::string line; std::getline(rich, line);)
+    if (!line.starts_with("correlation_to"))
+      red << (line.starts_with("correlation =") ? "correlation = 0.95" : line) << "\n";
+  red.close();
+  const json result = DiagnoseScenario(dir_ / "red.toml", "968474185", {}, {});
+  EXPECT_EQ(result["verdict"], "none") << result["sentence"];
+  EXPECT_THAT(result["notes"].dump(), ::testing::HasSubstr("all of it shows nothing beyond the noise"));
+}
+
+// A latency may be part delay, part lag: where the data cannot tell the two apart, they cannot tell that only one acts.
+TEST_F(Names, ALatencyMayBePartDelayPartLag) {
+  const json result = Diagnose(
+      "906346304", {"--hide-effect", "sensor_lag:first_order,sensor_delay:dead_time", "--sealed", dir_ / "truth.json"});
+  ASSERT_EQ(result["verdict"], "ambiguous") << result["sentence"];
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::ElementsAre("sensor_delay", "sensor_lag")))
+      << result["sentence"];
+  EXPECT_THAT(result["sentence"].get<std::string>(), ::testing::HasSubstr("or sensor_delay and sensor_lag;"));
+}
+
+// The first 70 % name one effect and lack nothing besides; only the rest reaches the limit of the sensor.
+TEST_F(Names, WhatTheRestOfTheRecordingContradictsIsNamedAnew) {
+  const json result =
+      Diagnose("767540293", {"--hide-effect", "inertia:rigid,sensor_saturation:clip", "--sealed", dir_ / "truth.json"});
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::UnorderedElementsAre("inertia", "sensor_saturation")))
+      << result["sentence"];
+  EXPECT_THAT(result["notes"].dump(), ::testing::HasSubstr("name inertia, which the rest contradicts"));
 }
 
 }  // namespace

@@ -66,6 +66,11 @@ void Composition::SetUpContact(const EstimatorSettings& settings) {
     term.until_s = effect.until_s;
     term.parameter = parameter;
     parameter += term.info->num_amplitudes;
+    if (term.info->slot == EffectSlot::kInputMap) {
+      surface_ = e;
+      const ParameterSettings& prior = effect.amplitudes[0];
+      surface_m_ = prior.prior == PriorKind::kNormal ? prior.mean : 0.5 * (prior.lower + prior.upper);
+    }
     if (term.info->slot == EffectSlot::kSensorDelay) longest_delay_ = effect.amplitudes[0].upper;
     if (term.info->slot == EffectSlot::kSensorLag) longest_lag_ = effect.amplitudes[0].upper;
   }
@@ -111,19 +116,28 @@ void Composition::CopyRows(const ContactPack& from, int first, int count, Contac
   copy(from.limit_gate, &to->limit_gate);
 }
 
+EffectInput Composition::FromSurface(EffectInput in) const noexcept {
+  if (surface_ < 0) return in;
+  const Term& term = terms_[static_cast<std::size_t>(surface_)];
+  in.x -= surface_m_ * GateOf(term.gate, term.from_s, term.until_s, in);
+  return in;
+}
+
 void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const noexcept {
   const auto r = static_cast<std::size_t>(row);
   ContactPack& pack = memory->pack;
   pack.x[r] = in.x;
   pack.v[r] = in.v;
   pack.log2_x[r] = in.x > 0.0 ? std::fmax(std::log2(in.x), ContactPack::kNoDepth) : ContactPack::kNoDepth;
+  const EffectInput from_surface = FromSurface(in);
   std::size_t next = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(num_terms_); ++i) {
     const Term& term = terms_[i];
     const double gate = GateOf(term.gate, term.from_s, term.until_s, in);
     std::array<double, kMaxEffectAmplitudes> feature{};
     // A closed gate hides the feature; its memory goes on.
-    if (term.feature != nullptr) term.feature(in, term.shapes.data(), memory->filter[i].data(), feature.data());
+    if (term.feature != nullptr)
+      term.feature(from_surface, term.shapes.data(), memory->filter[i].data(), feature.data());
     switch (term.info->slot) {
       case EffectSlot::kInputMap: pack.contact_offset_gate[r] = gate; break;
       case EffectSlot::kConstitutiveLaw: pack.elapsed[r] = gate * feature[0]; break;

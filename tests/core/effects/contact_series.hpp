@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -74,19 +75,21 @@ inline void Simulate(const std::vector<HiddenEffect>& effects, Series* s) {
     return e.gate != EffectGate::kFrom || s->t[n] >= e.from_s;
   };
   const std::size_t size = s->size();
+  std::vector<double> from_surface = s->x;
+  if (const auto* e = find("contact_offset"))
+    for (std::size_t n = 0; n < size; ++n) from_surface[n] -= open(*e, n) ? e->amplitude[0] : 0.0;
   for (std::size_t n = 0; n < size; ++n) {
-    double x = s->x[n];
+    const double x = from_surface[n];
     double k = s->k;
-    if (const auto* e = find("contact_offset"); e && open(*e, n)) x -= e->amplitude[0];
     if (const auto* e = find("stiffness_drift"); e && open(*e, n)) k *= 1.0 + e->amplitude[0] * (s->t[n] - e->shape[0]);
     s->f[n] = x > 0.0 ? k * std::pow(x, s->p) + s->b * std::pow(x, s->p) * s->v[n] : 0.0;
   }
   for (const HiddenEffect& e : effects) {
     double z = 0.0;  // of a filter
     for (std::size_t n = 0; n < size; ++n) {
-      const double x = s->x[n], v = s->v[n], t = s->t[n];
+      const double x = from_surface[n], v = s->v[n], t = s->t[n];
       const double depth = x > 0.0 ? x : 0.0;
-      const double depth_before = n == 0 ? depth : (s->x[n - 1] > 0.0 ? s->x[n - 1] : 0.0);
+      const double depth_before = n == 0 ? depth : std::max(from_surface[n - 1], 0.0);
       double force = 0.0;
       if (e.name == "force_bias") force = e.amplitude[0];
       if (e.name == "force_drift") force = e.amplitude[0] * (t - e.shape[0]);
@@ -182,6 +185,8 @@ inline EffectSettings SettingsOf(const HiddenEffect& hidden) {
   effect.until_s = hidden.until_s;
   for (std::size_t i = 0; i < hidden.shape.size(); ++i) effect.shapes[i] = hidden.shape[i];
   if (hidden.name == "sensor_lag") effect.amplitudes[0].upper = 0.02;
+  // Effects that depend on the depth count it from where the prior has the surface.
+  if (hidden.name == "contact_offset") effect.amplitudes[0].mean = hidden.amplitude[0];
   // A limit above every force has no gradient: its prior must know about where it is.
   if (hidden.name == "sensor_saturation")
     effect.amplitudes[0] = {"limit", PriorKind::kNormal, 1.1 * hidden.amplitude[0], 1.0, 0.0, 50.0};

@@ -18,7 +18,9 @@ using test::Series;
 class Predictor {
  public:
   explicit Predictor(const std::vector<HiddenEffect>& effects, const simd::Kernels& kernels)
-      : composition_(test::WithEffects(effects)), kernels_(kernels) {
+      : Predictor(effects, kernels, test::WithEffects(effects)) {}
+  Predictor(const std::vector<HiddenEffect>& effects, const simd::Kernels& kernels, const EstimatorSettings& settings)
+      : composition_(settings), kernels_(kernels) {
     std::vector<double> theta{4.0, 2.3, 1.7};
     for (const HiddenEffect& e : effects) theta.insert(theta.end(), e.amplitude.begin(), e.amplitude.end());
     for (std::size_t d = 0; d < theta.size(); ++d) theta_.value[d].fill(theta[d]);
@@ -95,6 +97,35 @@ TEST(EffectPrediction, SlotsComposeInTheFixedOrder) {
   ExpectEqualsReference({named("stiffness_drift"), named("stress_relaxation"), named("force_bias")}, "law and added");
   ExpectEqualsReference({named("inertia"), named("adhesion"), named("viscous_friction"), named("periodic_disturbance")},
                         "five amplitudes");
+}
+
+TEST(EffectPrediction, DepthCountsFromTheSurface) {
+  const auto named = [](const char* name, EffectGate gate) {
+    for (HiddenEffect e : Catalogue())
+      if (e.name == name) {
+        e.gate = gate;
+        e.from_s = e.until_s = 0.7505;
+        return e;
+      }
+    return HiddenEffect{};
+  };
+  for (const EffectGate gate : {EffectGate::kAlways, EffectGate::kFrom, EffectGate::kUntil})
+    for (const char* other : {"adhesion", "stress_relaxation"}) {
+      const HiddenEffect offset = named("contact_offset", gate), effect = named(other, EffectGate::kAlways);
+      ExpectEqualsReference({offset, effect}, std::string(other) + " after the offset");
+      ExpectEqualsReference({effect, offset}, std::string(other) + " before the offset");
+    }
+}
+
+// A uniform prior has bounds only; its mean is in the middle.
+TEST(EffectPrediction, DepthCountsFromTheMiddleOfAUniformPrior) {
+  const std::vector<HiddenEffect> effects{{"contact_offset", {0.12}, {}}, {"adhesion", {0.8}, {0.15}}};
+  Series series(1000);
+  test::Simulate(effects, &series);
+  EstimatorSettings settings = test::WithEffects(effects);
+  settings.effects[0].amplitudes[0] = {"distance", PriorKind::kUniform, 0.0, 1.0, 0.0, 0.24};
+  const std::vector<double> predicted = Predictor(effects, simd::Best(), settings).Run(series);
+  for (std::size_t n = 0; n < series.size(); ++n) ASSERT_NEAR(predicted[n], series.f[n], 3e-5) << n;
 }
 
 TEST(EffectPrediction, InstructionSetsAgree) {

@@ -153,6 +153,46 @@ TEST(Fitter, ABoundThatTheDataDoNotFeelMakesNoOtherEffect) {
   EXPECT_TRUE(WithMemoryAtItsBound(0.4).on_edge());
 }
 
+// Adhesion jumps where the contact ends: a sample that noise moves past the surface would be wrong by the whole jump.
+TEST(Fitter, TheForceSaysOnWhichSideOfTheSurfaceASampleLies) {
+  constexpr int kMany = 20'000;
+  constexpr double kLittleNoise = 0.02, kPositionNoise = 5e-4;
+  Recording recording = Measure({Hidden("adhesion")}, kMany, kLittleNoise, 3).recording;
+  const Vector truth = recording.Column("x");
+  recording.columns[1] += kPositionNoise * test::Noise(kMany, 9);
+  const Bench bench(recording);
+  const Vector& settled = bench.signals.at(Role::kPosition);
+  int wrong = 0, hidden = 0;
+  for (Eigen::Index i = 0; i < kMany; ++i) {
+    if (recording.Column("v")[i] > 0.0) continue;  // nothing jumps on the way in
+    wrong += (settled[i] >= 0.0) != (truth[i] >= 0.0) ? 1 : 0;
+    hidden += std::abs(truth[i]) < 0.2 * kPositionNoise ? 1 : 0;
+  }
+  EXPECT_GT(hidden, 0) << "no sample is near enough to the surface to show anything";
+  EXPECT_EQ(wrong, 0);
+  const Fitter fitter(*bench.equation, bench.signals, White(kLittleNoise));
+  const Fitted fit = fitter.Add(bench.Base(fitter), {&bench.Form("adhesion"), {}});
+  EXPECT_LT(fit.whitened_residual.cwiseAbs().maxCoeff(), 8.0 * kLittleNoise);
+}
+
+// Only the first samples know what a branch remembers of the time before the recording. Were that left out with them,
+// the physics itself would score worse than a formula that has no such state.
+TEST(Fitter, AStateAtTheStartIsTakenAsKnown) {
+  const armcmc::test::HiddenEffect forgetful{"stress_relaxation", {8.0}, {0.02}};  // within the first block
+  const test::Made longer = Measure({forgetful}, 300 + kRows, kNoise, 3);
+  const Bench bench(longer.recording.Slice(300, kRows));  // begins in the middle of a press
+  const Fitter fitter(*bench.equation, bench.signals, White(kNoise));
+  const Fitted base = bench.Base(fitter);
+  const Fitted fit = fitter.Add(base, {&bench.Form("stress_relaxation"), {}});
+  const Fitted stateless = fitter.Add(base, {&bench.Form("stress_relaxation", "two_time_constants"), {}});
+  EXPECT_GT(fit.score(), stateless.score());
+  EXPECT_NEAR(fit.score(), -0.5 * fit.squares / fitter.whitener().s2, 3.0 * static_cast<double>(fit.theta.size()));
+  const auto start = std::find_if(fit.coordinates.begin(), fit.coordinates.end(),
+                                  [](const Coordinate& c) { return c.name == "start"; });
+  const auto k = static_cast<Eigen::Index>(start - fit.coordinates.begin());
+  EXPECT_GT(fit.Covariance(fitter.whitener().s2)(k, k), 0.0) << "fitted, so not exactly known";
+}
+
 /// A delay, fitted to a force that comes so many samples late.
 Fitted WithDelay(double samples, const char* effect) {
   constexpr double kLittleNoise = 1e-3;

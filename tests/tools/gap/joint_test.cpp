@@ -119,5 +119,24 @@ TEST_F(JoinTest, ALatencyIsJudgedByARecordingSampledMoreOften) {
   }
 }
 
+TEST_F(JoinTest, EachRecordingHasItsOwnStart) {
+  const HiddenEffect truth = test::Hidden("stress_relaxation");
+  options_.pairs = false;
+  first_ = Diagnose(*equation_, Measure({truth}, 3000, 0.05, 5).recording, options_);
+  LeaveOpen({"stress_relaxation", "adhesion"});
+  recording_ = Measure({truth}, 3300, 2.0, 6).recording.Slice(300, 3000);  // begins in the middle of a press
+  second_ = Diagnose(*equation_, recording_, options_);
+  second_.finding.verdict = Verdict::kNone;  // as if it named nothing by itself
+  Join(*equation_, recording_, first_, options_.thresholds, &second_, &notes_);
+  ASSERT_EQ(second_.finding.set.size(), 1u) << (notes_.empty() ? "" : notes_[0]);
+  ASSERT_TRUE(Holds(second_.finding, "stress_relaxation"));
+  const double before = first_.finding.set[0]->fit.theta.tail<1>()[0];
+  const Fitted& fit = second_.finding.best->fit;
+  ASSERT_EQ(fit.coordinates.back().name, "start");
+  EXPECT_NEAR(before, 1.0, 0.15);
+  EXPECT_LT(fit.theta.tail<1>()[0], before - 0.2);
+  EXPECT_NEAR(fit.squares / (second_.look->fitter->whitener().s2 * 3000.0), 1.0, 0.08);
+}
+
 }  // namespace
 }  // namespace armcmc::gap

@@ -144,6 +144,27 @@ TEST(AugmentedSettings, TwoEffectsAndTheirGatesAreWritten) {
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-4 * both.predicted.cwiseAbs().maxCoeff());
 }
 
+// Physics: what happens in the contact happens at the surface, wherever that is.
+TEST(AugmentedSettings, DepthCountsFromTheSurface) {
+  for (const char* name : {"adhesion", "stress_relaxation"}) {
+    const armcmc::test::HiddenEffect truth = Hidden(name), offset = Hidden("contact_offset");
+    const armcmc::gap::test::Made made = Measure({truth, offset}, 3000, kNoise, 3);
+    const Bench bench(made.recording);
+    const Fitter fitter(*bench.equation, bench.signals, White(kNoise));
+    const Fitted first = fitter.Add(bench.Base(fitter), {&bench.Form("contact_offset"), {}});
+    const Fitted both = fitter.Add(first, {&bench.Form(name), {}});
+    const EstimatorSettings settings = AugmentedSettings("hunt_crossley", fitter, both, kNoise);
+    const Vector difference = EstimatorSays(settings, bench.signals) - both.predicted;
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), Tolerance(name) * both.predicted.cwiseAbs().maxCoeff()) << name;
+    // A surface that is not where the recording has its zero takes nothing from either effect.
+    const ParameterSettings& distance = settings.effects[0].amplitudes[0];
+    const ParameterSettings& amplitude = settings.effects[1].amplitudes[0];
+    EXPECT_NEAR(distance.mean, offset.amplitude[0], 4.0 * distance.sd) << name;
+    EXPECT_NEAR(amplitude.mean, truth.amplitude[0], 4.0 * amplitude.sd) << name;
+    EXPECT_LT((both.predicted - made.clean).norm(), 0.15 * kNoise * std::sqrt(3000.0)) << name;
+  }
+}
+
 TEST(AugmentedSettings, AFormulaThatTheEstimatorDoesNotKnowIsRefused) {
   const Bench bench(Measure({}, 1500, kNoise, 3).recording);
   const Fitter fitter(*bench.equation, bench.signals, White(kNoise));

@@ -70,6 +70,19 @@ TEST(Whitener, ColourInvertsApply) {
   }
 }
 
+// A recording begins in the middle of the noise: its first value varies as e does, not as w.
+TEST(Whitener, TheFirstSamplesAreAsWhiteAsTheOthers) {
+  for (const Vector& phi : {Vector{{0.95}}, Vector{{0.6, -0.3, 0.1}}, Vector{{1.2, -0.3}}}) {
+    const Whitener whitener{phi, 1.0};
+    constexpr int kRecordings = 4000;
+    Vector squares = Vector::Zero(5);
+    for (unsigned seed = 1; seed <= kRecordings; ++seed)
+      squares += whitener.Apply(Vector(whitener.Colour(Noise(300, seed)).tail(20))).head(5).cwiseAbs2();
+    for (Eigen::Index i = 0; i < 5; ++i)
+      EXPECT_NEAR(squares[i] / kRecordings, 1.0, 4.0 * std::sqrt(2.0 / kRecordings)) << "sample " << i << " of " << phi;
+  }
+}
+
 TEST(Whitener, GainIsTheVarianceOfTheNoiseOverThatOfItsSource) {
   EXPECT_DOUBLE_EQ((Whitener{Vector(), 2.0}).Gain(), 1.0);
   EXPECT_NEAR((Whitener{Vector{{0.9}}, 2.0}).Gain(), 1.0 / (1.0 - 0.81), 1e-9);

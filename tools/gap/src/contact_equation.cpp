@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include "armcmc/gap/features.hpp"
@@ -27,6 +28,33 @@ double Quantile(const Vector& series, double q) {
   const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
   return sorted[static_cast<std::size_t>(at)];
+}
+
+/// Standard deviation of the noise that smoothing leaves: the cubic of a window passes 9 / (4 window) of the variance.
+double LeftOfNoise(double noise_sd, int window) { return noise_sd * std::sqrt(2.25 / std::max(window, 3)); }
+
+/// Where noise hides on which side of the surface a sample lies, the force says it: it belongs to the side whose
+/// nearest sample it resembles. A force that jumps there (adhesion) would otherwise be wrong by the whole jump, and
+/// that one sample would outweigh thousands.
+void SettleSides(const Vector& force, double position_noise, Vector* position) {
+  constexpr double kSure = 3.0;  // standard deviations
+  const auto sure = [&](Eigen::Index i) { return std::abs((*position)[i]) > kSure * position_noise; };
+  const Eigen::Index rows = position->size();
+  for (Eigen::Index first = 0; first < rows;) {
+    if (sure(first)) {
+      ++first;
+      continue;
+    }
+    Eigen::Index end = first + 1;
+    while (end < rows && !sure(end)) ++end;
+    const double before = first > 0 ? (*position)[first - 1] : 0.0, after = end < rows ? (*position)[end] : 0.0;
+    for (Eigen::Index i = first; i < end && before * after < 0.0; ++i) {
+      const bool as_before = std::abs(force[i] - force[first - 1]) < std::abs(force[i] - force[end]);
+      const double depth = std::max(std::abs((*position)[i]), std::numeric_limits<double>::min());
+      (*position)[i] = std::copysign(depth, as_before ? before : after);
+    }
+    first = end;
+  }
 }
 
 bool Moves(const Vector& series) { return series.maxCoeff() - series.minCoeff() > 1e-9 * series.cwiseAbs().maxCoeff(); }
@@ -158,11 +186,13 @@ class ContactEquation final : public Equation {
     s.origin = s.t[0];
     s.duration = std::max(s.t[s.rows() - 1] - s.t[0], s.dt);
     const Vector& v = recording.Column("v");
-    s.at(Role::kPosition) = SavitzkyGolay(recording.Column("x"), window, 0);
+    const Vector& x = recording.Column("x");
+    const Vector all = Vector::Ones(s.rows());
+    s.at(Role::kPosition) = SavitzkyGolay(x, window, 0);
+    SettleSides(s.output, LeftOfNoise(Rms(x - s.at(Role::kPosition), all), window), &s.at(Role::kPosition));
     s.at(Role::kVelocity) = SavitzkyGolay(v, window, 0);
-    s.velocity_noise = Rms(v - s.at(Role::kVelocity), Vector::Ones(s.rows()));
-    // The cubic of a window passes 9 / (4 window) of the variance of white noise.
-    s.smoothed_velocity_noise = s.velocity_noise * std::sqrt(2.25 / std::max(window, 3));
+    s.velocity_noise = Rms(v - s.at(Role::kVelocity), all);
+    s.smoothed_velocity_noise = LeftOfNoise(s.velocity_noise, window);
     const int wide = window < 5 ? window : window + kAccelerationExtra;
     s.at(Role::kAcceleration) = SavitzkyGolay(v, wide, 1) / s.dt;
     s.active = (s.at(Role::kPosition).array() > 0.0).cast<double>();

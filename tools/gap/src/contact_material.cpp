@@ -22,7 +22,7 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   const Coordinate stiffness = AmplitudeOf("stiffness", "N/m", force / length, true, 0.5, 20.0);
   const Coordinate tau = UpTo(ShapeOf("time_constant", "s", 1.0, 15.0 * s.dt, 0.4 * s.duration));
   // What the branch remembers of the time before the recording: 1 it had relaxed, 0 it had seen nothing.
-  const Coordinate start = UpTo({"start", "-", 0.0, 1.3, 1.0, 0.5, 1.0, false});
+  const Coordinate start = UpTo({"start", "-", 0.0, 1.3, 1.0, 0.5, 1.0, false, true});
   EffectForm relaxation = FromCore("stress_relaxation", {stiffness, tau, start});
   relaxation.features = [relaxation](const Signals& in, const double* shape) -> Matrix {
     const Vector depth = in.at(Role::kPosition).cwiseMax(0.0);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+#include <utility>
 
 namespace armcmc::gap {
 namespace {
@@ -41,6 +43,20 @@ std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePt
   return effects;
 }
 
+/// Two effects of one family that data cannot tell apart may both act, and share between them what either would do
+/// alone: a latency may be part delay, part lag.
+std::vector<std::vector<std::string>> BothOfAFamily(const Finding& finding) {
+  std::vector<std::vector<std::string>> both;
+  for (auto a = finding.set.begin(); a != finding.set.end(); ++a)
+    for (auto b = std::next(a); b != finding.set.end(); ++b) {
+      const bool single = (*a)->added().size() == 1 && (*b)->added().size() == 1;
+      if (!single || (*a)->families() != (*b)->families() || !(*a)->always() || !(*b)->always()) continue;
+      both.push_back({(*a)->names().front(), (*b)->names().front()});
+      std::sort(both.back().begin(), both.back().end());
+    }
+  return both;
+}
+
 /// @param in  " in the flow law" where the plant has several equations.
 std::string Sentence(const Result& result, const Finding& finding, const std::string& in) {
   const auto percent = [](double p) {
@@ -65,6 +81,7 @@ std::string Sentence(const Result& result, const Finding& finding, const std::st
     case Verdict::kAmbiguous: {
       std::vector<std::string> sets;
       for (const CandidatePtr& candidate : finding.set) sets.push_back(Joined(Texts(candidate), " and "));
+      for (const std::vector<std::string>& names : BothOfAFamily(finding)) sets.push_back(Joined(names, " and "));
       return "Missing" + in + ": one of " + Joined(sets, ", or ") + "; these data cannot tell which.";
     }
     case Verdict::kUnnamed: break;
@@ -94,8 +111,10 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
   result->probability_none = finding.verdict == Verdict::kNone ? finding.p_none : 1.0 - finding.p_missing;
   result->probability_unnamed = finding.p_missing * finding.p_unnamed;
   if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active);
-  if (finding.verdict == Verdict::kAmbiguous)
+  if (finding.verdict == Verdict::kAmbiguous) {
     for (const CandidatePtr& candidate : finding.set) result->ambiguous_set.push_back(candidate->names());
+    for (std::vector<std::string>& names : BothOfAFamily(finding)) result->ambiguous_set.push_back(std::move(names));
+  }
   const double full = std::max(finding.gap, 1e-12);
   const auto rows = static_cast<double>(diagnosis.look->signals.rows());
   for (std::size_t i = 0; i < finding.tried.size(); ++i) {

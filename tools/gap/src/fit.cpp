@@ -95,19 +95,23 @@ double Fitted::CostOfLeaving(Eigen::Index coordinate) const {
 bool Fitted::on_edge() const {
   constexpr double kNear = 1e-3;   // of the range
   constexpr double kSilent = 0.1;  // nats; less says that the data do not care where the coordinate is
+  constexpr double kChance = 2.0;  // two standard deviations: so far a state at the start may stray by noise
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const Coordinate& c = coordinates[i];
     const auto k = static_cast<Eigen::Index>(i);
     const double at = theta[k], near = kNear * (c.upper - c.lower);
     const bool rests = (c.other_below && at < c.lower + near) || (c.other_above && at > c.upper - near);
     const bool mean_beyond = c.prior_mean < c.lower || c.prior_mean > c.upper;  // there is no way back to it
-    if (rests && (mean_beyond || CostOfLeaving(k) > kSilent)) return true;
+    if (rests && (mean_beyond || CostOfLeaving(k) > (c.event ? kChance : kSilent))) return true;
   }
   return false;
 }
 
 Matrix Fitted::Covariance(double s2) const {
-  std::vector<Eigen::Index> free = FreeOf(at_bound);
+  std::vector<bool> fixed = at_bound;
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (coordinates[i].event) fixed[i] = whitened_jacobian.col(static_cast<Eigen::Index>(i)).isZero(0.0);
+  const std::vector<Eigen::Index> free = FreeOf(fixed);
   Matrix covariance = Matrix::Zero(theta.size(), theta.size());
   if (free.empty()) return covariance;
   const Matrix columns = whitened_jacobian(Eigen::all, free);

@@ -56,6 +56,26 @@ Sum Evaluate(const Signals& signals, const Placed& term, Slopes wanted) {
   return sum;
 }
 
+/// The signals with the position as the law is given it.
+Signals Moved(const Signals& signals, const Vector& shift) {
+  Signals moved = signals;
+  moved.at(Role::kPosition) -= shift;
+  return moved;
+}
+
+void AddFeatures(const Signals& signals, const Placed& term, const LawInput& input, Prediction* out) {
+  const bool moves = term.form->from_surface && input.shift.size() > 0;
+  const Signals seen = moves ? Moved(signals, input.shift) : Signals();
+  const Sum sum = Evaluate(moves ? seen : signals, term, out->wanted);
+  out->y += sum.value;
+  out->jacobian.middleCols(term.first, term.form->size()) += sum.slopes;
+  if (!moves) return;
+  for (const LawInput::Slope& slope : input.shift_slopes) {
+    const Signals beside = Moved(seen, kShapeStep * slope.rows);
+    out->jacobian.col(slope.coordinate) += (Evaluate(beside, term, Slopes::None()).value - sum.value) / kShapeStep;
+  }
+}
+
 void AddToInput(const Sum& sum, const Placed& term, Slopes wanted, Vector* value,
                 std::vector<LawInput::Slope>* slopes) {
   if (value->size() == 0) *value = Vector::Zero(sum.value.size());
@@ -155,11 +175,7 @@ Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypo
   equation.Law(signals, theta.data(), input, &out);
   for (const Placed& term : terms) {
     if (term.form->slot == Slot::kMemory) AddMemory(signals, term, &out);
-    if (term.form->slot == Slot::kAdditive) {
-      const Sum sum = Evaluate(signals, term, wanted);
-      out.y += sum.value;
-      out.jacobian.middleCols(term.first, term.form->size()) += sum.slopes;
-    }
+    if (term.form->slot == Slot::kAdditive) AddFeatures(signals, term, input, &out);
   }
   for (const Slot slot : {Slot::kDelay, Slot::kLag, Slot::kStatics})
     for (const Placed& term : terms)

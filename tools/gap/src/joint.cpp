@@ -37,7 +37,7 @@ std::optional<Fitted> OnWideLook(const Look& look, const CandidatePtr& member) {
 }
 
 /// Posterior of the coordinates from `first` on, base parameters integrated out, as prior of another fit. Two
-/// recordings of one effect agree within kSame at best.
+/// recordings of one effect agree within kSame at best, and each has its own events.
 CoordinatePrior PriorFrom(const Fitted& fit, double s2, Eigen::Index first) {
   const Eigen::Index size = fit.theta.size(), count = size - first;
   Matrix hessian = fit.whitened_jacobian.transpose() * fit.whitened_jacobian / s2;
@@ -47,6 +47,7 @@ CoordinatePrior PriorFrom(const Fitted& fit, double s2, Eigen::Index first) {
   for (Eigen::Index i = 0; i < count; ++i) {
     const Coordinate& c = fit.coordinates[static_cast<std::size_t>(first + i)];
     covariance(i, i) += std::pow(kSame * (c.logarithmic ? 1.0 : std::abs(fit.theta[first + i])), 2) + 1e-300;
+    if (c.event) covariance(i, i) += c.prior_sd * c.prior_sd;
   }
   CoordinatePrior prior{fit.theta, Matrix::Zero(size, size)};
   prior.precision.bottomRightCorner(count, count) = covariance.ldlt().solve(Matrix::Identity(count, count));

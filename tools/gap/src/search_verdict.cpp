@@ -119,6 +119,11 @@ void Search::AssignProbabilities(Finding* finding) const {
   Candidates compared = finding->set;
   for (const CandidatePtr& candidate : OnePerName(finding->tried)) {
     if (compared.size() >= kCompared) break;
+    // On such a bound a formula is another effect's: it is no rival to a name that does as well. One that does better
+    // says that the name is not the whole truth.
+    if (!finding->set.empty() && candidate->fit.on_edge() &&
+        candidate->fit.score() < finding->best->fit.score() + limits_.tie_nats)
+      continue;
     const auto same = [&](const CandidatePtr& other) { return other->names() == candidate->names(); };
     if (std::none_of(compared.begin(), compared.end(), same)) compared.push_back(candidate);
   }

@@ -34,27 +34,45 @@ Vector QuietCovariance(const Vector& series) {
   return covariance / count;
 }
 
-}  // namespace
-
-Vector Whitener::Apply(const Vector& series) const {
-  Vector out = series;
-  for (Eigen::Index k = 0; k < phi.size(); ++k)
-    out.tail(series.size() - k - 1) -= phi[k] * series.head(series.size() - k - 1);
-  return out;
+/// Lower Cholesky factor of the covariance of the first phi.size() values of e, in units of s2: nothing before them is
+/// known, and they vary by more than w. Identity where phi is no stationary process.
+Matrix StartFactor(const Vector& phi) {
+  const Eigen::Index order = phi.size();
+  // Yule-Walker for the autocovariances: g_k = sum_j phi_j g_|k-j| + [k = 0].
+  Matrix equations = Matrix::Identity(order + 1, order + 1);
+  for (Eigen::Index k = 0; k <= order; ++k)
+    for (Eigen::Index j = 1; j <= order; ++j) equations(k, std::abs(k - j)) -= phi[j - 1];
+  const Vector g = equations.partialPivLu().solve(Vector::Unit(order + 1, 0));
+  Matrix covariance(order, order);
+  for (Eigen::Index i = 0; i < order; ++i)
+    for (Eigen::Index j = 0; j < order; ++j) covariance(i, j) = g[std::abs(i - j)];
+  const Eigen::LLT<Matrix> factor(covariance);
+  if (!covariance.allFinite() || factor.info() != Eigen::Success) return Matrix::Identity(order, order);
+  return factor.matrixL();
 }
 
+}  // namespace
+
+Vector Whitener::Apply(const Vector& series) const { return Apply(Matrix(series)); }
+
 Matrix Whitener::Apply(const Matrix& columns) const {
+  const Eigen::Index n = columns.rows(), order = std::min(phi.size(), n);
+  if (phi.size() == 0 || columns.size() == 0) return columns;
   Matrix out = columns;
-  const Eigen::Index n = columns.rows();
   for (Eigen::Index c = 0; c < columns.cols(); ++c)
-    for (Eigen::Index k = 0; k < phi.size(); ++k) out.col(c).tail(n - k - 1) -= phi[k] * columns.col(c).head(n - k - 1);
+    for (Eigen::Index k = 0; k < order; ++k)
+      out.col(c).tail(n - order) -= phi[k] * columns.col(c).segment(order - k - 1, n - order);
+  const Matrix start = StartFactor(phi).topLeftCorner(order, order);
+  out.topRows(order) = start.triangularView<Eigen::Lower>().solve(columns.topRows(order));
   return out;
 }
 
 Vector Whitener::Colour(const Vector& white) const {
   Vector out = white;
-  for (Eigen::Index t = 1; t < out.size(); ++t)
-    for (Eigen::Index k = 0; k < std::min<Eigen::Index>(phi.size(), t); ++k) out[t] += phi[k] * out[t - 1 - k];
+  const Eigen::Index order = std::min(phi.size(), white.size());
+  if (order > 0) out.head(order) = StartFactor(phi).topLeftCorner(order, order) * white.head(order);
+  for (Eigen::Index t = order; t < out.size(); ++t)
+    for (Eigen::Index k = 0; k < order; ++k) out[t] += phi[k] * out[t - 1 - k];
   return out;
 }
 

@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "armcmc/gap/aliases.hpp"
 #include "armcmc/gap/figures.hpp"
@@ -174,26 +177,66 @@ Parts Divide(const WorkflowRequest& request) {
 /// they should by far, or what the model leaves follows a pattern.
 bool RestContradicts(const EquationDiagnosis& one, const Parts& parts) {
   const HeldOut rest(*one.equation, *one.diagnosis.look, parts.shown, parts.first_shown);
-  const Fit fit = rest.Judge(rest.Try(one.diagnosis.finding.base->fit));
+  const Finding& finding = one.diagnosis.finding;
+  const Fit fit = rest.Judge(rest.Try(finding.set.empty() ? finding.base->fit : finding.best->fit));
   return fit.coverage95 < kLeastCoverage || fit.whiteness > kMostWhiteness;
 }
 
-/// Where the first part of a recording lacks nothing in any equation, or shows single events that nothing explains, all
-/// of it is looked at: a load may come late, and what acts in free motion only needs free motion. Where there is
-/// nothing besides, only if the rest contradicts the first part: the second look costs as much as the first.
-/// @return whether something is missing then, or named instead of the events; `plant` is what all of the recording
-/// says.
-bool BeginsLate(const WorkflowRequest& request, const Parts& parts, PlantDiagnosis* plant) {
-  if (request.heldout || !plant->carrying().suitability.can_name) return false;
-  const Finding& first = plant->carrying().diagnosis.finding;
-  const bool nothing = first.verdict == Verdict::kNone;
-  if (!nothing && (first.verdict != Verdict::kUnnamed || first.events_s.empty())) return false;
-  if (plant->equations.size() < 2 && !(nothing && RestContradicts(plant->carrying(), parts))) return false;
+/// Whether a name is given to so little that the rest of the recording can neither confirm nor contradict it.
+bool RestCannotConfirm(const EquationDiagnosis& one, const Parts& parts) {
+  const Diagnosis& diagnosis = one.diagnosis;
+  if (diagnosis.finding.set.empty()) return false;
+  const HeldOut rest(*one.equation, *diagnosis.look, parts.shown, parts.first_shown);
+  return ShowGap(*one.equation, rest, *diagnosis.bootstrap, diagnosis.finding.base->fit, diagnosis.finding.best->fit,
+                 nullptr)
+             .gap_ratio < kUnseenRatio;
+}
+
+/// Effects of every hypothesis that remains.
+std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
+  std::set<std::vector<std::string>> names;
+  for (const CandidatePtr& candidate : finding.set) names.insert(candidate->names());
+  return names;
+}
+
+/// Whether all of the recording is worth a second look, which costs as much as the first. In a plant with several
+/// equations always where the first part lacks nothing: a load may come late.
+bool DeservesSecondLook(const WorkflowRequest& request, const Parts& parts, const PlantDiagnosis& plant) {
+  if (request.heldout || !plant.carrying().suitability.can_name) return false;
+  const Finding& first = plant.carrying().diagnosis.finding;
+  const bool several = plant.equations.size() > 1;
+  if (first.verdict == Verdict::kUnnamed) return several && !first.events_s.empty();
+  return (several && first.verdict == Verdict::kNone) || RestContradicts(plant.carrying(), parts) ||
+         RestCannotConfirm(plant.carrying(), parts);
+}
+
+/// Where the first part of a recording lacks nothing, shows single events that nothing explains, or names what the rest
+/// contradicts or cannot confirm, all of it is looked at: what acts in free motion only needs free motion, a limit a
+/// high force, and chance does not go on for the whole of a recording.
+/// @return what that changed, empty: nothing; `plant` is then what all of the recording says.
+std::string LookAtAll(const WorkflowRequest& request, const Parts& parts, PlantDiagnosis* plant) {
+  if (!DeservesSecondLook(request, parts, *plant)) return {};
   PlantDiagnosis whole = DiagnosePlant(request.model, request.data, request.diagnose);
+  const Finding& first = plant->carrying().diagnosis.finding;
   const Finding& all = whole.carrying().diagnosis.finding;
-  if (nothing ? all.verdict == Verdict::kNone : all.set.empty()) return false;
+  const bool nothing = all.verdict == Verdict::kNone;
+  std::string found = "what is missing shows in the last 30 % of the recording only";
+  if (first.set.empty()) {
+    if (first.verdict == Verdict::kNone ? nothing : all.set.empty()) return {};
+  } else {
+    if (RestContradicts(whole.carrying(), parts)) return {};
+    const std::string named = "the first 70 % of the recording name " + Joined(Texts(first.best), " and ");
+    found = named + ", which the rest contradicts";
+    if (nothing) {
+      *plant = std::move(whole);
+      return named + ", all of it shows nothing beyond the noise";
+    }
+    const bool other = !all.set.empty() && NamesOf(all) != NamesOf(first);
+    if (!other || !RestContradicts(plant->carrying(), parts)) return {};
+  }
   *plant = std::move(whole);
-  return true;
+  found += ": nothing could be kept sealed, and the gap is shown on data that were diagnosed, too. ";
+  return found + "Record another run for --heldout";
 }
 
 /// What an earlier recording left open, judged by both.
@@ -228,10 +271,8 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
 
   clock.Begin("compare and name", 0.0);
   PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
-  if (BeginsLate(request, parts, &plant))
-    result.notes.push_back(
-        "what is missing shows in the last 30 % of the recording only: nothing could be kept sealed, and the gap is "
-        "shown on data that were diagnosed, too. Record another run for --heldout");
+  const std::string second_look = LookAtAll(request, parts, &plant);
+  if (!second_look.empty()) result.notes.push_back(second_look);
   std::optional<PlantDiagnosis> earlier;
   if (request.earlier) earlier = JoinEarlier(request, parts.diagnosis, &plant);
   const Equation* equation = plant.carrying().equation.get();

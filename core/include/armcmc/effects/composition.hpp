@@ -21,9 +21,10 @@ namespace armcmc {
 /// The parameters are those of the base, then the amplitudes in the order of the settings, called NAME_PARAMETER.
 ///
 /// Contact plant: with effects, mode 0 uses every sample of a pack: free motion says something on a bias, a drag or a
-/// mass. Soft actuator: with effects, or where the settings ask for it, what is regressed is the pressure rate (see
-/// FlowLaw), whose noise is that of a sensor, so that the noise of the settings is in Pa/s; each valve has its own
-/// amplitudes.
+/// mass. Features of the depth (adhesion, relaxation) do not depend on the candidate: beside a contact offset they
+/// count it from the mean of that offset's prior, frozen as shapes are. Soft actuator: with effects, or where the
+/// settings ask for it, what is regressed is the pressure rate (see FlowLaw), whose noise is that of a sensor, so that
+/// the noise of the settings is in Pa/s; each valve has its own amplitudes.
 class Composition {
  public:
   /// @pre settings.Validate() passes.
@@ -80,6 +81,8 @@ class Composition {
   [[nodiscard]] int HistoryFor(double dt) const noexcept ARMCMC_NONBLOCKING;
   static void CopyRows(const ContactPack& from, int first, int count, ContactPack* to) noexcept ARMCMC_NONBLOCKING;
   void FillRow(const EffectInput& in, int row, Memory* memory) const noexcept ARMCMC_NONBLOCKING;
+  /// What features are made from: x counts from the surface.
+  [[nodiscard]] EffectInput FromSurface(EffectInput in) const noexcept ARMCMC_NONBLOCKING;
 
   ModelInfo info_;
   EstimatorSettings sampled_;
@@ -90,6 +93,8 @@ class Composition {
   FlowRows flow_rows_;
   // Contact plant.
   std::array<Term, kMaxEffects> terms_;
+  int surface_ = -1;                                ///< Term that displaces it, -1: none.
+  double surface_m_ = 0.0;                          ///< Mean of that term's prior.
   double longest_delay_ = 0.0, longest_lag_ = 0.0;  ///< Upper bounds of the priors, s.
   std::array<Memory, 2> memory_;
   int current_ = 0;

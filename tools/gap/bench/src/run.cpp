@@ -61,31 +61,32 @@ std::string ScenarioOf(const PlantProcess& plant, const Case& what) {
   return Contents(std::filesystem::exists(own) ? own : support::FindSharedFile("scenarios", what.scenario));
 }
 
-/// What the effects add to the outputs, [output][row].
-/// @param gates  Whether they keep their gates; otherwise they act from the first sample to the last.
+/// What the effects of a truth add to the outputs, [output][row], where `others` act already: what a limit takes off
+/// depends on all that raises the force.
+/// @param gates  Whether effects keep their gates; otherwise they act from the first sample to the last.
 std::vector<std::vector<double>> Contributions(const PlantProcess& plant, const Case& what, const Truth& truth,
-                                               bool gates) {
+                                               const Truth& others, bool gates) {
   const std::string scenario = WithoutTables(ScenarioOf(plant, what), "hidden_effect");
   std::vector<std::vector<double>> with = plant.Outputs(what, scenario + EffectTables(truth, gates));
-  const std::vector<std::vector<double>> base = plant.Outputs(what, scenario);
+  const std::vector<std::vector<double>> base = plant.Outputs(what, scenario + EffectTables(others, gates));
   for (std::size_t k = 0; k < with.size(); ++k)
     for (std::size_t i = 0; i < with[k].size(); ++i) with[k][i] -= base[k][i];
   return with;
 }
 
-/// The truth without the effects that the answer names.
-Truth NotFound(const Truth& truth, const gap::Result& result) {
-  Truth rest = truth;
-  for (const Names& set : SetsOf(result))
-    std::erase_if(rest.effects, [&](const TrueEffect& effect) {
-      return std::find(set.begin(), set.end(), effect.name) != set.end();
-    });
-  return rest;
+/// The truth with only those of its effects that an answer names.
+Truth Found(const Truth& truth, const Names& answer) {
+  Truth found = truth;
+  std::erase_if(found.effects, [&](const TrueEffect& effect) {
+    return std::find(answer.begin(), answer.end(), effect.name) == answer.end();
+  });
+  return found;
 }
 
-double DiagnosedStrength(const PlantProcess& plant, const Case& what, const Truth& truth) {
+/// Of what the effects add to those that were found.
+double StrengthBeside(const PlantProcess& plant, const Case& what, const Truth& truth, const Truth& found) {
   constexpr double kDiagnosed = 0.7;  // of the recording
-  const std::vector<std::vector<double>> outputs = Contributions(plant, what, truth, true);
+  const std::vector<std::vector<double>> outputs = Contributions(plant, what, truth, found, true);
   double strength = 0.0;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const std::vector<double>& added = outputs[k];
@@ -94,6 +95,16 @@ double DiagnosedStrength(const PlantProcess& plant, const Case& what, const Trut
     const double rms = std::sqrt(squares / static_cast<double>(std::max<std::ptrdiff_t>(rows, 1)));
     strength = std::max(strength, rms / truth.noise_sd[k]);
   }
+  return strength;
+}
+
+/// Of what was not found, beside the answer that lacks most.
+double DiagnosedStrength(const PlantProcess& plant, const Outcome& outcome) {
+  std::vector<Names> answers = SetsOf(outcome.answer.result);
+  if (answers.empty()) answers.emplace_back();
+  double strength = 0.0;
+  for (const Names& answer : answers)
+    strength = std::max(strength, StrengthBeside(plant, outcome.what, outcome.truth, Found(outcome.truth, answer)));
   return strength;
 }
 
@@ -121,7 +132,7 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
     throw std::runtime_error("the probability of " + outcome->label + " is not a number");
   outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label);
   if (outcome->grade == Grade::kNone || outcome->grade == Grade::kPartial) {
-    outcome->diagnosed_strength = DiagnosedStrength(plant, outcome->what, NotFound(outcome->truth, result));
+    outcome->diagnosed_strength = DiagnosedStrength(plant, *outcome);
     if (*outcome->diagnosed_strength < kTrace) outcome->grade = Grade::kNotShown;
   }
   outcome->equation_right = EquationRight(outcome->truth, result);
@@ -129,7 +140,7 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
   const TrueEffect& effect = outcome->truth.effects.front();
   if (effect.onset_s && !result.effects.empty()) {
     outcome->onset_error_s = OnsetError(result, effect.name,
-                                        OnsetInterval(Contributions(plant, outcome->what, outcome->truth, false)[0],
+                                        OnsetInterval(Contributions(plant, outcome->what, outcome->truth, {}, false)[0],
                                                       result.dt, *effect.onset_s, outcome->truth.noise_sd[0]));
     outcome->onset_off_s = OnsetError(result, effect.name, {*effect.onset_s, *effect.onset_s});
   }

@@ -17,8 +17,9 @@ struct Coordinate {
   double prior_mean = 0.0, prior_sd = 1.0;
   double unit_size = 1.0;
   bool logarithmic = false;
-  bool event = false;  ///< A time at which something happens: only the samples around it know it, and leaving them out
-                       ///< would say nothing on the effect. Scores take it as known.
+  bool event = false;  ///< A time at which something happens, or a state at the start: only the samples around it know
+                       ///< it, and leaving them out would say nothing on the effect. Scores take it as known; another
+                       ///< recording has its own.
   /// Resting on that bound, the effect has become another one (a very slow relaxation is a drift): it is not adequate.
   bool other_below = false, other_above = false;
 

@@ -50,6 +50,7 @@ struct EffectForm {
   std::vector<Coordinate> coordinates;      ///< Amplitudes first, then shapes.
   int num_amplitudes = 1;                   ///< Coordinates that multiply features.
   bool linear = true;                       ///< The prediction is linear in the amplitudes, given the shapes.
+  bool from_surface = false;                ///< Features read the position as the law does: input maps move it.
   bool gates_by_mode = false;               ///< May act in contact or in free motion only.
   bool gates_by_time = true;                ///< May start or end during the recording.
   std::vector<std::vector<double>> starts;  ///< Coordinates to start fits from.

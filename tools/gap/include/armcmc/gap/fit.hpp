@@ -31,7 +31,7 @@ struct Fitted {
   [[nodiscard]] bool on_edge() const;
   /// Nats that a coordinate's way to its prior mean would cost, the others following it; of the linearised fit.
   [[nodiscard]] double CostOfLeaving(Eigen::Index coordinate) const;
-  /// s2 H^-1 of the whitened fit, zero for coordinates at a bound.
+  /// s2 H^-1 of the whitened fit, zero for coordinates at a bound. Events count: they are fitted, too.
   [[nodiscard]] Matrix Covariance(double s2) const;
 };
 

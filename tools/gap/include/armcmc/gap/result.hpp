@@ -169,6 +169,8 @@ struct Result {
   double probability_none = 1.0;
   double probability_unnamed = 0.0;
   std::vector<EffectFinding> effects;
+  /// What explains it equally well. Of two effects of one family both together, too: a latency may be part delay, part
+  /// lag.
   std::vector<std::vector<std::string>> ambiguous_set;
   Experiment separate_by;
   std::vector<CandidateScore> candidates;  ///< Most probable first.

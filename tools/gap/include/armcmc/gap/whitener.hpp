@@ -6,6 +6,8 @@ namespace armcmc::gap {
 
 /// Autoregressive noise:  e_t = sum_k phi_k e_{t-k} + w_t,  w white with variance s2.
 ///
+/// Before the first sample nothing is known: the first values are whitened by their stationary covariance.
+///
 /// Whitening turns residuals and derivatives into those of w, so that least squares is maximum likelihood and a sample
 /// counts for what it adds.
 struct Whitener {
