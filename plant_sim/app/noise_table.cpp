@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "armcmc/plant_sim/rng.hpp"
+#include "series_file.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
@@ -17,9 +20,25 @@ using support::StrictTable;
 // With the channel's index added, streams of the seed that nothing else uses.
 constexpr std::uint64_t kCorrelationStream = 0xd2'00;
 
-NoiseLaw ReadLaw(StrictTable table, double share_of_range) {
+/// Column e of a file, without its mean and in units of its standard deviation.
+std::shared_ptr<const Series> ReadRecordedNoise(StrictTable* table, const std::filesystem::path& file) {
+  if (table->Has("correlation")) throw table->Error("correlation", "is no choice: recorded noise has a colour");
+  Series noise = *ReadSeries(table->RequiredText("recording"), file, "e");
+  const auto count = static_cast<double>(noise.values.size());
+  const double mean = std::accumulate(noise.values.begin(), noise.values.end(), 0.0) / count;
+  double squares = 0.0;
+  for (double& value : noise.values) {
+    value -= mean;
+    squares += value * value;
+  }
+  if (!(squares > 0.0)) throw table->Error("recording", "does not change: it is no noise");
+  for (double& value : noise.values) value /= std::sqrt(squares / count);
+  return std::make_shared<const Series>(std::move(noise));
+}
+
+NoiseLaw ReadLaw(StrictTable table, double share_of_range, const std::filesystem::path& file) {
   NoiseLaw law;
-  const std::string kind = table.RequiredChoice("kind", {"gaussian", "student_t", "laplace", "mixture"});
+  const std::string kind = table.RequiredChoice("kind", {"gaussian", "student_t", "laplace", "mixture", "recorded"});
   if (table.Has("std_share")) {
     if (table.Has("std")) throw table.Error("std_share", "contradicts std: a channel has one level");
     law.share = table.RequiredNumber("std_share", 1e-9, 1e3);
@@ -36,6 +55,10 @@ NoiseLaw ReadLaw(StrictTable table, double share_of_range) {
     law.kind = NoiseKind::kMixture;
     law.outlier_weight = table.Number("outlier_weight", law.outlier_weight, 1e-6, 0.5);
     law.outlier_scale = table.Number("outlier_scale", law.outlier_scale, 1.0, 1e6);
+  }
+  if (kind == "recorded") {
+    law.kind = NoiseKind::kRecorded;
+    law.recording = ReadRecordedNoise(&table, file);
   }
   constexpr double kMaxCorrelation = 0.99;
   law.correlation = table.Number("correlation", 0.0, 0.0, kMaxCorrelation);
@@ -80,11 +103,12 @@ std::vector<double> Rms(const Scenario& scenario) {
 
 }  // namespace
 
-std::vector<NoiseLaw> ReadNoise(StrictTable table, const PlantFamily& family, std::uint64_t seed) {
+std::vector<NoiseLaw> ReadNoise(StrictTable table, const PlantFamily& family, std::uint64_t seed,
+                                const std::filesystem::path& file) {
   std::vector<NoiseLaw> laws;
   for (const std::string& channel : ChannelNames(family)) {
     Rng rng(seed, kCorrelationStream + laws.size());
-    laws.push_back(table.Has(channel) ? ReadLaw(table.Table(channel), rng.Uniform()) : NoiseLaw{});
+    laws.push_back(table.Has(channel) ? ReadLaw(table.Table(channel), rng.Uniform(), file) : NoiseLaw{});
   }
   return laws;
 }

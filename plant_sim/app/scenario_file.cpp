@@ -11,6 +11,7 @@
 #include "armcmc/plant_sim/effects/hide.hpp"
 #include "drawn_parameters.hpp"
 #include "noise_table.hpp"
+#include "series_file.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
@@ -64,7 +65,7 @@ Schedule ReadSchedule(StrictTable* root, const PlantFamily& family, std::uint64_
   }
 }
 
-Options ReadOptions(StrictTable* root, const PlantFamily& family) {
+Options ReadOptions(StrictTable* root, const PlantFamily& family, const std::filesystem::path& file) {
   Options options(family.options);
   for (const OptionSpec& spec : family.options) {
     StrictTable table = root->Table(spec.table);
@@ -77,6 +78,9 @@ Options ReadOptions(StrictTable* root, const PlantFamily& family) {
         break;
       case OptionSpec::Kind::kChoice:
         options.Set(spec.key, table.Choice(spec.key, spec.choices.front(), spec.choices));
+        break;
+      case OptionSpec::Kind::kSeries:
+        if (table.Has(spec.key)) options.Set(spec.key, ReadSeries(table.RequiredText(spec.key), file, spec.column));
         break;
     }
   }
@@ -141,8 +145,8 @@ Scenario LoadScenario(const std::filesystem::path& path, std::optional<double> d
   scenario.sample_interval_s = root.Number("sample_interval_s", scenario.sample_interval_s, 1e-5, 1.0);
   scenario.pack_samples = ReadPackSamples(&root, scenario.sample_interval_s);
   scenario.schedule = ReadSchedule(&root, *scenario.family, seed);
-  scenario.options = ReadOptions(&root, *scenario.family);
-  scenario.noise = ReadNoise(root.Table("noise"), *scenario.family, seed);
+  scenario.options = ReadOptions(&root, *scenario.family, path);
+  scenario.noise = ReadNoise(root.Table("noise"), *scenario.family, seed, path);
   const HiddenEffects hidden = ReadHiddenEffects(&root, *scenario.family);
   root.Finish();
   if (duration_s) scenario.duration_s = *duration_s;

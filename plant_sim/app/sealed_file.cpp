@@ -43,6 +43,7 @@ Json Describe(const NoiseLaw& law, const std::string& unit) {
   json["growth"] = law.growth;
   if (law.reference > 0.0) json["reference"] = law.reference;
   if (law.kind == NoiseKind::kStudentT) json["dof"] = law.dof;
+  if (law.recording) json["recording"] = law.recording->file;
   if (law.kind == NoiseKind::kMixture) {
     json["outlier_weight"] = law.outlier_weight;
     json["outlier_scale"] = law.outlier_scale;
@@ -69,6 +70,9 @@ Json OptionValues(const Scenario& scenario) {
       case OptionSpec::Kind::kNumber: at = scenario.options.Number(spec.key); break;
       case OptionSpec::Kind::kList: at = scenario.options.List(spec.key); break;
       case OptionSpec::Kind::kChoice: at = scenario.options.Choice(spec.key); break;
+      case OptionSpec::Kind::kSeries:
+        if (const auto& series = scenario.options.Recorded(spec.key)) at = series->file;
+        break;
     }
   }
   return json;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "armcmc/plant_sim/motion.hpp"
 #include "armcmc/plant_sim/rng.hpp"
@@ -126,6 +128,27 @@ class RichPath final : public Path {
   std::array<Wave, 4> waves_{};
 };
 
+/// What somebody recorded, from one of its times on; at its end it runs back, and at its beginning forth again.
+class RecordedPath final : public Path {
+ public:
+  RecordedPath(std::shared_ptr<const Series> recording, double start_s)
+      : recording_(std::move(recording)), start_s_(start_s) {}
+
+  [[nodiscard]] double At(double time_s) noexcept override {
+    const std::vector<double>& values = recording_->values;
+    const auto last = static_cast<double>(values.size() - 1);
+    const double there_and_back = 2.0 * last, way = (start_s_ + time_s) / recording_->interval_s;
+    const double folded = way - there_and_back * std::floor(way / there_and_back);
+    const double place = std::clamp(folded <= last ? folded : there_and_back - folded, 0.0, last);
+    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
+    return Blend(values[before], values[before + 1], place - static_cast<double>(before));
+  }
+
+ private:
+  std::shared_ptr<const Series> recording_;
+  double start_s_;
+};
+
 }  // namespace
 
 std::unique_ptr<Path> MakePath(const Options& options, std::uint64_t seed) {
@@ -140,6 +163,10 @@ std::unique_ptr<Path> MakePath(const Options& options, std::uint64_t seed) {
       {"free_air", FreeAir},
   };
   const std::string& program = options.Choice("program");
+  const std::shared_ptr<const Series>& recording = options.Recorded("recording");
+  if ((program == "recorded") != (recording != nullptr))
+    throw std::invalid_argument("motion.program = \"recorded\" and motion.recording, a CSV file, need each other");
+  if (recording) return std::make_unique<RecordedPath>(recording, options.Number("recording_start_s"));
   if (program == "rich") return std::make_unique<RichPath>(seed);
   return std::make_unique<FixedPath>(fixed.at(program));
 }

@@ -12,13 +12,15 @@ const char* NoiseKindName(NoiseKind kind) noexcept {
     case NoiseKind::kStudentT: return "student_t";
     case NoiseKind::kLaplace: return "laplace";
     case NoiseKind::kMixture: return "mixture";
+    case NoiseKind::kRecorded: return "recorded";
   }
   return "";
 }
 
 double Draw(const NoiseLaw& law, Rng* rng) noexcept {
   switch (law.kind) {
-    case NoiseKind::kNone: return 0.0;
+    case NoiseKind::kNone:
+    case NoiseKind::kRecorded: return 0.0;
     case NoiseKind::kGaussian: return law.std * rng->Normal();
     case NoiseKind::kStudentT: {
       const double radius = std::sqrt(law.dof * (std::pow(rng->Uniform(), -2.0 / law.dof) - 1.0));
@@ -39,6 +41,7 @@ double Draw(const NoiseLaw& law, Rng* rng) noexcept {
 double NoiseSd(const NoiseLaw& law) {
   switch (law.kind) {
     case NoiseKind::kNone: return 0.0;
+    case NoiseKind::kRecorded:
     case NoiseKind::kGaussian: return law.std;
     case NoiseKind::kStudentT: return law.dof > 2.0 ? law.std * std::sqrt(law.dof / (law.dof - 2.0)) : law.std;
     case NoiseKind::kLaplace: return std::sqrt(2.0) * law.std;

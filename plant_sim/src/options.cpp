@@ -41,12 +41,20 @@ OptionSpec OptionSpec::Choice(std::string table, std::string key, std::vector<st
   return spec;
 }
 
+OptionSpec OptionSpec::Series(std::string table, std::string key, std::string column) {
+  OptionSpec spec = Number(std::move(table), std::move(key), 0.0, 0.0, 0.0);
+  spec.kind = Kind::kSeries;
+  spec.column = std::move(column);
+  return spec;
+}
+
 Options::Options(const std::vector<OptionSpec>& specs) {
   for (const OptionSpec& spec : specs) {
     switch (spec.kind) {
       case OptionSpec::Kind::kNumber: values_[spec.key] = spec.number; break;
       case OptionSpec::Kind::kList: values_[spec.key] = spec.list; break;
       case OptionSpec::Kind::kChoice: values_[spec.key] = spec.choices.front(); break;
+      case OptionSpec::Kind::kSeries: values_[spec.key] = std::shared_ptr<const Series>(); break;
     }
   }
 }
@@ -63,5 +71,8 @@ const std::vector<double>& Options::List(const std::string& key) const {
   return Get<std::vector<double>>(values_, key);
 }
 const std::string& Options::Choice(const std::string& key) const { return Get<std::string>(values_, key); }
+const std::shared_ptr<const Series>& Options::Recorded(const std::string& key) const {
+  return Get<std::shared_ptr<const Series>>(values_, key);
+}
 
 }  // namespace armcmc::plant_sim

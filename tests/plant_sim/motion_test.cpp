@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <memory>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -173,6 +175,35 @@ TEST(Motion, RichIsAnotherMotionForEverySeedAndTheSameForOne) {
     EXPECT_GT(Deepest(b), 0.6) << seed;
     EXPECT_LT(Deepest(b), 1.3) << seed;
   }
+}
+
+/// A recorded ramp of a unit a second, `seconds` long.
+Options RecordedRamp(double seconds, double start_s) {
+  const auto ramp = std::make_shared<Series>();
+  ramp->interval_s = 0.01;
+  for (int i = 0; i <= std::lround(seconds / ramp->interval_s); ++i) ramp->values.push_back(i * ramp->interval_s);
+  Options options = MotionSettings("recorded");
+  options.Set("recording", std::shared_ptr<const Series>(ramp));
+  options.Set("recording_start_s", start_s);
+  return options;
+}
+
+TEST(Motion, ARecordingIsFollowedFromWhereItIsToBeginAndRunsBackFromItsEnd) {
+  const double lead = 2.0 * 0.18634 / 14.0, rounded = 0.05;  // s; the end of a ramp is smoothed
+  const std::vector<Motion::State> states = Follow(RecordedRamp(4.0, 1.0), 1);
+  for (int i = 0; i <= kSamples; i += 7) {
+    const double way = std::fmod(1.0 + lead + kDt * i, 8.0), x = way <= 4.0 ? way : 8.0 - way;
+    if (std::abs(way - 4.0) < rounded || way < rounded || way > 8.0 - rounded) continue;
+    ASSERT_NEAR(states[static_cast<std::size_t>(i)].x, x, 1e-9) << i;
+    ASSERT_NEAR(states[static_cast<std::size_t>(i)].v, way <= 4.0 ? 1.0 : -1.0, 1e-9) << i;
+  }
+}
+
+TEST(Motion, ARecordingAndItsProgramNeedEachOther) {
+  EXPECT_THROW(Motion(MotionSettings("recorded"), 1), std::invalid_argument);
+  Options options = RecordedRamp(4.0, 0.0);
+  options.Set("program", std::string("rich"));
+  EXPECT_THROW(Motion(options, 1), std::invalid_argument);
 }
 
 TEST(Motion, ThePlantFollowsItExactly) {

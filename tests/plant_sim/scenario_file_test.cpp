@@ -185,5 +185,48 @@ TEST(ScenarioFile, RejectsChangesThatContradictEachOther) {
   EXPECT_THAT(Problem("to_value = 2.0", "", "hunt_crossley_step"), HasSubstr("to_value is missing"));
 }
 
+/// The rich contact with a recorded motion and recorded noise, whose files hold these rows.
+Scenario LoadRecorded(const std::string& motion_rows, const std::string& noise_rows, const std::string& more = "") {
+  const test::ScratchDir folder;
+  std::ofstream(folder / "motion.csv") << "t,x\n" << motion_rows;
+  std::ofstream(folder / "noise.csv") << "t,e\n" << noise_rows;
+  std::ofstream(folder / "scenario.toml")
+      << "schema = 1\nplant = \"hunt_crossley\"\nduration_s = 1.0\n[parameters]\nK = 4.0\nB = 1.0\np = 1.5\n"
+         "[motion]\ntracking = \"prescribed\"\nprogram = \"recorded\"\nrecording = \"motion.csv\"\n"
+         "[noise.f]\nkind = \"recorded\"\nrecording = \"noise.csv\"\nstd = 0.2\n"
+      << more;
+  return LoadScenario(folder / "scenario.toml");
+}
+
+const std::string kRamp = "0.0,0.1\n0.5,0.6\n1.0,1.1\n", kSteps = "0.0,7.0\n0.5,3.0\n1.0,7.0\n1.5,3.0\n";
+
+TEST(ScenarioFile, ReadsRecordedMotionAndNoiseBesideIt) {
+  const Scenario scenario = LoadRecorded(kRamp, kSteps);
+  EXPECT_EQ(scenario.options.Recorded("recording")->interval_s, 0.5);
+  EXPECT_THAT(scenario.options.Recorded("recording")->values, testing::ElementsAre(0.1, 0.6, 1.1));
+  // Zero mean and unit variance: the level is that of the scenario.
+  EXPECT_THAT(scenario.noise.back().recording->values, testing::ElementsAre(1.0, -1.0, 1.0, -1.0));
+  EXPECT_EQ(NoiseSd(scenario.noise.back()), 0.2);
+  Simulation simulation(scenario, 1);
+  ASSERT_TRUE(simulation.Next());
+  EXPECT_NEAR(simulation.truth().inputs[0], 0.1, 0.05);
+}
+
+TEST(ScenarioFile, RefusesARecordingThatIsNoneOrNotEven) {
+  const auto problem = [](const std::string& motion, const std::string& noise, const std::string& more = "") {
+    try {
+      static_cast<void>(LoadRecorded(motion, noise, more));
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(problem("0.0,0.1\n0.5,0.6\n1.5,1.1\n", kSteps), HasSubstr("not even"));
+  EXPECT_THAT(problem("0.0,0.1\n", kSteps), HasSubstr("fewer than two"));
+  EXPECT_THAT(problem("0.0,hello\n0.5,0.6\n", kSteps), HasSubstr("motion.csv:2"));
+  EXPECT_THAT(problem(kRamp, "0.0,2.0\n0.5,2.0\n"), HasSubstr("no noise"));
+  EXPECT_THAT(problem(kRamp, kSteps, "correlation = 0.5\n"), HasSubstr("has a colour"));
+}
+
 }  // namespace
 }  // namespace armcmc::plant_sim

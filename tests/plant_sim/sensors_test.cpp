@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <set>
 #include <vector>
 
 namespace armcmc::plant_sim {
@@ -85,6 +87,30 @@ TEST(Sensors, ChannelsAreIndependent) {
     product += measured.inputs[0] * measured.output;
   }
   EXPECT_LT(std::abs(product) / kSamples, 4.0 * std::sqrt(5.0 / 3.0 / kSamples));  // (1 + r^2) / (1 - r^2) = 5/3
+}
+
+TEST(Sensors, RecordedNoiseIsPlayedForthAndBackFromAPlaceThatTheSeedDraws) {
+  const auto series = std::make_shared<Series>();
+  for (int i = 0; i < 1000; ++i) series->values.push_back(i);
+  NoiseLaw law{NoiseKind::kRecorded, 0.5};
+  law.recording = series;
+  std::set<double> starts;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const std::vector<double> errors = Errors(law, 3.0, seed);
+    starts.insert(errors.front());
+    int turns = 0;
+    double step = errors[1] - errors[0];
+    for (std::size_t i = 1; i < 4000; ++i) {
+      const double end = step > 0.0 ? 499.5 : 0.0;
+      const bool turn = std::abs(errors[i - 1] - end) < 1e-9;
+      ASSERT_NEAR(errors[i] - errors[i - 1], turn ? 0.0 : step, 1e-9) << i;
+      if (!turn) continue;
+      step = -step;
+      ++turns;
+    }
+    EXPECT_GE(turns, 3);
+  }
+  EXPECT_EQ(starts.size(), 5U);
 }
 
 }  // namespace

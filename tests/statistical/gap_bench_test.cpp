@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "armcmc/gap_bench/report.hpp"
@@ -129,6 +132,38 @@ TEST(GapBench, EffectsOfTheActuatorAreNamedInTheirEquation) {
   EXPECT_GE(actuator.Covered(), actuator.counted() - 1) << actuator.Others();
   for (const Outcome& outcome : actuator.outcomes())
     EXPECT_TRUE(outcome.equation_right.value_or(false)) << Line(outcome) << ", " << outcome.answer.result.equation;
+}
+
+TEST(GapBench, AHalfOfARecordingIsAllThatTheToolIsGiven) {
+  const test::ScratchDir folder;
+  const PlantProcess plant(test::Program("armcmc-plant"), folder.path());
+  Case what;
+  what.scenario = "contact_rich";
+  what.effect = "inertia:rigid";
+  for (const auto& [part, rows] : std::vector<std::pair<Part, long long>>{
+           {Part::kWhole, 10'001}, {Part::kFirstHalf, 5'000}, {Part::kSecondHalf, 5'001}}) {
+    what.part = part;
+    const Outcome outcome = RunCase(plant, what, false);
+    EXPECT_EQ(outcome.answer.result.rows, rows) << outcome.answer.error;
+    EXPECT_EQ(outcome.grade, Grade::kRight) << Line(outcome);
+  }
+}
+
+TEST(GapBench, EffectsAreNamedAlongRealMotions) {
+  const std::string recording = "measured/emps_estimation.csv";
+  const std::optional<std::filesystem::path> file = test::FindData(recording);
+  if (!file) GTEST_SKIP() << test::DataSkipReason(recording);
+  const test::ScratchDir folder;
+  const PlantProcess plant(test::Program("armcmc-plant"), folder.path());
+  std::vector<Case> cases = CasesOf(kRecorded, 1, kSeed, folder.path(), file->parent_path());
+  std::erase_if(cases, [](const Case& one) {
+    const bool few = one.effect == "none" || one.effect == "coulomb_friction:tanh" || one.effect == "inertia:rigid";
+    return !few || one.part != Part::kWhole || one.group == kRealNoise;
+  });
+  const std::vector<Outcome> outcomes = RunCases(plant, cases, 1, false, nullptr);
+  ASSERT_EQ(outcomes.size(), 12U);
+  for (const Outcome& outcome : outcomes)
+    EXPECT_TRUE(!Counts(outcome) || outcome.grade == Grade::kRight || outcome.grade == Grade::kTie) << Line(outcome);
 }
 
 TEST(GapBench, OnsetsAreFound) {

@@ -92,6 +92,16 @@ TEST_F(Csv, SkipBadCountsByCauseAndSaysSo) {
   EXPECT_THAT(s.notes[0], HasSubstr("skipped 5 bad rows: 3 malformed, 1 not finite, 1 with a time"));
 }
 
+TEST_F(Csv, WhatComesAfterTheTimeThatIsAskedForIsNotLookedAt) {
+  std::ofstream(dir_ / "runs.csv") << "t,x\n0,1\n1,2\n2,3\n0,4\nnot a number\n";
+  CsvRequest request;
+  request.columns = {"t", "x"};
+  request.until = 1.0;
+  EXPECT_THAT(ReadCsv(dir_ / "runs.csv", request).columns[1], ElementsAre(1, 2));
+  request.until = 2.0;
+  EXPECT_THROW((void)ReadCsv(dir_ / "runs.csv", request), InputError);
+}
+
 TEST_F(Csv, SkipBadGivesUpWhenMostRowsAreBad) {
   EXPECT_THAT(ErrorOf("t,x,v\n1,1,1\n0,1,1\n0,1,1\n", true), HasSubstr("2 rows are bad and only 1 good"));
 }

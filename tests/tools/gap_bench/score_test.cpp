@@ -77,6 +77,29 @@ TEST(GradeOf, WhatTheCatalogueLacksHasNoRightName) {
   EXPECT_EQ(GradeOf(ablated, truth, Said({{"inertia"}})), Grade::kWrong);
 }
 
+TEST(GradeOf, WhatARealRecordingHoldsByItselfIsNotJudgedBesideWhatIsHidden) {
+  Case real;
+  real.own = {"periodic_disturbance"};
+  const Truth truth = Hidden({"inertia"});
+  EXPECT_EQ(GradeOf(real, truth, Said({{"inertia", "periodic_disturbance"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf(real, truth, Said({{"inertia", "periodic_disturbance"}, {"inertia"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf(real, truth, Said({{"adhesion", "periodic_disturbance"}, {"inertia"}})), Grade::kTie);
+  EXPECT_EQ(GradeOf(real, truth, Said({{"adhesion", "periodic_disturbance"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf(real, truth, Said({{"periodic_disturbance"}})), Grade::kNone);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"inertia", "periodic_disturbance"}})), Grade::kWrong);
+  const Truth wave = Hidden({"periodic_disturbance"});
+  EXPECT_EQ(GradeOf(real, wave, Said({{"periodic_disturbance"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf(real, wave, Said({{"adhesion"}})), Grade::kWrong);
+  const Truth nothing;
+  EXPECT_EQ(GradeOf(real, nothing, Said({{"periodic_disturbance"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf(real, nothing, Said({{"adhesion", "periodic_disturbance"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf(real, nothing, Said(gap::Verdict::kUnnamed)), Grade::kUnnamed);
+  EXPECT_TRUE(LabelRight(real, truth, "inertia + periodic_disturbance"));
+  EXPECT_FALSE(LabelRight({}, truth, "inertia + periodic_disturbance"));
+  EXPECT_TRUE(LabelRight(real, nothing, "periodic_disturbance"));
+  EXPECT_FALSE(LabelRight({}, nothing, "periodic_disturbance"));
+}
+
 TEST(GradeOf, EffectsOfTheActuatorHaveFamiliesOfTheirOwnCatalogue) {
   const Truth truth = Hidden({"joint_friction"}, "variant");
   EXPECT_EQ(GradeOf({}, truth, Said({{"joint_friction"}})), Grade::kRight);

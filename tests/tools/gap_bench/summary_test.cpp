@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "armcmc/gap_bench/report.hpp"
+#include "armcmc/gap_bench/strata.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -80,6 +81,40 @@ TEST(Gates, OfTheActuatorAreByWhatIsHidden) {
   EXPECT_EQ(value("wrong"), 0.0);
   EXPECT_EQ(value("right equation"), 0.5);
   EXPECT_EQ(value("outside the catalogue: false name"), 1.0);
+}
+
+/// A half of a recording of a real motion, named so.
+Outcome Half(Part part, const std::string& scenario, const std::string& name) {
+  Outcome outcome = Made(kRecorded, Grade::kRight, 0.9, true);
+  outcome.what.part = part;
+  outcome.what.scenario = scenario;
+  outcome.what.effect = "inertia:rigid";
+  if (name.empty()) return outcome;
+  outcome.answer.result.verdict = gap::Verdict::kNamed;
+  outcome.answer.result.effects.resize(1);
+  outcome.answer.result.effects.front().name = name;
+  return outcome;
+}
+
+TEST(Gates, HalvesOfARecordingContradictEachOtherByTheirNamesOnly) {
+  const std::vector<Gate> gates =
+      Gates({Half(Part::kFirstHalf, "a", "inertia"), Half(Part::kSecondHalf, "a", "adhesion"),
+             Half(Part::kFirstHalf, "b", "inertia"), Half(Part::kSecondHalf, "b", "inertia"),
+             Half(Part::kFirstHalf, "c", "inertia"), Half(Part::kSecondHalf, "c", ""),
+             Half(Part::kFirstHalf, "d", "inertia"), Half(Part::kWhole, "d", "adhesion")});
+  const Gate* gate = Find(gates, kRecorded, "halves contradict each other");
+  ASSERT_NE(gate, nullptr);
+  EXPECT_EQ(gate->n, 3);
+  EXPECT_NEAR(gate->value, 1.0 / 3.0, 1e-12);
+}
+
+TEST(Gates, OfRealRecordingsTellRealNoiseFromThePlants) {
+  Outcome plain = Made(kRecorded, Grade::kRight, 0.9, true), real = Made(kRecorded, Grade::kWrong, 0.9, false);
+  for (Outcome* one : {&plain, &real}) one->what.effect = "inertia:rigid";
+  real.what.group = kRealNoise;
+  const std::vector<Gate> gates = Gates({plain, real});
+  EXPECT_EQ(Find(gates, kRecorded, "real motion: wrong")->value, 0.0);
+  EXPECT_EQ(Find(gates, kRecorded, "real motion and noise: wrong")->value, 1.0);
 }
 
 Outcome Begun(Grade grade, std::optional<double> error_s, std::optional<double> off_s) {

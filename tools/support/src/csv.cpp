@@ -90,7 +90,7 @@ class Reader {
     ReadHeader();
     result_.columns.resize(request_.columns.size());
     std::string line;
-    while (lines_.Next(&line)) {
+    while (!ended_ && lines_.Next(&line)) {
       if (IsBlankOrComment(line)) continue;
       ReadRow(line);
     }
@@ -163,6 +163,8 @@ class Reader {
       row_.push_back(*value);
     }
     std::vector<double>& t = result_.columns.front();
+    ended_ = row_.front() > request_.until;
+    if (ended_) return;
     if (!t.empty() && row_.front() <= t.back())
       return Reject(&BadRows::not_increasing, request_.columns.front() + " = " + ExactNumber(row_.front()) +
                                                   ": expected more than " + ExactNumber(t.back()) +
@@ -207,6 +209,7 @@ class Reader {
   std::vector<std::string_view> fields_;
   std::vector<double> row_;
   CsvSamples result_;
+  bool ended_ = false;  ///< A row was beyond the time that is asked for.
 };
 
 }  // namespace

@@ -43,9 +43,10 @@ class Motion {
   long long first_ = 0;                   ///< Index of knots_[0], counted from two knots before t = 0.
 };
 
-/// program, depth, pace and band_hz of the table [motion].
+/// program, depth, pace, band_hz, recording and recording_start_s of the table [motion].
 [[nodiscard]] std::vector<OptionSpec> MotionOptions();
 /// The path that the program of the options names.
+/// @throws std::invalid_argument when the program is "recorded" without a recording, or another one with it.
 [[nodiscard]] std::unique_ptr<Path> MakePath(const Options& options, std::uint64_t seed);
 
 }  // namespace armcmc::plant_sim

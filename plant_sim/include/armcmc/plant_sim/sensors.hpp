@@ -23,7 +23,8 @@ class Sensors {
 
   std::vector<NoiseLaw> laws_;
   std::vector<Rng> streams_;
-  std::vector<double> coloured_;  ///< e of the last sample.
+  std::vector<double> coloured_;    ///< e of the last sample.
+  std::vector<std::size_t> place_;  ///< In a recorded noise, of the next sample, on the way there and back.
   bool started_ = false;
 };
 

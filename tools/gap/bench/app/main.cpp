@@ -25,14 +25,16 @@ struct Arguments {
   std::vector<std::string> strata;
   int logs_per_cell = 1, jobs = 1;
   std::uint64_t seed = 1;
-  std::string out, plant;
+  std::string out, plant, recordings;
   bool keep = false;
 };
 
 void Declare(CLI::App* app, Arguments* a) {
   std::string known;
   for (const std::string& name : StratumNames()) known += name + ", ";
-  app->add_option("--strata", a->strata, "Comma separated, of: " + known + kTies + " (default: all)")->delimiter(',');
+  app->add_option("--strata", a->strata,
+                  "Comma separated, of: " + known + kTies + " (default: all; recorded needs --recordings)")
+      ->delimiter(',');
   app->add_option("--logs-per-cell", a->logs_per_cell, "Recordings of each effect, strength and motion")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -41,6 +43,7 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--jobs", a->jobs, "Recordings at once")->check(CLI::Range(1, 256))->capture_default_str();
   app->add_option("--out", a->out, "Folder for bench.json, report.html and the scenarios that were made")->required();
   app->add_option("--plant", a->plant, "armcmc-plant (default: the one beside this program)");
+  app->add_option("--recordings", a->recordings, "Folder of real recordings, for the stratum recorded");
   app->add_flag("--keep", a->keep, "Keep recordings and sealed files");
   app->footer(
       "Measures the gap workflow blindly: armcmc-plant, a process of its own, hides an effect in a recording and "
@@ -69,6 +72,7 @@ int Run(Arguments a) {
   constexpr int kGateFailed = 3;
   if (a.strata.empty()) {
     a.strata = StratumNames();
+    if (a.recordings.empty()) std::erase(a.strata, kRecorded);
     a.strata.emplace_back(kTies);
   }
   if (a.plant.empty()) a.plant = support::ProgramBeside("armcmc-plant");
@@ -77,7 +81,7 @@ int Run(Arguments a) {
   std::vector<Case> cases;
   for (const std::string& stratum : a.strata) {
     if (stratum == kTies) continue;
-    std::vector<Case> more = CasesOf(stratum, a.logs_per_cell, a.seed, plant.folder());
+    std::vector<Case> more = CasesOf(stratum, a.logs_per_cell, a.seed, plant.folder(), a.recordings);
     cases.insert(cases.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   std::vector<Outcome> outcomes = RunAll(plant, cases, a);

@@ -12,10 +12,20 @@ std::string Case::Name() const {
   std::snprintf(strength_text, sizeof(strength_text), "%g", strength);
   std::string name = stratum + "_" + std::filesystem::path(scenario).stem().string() + "_" +
                      (effect.empty() ? "own" : effect) + "_" + strength_text + "_" + gate + "_" + std::to_string(seed);
+  if (part != Part::kWhole) name += std::string("_") + PartName(part);
   std::replace_if(
       name.begin(), name.end(),
       [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '.' && c != '-'; }, '-');
   return name;
+}
+
+const char* PartName(Part part) {
+  switch (part) {
+    case Part::kWhole: return "whole";
+    case Part::kFirstHalf: return "first half";
+    case Part::kSecondHalf: return "second half";
+  }
+  return "";
 }
 
 const char* GradeName(Grade grade) {

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "armcmc/gap_bench/score.hpp"
+#include "armcmc/gap_bench/strata.hpp"
 #include "armcmc/gap_bench/summary.hpp"
 
 namespace armcmc::gap_bench {
@@ -38,7 +39,7 @@ class Gatherer {
   explicit Gatherer(const std::vector<Outcome>& outcomes) : outcomes_(outcomes) {}
 
   /// Share of the cases of `which` for which `what` holds.
-  void Share(const char* stratum, const char* metric, const Test& which, const Test& what, double limit,
+  void Share(const char* stratum, const std::string& metric, const Test& which, const Test& what, double limit,
              bool at_least) {
     int n = 0, count = 0;
     for (const Outcome& o : outcomes_) {
@@ -56,7 +57,7 @@ class Gatherer {
     if (!values.empty())
       Add(stratum, metric, gap_bench::Quantile(values, share), limit, at_least, static_cast<int>(values.size()));
   }
-  void Add(const char* stratum, const char* metric, double value, double limit, bool at_least, int n) {
+  void Add(const char* stratum, const std::string& metric, double value, double limit, bool at_least, int n) {
     gates_.push_back({stratum, metric, value, limit, at_least, n});
   }
   [[nodiscard]] std::vector<Gate> Take() { return std::move(gates_); }
@@ -117,6 +118,41 @@ void AddMotions(Gatherer* g) {
   g->Share("paper", "wrong", paper, Wrong, 0.0, false);
 }
 
+/// Whether the halves of a recording are given names that cannot both be right.
+bool Contradict(const Outcome& first, const Outcome& second) {
+  const auto a = SetsOf(first.answer.result), b = SetsOf(second.answer.result);
+  return !a.empty() && !b.empty() && std::none_of(a.begin(), a.end(), [&](const auto& set) {
+    return std::find(b.begin(), b.end(), set) != b.end();
+  });
+}
+
+/// Real motion and real noise.
+void AddRecordings(const std::vector<Outcome>& outcomes, Gatherer* g) {
+  const Test all = In({kRecorded});
+  for (const bool real_noise : {false, true}) {
+    const Test some = [=](const Outcome& o) { return all(o) && (o.what.group == kRealNoise) == real_noise; };
+    const Test null = [=](const Outcome& o) { return some(o) && o.what.effect == "none"; };
+    const Test hidden = [=](const Outcome& o) { return some(o) && !null(o); };
+    const std::string kind = real_noise ? std::string(kRealNoise) + ": " : "real motion: ";
+    g->Share(kRecorded, kind + "named, where nothing is hidden", null, Wrong, 0.03, false);
+    g->Share(kRecorded, kind + "truth in the set", hidden, Covers, 0.95, true);
+    g->Share(kRecorded, kind + "wrong", hidden, Wrong, 0.03, false);
+  }
+  int halved = 0, contradicted = 0;
+  for (const Outcome& first : outcomes) {
+    if (!all(first) || first.what.part != Part::kFirstHalf) continue;
+    const auto second = std::find_if(outcomes.begin(), outcomes.end(), [&](const Outcome& o) {
+      return o.what.part == Part::kSecondHalf && o.what.scenario == first.what.scenario &&
+             o.what.effect == first.what.effect;
+    });
+    if (second == outcomes.end() || !Counts(first) || !Counts(*second)) continue;
+    ++halved;
+    contradicted += Contradict(first, *second) ? 1 : 0;
+  }
+  if (halved > 0)
+    g->Add("recorded", "halves contradict each other", static_cast<double>(contradicted) / halved, 0.03, false, halved);
+}
+
 void AddProof(Gatherer* g) {
   const auto gap = [](double (*value)(const gap::GapSummary&)) {
     return [value](const Outcome& o) { return value(o.answer.result.gap); };
@@ -172,6 +208,7 @@ std::vector<Gate> Gates(const std::vector<Outcome>& outcomes) {
   AddNames(&g);
   AddMotions(&g);
   AddActuator(&g);
+  AddRecordings(outcomes, &g);
   AddOnsets(LocateOnsets(outcomes), &g);
   AddProof(&g);
   AddBias(outcomes, &g);

@@ -26,6 +26,7 @@ json CaseJson(const Outcome& o) {
   json out = {{"stratum", o.what.stratum},   {"group", o.what.group}, {"seed", o.what.seed},
               {"strength", o.what.strength}, {"plant", plant},        {"tool", tool},
               {"grade", GradeName(o.grade)}, {"truth", effects}};
+  if (o.what.part != Part::kWhole) out["part"] = PartName(o.what.part);
   if (!o.answer.error.empty()) out["error"] = o.answer.error;
   if (o.grade == Grade::kNotMade || o.grade == Grade::kFailed) return out;
   for (const auto& [name, value] : o.truth.base_parameters) out["base_parameters"][name] = value;

@@ -41,9 +41,10 @@ std::string NoiseTables(const Json& noise) {
   for (const auto& [channel, law] : noise.items()) {
     if (law.at("kind") == "none") continue;
     text += "\n[noise." + channel + "]\nkind = " + law.at("kind").dump() + "\nstd = " + Number(law.at("std")) +
-            "\ncorrelation = " + Number(law.at("correlation")) + "\ngrowth = " + Number(law.at("growth")) + "\n";
-    for (const char* key : {"dof", "outlier_weight", "outlier_scale"})
-      if (law.contains(key)) text += std::string(key) + " = " + Number(law.at(key)) + "\n";
+            "\ngrowth = " + Number(law.at("growth")) + "\n";
+    if (law.at("kind") != "recorded") text += "correlation = " + Number(law.at("correlation")) + "\n";
+    for (const char* key : {"dof", "outlier_weight", "outlier_scale", "recording"})
+      if (law.contains(key)) text += std::string(key) + " = " + law.at(key).dump() + "\n";
   }
   return text;
 }

@@ -36,6 +36,14 @@ std::string Contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// The rows of a recording that are part of it.
+std::pair<Eigen::Index, Eigen::Index> RowsOf(Part part, Eigen::Index rows) {
+  const Eigen::Index half = rows / 2;
+  if (part == Part::kFirstHalf) return {0, half};
+  if (part == Part::kSecondHalf) return {half, rows - half};
+  return {0, rows};
+}
+
 /// All that the tool is given: the model, a recording, after a tie the one before it, and which effects its catalogue
 /// lacks.
 Answer Ask(const std::filesystem::path& recording, const std::filesystem::path& earlier, const Case& what) {
@@ -45,6 +53,8 @@ Answer Ask(const std::filesystem::path& recording, const std::filesystem::path& 
     gap::WorkflowRequest request;
     request.model = what.model;
     request.data = gap::ReadRecording(recording, gap::ColumnsOf(what.model), false);
+    const auto [first, count] = RowsOf(what.part, request.data.t.size());
+    request.data = request.data.Slice(first, count);
     if (!earlier.empty()) request.earlier = gap::ReadRecording(earlier, gap::ColumnsOf(what.model), false);
     request.diagnose.without = what.without;
     answer.result = gap::RunWorkflow(request).result;
@@ -90,8 +100,10 @@ double StrengthBeside(const PlantProcess& plant, const Case& what, const Truth& 
   double strength = 0.0;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const std::vector<double>& added = outputs[k];
-    const auto rows = static_cast<std::ptrdiff_t>(kDiagnosed * static_cast<double>(added.size()));
-    const double squares = std::inner_product(added.begin(), added.begin() + rows, added.begin(), 0.0);
+    const auto [first, count] = RowsOf(what.part, static_cast<Eigen::Index>(added.size()));
+    const auto rows = static_cast<std::ptrdiff_t>(kDiagnosed * static_cast<double>(count));
+    const auto begin = added.begin() + first;
+    const double squares = std::inner_product(begin, begin + rows, begin, 0.0);
     const double rms = std::sqrt(squares / static_cast<double>(std::max<std::ptrdiff_t>(rows, 1)));
     strength = std::max(strength, rms / truth.noise_sd[k]);
   }

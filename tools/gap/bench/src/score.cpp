@@ -33,6 +33,25 @@ std::string Joined(const Names& names) {
 /// "force_bias from 4.25 s", "adhesion (pull_off)" -> the name.
 std::string NameIn(const std::string& text) { return text.substr(0, text.find(' ')); }
 
+/// What is said of the hidden effects: what the recording holds by itself is left out.
+Names Judged(const Case& what, const Truth& truth, Names said) {
+  const Names names = NamesOf(truth);
+  const auto holds = [](const Names& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  std::erase_if(said, [&](const std::string& name) { return holds(what.own, name) && !holds(names, name); });
+  return said;
+}
+
+/// The answers of which at least one effect is judged.
+std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result) {
+  std::vector<Names> sets = SetsOf(result);
+  for (Names& set : sets) set = Judged(what, truth, std::move(set));
+  std::sort(sets.begin(), sets.end());
+  sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+  return sets;
+}
+
 /// Whether the tool could have given the right name.
 bool Nameable(const Case& what, const Truth& truth) {
   return std::all_of(truth.effects.begin(), truth.effects.end(), [&](const TrueEffect& effect) {
@@ -78,8 +97,9 @@ Names FamiliesOf(const Names& names) {
 }
 
 Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result) {
-  const std::vector<Names> sets = SetsOf(result);
-  const bool none = result.verdict == gap::Verdict::kNone;
+  const std::vector<Names> sets = JudgedSets(what, truth, result);
+  const bool only_own = sets.size() == 1 && sets.front().empty();
+  const bool none = result.verdict == gap::Verdict::kNone || only_own;
   if (truth.effects.empty()) return none ? Grade::kRight : sets.empty() ? Grade::kUnnamed : Grade::kWrong;
   if (none) return Grade::kNone;
   const bool nameable = Nameable(what, truth);
@@ -120,20 +140,22 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
 }
 
 bool LabelRight(const Case& what, const Truth& truth, const std::string& label) {
-  if (truth.effects.empty()) return label == "none";
+  if (truth.effects.empty())
+    return label == "none" || std::find(what.own.begin(), what.own.end(), label) != what.own.end();
   if (label == "none") return false;
   if (label == "unnamed") return !Nameable(what, truth);
   const Names names = NamesOf(truth);
-  if (Nameable(what, truth) && label == Joined(names)) return true;
-  const bool own_formula = std::all_of(truth.effects.begin(), truth.effects.end(),
-                                       [](const TrueEffect& effect) { return effect.kind == "catalogue"; });
-  if (Nameable(what, truth) && own_formula) return false;
   Names said;
   for (std::size_t at = 0; at <= label.size();) {
     const std::size_t end = std::min(label.find(" + ", at), label.size());
     said.push_back(label.substr(at, end - at));
     at = end + 3;
   }
+  said = Judged(what, truth, std::move(said));
+  if (Nameable(what, truth) && said == names) return true;
+  const bool own_formula = std::all_of(truth.effects.begin(), truth.effects.end(),
+                                       [](const TrueEffect& effect) { return effect.kind == "catalogue"; });
+  if (Nameable(what, truth) && own_formula) return false;
   return FamiliesOf(said) == FamiliesOf(names);
 }
 

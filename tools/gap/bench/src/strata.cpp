@@ -1,15 +1,13 @@
 #include "armcmc/gap_bench/strata.hpp"
 
 #include <algorithm>
-#include <armcmc/support/shared_files.hpp>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <stdexcept>
 
 #include "armcmc/gap_bench/scenario_text.hpp"
+#include "case_builder.hpp"
+#include "recorded.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -63,78 +61,9 @@ const std::vector<NoiseVariant> kNoises = {
     {"student", "kind = \"student_t\"\nstd_share = 0.01\ndof = 4.0\n"},
     {"growing", "kind = \"gaussian\"\nstd_share = 0.01\ngrowth = 1.0\n"}};
 
-/// FNV-1a: the same on every machine.
-std::uint64_t Hash(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
-}
+std::string GroupOf(double strength) { return "R " + Short(strength); }
 
-std::string Text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%g", value);
-  return text;
-}
-
-std::string GroupOf(double strength) { return "R " + Text(strength); }
-
-/// Writes the scenarios and gives every case the random numbers of its cell.
-class Builder {
- public:
-  Builder(std::string stratum, int logs, std::uint64_t seed, std::filesystem::path folder)
-      : stratum_(std::move(stratum)), logs_(logs), seed_(seed), folder_(std::move(folder)) {}
-
-  /// Adds the logs of a cell; `finish` may change a case, with random numbers of its own.
-  template <typename Finish>
-  void Cell(const Case& like, const std::string& cell, const Finish& finish) {
-    for (int k = 0; k < logs_; ++k) {
-      std::mt19937_64 random(
-          Hash(std::to_string(seed_) + "/" + stratum_ + "/" + like.group + "/" + cell + "/" + std::to_string(k)));
-      Case one = like;
-      one.stratum = stratum_;
-      one.seed = 1 + random() % 999'999'999;
-      finish(&one, &random);
-      cases_.push_back(std::move(one));
-    }
-  }
-  void Cell(const Case& like, const std::string& cell) {
-    Cell(like, cell, [](Case*, std::mt19937_64*) {});
-  }
-
-  /// Writes a scenario. @return its path from the folder of the run.
-  [[nodiscard]] std::string Write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories(folder_ / "scenarios");
-    const std::filesystem::path file = std::filesystem::path("scenarios") / (name + ".toml");
-    std::ofstream out(folder_ / file, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw std::runtime_error((folder_ / file).string() + ": cannot be written");
-    return file.string();
-  }
-  [[nodiscard]] std::vector<Case> Take() { return std::move(cases_); }
-
- private:
-  std::string stratum_;
-  int logs_;
-  std::uint64_t seed_;
-  std::filesystem::path folder_;
-  std::vector<Case> cases_;
-};
-
-std::string ScenarioOfPlant(const std::string& name) {
-  std::ifstream file(support::FindSharedFile("scenarios", name), std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-Case Like(const std::string& group, const std::string& scenario, const std::string& effect, double strength) {
-  Case like;
-  like.group = group;
-  like.scenario = scenario;
-  like.effect = effect;
-  like.strength = strength;
-  return like;
-}
-
-void Null(Builder* b) {
+void Null(CaseBuilder* b) {
   for (const char* scenario : {"contact_rich", "contact_rich_mm", "contact_sine", "contact_slow_triangle"})
     for (const NoiseVariant& noise : kNoises) {
       const std::string file = b->Write(std::string(scenario) + "_" + noise.name,
@@ -143,7 +72,7 @@ void Null(Builder* b) {
     }
 }
 
-void Each(Builder* b, const Words& effects, const std::vector<double>& strengths) {
+void Each(CaseBuilder* b, const Words& effects, const std::vector<double>& strengths) {
   for (const double strength : strengths)
     for (const std::string& effect : effects) b->Cell(Like(GroupOf(strength), kRich, effect, strength), effect);
 }
@@ -158,10 +87,10 @@ std::pair<std::string, std::string> DrawPair(std::mt19937_64* random) {
 std::string HiddenTable(const std::string& effect, double strength) {
   const std::size_t colon = effect.find(':');
   return "\n[[hidden_effect]]\nname = \"" + effect.substr(0, colon) + "\"\nvariant = \"" + effect.substr(colon + 1) +
-         "\"\nstrength = " + Text(strength) + "\n";
+         "\"\nstrength = " + Short(strength) + "\n";
 }
 
-void Pairs(Builder* b) {
+void Pairs(CaseBuilder* b) {
   for (int cell = 0; cell < kPairCells; ++cell)
     b->Cell(Like("R 1 + 1", kRich, "", 1.0), std::to_string(cell), [](Case* one, std::mt19937_64* random) {
       const auto pair = DrawPair(random);
@@ -177,21 +106,21 @@ void Pairs(Builder* b) {
     });
 }
 
-void Onset(Builder* b) {
+void Onset(CaseBuilder* b) {
   for (const std::string& effect : kCatalogue)
     b->Cell(Like("R 1", kRich, effect, 1.0), effect, [](Case* one, std::mt19937_64* random) {
       // Inside the part of the recording that is diagnosed, with two seconds before and 1.5 s after it.
-      one->gate = "from:" + Text(2.0 + 0.01 * static_cast<double>((*random)() % 350));
+      one->gate = "from:" + Short(2.0 + 0.01 * static_cast<double>((*random)() % 350));
     });
 }
 
-void Modes(Builder* b) {
+void Modes(CaseBuilder* b) {
   for (const char* gate : {"contact", "free"})
     for (const std::string& effect : kActingInOneMode)
       b->Cell(Like(gate, kRich, effect, 1.0), effect, [gate](Case* one, std::mt19937_64*) { one->gate = gate; });
 }
 
-void Ablation(Builder* b) {
+void Ablation(CaseBuilder* b) {
   for (const double strength : {0.3, 1.0, 3.0})
     for (const std::string& effect : kCatalogue) {
       Case like = Like(GroupOf(strength), kRich, effect, strength);
@@ -200,13 +129,13 @@ void Ablation(Builder* b) {
     }
 }
 
-void Poor(Builder* b) {
+void Poor(CaseBuilder* b) {
   for (const char* scenario : {"contact_sine", "contact_slow_triangle"})
     for (const std::string& effect : kCatalogue) b->Cell(Like(scenario, scenario, effect, 1.0), effect);
 }
 
 /// The soft actuator, excited: nothing hidden, one effect of either equation, and what its catalogue lacks.
-void Actuator(Builder* b) {
+void Actuator(CaseBuilder* b) {
   const auto like = [](const std::string& group, const std::string& effect, double strength) {
     Case one = Like(group, kExcited, effect, strength);
     one.model = kExcited;
@@ -220,34 +149,34 @@ void Actuator(Builder* b) {
       b->Cell(like("outside, " + GroupOf(strength), effect, strength), effect);
 }
 
-void OneScenario(Builder* b, const char* scenario) {
+void OneScenario(CaseBuilder* b, const char* scenario) {
   for (const std::string& effect : kCatalogue) b->Cell(Like("R 1", scenario, effect, 1.0), effect);
 }
 
-using Fill = void (*)(Builder*);
+using Fill = void (*)(CaseBuilder*);
 const std::vector<std::pair<std::string, Fill>>& Strata() {
   static const std::vector<std::pair<std::string, Fill>> strata = {
       {"null", Null},
       {"singles",
-       [](Builder* b) {
+       [](CaseBuilder* b) {
          Each(b, kCatalogue, {0.1, 0.3, 1.0, 3.0});
        }},
-      {"scale", [](Builder* b) { OneScenario(b, "contact_rich_mm"); }},
+      {"scale", [](CaseBuilder* b) { OneScenario(b, "contact_rich_mm"); }},
       {"pairs", Pairs},
       {"onset", Onset},
       {"modes", Modes},
       {"outside",
-       [](Builder* b) {
+       [](CaseBuilder* b) {
          Each(b, kOutside, {0.3, 1.0, 3.0});
        }},
       {"ablation", Ablation},
       {"variants",
-       [](Builder* b) {
+       [](CaseBuilder* b) {
          Each(b, kVariants, {0.3, 1.0, 3.0});
        }},
       {"poor", Poor},
       {"actuator", Actuator},
-      {"paper", [](Builder* b) { OneScenario(b, "hunt_crossley_paper"); }}};
+      {"paper", [](CaseBuilder* b) { OneScenario(b, "hunt_crossley_paper"); }}};
   return strata;
 }
 
@@ -257,16 +186,22 @@ const std::vector<std::string>& StratumNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (const auto& stratum : Strata()) all.push_back(stratum.first);
+    all.emplace_back(kRecorded);
     return all;
   }();
   return names;
 }
 
 std::vector<Case> CasesOf(const std::string& stratum, int logs_per_cell, std::uint64_t seed,
-                          const std::filesystem::path& folder) {
+                          const std::filesystem::path& folder, const std::filesystem::path& recordings) {
+  if (stratum == kRecorded) {
+    CaseBuilder builder(stratum, logs_per_cell, seed, folder);
+    AddRecorded(recordings, kCatalogue, &builder);
+    return builder.Take();
+  }
   for (const auto& [name, fill] : Strata())
     if (name == stratum) {
-      Builder builder(stratum, logs_per_cell, seed, folder);
+      CaseBuilder builder(stratum, logs_per_cell, seed, folder);
       fill(&builder);
       return builder.Take();
     }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct CsvRequest {
   std::vector<std::string> columns;    ///< Wanted columns, in the order of the result. The first is the time.
   std::vector<DerivedColumn> derived;  ///< Which of them may be derived.
   bool skip_bad = false;               ///< Count and skip bad rows; otherwise the first one is an error.
+  /// Nothing is looked at from the first row on whose time is beyond it: for files of several runs.
+  double until = std::numeric_limits<double>::infinity();
 };
 
 /// Bad rows by cause. All zero unless skip_bad was asked for.

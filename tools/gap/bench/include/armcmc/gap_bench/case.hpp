@@ -11,6 +11,10 @@
 
 namespace armcmc::gap_bench {
 
+/// What of a recording the tool is given.
+enum class Part { kWhole, kFirstHalf, kSecondHalf };
+[[nodiscard]] const char* PartName(Part part);
+
 /// One recording that is to be made and diagnosed. What it says about the hidden effect goes to the plant alone.
 struct Case {
   std::string stratum;                  ///< "singles"
@@ -21,6 +25,9 @@ struct Case {
   std::string gate;                     ///< --effect-gate; empty: none.
   double strength = 1.0;
   std::uint64_t seed = 1;
+  Part part = Part::kWhole;
+  /// Effects that a real recording is known to hold by itself: naming them beside what is hidden is not judged.
+  std::vector<std::string> own;
   std::vector<std::string> without;  ///< Effects that are taken out of the catalogue of the tool.
   /// The case whose tie this one is to resolve, the tool is given both recordings. Null: none.
   std::shared_ptr<const Case> earlier{};

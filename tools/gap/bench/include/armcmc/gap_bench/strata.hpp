@@ -9,6 +9,11 @@
 
 namespace armcmc::gap_bench {
 
+/// The stratum that real recordings are needed for.
+inline constexpr const char* kRecorded = "recorded";
+/// Its group whose noise is real, too.
+inline constexpr const char* kRealNoise = "real motion and noise";
+
 /// Names of all strata.
 [[nodiscard]] const std::vector<std::string>& StratumNames();
 
@@ -16,8 +21,11 @@ namespace armcmc::gap_bench {
 /// larger runs repeat the cases of smaller ones.
 ///
 /// Scenarios that no file of the plant describes are written to `folder`/scenarios.
-/// @throws std::invalid_argument for a stratum that does not exist.
+/// @param recordings  Folder of the real recordings whose motion and noise the stratum "recorded" takes.
+/// @throws std::invalid_argument for a stratum that does not exist; support::InputError for a recording that cannot be
+/// read.
 [[nodiscard]] std::vector<Case> CasesOf(const std::string& stratum, int logs_per_cell, std::uint64_t seed,
-                                        const std::filesystem::path& folder);
+                                        const std::filesystem::path& folder,
+                                        const std::filesystem::path& recordings = {});
 
 }  // namespace armcmc::gap_bench

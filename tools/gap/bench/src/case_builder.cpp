@@ -1,0 +1,54 @@
+#include "case_builder.hpp"
+
+#include <armcmc/support/shared_files.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace armcmc::gap_bench {
+namespace {
+
+/// FNV-1a: the same on every machine.
+std::uint64_t Hash(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash;
+}
+
+}  // namespace
+
+std::uint64_t CaseBuilder::SeedOf(const Case& like, const std::string& cell, int k) const {
+  return Hash(std::to_string(seed_) + "/" + stratum_ + "/" + like.group + "/" + cell + "/" + std::to_string(k));
+}
+
+std::string CaseBuilder::Write(const std::string& name, const std::string& text) const {
+  std::filesystem::create_directories(folder_ / "scenarios");
+  const std::filesystem::path file = std::filesystem::path("scenarios") / (name + ".toml");
+  std::ofstream out(folder_ / file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw std::runtime_error((folder_ / file).string() + ": cannot be written");
+  return file.string();
+}
+
+std::string ScenarioOfPlant(const std::string& name) {
+  std::ifstream file(support::FindSharedFile("scenarios", name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string Short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", value);
+  return text;
+}
+
+Case Like(const std::string& group, const std::string& scenario, const std::string& effect, double strength) {
+  Case like;
+  like.group = group;
+  like.scenario = scenario;
+  like.effect = effect;
+  like.strength = strength;
+  return like;
+}
+
+}  // namespace armcmc::gap_bench
