@@ -206,6 +206,26 @@ Fitted WithDelay(double samples, const char* effect) {
   return fitter.Add(bench.Base(fitter), {&bench.Form(effect), {}});
 }
 
+TEST(Fitter, AWidthThatOneReversalTellsIsNoReasonToRejectAFriction) {
+  // In and out again at constant speed: the width shows around the one reversal, and nothing else knows it.
+  constexpr int kRamp = 8000, kReversal = 5100;  // in the middle of a block
+  constexpr double kSpeed = 0.1, kRounding = 0.02, kWidth = 0.03, kFriction = 0.15, kSpeedNoise = 0.002;
+  const Vector t = Vector::LinSpaced(kRamp, 0.0, 1e-3 * (kRamp - 1));
+  const Eigen::ArrayXd since = (t.array() - 1e-3 * kReversal) / kRounding;
+  const Vector v = -kSpeed * since.tanh();
+  const Vector x = 0.4 - kSpeed * kRounding * (since.abs() + (1.0 + (-2.0 * since.abs()).exp()).log());
+  const Eigen::ArrayXd inside = x.array().max(0.0);
+  const Vector f = inside.pow(1.7) * (4.0 + 2.3 * v.array()) + kFriction * (v.array() / kWidth).tanh();
+  const Vector seen = v + kSpeedNoise * test::Noise(kRamp, 9);
+  const Bench bench(test::MakeRecording(t, x, seen, f + kNoise * test::Noise(kRamp, 7)));
+  const Fitter fitter(*bench.equation, bench.signals, White(kNoise));
+  const Fitted base = bench.Base(fitter);
+  const Fitted dry = fitter.Add(base, {&bench.Form("coulomb_friction"), {}});
+  const Fitted viscous = fitter.Add(base, {&bench.Form("viscous_friction"), {}});
+  EXPECT_GT(dry.score(), base.score() + 100.0);
+  EXPECT_GT(dry.score(), viscous.score());
+}
+
 TEST(Fitter, ALatencyBelowATenthOfASampleIsNone) {
   for (const char* effect : {"sensor_delay", "sensor_lag"}) {
     for (const double samples : {0.02, 0.08}) {

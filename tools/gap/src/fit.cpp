@@ -68,6 +68,22 @@ Vector BoundedStep(const Matrix& gram, const Vector& ascent, double damping, con
   return step;
 }
 
+/// What is known beforehand of the shapes of effects that an amplitude scales; zero of all other coordinates. One
+/// reversal may tell the width of a friction: without its block the fit must not run where the tangent means nothing.
+Vector ShapePrecision(const Fitted& fitted) {
+  Vector precision = Vector::Zero(fitted.theta.size());
+  Eigen::Index end = fitted.theta.size();
+  for (auto term = fitted.hypothesis.terms.rbegin(); term != fitted.hypothesis.terms.rend(); ++term) {
+    const EffectForm& form = *term->form;
+    end -= form.size();
+    for (int i = form.num_amplitudes; form.linear && i < form.size(); ++i) {
+      const double sd = fitted.coordinates[static_cast<std::size_t>(end + i)].prior_sd;
+      precision[end + i] = 1.0 / (sd * sd);
+    }
+  }
+  return precision;
+}
+
 }  // namespace
 
 Matrix OrthonormalBasis(const Matrix& columns) {
@@ -190,7 +206,8 @@ void Fitter::Score(Fitted* fitted) const {
   const std::vector<Eigen::Index> free = FreeOf(fitted->at_bound);
   const Matrix columns = fitted->whitened_jacobian(Eigen::all, free);
   const BlockGrams grams = MakeGrams(columns, fitted->whitened_residual);
-  fitted->heldout = -0.5 / whitener_.s2 * LeaveBlockOut(grams, Vector::Zero(columns.cols()));
+  const Vector ridge = whitener_.s2 * ShapePrecision(*fitted)(free);
+  fitted->heldout = -0.5 / whitener_.s2 * LeaveBlockOut(grams, ridge);
 
   // Laplace: the Hessian of the log posterior at the fit, prior included.
   Matrix hessian = fitted->whitened_jacobian.transpose() * fitted->whitened_jacobian / whitener_.s2;
