@@ -206,5 +206,22 @@ TEST_F(Names, WhatTheRestOfTheRecordingContradictsIsNamedAnew) {
   EXPECT_THAT(result["notes"].dump(), ::testing::HasSubstr("name inertia, which the rest contradicts"));
 }
 
+// Half-way through what is diagnosed the two add up to nothing, so that each of them seems to end there.
+TEST_F(Names, ABiasAndADriftThatCancelAreNamedBoth) {
+  const json result = Diagnose(
+      "336045211", {"--hide-effect", "force_bias:constant,force_drift:linear", "--sealed", dir_ / "truth.json"});
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::UnorderedElementsAre("force_bias", "force_drift")))
+      << result["sentence"];
+  for (const json& effect : result.at("effects")) EXPECT_EQ(effect.at("when"), "always");
+}
+
+// One release is fast enough to pull further than the sensor can say.
+TEST_F(Names, ASensorThatClipsPullsAsWellAsPushesHasASaturation) {
+  const json result = Diagnose("371165477", {"--hide-effect", "sensor_saturation:clip", "--effect-strength", "3",
+                                             "--sealed", dir_ / "truth.json"});
+  EXPECT_THAT(Reported(result), ::testing::Contains(::testing::ElementsAre("sensor_saturation"))) << result["sentence"];
+  EXPECT_GT(result.at("gap").at("closed_fraction"), 0.99);
+}
+
 }  // namespace
 }  // namespace armcmc::test

@@ -158,10 +158,12 @@ TEST(GapBench, EffectsAreNamedAlongRealMotions) {
   std::vector<Case> cases = CasesOf(kRecorded, 1, kSeed, folder.path(), file->parent_path());
   std::erase_if(cases, [](const Case& one) {
     const bool few = one.effect == "none" || one.effect == "coulomb_friction:tanh" || one.effect == "inertia:rigid";
-    return !few || one.part != Part::kWhole || one.group == kRealNoise;
+    // An indentation turns once in what is diagnosed: a single event names no mass.
+    const bool once = one.scenario.find("indentation") != std::string::npos && one.effect == "inertia:rigid";
+    return !few || once || one.part != Part::kWhole || one.group == kRealNoise;
   });
   const std::vector<Outcome> outcomes = RunCases(plant, cases, 1, false, nullptr);
-  ASSERT_EQ(outcomes.size(), 12U);
+  ASSERT_EQ(outcomes.size(), 11U);
   for (const Outcome& outcome : outcomes)
     EXPECT_TRUE(!Counts(outcome) || outcome.grade == Grade::kRight || outcome.grade == Grade::kTie) << Line(outcome);
 }

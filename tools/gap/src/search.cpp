@@ -229,9 +229,22 @@ Search::Candidates Search::OnePerName(const Candidates& candidates) const {
   return result;
 }
 
+CandidatePtr Search::Ungated(const CandidatePtr& pair) const {
+  CandidatePtr ungated = base_;
+  for (const Term& term : pair->added())
+    for (const EffectForm& form : *catalogue_)
+      if (form.exact() && form.effect == term.form->effect) ungated = Make(fitter_->Add(ungated->fit, {&form, {}}));
+  return ungated;
+}
+
 CandidatePtr Search::Refined(const CandidatePtr& pair) const {
-  // Each member anew, given the other: any formula of the same effect, any gate.
   CandidatePtr best = pair;
+  // Two gates may hold each other up: a bias and a drift that cancel half-way seem to end there, both of them.
+  if (!pair->always()) {
+    const CandidatePtr ungated = Ungated(pair);
+    if (ungated->names() == pair->names() && !Better(pair->fit, ungated->fit)) best = ungated;
+  }
+  // Each member anew, given the other: any formula of the same effect, any gate.
   for (std::size_t member = pair->num_known; member < pair->fit.hypothesis.terms.size(); ++member) {
     Hypothesis others;
     std::vector<double> theta;

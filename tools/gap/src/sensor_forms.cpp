@@ -127,7 +127,25 @@ std::vector<EffectForm> SaturationForms(const Signals& signals) {
       out->jacobian(i, own) = f / limit * damp * ratio / (1.0 + ratio) * peak;
     }
   };
-  return {clip, soft};
+  std::vector<EffectForm> forms = {clip, soft};
+  // A sensor that clips pulls as it clips pushes. Where there are none the two formulas are one.
+  if (signals.output.minCoeff() < -0.1 * peak) {
+    EffectForm both = clip;
+    both.variant = "both_ways";
+    both.formula = "min(max(f, -limit), limit)";
+    both.sense = [peak](const Signals&, const double* c, int own, Prediction* out) {
+      const double limit = c[0] * peak;
+      for (Eigen::Index i = 0; i < out->y.size(); ++i)
+        if (std::abs(out->y[i]) > limit) {
+          const double side = std::copysign(1.0, out->y[i]);
+          out->y[i] = side * limit;
+          out->jacobian.row(i).setZero();
+          out->jacobian(i, own) = side * peak;
+        }
+    };
+    forms.push_back(both);
+  }
+  return forms;
 }
 
 EffectForm DeadZoneForm(const Signals& signals) {

@@ -85,6 +85,8 @@ class Search {
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
   [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
+  /// The catalogue's formulas of the same effects, from the first sample to the last.
+  [[nodiscard]] CandidatePtr Ungated(const CandidatePtr& pair) const;
   [[nodiscard]] const Remainder& Judge(const CandidatePtr& candidate) const;
   [[nodiscard]] bool Better(const Fitted& a, const Fitted& b) const;
   /// Nats below which a lead decides nothing, in a gap of that size.
