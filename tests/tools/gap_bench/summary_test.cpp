@@ -97,11 +97,14 @@ Outcome Half(Part part, const std::string& scenario, const std::string& name) {
 }
 
 TEST(Gates, HalvesOfARecordingContradictEachOtherByTheirNamesOnly) {
-  const std::vector<Gate> gates =
-      Gates({Half(Part::kFirstHalf, "a", "inertia"), Half(Part::kSecondHalf, "a", "adhesion"),
-             Half(Part::kFirstHalf, "b", "inertia"), Half(Part::kSecondHalf, "b", "inertia"),
-             Half(Part::kFirstHalf, "c", "inertia"), Half(Part::kSecondHalf, "c", ""),
-             Half(Part::kFirstHalf, "d", "inertia"), Half(Part::kWhole, "d", "adhesion")});
+  Outcome drifted = Half(Part::kSecondHalf, "b", "inertia");
+  drifted.what.own = {"force_bias"};
+  drifted.answer.result.effects.resize(2);
+  drifted.answer.result.effects.back().name = "force_bias";
+  const std::vector<Gate> gates = Gates(
+      {Half(Part::kFirstHalf, "a", "inertia"), Half(Part::kSecondHalf, "a", "adhesion"),
+       Half(Part::kFirstHalf, "b", "inertia"), drifted, Half(Part::kFirstHalf, "c", "inertia"),
+       Half(Part::kSecondHalf, "c", ""), Half(Part::kFirstHalf, "d", "inertia"), Half(Part::kWhole, "d", "adhesion")});
   const Gate* gate = Find(gates, kRecorded, "halves contradict each other");
   ASSERT_NE(gate, nullptr);
   EXPECT_EQ(gate->n, 3);

@@ -120,7 +120,8 @@ void AddMotions(Gatherer* g) {
 
 /// Whether the halves of a recording are given names that cannot both be right.
 bool Contradict(const Outcome& first, const Outcome& second) {
-  const auto a = SetsOf(first.answer.result), b = SetsOf(second.answer.result);
+  const auto sets = [](const Outcome& o) { return JudgedSets(o.what, o.truth, o.answer.result); };
+  const auto a = sets(first), b = sets(second);
   return !a.empty() && !b.empty() && std::none_of(a.begin(), a.end(), [&](const auto& set) {
     return std::find(b.begin(), b.end(), set) != b.end();
   });

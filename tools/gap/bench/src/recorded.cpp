@@ -35,7 +35,7 @@ const std::vector<Source> kMotions = {
 const Source kNoise = {"cantilever_noise", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"force_N", 1.0}}, 3.0};
 const std::vector<std::string> kOwn = {"periodic_disturbance"};
 
-constexpr double kInterval = 1e-3, kDuration = 12.0;  // s
+constexpr double kInterval = 1e-3, kDuration = 20.0;  // s
 constexpr double kFree = 0.25;                        // share of the depth that a motion rises above the surface
 
 struct Samples {

@@ -43,15 +43,6 @@ Names Judged(const Case& what, const Truth& truth, Names said) {
   return said;
 }
 
-/// The answers of which at least one effect is judged.
-std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result) {
-  std::vector<Names> sets = SetsOf(result);
-  for (Names& set : sets) set = Judged(what, truth, std::move(set));
-  std::sort(sets.begin(), sets.end());
-  sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
-  return sets;
-}
-
 /// Whether the tool could have given the right name.
 bool Nameable(const Case& what, const Truth& truth) {
   return std::all_of(truth.effects.begin(), truth.effects.end(), [&](const TrueEffect& effect) {
@@ -94,6 +85,14 @@ Names FamiliesOf(const Names& names) {
   }
   std::sort(families.begin(), families.end());
   return families;
+}
+
+std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result) {
+  std::vector<Names> sets = SetsOf(result);
+  for (Names& set : sets) set = Judged(what, truth, std::move(set));
+  std::sort(sets.begin(), sets.end());
+  sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+  return sets;
 }
 
 Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result) {
