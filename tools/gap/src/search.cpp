@@ -31,34 +31,6 @@ bool GatedBy(const Term& term) { return term.when.kind != When::Kind::kAlways; }
 
 }  // namespace
 
-std::vector<Term> Candidate::added() const {
-  return {fit.hypothesis.terms.begin() + static_cast<std::ptrdiff_t>(num_known), fit.hypothesis.terms.end()};
-}
-
-std::vector<std::string> Candidate::names() const {
-  std::vector<std::string> names;
-  for (const Term& term : added()) names.push_back(term.form->effect);
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::vector<std::string> Candidate::families() const {
-  std::vector<std::string> families;
-  for (const Term& term : added()) families.push_back(term.form->family);
-  std::sort(families.begin(), families.end());
-  return families;
-}
-
-bool Candidate::exact() const {
-  return std::all_of(fit.hypothesis.terms.begin(), fit.hypothesis.terms.end(),
-                     [](const Term& term) { return term.form->exact(); });
-}
-
-bool Candidate::always() const {
-  const std::vector<Term> effects = added();
-  return std::none_of(effects.begin(), effects.end(), GatedBy);
-}
-
 Search::Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const BlockBootstrap& bootstrap,
                const Thresholds& thresholds, Fitted base)
     : fitter_(&fitter),
