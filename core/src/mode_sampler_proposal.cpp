@@ -199,7 +199,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
       if (after_round > time.limit) break;
       const Nanos now = time.clock.Now();
       worst_round_ns = std::max(worst_round_ns, now - before);
-      const Nanos ridge_ns = round == 0 ? anchors * time.anchor_ns : 0;
+      const Nanos ridge_ns = round == 0 ? TimeOfRidge(anchors, time.anchor_ns) : 0;
       const Nanos ahead =
           ridge_ns + worst_round_ns * (after_round - made) / size + TimeAfter(after_round, time.informed);
       *in_haste = now + ahead > time.deadline_ns;
@@ -208,7 +208,9 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
     const bool thin_but_right = on_ridge && (round > 1 || ess >= kMinimumEss);
     if (!thin_but_right) {  // else more of the same
       pooled = made;
+      const Nanos ridge_start = time.clock.Now();
       on_ridge = round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, anchors, ws, proposal);
+      if (on_ridge) ridge_time_.Add(time.clock.Now() - ridge_start, anchors);
       if (!on_ridge) BuildProposal(previous, lambda_q, use_previous, blocks, proposal);
     }
     if (last) break;

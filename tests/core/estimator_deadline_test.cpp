@@ -147,6 +147,42 @@ struct StallingClock {
   }
 };
 
+/// A clock for which the fit at the beginning of a pack takes as long as twenty rounds of draws.
+struct SlowFitClock {
+  static constexpr Nanos kRead = 1'000, kSlow = 20'000;
+  mutable Nanos now_ns = 1'000'000'000;
+  mutable int reads = 0;
+  [[nodiscard]] ClockRef Ref() const noexcept {
+    return {[](const void* context) noexcept ARMCMC_NONBLOCKING {
+              const auto* clock = static_cast<const SlowFitClock*>(context);
+              return clock->now_ns += ++clock->reads <= 4 ? kSlow : kRead;
+            },
+            this};
+  }
+};
+
+TEST(Deadline, AFitThatTakesLongDoesNotCutAPackThatHasTheTime) {
+  // A plant that changes: the pilot's draws fail, and a ridge of anchors is needed, which costs less than that fit.
+  test::Normal normal(11);
+  Rig unhurried, rig;
+  SlowFitClock first, second;
+  int modifications = 0;
+  for (std::int64_t seq = 1; seq <= 40; ++seq) {
+    const test::ContactTruth truth = seq % 8 >= 5 ? test::ContactTruth{.k = 2.0, .b = 1.15} : test::ContactTruth{};
+    const DataPack pack = test::MakeContactPack(seq, {1.6, 1.4, 0.66, 0.0}, truth, 0.1, &normal, 100, 1e-4);
+    constexpr Nanos kMargin = 10 * SlowFitClock::kRead, kNever = 1'000'000'000;
+    first.reads = second.reads = 0;
+    const Nanos start = first.now_ns;
+    unhurried.Step(pack, start + kNever, first.Ref());
+    const bool learns = seq <= 8;  // what a ridge takes
+    const Nanos time = learns ? kNever : first.now_ns - start + kMargin;
+    const Estimate& e = rig.Step(pack, second.now_ns + time, second.Ref());
+    modifications += e.modes[0].decision == Decision::kModification ? 1 : 0;
+    EXPECT_FALSE(e.modes[0].truncated) << "pack " << seq;
+  }
+  EXPECT_GT(modifications, 3);
+}
+
 TEST(Deadline, AStallOfTheMachineDoesNotCutThePacksAfterIt) {
   constexpr Nanos kBudget = 1'000'000;  // ten times what a pack takes on this clock
   StallingClock counting;

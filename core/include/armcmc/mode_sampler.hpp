@@ -125,6 +125,13 @@ class ModeSampler {
     Nanos anchor_ns;  ///< What an anchor of a ridge may take.
     bool informed;    ///< The result need not wait for Remember().
   };
+  /// A fit from far away takes many steps and says little on anchors that begin next to each other: twice what the
+  /// ridges before this one took, where there were any.
+  /// @param anchor_ns  What the fit of this pack promises for an anchor.
+  [[nodiscard]] Nanos TimeOfRidge(int anchors, Nanos anchor_ns) const noexcept ARMCMC_NONBLOCKING {
+    const Nanos known_ns = ridge_time_.Predict(anchors);
+    return known_ns > 0 ? std::min(anchors * anchor_ns, 2 * known_ns) : anchors * anchor_ns;
+  }
   /// From the last of so many draws until the result can be handed over, at the usual pace.
   [[nodiscard]] Nanos TimeAfter(int draws, bool informed) const noexcept ARMCMC_NONBLOCKING {
     return finish_time_.Predict(draws) + (informed ? 0 : remember_time_.Predict(draws));
@@ -207,6 +214,7 @@ class ModeSampler {
   Unfinished unfinished_;
   // They steer the deadline only.
   FinishTime finish_time_;    ///< From the last draw to the end of Run().
+  FinishTime ridge_time_;     ///< Of the anchors of a ridge.
   FinishTime remember_time_;  ///< Of Remember().
   DrawPace draw_pace_;
 };
