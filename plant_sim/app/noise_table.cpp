@@ -22,7 +22,8 @@ constexpr std::uint64_t kCorrelationStream = 0xd2'00;
 
 /// Column e of a file, without its mean and in units of its standard deviation.
 std::shared_ptr<const Series> ReadRecordedNoise(StrictTable* table, const std::filesystem::path& file) {
-  if (table->Has("correlation")) throw table->Error("correlation", "is no choice: recorded noise has a colour");
+  for (const char* key : {"correlation", "correlation_to"})
+    if (table->Has(key)) throw table->Error(key, "is no choice: recorded noise has a colour");
   Series noise = *ReadSeries(table->RequiredText("recording"), file, "e");
   const auto count = static_cast<double>(noise.values.size());
   const double mean = std::accumulate(noise.values.begin(), noise.values.end(), 0.0) / count;

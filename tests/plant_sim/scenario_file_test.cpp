@@ -226,6 +226,7 @@ TEST(ScenarioFile, RefusesARecordingThatIsNoneOrNotEven) {
   EXPECT_THAT(problem("0.0,hello\n0.5,0.6\n", kSteps), HasSubstr("motion.csv:2"));
   EXPECT_THAT(problem(kRamp, "0.0,2.0\n0.5,2.0\n"), HasSubstr("no noise"));
   EXPECT_THAT(problem(kRamp, kSteps, "correlation = 0.5\n"), HasSubstr("has a colour"));
+  EXPECT_THAT(problem(kRamp, kSteps, "correlation_to = 0.5\n"), HasSubstr("has a colour"));
 }
 
 }  // namespace
