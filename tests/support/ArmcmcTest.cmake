@@ -33,7 +33,9 @@ function(armcmc_add_test name)
       add_dependencies(${group} ${name})
     endforeach()
   endforeach()
-  # `tools/test` runs none of these under AddressSanitizer (there it says why); they are built there by name only.
+  # No tests under AddressSanitizer, and built there by name only: the programs that live tests run have deadlines, which
+  # instrumented code is too slow for; a browser and what is packed are not ours; "slow" are hundreds of whole runs of
+  # code that other tests run, too.
   set(not_with_address ${arg_LABELS})
   list(FILTER not_with_address INCLUDE REGEX "^(live|package|browser|slow)$")
   if(ARMCMC_SANITIZER STREQUAL "address" AND not_with_address)

@@ -4,17 +4,9 @@ set(ARMCMC_SANITIZER "" CACHE STRING "address (with undefined), thread, realtime
 set_property(CACHE ARMCMC_SANITIZER PROPERTY STRINGS "" address thread realtime)
 option(ARMCMC_RTSAN "Check the functions marked ARMCMC_NONBLOCKING at compile time and at run time" OFF)
 
-option(ARMCMC_FUZZ "Build the fuzzers of tests/fuzz (clang, ARMCMC_SANITIZER=address)" OFF)
-if(ARMCMC_FUZZ AND NOT ARMCMC_SANITIZER STREQUAL "address")
-  message(FATAL_ERROR "ARMCMC_FUZZ needs ARMCMC_SANITIZER=address")
-endif()
-
 if(ARMCMC_SANITIZER STREQUAL "address")
   set(flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
-  if(ARMCMC_FUZZ)
-    list(APPEND flags -fsanitize=fuzzer-no-link)  # lets the fuzzers see which branches an input takes
-  endif()
 elseif(ARMCMC_SANITIZER STREQUAL "thread")
   set(flags -fsanitize=thread -fno-omit-frame-pointer)
 elseif(ARMCMC_SANITIZER STREQUAL "realtime")
