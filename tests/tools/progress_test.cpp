@@ -32,5 +32,11 @@ TEST(Progress, IsSilentWhenStderrIsNoTerminal) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(Progress, NotesAreSeenOnNoTerminalToo) {
+  ::testing::internal::CaptureStderr();
+  Progress("work").Note("half of it");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "work: half of it\n");
+}
+
 }  // namespace
 }  // namespace armcmc::support

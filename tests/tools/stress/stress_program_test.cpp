@@ -33,6 +33,10 @@ TEST(StressProgram, DetectsEveryFaultOfAShortRun) {
   }
   ASSERT_EQ(json["phases"].size(), 1U);
   EXPECT_EQ(json["phases"][0]["load"], "cpu");
+  // In a log file, too, one sees how far it is.
+  EXPECT_NE(run.err.find("stress: phase 1 of 1, load cpu: " + json["phases"][0]["steps"].dump() + " steps"),
+            std::string::npos)
+      << run.err;
   EXPECT_GT(json["phases"][0]["rss_kb"]["end"], 0);
   EXPECT_EQ(json["phases"][0]["rt"]["degraded"].back(), "injected_faults");
   EXPECT_GT(std::filesystem::file_size(page), 10'000U);

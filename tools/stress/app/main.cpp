@@ -80,6 +80,8 @@ int Stress(Arguments arguments) {
       phases.push_back(RunPhase(options, options.loads[i], seconds, first,
                                 [&](double share) { bar.Update((static_cast<double>(i) + share) / n); }));
       first += phases.back().slots_per_run;
+      bar.Note("phase " + std::to_string(i + 1) + " of " + std::to_string(options.loads.size()) + ", " +
+               PhaseLine(phases.back()));
       if (!arguments.report.empty()) WriteText(arguments.report, ReportJson(options, phases));
     }
   }

@@ -126,6 +126,12 @@ std::string ReportJson(const StressOptions& options, const std::vector<PhaseResu
   return json.dump(2) + "\n";
 }
 
+std::string PhaseLine(const PhaseResult& phase) {
+  if (!phase.trouble.empty()) return "load " + phase.load + ": " + phase.trouble;
+  return "load " + phase.load + ": " + phase.report["steps"].dump() +
+         " steps, own misses outside of faults: " + Number(phase.own_misses_outside);
+}
+
 std::string ReportText(const StressOptions& /*options*/, const std::vector<PhaseResult>& phases) {
   std::string text = PhaseTable(phases) + "\n";
   for (const PhaseResult& phase : phases) {

@@ -24,8 +24,16 @@ Progress::Progress(std::string title)
       start_(std::chrono::steady_clock::now()),
       last_drawn_(start_) {}
 
-Progress::~Progress() {
+Progress::~Progress() { Wipe(); }
+
+void Progress::Wipe() {
   if (drawn_) std::fputs("\r\x1b[K", stderr);
+  drawn_ = false;
+}
+
+void Progress::Note(const std::string& line) {
+  Wipe();
+  std::fprintf(stderr, "%s: %s\n", title_.c_str(), line.c_str());
 }
 
 std::string Progress::Line(const std::string& title, double share, double remaining_s, int width) {

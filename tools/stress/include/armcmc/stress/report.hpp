@@ -14,5 +14,7 @@ namespace armcmc::stress {
 [[nodiscard]] std::string ReportText(const StressOptions& options, const std::vector<PhaseResult>& phases);
 /// The same as a page with a chart.
 [[nodiscard]] std::string ReportHtml(const StressOptions& options, const std::vector<PhaseResult>& phases);
+/// What one load came to, in a line.
+[[nodiscard]] std::string PhaseLine(const PhaseResult& phase);
 
 }  // namespace armcmc::stress

@@ -5,8 +5,8 @@
 
 namespace armcmc::support {
 
-/// A progress bar on stderr, when that is a terminal; otherwise silent. Redrawn at most ten times a second and
-/// wiped at the end.
+/// A progress bar on stderr, when that is a terminal; otherwise silent but for notes. Redrawn at most ten times a
+/// second and wiped at the end.
 class Progress {
  public:
   explicit Progress(std::string title);
@@ -15,10 +15,14 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   /// @param share  Of the work done, in [0, 1].
   void Update(double share);
+  /// A line of its own on stderr, terminal or not: the end of a part of a work that takes hours.
+  void Note(const std::string& line);
   /// The line that is drawn for a share: title, bar, percent and remaining time when it is known (>= 0 s).
   [[nodiscard]] static std::string Line(const std::string& title, double share, double remaining_s, int width);
 
  private:
+  void Wipe();
+
   std::string title_;
   bool on_terminal_;
   bool drawn_ = false;
