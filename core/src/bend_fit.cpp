@@ -15,16 +15,17 @@ void FitPolynomials(const simd::Kernels& kernels, const WeightedDraws& draws, do
   constexpr int kPowers = DensityBlock::kDegree + 1;
   std::array<double, 2 * DensityBlock::kDegree + 1 + kPowers * kMaxParams> sums{};
   kernels.bend_moments(block->dim, z, draws.weight, draws.size, sums.data());
-  Eigen::Matrix<double, kPowers, kPowers> gram;
+  static_assert(kPowers <= kMaxParams);
+  ParamMatrix gram(kPowers, kPowers);
   for (int i = 0; i < kPowers; ++i)
     for (int j = 0; j < kPowers; ++j) gram(i, j) = sums[static_cast<std::size_t>(i + j)] / sums[0];
   gram.diagonal() *= 1.0 + 1e-9;
-  const auto factor = FactorSymmetric(gram);
+  const SymmetricFactor factor(gram);
   std::size_t t = 2 * DensityBlock::kDegree + 1;
   for (int i = 1; i < block->dim; ++i) {
-    Eigen::Matrix<double, kPowers, 1> cross;
+    ParamVector cross(kPowers);
     for (int q = 0; q < kPowers; ++q) cross[q] = sums[t++] / sums[0];
-    const Eigen::Matrix<double, kPowers, 1> c = Solve(factor, cross);
+    const ParamVector c = factor.Solve(cross);
     if (!c.allFinite()) continue;
     for (int q = 0; q < kPowers; ++q) block->poly[static_cast<std::size_t>(i)][static_cast<std::size_t>(q)] = c[q];
   }
@@ -71,14 +72,14 @@ void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, d
       const double square = covariance(regressor(a), regressor(a));
       size[a] = square > 0.0 ? 1.0 / std::sqrt(square) : 0.0;
     }
-    Square gram(n, n);
-    Vector cross(n);
+    ParamMatrix gram(n, n);
+    ParamVector cross(n);
     for (int a = 0; a < n; ++a) {
       for (int b = 0; b < n; ++b) gram(a, b) = size[a] * covariance(regressor(a), regressor(b)) * size[b];
       gram(a, a) += 1e-9;
       cross[a] = size[a] * covariance(regressor(a), row);
     }
-    Vector c = Solve(FactorSymmetric(gram), cross);
+    ParamVector c = SymmetricFactor(gram).Solve(cross);
     for (int a = 0; a < n; ++a) c[a] *= size[a];
     if (!c.allFinite()) continue;
     const auto ii = static_cast<std::size_t>(i);
@@ -180,7 +181,7 @@ void FitThickness(const WeightedDraws& draws, double ess, double* const* e, Dens
       ++used;
     }
     if (used < 4) continue;
-    const Eigen::Vector3d fit = Solve(FactorSymmetric(gram), cross);
+    const Eigen::Vector3d fit = SymmetricFactor(gram).Solve(cross);
     if (fit.allFinite()) SetThickness(fit, fit.dot(cross) - cross[0] * cross[0] / gram(0, 0), ess / stride, i, block);
   }
 }

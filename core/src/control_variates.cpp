@@ -45,13 +45,18 @@ ControlSums Sum(const simd::Kernels& kernels, const ParamVector& mean, const Par
   return sums;
 }
 
+// As in "armcmc/linear_algebra.hpp", for one unknown more than there are parameters.
+ARMCMC_TRUST_NONBLOCKING_BEGIN
+ControlVector Coefficients(const ControlSums& sums) noexcept ARMCMC_NONBLOCKING { return sums.hh.ldlt().solve(sums.h); }
+ARMCMC_TRUST_NONBLOCKING_END
+
 }  // namespace
 
 bool ReduceVariance(const simd::Kernels& kernels, const Gaussian& guide, const MarginalTable* table,
                     const ProposalDraws& draws, const std::array<double*, 2>& scratch) noexcept {
   const auto dim = static_cast<int>(guide.mean.size());
   if (draws.size < kLeastDrawsPerControl * (dim + 1)) return false;
-  const ParamMatrix covariance = Evaluate(guide.precision.inverse());
+  const ParamMatrix covariance = Inverse(guide.precision);
   ParamVector sd(dim);
   for (int d = 0; d < dim; ++d) {
     if (!(covariance(d, d) > 0.0) || !std::isfinite(covariance(d, d))) return false;
@@ -74,7 +79,7 @@ bool ReduceVariance(const simd::Kernels& kernels, const Gaussian& guide, const M
 
   const ControlSums sums = Sum(kernels, guide.mean, sd, draws, g, g_squared);
   if (!(sums.effective_share >= kLeastShare)) return false;
-  const ControlVector lambda = Solve(FactorSymmetric(sums.hh), sums.h);
+  const ControlVector lambda = Coefficients(sums);
   if (!lambda.allFinite()) return false;
 
   // 1 - lambda' h = (1 + lambda_0) - g (lambda_0 + sum_d lambda_d (u_d - m_d) / s_d)

@@ -51,10 +51,10 @@ void PrincipalAxes(const ParamMatrix& covariance, ParamMatrix* whiten, ParamMatr
   ParamMatrix correlation(dim, dim);
   for (Eigen::Index i = 0; i < dim; ++i)
     for (Eigen::Index j = 0; j < dim; ++j) correlation(i, j) = covariance(i, j) / (sd[i] * sd[j]);
-  const auto solver = SymmetricEigen(correlation);
+  const SymmetricEigen eigen = EigenOfSymmetric(correlation);
   *whiten = ParamMatrix::Zero(dim, dim);
   *unwhiten = ParamMatrix::Zero(dim, dim);
-  if (solver.info() != Eigen::Success) {
+  if (!eigen.converged) {
     for (Eigen::Index i = 0; i < dim; ++i) {
       (*whiten)(i, i) = 1.0 / sd[i];
       (*unwhiten)(i, i) = sd[i];
@@ -63,10 +63,10 @@ void PrincipalAxes(const ParamMatrix& covariance, ParamMatrix* whiten, ParamMatr
   }
   for (Eigen::Index i = 0; i < dim; ++i) {
     const Eigen::Index column = dim - 1 - i;  // Eigen sorts ascending
-    const double axis_sd = std::sqrt(std::fmax(solver.eigenvalues()[column], 1e-14));
+    const double axis_sd = std::sqrt(std::fmax(eigen.values[column], 1e-14));
     for (Eigen::Index j = 0; j < dim; ++j) {
-      (*whiten)(i, j) = solver.eigenvectors()(j, column) / (axis_sd * sd[j]);
-      (*unwhiten)(j, i) = solver.eigenvectors()(j, column) * axis_sd * sd[j];
+      (*whiten)(i, j) = eigen.vectors(j, column) / (axis_sd * sd[j]);
+      (*unwhiten)(j, i) = eigen.vectors(j, column) * axis_sd * sd[j];
     }
   }
 }
@@ -193,7 +193,7 @@ ParamMatrix CovarianceOf(const DensityBlock& block) noexcept {
   for (int i = 0; i < block.dim; ++i)
     for (int j = 0; j < block.dim; ++j)
       a(i, j) = block.unwhiten[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-  return Evaluate(a * a.transpose());
+  return TimesOwnTranspose(a);
 }
 
 double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const FitOptions& options,

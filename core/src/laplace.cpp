@@ -48,7 +48,7 @@ void HoldPressed(const ParameterSpace& space, const ParamVector& u, ParamVector*
 ParamVector DampedStep(const ParamMatrix& hessian, const ParamVector& gradient, double damping) noexcept {
   ParamMatrix damped = hessian;
   damped.diagonal() *= 1.0 + damping;
-  ParamVector step = -Solve(FactorSymmetric(damped), gradient);
+  ParamVector step = -SymmetricFactor(damped).Solve(gradient);
   if (!step.allFinite()) step.setZero();
   return step;
 }
@@ -84,7 +84,7 @@ void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, co
   for (int lane = 1 + 2 * np; lane < kTileLanes; ++lane) SetLane(space, u, lane, &scratch->theta, log_scale);
   kernels.predict(model, data, scratch->theta, &scratch->prediction);
 
-  *gradient = Evaluate(prior.precision * (u - prior.mean));
+  *gradient = Multiply(prior.precision, u - prior.mean);
   *hessian = prior.precision;
   const double scale = std::exp(space.LogNoiseScale(u.data()));
   double scale_gradient = 0.0;

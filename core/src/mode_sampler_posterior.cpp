@@ -182,7 +182,7 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
   if (next->num_blocks == 0) {
     // Too few effective draws for moments: the Laplace fit, widened, is the safer summary.
     const Gaussian& fit = use_previous ? fit_persisted_ : fit_fresh_;
-    SetElliptic(fit.mean, Evaluate(fit.precision.inverse()), 1.5, &normal_table_, &next->block[0]);
+    SetElliptic(fit.mean, Inverse(fit.precision), 1.5, &normal_table_, &next->block[0]);
     next->num_blocks = 1;
     next->weight[0] = 1.0;
   }

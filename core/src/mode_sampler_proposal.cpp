@@ -37,12 +37,11 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
     Gaussian other;
     if (previous.valid && fit_from(previous.mean, &other) > best) fit_fresh_ = other;
   }
-  SetElliptic(fit_fresh_.mean, Evaluate(fit_fresh_.precision.inverse()), kLaplaceInflation, &student_table_,
-              &laplace_fresh_);
+  SetElliptic(fit_fresh_.mean, Inverse(fit_fresh_.precision), kLaplaceInflation, &student_table_, &laplace_fresh_);
   num_persisted_ = 0;
   if (!use_previous) return;
   const auto add = [&](const Gaussian& fit) noexcept ARMCMC_NONBLOCKING {
-    SetElliptic(fit.mean, Evaluate(fit.precision.inverse()), kLaplaceInflation, &student_table_,
+    SetElliptic(fit.mean, Inverse(fit.precision), kLaplaceInflation, &student_table_,
                 &laplace_persisted_[static_cast<std::size_t>(num_persisted_++)]);
   };
   if (transition_.Offers(previous)) {
@@ -50,7 +49,7 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
     for (int b = 0; b < previous.num_blocks; ++b) add(transition_.fit(b));
     return;
   }
-  const Gaussian prior{previous.mean, Evaluate(previous.covariance.inverse())};
+  const Gaussian prior{previous.mean, Inverse(previous.covariance)};
   LaplaceFit(kernels_, model_, data, noise_, space_, prior, previous.mean, &ws->laplace, &fit_persisted_);
   add(fit_persisted_);
 }
@@ -92,7 +91,7 @@ bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory
   // With one coordinate drawn anew the others hold the posterior together: the ridge is that of everything anew.
   const bool partial = use_previous && transition_.Offers(previous);
   const bool follow_previous = use_previous && !partial;
-  const Gaussian prior = follow_previous ? Gaussian{previous.mean, Evaluate(previous.covariance.inverse())} : initial;
+  const Gaussian prior = follow_previous ? Gaussian{previous.mean, Inverse(previous.covariance)} : initial;
   const int found = FollowRidge(kernels_, model_, data, noise_, space_, prior,
                                 follow_previous ? fit_persisted_ : fit_fresh_, anchors, &ws->laplace, &anchors_);
   if (found == 0) return false;

@@ -28,8 +28,8 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
   begin[j] = value;
   // (u_j - value)^2 kPinned added to the prior's quadratic form.
   pinned.precision(j, j) += kPinned;
-  pinned.mean = Solve(FactorSymmetric(pinned.precision),
-                      Evaluate(prior.precision * prior.mean + kPinned * value * ParamVector::Unit(space.dim, j)));
+  pinned.mean = SymmetricFactor(pinned.precision)
+                    .Solve(Multiply(prior.precision, prior.mean) + kPinned * value * ParamVector::Unit(space.dim, j));
   Gaussian fit;
   const double height = LaplaceFit(kernels, model, data, noise, space, pinned, begin, scratch, &fit);
   ParamMatrix h = fit.precision;
@@ -41,17 +41,17 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
   rest.row(j).setZero();
   rest.col(j).setZero();
   rest(j, j) = 1.0;
-  const auto factor = FactorSymmetric(rest);
-  const ParamVector slope = Solve(factor, coupling);
+  const SymmetricFactor factor(rest);
+  const ParamVector slope = factor.Solve(coupling);
   h(j, j) = 1.0 / (step * step) + coupling.dot(slope);
   anchor->mean = fit.mean;
-  anchor->covariance = Evaluate(h.inverse());
-  const double determinant = factor.vectorD().prod();
+  anchor->covariance = Inverse(h);
+  const double determinant = factor.Diagonal().prod();
   const ParamVector offset = fit.mean - prior.mean;
   const ParamVector pinned_offset = fit.mean - pinned.mean;
   // Height of the unpinned posterior: swap the pinned quadratic form for the prior's.
-  anchor->share = height + 0.5 * pinned_offset.dot(Evaluate(pinned.precision * pinned_offset)) -
-                  0.5 * offset.dot(Evaluate(prior.precision * offset)) - 0.5 * std::log(std::fmax(determinant, 1e-300));
+  anchor->share = height + 0.5 * pinned_offset.dot(Multiply(pinned.precision, pinned_offset)) -
+                  0.5 * offset.dot(Multiply(prior.precision, offset)) - 0.5 * std::log(std::fmax(determinant, 1e-300));
   return anchor->mean.allFinite() && anchor->covariance.allFinite() && std::isfinite(anchor->share);
 }
 
@@ -60,7 +60,7 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
 int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                 const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, int count,
                 LaplaceScratch* scratch, std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept {
-  const ParamMatrix covariance = Evaluate(fit.precision.inverse());
+  const ParamMatrix covariance = Inverse(fit.precision);
   const int j = WorstKnown(space, covariance);
   const auto ij = static_cast<std::size_t>(j);
   const double sd = std::sqrt(std::fmax(covariance(j, j), 0.0));

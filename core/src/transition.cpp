@@ -14,9 +14,9 @@ namespace {
 constexpr double kChangeShare = 0.5;  // of "one parameter changed" in the prior after a modification
 
 double LogDeterminant(const ParamMatrix& m) noexcept ARMCMC_NONBLOCKING {
-  const auto factor = FactorSymmetric(m);
+  const ParamVector diagonal = SymmetricFactor(m).Diagonal();
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < m.rows(); ++i) sum += std::log(std::fmax(factor.vectorD()[i], 1e-300));
+  for (Eigen::Index i = 0; i < m.rows(); ++i) sum += std::log(std::fmax(diagonal[i], 1e-300));
   return sum;
 }
 
@@ -36,7 +36,7 @@ Transition::Hypothesis Transition::Judge(const ModeData& data, const ParamVector
   Hypothesis h;
   h.mean = mean;
   h.covariance = covariance;
-  const Gaussian prior{mean, Evaluate(covariance.inverse())};
+  const Gaussian prior{mean, Inverse(covariance)};
   const double height = LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, scratch, &h.fit);
   h.log_evidence = height + 0.5 * (LogDeterminant(prior.precision) - LogDeterminant(h.fit.precision));
   if (!std::isfinite(h.log_evidence)) h.log_evidence = -HUGE_VAL;

@@ -2,8 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
@@ -15,52 +13,42 @@ namespace armcmc {
 using ParamVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParams, 1>;
 using ParamMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParams, kMaxParams>;
 
-// Eigen's products and factorisations contain a branch for large sizes that goes to the heap, which is all that clang's
-// analysis of function effects sees of them. They are called here only, for types whose bound is checked while
-// compiling; that the branch is not taken is checked by RealtimeSanitizer and by the tests that count allocations.
-ARMCMC_TRUST_NONBLOCKING_BEGIN
+// Products and factorisations of parameter vectors and matrices (d <= kMaxParams). They are functions of one source
+// file, and not Eigen's expressions, for two reasons: Eigen's templates take seconds to compile wherever they are used,
+// and contain a branch for large sizes that goes to the heap, which is all that clang's analysis of function effects
+// sees of them. That the branch is not taken is checked by RealtimeSanitizer and by the tests that count allocations.
 
-/// A type whose largest size is known and small, so that Eigen keeps it, and every temporary of it, on the stack.
-template <class Matrix>
-concept BoundedMatrix = Matrix::MaxSizeAtCompileTime != Eigen::Dynamic&& Matrix::MaxSizeAtCompileTime <= 256;
-
-/// The value of an expression: a product, an inverse, a sum of them.
-template <class Expression>
-requires BoundedMatrix<typename Expression::PlainObject>
-[[nodiscard]] typename Expression::PlainObject Evaluate(const Expression& expression) noexcept ARMCMC_NONBLOCKING {
-  return expression;
-}
-
-/// L D L' of a symmetric matrix.
-template <BoundedMatrix Matrix>
-[[nodiscard]] Eigen::LDLT<Matrix> FactorSymmetric(const Matrix& a) noexcept ARMCMC_NONBLOCKING {
-  return a.ldlt();
-}
-
-/// x of a x = b. Not finite where a is singular.
-template <BoundedMatrix Matrix, BoundedMatrix Vector>
-[[nodiscard]] Vector Solve(const Eigen::LDLT<Matrix>& factor_of_a, const Vector& b) noexcept ARMCMC_NONBLOCKING {
-  return factor_of_a.solve(b);
-}
-
+/// A b.
+[[nodiscard]] ParamVector Multiply(const ParamMatrix& a, const ParamVector& b) noexcept ARMCMC_NONBLOCKING;
+/// A A'.
+[[nodiscard]] ParamMatrix TimesOwnTranspose(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
+/// A^-1; not finite where A is singular.
+[[nodiscard]] ParamMatrix Inverse(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
+[[nodiscard]] double Determinant(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
 /// Whether a symmetric matrix, of which the lower half is read, is a covariance that can be inverted.
-template <BoundedMatrix Matrix>
-[[nodiscard]] bool IsPositiveDefinite(const Matrix& a) noexcept ARMCMC_NONBLOCKING {
-  const Eigen::LDLT<Matrix> factor = a.ldlt();
-  return a.allFinite() && factor.info() == Eigen::Success && (factor.vectorD().array() > 0.0).all();
-}
+[[nodiscard]] bool IsPositiveDefinite(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
+/// L of A = L L', the lower half of A being read. @return false, with *l undefined, where A is not positive definite.
+[[nodiscard]] bool CholeskyFactor(const ParamMatrix& a, ParamMatrix* l) noexcept ARMCMC_NONBLOCKING;
 
-template <BoundedMatrix Matrix>
-[[nodiscard]] double Determinant(const Matrix& a) noexcept ARMCMC_NONBLOCKING {
-  return a.determinant();
-}
+/// L D L' of a symmetric matrix, of which the lower half is read.
+class SymmetricFactor {
+ public:
+  explicit SymmetricFactor(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
+  /// x of A x = b; not finite where A is singular.
+  [[nodiscard]] ParamVector Solve(const ParamVector& b) const noexcept ARMCMC_NONBLOCKING;
+  /// The diagonal of D, in the order of the pivots: its product is the determinant.
+  [[nodiscard]] ParamVector Diagonal() const noexcept ARMCMC_NONBLOCKING;
 
-/// Eigenvalues, ascending, and eigenvectors of a symmetric matrix; see info() of the result.
-template <BoundedMatrix Matrix>
-[[nodiscard]] Eigen::SelfAdjointEigenSolver<Matrix> SymmetricEigen(const Matrix& a) noexcept ARMCMC_NONBLOCKING {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(a);
-}
+ private:
+  Eigen::LDLT<ParamMatrix> factor_;
+};
 
-ARMCMC_TRUST_NONBLOCKING_END
+/// Eigenvalues, ascending, and eigenvectors, by columns, of a symmetric matrix.
+struct SymmetricEigen {
+  bool converged = false;
+  ParamVector values;
+  ParamMatrix vectors;
+};
+[[nodiscard]] SymmetricEigen EigenOfSymmetric(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

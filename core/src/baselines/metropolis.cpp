@@ -1,7 +1,5 @@
 #include "armcmc/baselines/metropolis.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -54,9 +52,9 @@ Status MetropolisFilter::Run(const ModeData& data, std::uint64_t pack, std::uint
     const auto i = static_cast<std::size_t>(d);
     state[d] = std::clamp(state[d], parts_.space.lower[i] + 1e-9, parts_.space.upper[i] - 1e-9);
   }
-  ParamMatrix covariance = fit.precision.inverse();
-  ParamMatrix root = covariance.llt().matrixL();
-  if (!root.allFinite()) root = 0.1 * ParamMatrix::Identity(dim, dim);
+  const ParamMatrix covariance = Inverse(fit.precision);
+  ParamMatrix root;
+  if (!CholeskyFactor(covariance, &root)) root = 0.1 * ParamMatrix::Identity(dim, dim);
   double value = LogTarget(data, state);
   if (!std::isfinite(value)) return Status::kNonFinite;
 
@@ -77,7 +75,7 @@ Status MetropolisFilter::Run(const ModeData& data, std::uint64_t pack, std::uint
       if (now + worst > deadline_ns && k >= SamplerSettings::kMinDraws) break;
     }
     for (int d = 0; d < dim; ++d) z[d] = normal_table_.Draw(stream.Uniform());
-    trial = state + std::exp(log_scale) * (root * z);
+    trial = state + std::exp(log_scale) * Multiply(root, z);
     const double trial_value = LogTarget(data, trial);
     const double ratio = std::exp(std::fmin(trial_value - value, 0.0));
     const bool accept = stream.Uniform() < ratio;
@@ -104,9 +102,7 @@ Status MetropolisFilter::Run(const ModeData& data, std::uint64_t pack, std::uint
     if (k + 1 == burn_in / 2 || k + 1 == burn_in) {
       ParamMatrix c = scatter / k;
       c.diagonal() *= 1.0 + 1e-9;
-      const auto factor = c.llt();
-      const ParamMatrix l = factor.matrixL();
-      if (factor.info() == Eigen::Success && l.allFinite()) root = l;
+      if (ParamMatrix l; CholeskyFactor(c, &l)) root = l;
       if (k + 1 < burn_in) log_scale = std::log(2.38 / std::sqrt(static_cast<double>(dim)));
     }
   }

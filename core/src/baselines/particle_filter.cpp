@@ -1,6 +1,5 @@
 #include "armcmc/baselines/particle_filter.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -153,14 +152,13 @@ void ParticleFilter::Move(Numbers* numbers) noexcept {
     covariance += (u - mean) * (u - mean).transpose() / count_;
   }
   for (int d = 0; d < s.dim; ++d) covariance(d, d) = covariance(d, d) * (1.0 + 1e-12) + 1e-30;
-  const auto factor = covariance.llt();
-  ParamMatrix root = factor.matrixL();
-  if (factor.info() != Eigen::Success || !root.allFinite()) root = covariance.diagonal().cwiseSqrt().asDiagonal();
+  ParamMatrix root;
+  if (!CholeskyFactor(covariance, &root)) root = covariance.diagonal().cwiseSqrt().asDiagonal();
   const double shrink = std::sqrt(1.0 - kKernel * kKernel);
   for (int k = 0; k < count_; ++k) {
     read(k);
     for (int d = 0; d < s.dim; ++d) z[d] = numbers->Normal();
-    const ParamVector moved = mean + shrink * (u - mean) + kKernel * (root * z);
+    const ParamVector moved = mean + shrink * (u - mean) + kKernel * Multiply(root, z);
     for (int d = 0; d < s.dim; ++d) {
       const auto i = static_cast<std::size_t>(d);
       u_[i][static_cast<std::size_t>(k)] = std::clamp(moved[d], s.lower[i], s.upper[i]);

@@ -1,6 +1,5 @@
 #include "armcmc/baselines/rls.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -157,13 +156,14 @@ Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mo
   FillStep(data, kDraws, 0, out);
   out->point_is_mode = true;
   ToDraw(z_, out->mode_u.data());
-  const ParamMatrix root = p_.llt().matrixL();
+  ParamMatrix root;
+  (void)CholeskyFactor(p_, &root);
   RandomStream stream(parts_.settings.sampler.seed, pack, mode);
   std::array<double, kMaxParams> u{};
   ParamVector draw(dim_);
   for (int k = 0; k < kDraws; ++k) {
     for (int d = 0; d < dim_; ++d) draw[d] = normal_table_.Draw(stream.Uniform());
-    const ParamVector at = z_ + root * draw;
+    const ParamVector at = z_ + Multiply(root, draw);
     ToDraw(at.allFinite() ? at : z_, u.data());
     for (int d = 0; d < s.dim; ++d) out->u[static_cast<std::size_t>(d)][k] = u[static_cast<std::size_t>(d)];
     out->weight[k] = 1.0 / kDraws;

@@ -1,0 +1,43 @@
+#include "armcmc/linear_algebra.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace armcmc {
+
+ARMCMC_TRUST_NONBLOCKING_BEGIN
+
+ParamVector Multiply(const ParamMatrix& a, const ParamVector& b) noexcept ARMCMC_NONBLOCKING { return a * b; }
+ParamMatrix TimesOwnTranspose(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a * a.transpose(); }
+ParamMatrix Inverse(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a.inverse(); }
+double Determinant(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a.determinant(); }
+
+bool IsPositiveDefinite(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING {
+  const Eigen::LDLT<ParamMatrix> factor = a.ldlt();
+  return a.allFinite() && factor.info() == Eigen::Success && (factor.vectorD().array() > 0.0).all();
+}
+
+bool CholeskyFactor(const ParamMatrix& a, ParamMatrix* l) noexcept ARMCMC_NONBLOCKING {
+  const Eigen::LLT<ParamMatrix> factor = a.llt();
+  *l = factor.matrixL();
+  return factor.info() == Eigen::Success && l->allFinite();
+}
+
+SymmetricFactor::SymmetricFactor(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING : factor_(a) {}
+ParamVector SymmetricFactor::Solve(const ParamVector& b) const noexcept ARMCMC_NONBLOCKING { return factor_.solve(b); }
+ParamVector SymmetricFactor::Diagonal() const noexcept ARMCMC_NONBLOCKING { return factor_.vectorD(); }
+
+SymmetricEigen EigenOfSymmetric(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING {
+  const Eigen::SelfAdjointEigenSolver<ParamMatrix> solver(a);
+  SymmetricEigen eigen;
+  eigen.converged = solver.info() == Eigen::Success;
+  if (eigen.converged) {
+    eigen.values = solver.eigenvalues();
+    eigen.vectors = solver.eigenvectors();
+  }
+  return eigen;
+}
+
+ARMCMC_TRUST_NONBLOCKING_END
+
+}  // namespace armcmc
