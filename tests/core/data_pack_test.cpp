@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
+
+#include "support/packs.hpp"
 
 namespace armcmc {
 namespace {
@@ -11,14 +12,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-DataPack Good() {
-  DataPack pack;
-  pack.seq = 1;
-  pack.dt = 1e-3;
-  pack.num_samples = 100;
-  pack.num_inputs = 2;
-  return pack;
-}
+DataPack Good() { return test::BlankPack(PlantKind::kHuntCrossley, 1); }
 
 TEST(DataPack, AcceptsTheSmallestAndTheLargest) {
   DataPack pack = Good();
@@ -31,6 +25,9 @@ TEST(DataPack, AcceptsTheSmallestAndTheLargest) {
 }
 
 TEST(DataPack, RejectsCountsOutOfRange) {
+  DataPack first = Good();
+  first.seq = 0;
+  EXPECT_EQ(first.Validate(), Status::kBadPack);
   for (const int n : {-1, 0, kMaxPackSamples + 1, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
     DataPack pack = Good();
     pack.num_samples = n;

@@ -1,19 +1,21 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <random>
 #include <vector>
 
 #include "armcmc/density_fit.hpp"
-#include "armcmc/models/registry.hpp"
+#include "armcmc/proposal.hpp"
 #include "armcmc/rng.hpp"
-#include "kernel_sets.hpp"
+#include "core/kernel_sets.hpp"
 
 namespace armcmc {
 namespace {
 
-/// A correlated, bent block with marginals of different shape: the fit to draws along a curved ridge.
+/// A correlated, bent and tapered block with marginals of different shape: the fit to draws along a curved ridge.
 struct Bent {
   MarginalTable tables[3];
   DensityBlock block;
@@ -37,6 +39,10 @@ struct Bent {
     }
     for (std::size_t d = 0; d < 3; ++d) draws.u[d] = rows[d].data();
     FitBlock(simd::Best(), draws, {}, room, tables, &block);
+    EXPECT_TRUE(block.bent);
+    block.tapered = true;
+    block.thickness[1] = {0.2, -0.02};
+    block.thickness[2] = {-0.1, 0.03};
   }
   Bent(const Bent&) = delete;  // the block points into tables
   Bent& operator=(const Bent&) = delete;
@@ -55,54 +61,6 @@ struct Points {
     }
   }
 };
-
-TEST(DensityBlock, IntegratesToOne) {
-  const Bent bent;
-  std::mt19937_64 g(3);
-  // Importance sampling from a wide normal law, sd 1.5 about the mean.
-  std::normal_distribution<double> normal(0.0, 1.5);
-  constexpr int kCount = 400'000;
-  double sum = 0.0, square = 0.0;
-  for (int k = 0; k < kCount; ++k) {
-    double u[3], q = 1.0;
-    for (std::size_t d = 0; d < 3; ++d) {
-      const double e = normal(g);
-      u[d] = bent.block.mean[d] + e;
-      q *= std::exp(-0.5 * e * e / 2.25) / (1.5 * std::sqrt(2.0 * M_PI));
-    }
-    const double w = bent.block.Density(u) / q;
-    sum += w;
-    square += w * w;
-  }
-  const double error = std::sqrt(square) / kCount;
-  EXPECT_LT(error, 0.03) << "the identity must have teeth";
-  EXPECT_NEAR(sum / kCount, 1.0, 4.0 * error);
-}
-
-TEST(DensityBlock, DrawsHaveTheDensity) {
-  // E_block[g / density] = 1 for every density g inside the block's support.
-  const Bent bent;
-  const MarginalTable narrow = MarginalTable::Normal();
-  DensityBlock other;
-  ParamVector mean(3);
-  mean << 0.3, -1.2, 0.8;
-  SetElliptic(mean, ParamMatrix::Identity(3, 3) * 0.01, 1.0, &narrow, &other);
-  RandomStream stream(5, 0, 0);
-  constexpr int kCount = 400'000;
-  double sum = 0.0, square = 0.0;
-  for (int k = 0; k < kCount; ++k) {
-    double uniforms[3], u[3];
-    for (double& x : uniforms) x = stream.Uniform();
-    bent.block.Draw(uniforms, u);
-    ASSERT_GT(bent.block.Density(u), 0.0);
-    const double w = other.Density(u) / bent.block.Density(u);
-    sum += w;
-    square += w * w;
-  }
-  const double error = std::sqrt(square) / kCount;
-  EXPECT_LT(error, 0.03) << "the identity must have teeth";
-  EXPECT_NEAR(sum / kCount, 1.0, 4.0 * error);
-}
 
 TEST(AddDensityKernel, EqualsTheScalarDensity) {
   const Bent bent;
@@ -135,6 +93,80 @@ TEST(AddDensityKernel, AgreesAtNodesAndEdgesOfTheTables) {
     EXPECT_EQ(out[30], 0.0);
     EXPECT_EQ(out[31], 0.0);
   }
+}
+
+/// Uniform numbers in rows, as draws start from.
+std::vector<std::vector<double>> UniformRows(std::size_t dim, std::size_t count) {
+  RandomStream stream(3, 0, 0);
+  std::vector<std::vector<double>> rows(dim);
+  for (std::size_t k = 0; k < count; ++k)
+    for (auto& row : rows) row.push_back(stream.Uniform());
+  return rows;
+}
+
+TEST(DrawBlockKernel, EqualsTheScalarDraw) {
+  const Bent bent;
+  const auto uniforms = UniformRows(3, 512);
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    auto x = uniforms;
+    double* const rows[] = {x[0].data(), x[1].data(), x[2].data()};
+    kernels->draw_block(bent.block, 512, rows);
+    for (std::size_t k = 0; k < 512; ++k) {
+      const double one[] = {uniforms[0][k], uniforms[1][k], uniforms[2][k]};
+      double u[3];
+      bent.block.Draw(one, u);
+      for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(x[d][k], u[d], 1e-11) << kernels->name << " " << k;
+    }
+  }
+}
+
+TEST(Proposal, DrawsEveryComponentByItsShareWhateverTheBatches) {
+  const MarginalTable table = MarginalTable::Normal();
+  const double shares[] = {2.0, 1.0, 5.0};
+  DensityBlock blocks[3];
+  Proposal proposal;
+  for (int c = 0; c < 3; ++c) {
+    ParamVector mean(2);
+    mean << 10.0 * c, -10.0 * c;
+    SetElliptic(mean, ParamMatrix::Identity(2, 2) * 0.01, 1.0, &table, &blocks[c]);
+    proposal.Add(&blocks[c], shares[c]);
+  }
+  proposal.Normalise();
+
+  constexpr int kCount = 8000;
+  struct Drawn {
+    std::vector<double> u[2];
+    std::vector<std::int8_t> component;
+  };
+  const auto draw = [&](int batch) {
+    constexpr std::size_t kRoom = kCount + 8;  // batches are padded to whole vectors
+    Drawn drawn{{std::vector<double>(kRoom), std::vector<double>(kRoom)}, std::vector<std::int8_t>(kRoom)};
+    std::vector<double> scratch[2];
+    for (auto& row : scratch) row.resize(Proposal::kMaxBatch + 8);
+    double* const rows[] = {drawn.u[0].data(), drawn.u[1].data()};
+    double* const scratch_rows[] = {scratch[0].data(), scratch[1].data()};
+    const RandomStream stream(4, 0, 0);
+    for (int first = 0; first < kCount; first += batch)
+      proposal.Draw(simd::Best(), stream, first, std::min(batch, kCount - first), rows,
+                    &drawn.component[static_cast<std::size_t>(first)], scratch_rows);
+    for (auto& row : drawn.u) row.resize(kCount);
+    drawn.component.resize(kCount);
+    return drawn;
+  };
+  const Drawn drawn = draw(Proposal::kMaxBatch);
+  for (int c = 0; c < 3; ++c) {
+    const double share = shares[c] / 8.0;
+    const auto count = static_cast<double>(std::count(drawn.component.begin(), drawn.component.end(), c));
+    EXPECT_NEAR(count, kCount * share, 4.0 * std::sqrt(kCount * share * (1.0 - share))) << c;
+  }
+  for (std::size_t k = 0; k < kCount; ++k) {
+    ASSERT_NEAR(drawn.u[0][k], 10.0 * drawn.component[k], 1.0) << k;
+    ASSERT_NEAR(drawn.u[1][k], -10.0 * drawn.component[k], 1.0) << k;
+  }
+  // A candidate has numbers of its own: the same ones in batches of other sizes.
+  const Drawn again = draw(100);
+  EXPECT_EQ(again.component, drawn.component);
+  for (std::size_t d = 0; d < 2; ++d) EXPECT_EQ(again.u[d], drawn.u[d]);
 }
 
 ParameterSpace MixedSpace() {
@@ -236,6 +268,12 @@ TEST(DensityKernels, FusedInstructionSetsGiveTheSameBits) {
     sets[1]->initial_prior(space, points.u, first, b);
     EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
   }
+  auto x = UniformRows(3, 512), y = x;
+  double* const x_rows[] = {x[0].data(), x[1].data(), x[2].data()};
+  double* const y_rows[] = {y[0].data(), y[1].data(), y[2].data()};
+  sets[0]->draw_block(bent.block, 512, x_rows);
+  sets[1]->draw_block(bent.block, 512, y_rows);
+  EXPECT_EQ(x, y);
 }
 
 }  // namespace

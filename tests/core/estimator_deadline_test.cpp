@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "estimator_rig.hpp"
-#include "statistical/contact_packs.hpp"
+#include "core/estimator_rig.hpp"
+#include "support/packs.hpp"
 
 namespace armcmc {
 namespace {
@@ -87,7 +87,7 @@ TEST(Deadline, BudgetOfACertainLengthCutsTheDrawsAndSaysSo) {
 
 TEST(Deadline, MoreTimeNeverMeansFewerDraws) {
   int before = 0;
-  for (Nanos budget = 0; budget <= 70'000; budget += 2'000) {
+  for (Nanos budget = 0; budget <= 70'000; budget += 5'000) {
     Rig rig;
     const SteppingClock clock(1'000);
     const int draws = rig.Step(Contact{}.Pack(10), clock.now_ns + budget, clock.Ref()).modes[0].draws;

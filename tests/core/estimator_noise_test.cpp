@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "armcmc/parameter_space.hpp"
-#include "estimator_rig.hpp"
+#include "core/estimator_rig.hpp"
 
 namespace armcmc {
 namespace {
@@ -57,11 +57,6 @@ TEST(EstimatedNoise, FollowsItsLevel) {
   for (std::int64_t seq = 21; seq <= 35; ++seq) rig.Step(Contact{.noise_std = 0.5}.Pack(seq));
   EXPECT_NEAR(rig.estimate().modes[0].noise_std, 0.5, 4.0 * kRelativeSd * 0.5);
   EXPECT_LT(rig.estimate().modes[0].marginal[0].sd, 1.5 * k_sd);
-}
-
-TEST(FixedNoise, IsReportedAsConfigured) {
-  Rig rig;
-  EXPECT_NEAR(rig.Step(Contact{}.Pack(10)).modes[0].noise_std, 0.1, 1e-15);
 }
 
 TEST(HeavyTails, OutliersDoNotMoveTheEstimate) {

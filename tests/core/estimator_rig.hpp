@@ -6,83 +6,15 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <random>
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/settings.hpp"
+#include "support/packs.hpp"
 
 namespace armcmc::test {
 
-inline constexpr int kPackSamples = 100;
-inline constexpr double kSampleInterval = 1e-3;
-
-/// A sliding contact: x = 0.6 + 1.14 sin(t - 0.6), pack k holds samples 100k-99 .. 100k. In contact from 0.05 s to 4.30
-/// s and from 6.33 s to 10.58 s.
-struct Contact {
-  double k = 4.0, b = 2.3, p = 1.7;
-  double noise_std = 0.1;
-  std::uint64_t seed = 1;
-
-  [[nodiscard]] DataPack Pack(std::int64_t seq) const {
-    DataPack pack;
-    pack.seq = seq;
-    pack.run_id = 1;
-    pack.dt = kSampleInterval;
-    pack.num_samples = kPackSamples;
-    pack.num_inputs = 2;
-    pack.plant = PlantKind::kHuntCrossley;
-    std::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(seq));
-    std::normal_distribution<double> noise(0.0, noise_std);
-    for (std::size_t n = 0; n < kPackSamples; ++n) {
-      const double t = kSampleInterval * (static_cast<double>((seq - 1) * kPackSamples) + static_cast<double>(n));
-      const double x = 0.6 + 1.14 * std::sin(t - 0.6);
-      const double v = 1.14 * std::cos(t - 0.6);
-      pack.u[n] = {x, v};
-      pack.y[n] = (x >= 0.0 ? std::pow(x, p) * (k + b * v) : 0.0) + noise(generator);
-      pack.t_last_s = t;
-    }
-    pack.t_last_ns = static_cast<Nanos>(pack.t_last_s * 1e9);
-    return pack;
-  }
-};
-inline constexpr std::int64_t kFreePack = 55;       ///< Of Contact: no sample in contact.
-inline constexpr std::int64_t kSecondContact = 64;  ///< The pack in which contact returns.
-
-/// The excited actuator: pressure swings over tens of kPa; mode 0 (u_c) in the first `filling` samples, then mode 1.
-struct Actuator {
-  double p_atm = PlantConstants{}.p_atm;
-  std::array<double, 2> gain{-2.14e-4 + 6.12e-9 * p_atm, -9.76e-5 - 1.9e-9 * p_atm};
-  std::array<double, 2> slope{6.12e-9, -1.9e-9};
-  double noise_std = 0.1;  ///< Of the valve flow, sqrt(Pa).
-  std::uint64_t seed = 1;
-
-  [[nodiscard]] DataPack Pack(std::int64_t seq, int filling) const {
-    DataPack pack;
-    pack.seq = seq;
-    pack.run_id = 1;
-    pack.dt = kSampleInterval;
-    pack.num_samples = kPackSamples;
-    pack.num_inputs = 4;
-    pack.plant = PlantKind::kSoftActuator;
-    std::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(seq));
-    std::normal_distribution<double> noise(0.0, noise_std);
-    const PlantConstants constants;
-    for (std::size_t n = 0; n < kPackSamples; ++n) {
-      const double t = kSampleInterval * (static_cast<double>(seq * kPackSamples) + static_cast<double>(n));
-      const double p = p_atm + 40e3 + 30e3 * std::sin(40.0 * t);
-      const double p_rate = 1.2e6 * std::cos(40.0 * t);
-      const std::size_t m = static_cast<int>(n) < filling ? 0 : 1;
-      const double head = std::sqrt(m == 0 ? constants.p_supply - p : p - p_atm);
-      const double u = (p_rate * (gain[m] + slope[m] * (p - p_atm)) + noise(generator)) / head;
-      pack.u[n] = {m == 0 ? u : 0.0, m == 1 ? u : 0.0, p, p_rate};
-      pack.y[n] = 0.02;
-      pack.t_last_s = t;
-    }
-    return pack;
-  }
-};
-
+/// For the packs of Actuator.
 inline EstimatorSettings ActuatorSettings() {
   EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
   for (NoiseSettings& noise : settings.noise) noise.std = 0.1;

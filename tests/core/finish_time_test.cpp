@@ -5,8 +5,6 @@
 namespace armcmc {
 namespace {
 
-TEST(FinishTime, KnowsNothingBeforeTheFirstPack) { EXPECT_EQ(FinishTime{}.Predict(1000), 0); }
-
 TEST(FinishTime, FewerDrawsAreHeldToTakeAsLong) {
   FinishTime time;
   time.Add(100'000, 1000);

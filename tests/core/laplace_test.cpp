@@ -9,7 +9,7 @@
 #include <random>
 
 #include "armcmc/models/registry.hpp"
-#include "kernel_sets.hpp"
+#include "core/kernel_sets.hpp"
 
 namespace armcmc {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "armcmc/models/registry.hpp"
-#include "kernel_sets.hpp"
+#include "core/kernel_sets.hpp"
 
 namespace armcmc {
 namespace {
@@ -64,6 +64,8 @@ std::unique_ptr<Batch> ActuatorBatch(unsigned seed) {
 TEST(PredictKernel, ContactForceEqualsTheFormula) {
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
     const auto b = ContactBatch(1);
+    b->pack.u[12] = {1e-310, 0.1};  // subnormal; sample 11 is at touch
+    HuntCrossley::Prepare(b->pack, {}, 0, &b->data);
     kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
     std::size_t m = 0;
     for (std::size_t n = 0; n < 237; ++n) {
@@ -97,21 +99,6 @@ TEST(PredictKernel, ValveFlowEqualsTheFormula) {
                     static_cast<double>(1e-13L * (std::fabs(a) + std::fabs(c))))
             << kernels->name;
       }
-  }
-}
-
-TEST(PredictKernel, ForceIsZeroAtTouchWhateverTheExponent) {
-  for (const simd::Kernels* kernels : test::RunnableKernels()) {
-    const auto b = ContactBatch(3);
-    b->pack.num_samples = 2;
-    b->pack.u[0] = {0.0, 1.0};
-    b->pack.u[1] = {1e-310, 1.0};  // subnormal
-    HuntCrossley::Prepare(b->pack, {}, 0, &b->data);
-    kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
-    for (std::size_t l = 0; l < kTileLanes; ++l) {
-      EXPECT_NEAR(b->tile.value[0][l], 0.0, 1e-250);
-      EXPECT_NEAR(b->tile.value[1][l], 0.0, 1e-250);
-    }
   }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "armcmc/types.hpp"
-#include "kernel_sets.hpp"
+#include "core/kernel_sets.hpp"
 
 namespace armcmc {
 namespace {
@@ -63,20 +63,6 @@ TEST(MomentKernels, EqualTheSums) {
   }
 }
 
-TEST(MomentKernels, FusedInstructionSetsGiveTheSameBits) {
-  const auto sets = test::FusedKernels();
-  if (sets.size() < 2) GTEST_SKIP() << "this CPU runs one fused instruction set only";
-  const Cloud c;
-  const double mean[kDim] = {0.1, 5.2, 9.8, 15.0};
-  double a[64] = {}, b[64] = {};
-  sets[0]->first_moments(kDim, c.u, c.weight.data(), kCount, a);
-  sets[1]->first_moments(kDim, c.u, c.weight.data(), kCount, b);
-  EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
-  sets[0]->second_moments(kDim, c.u, c.weight.data(), mean, kCount, a);
-  sets[1]->second_moments(kDim, c.u, c.weight.data(), mean, kCount, b);
-  EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
-}
-
 constexpr int kNodes = 21;
 constexpr double kPerNode = 2.0, kOrigin = 10.0;  // nodes at -5, -4.5 .. 5 of the first row
 
@@ -107,14 +93,103 @@ TEST(HistogramKernel, HoldsWhatLiesBeyondTheNodes) {
   }
 }
 
-TEST(HistogramKernel, FusedInstructionSetsGiveTheSameBits) {
+TEST(SumKernels, FusedInstructionSetsGiveTheSameBits) {
   const auto sets = test::FusedKernels();
   if (sets.size() < 2) GTEST_SKIP() << "this CPU runs one fused instruction set only";
   const Cloud c;
-  double a[2 * kNodes] = {}, b[2 * kNodes] = {};
+  const double mean[kDim] = {0.1, 5.2, 9.8, 15.0};
+  double a[64] = {}, b[64] = {};
+  sets[0]->first_moments(kDim, c.u, c.weight.data(), kCount, a);
+  sets[1]->first_moments(kDim, c.u, c.weight.data(), kCount, b);
+  EXPECT_EQ(std::memcmp(a, b, sizeof a), 0) << "first moments";
+  sets[0]->second_moments(kDim, c.u, c.weight.data(), mean, kCount, a);
+  sets[1]->second_moments(kDim, c.u, c.weight.data(), mean, kCount, b);
+  EXPECT_EQ(std::memcmp(a, b, sizeof a), 0) << "second moments";
+  std::fill_n(a, 2 * kNodes, 0.0);
+  std::fill_n(b, 2 * kNodes, 0.0);
   sets[0]->histogram(c.u[0], c.weight.data(), kCount, kPerNode, kOrigin, kNodes, a);
   sets[1]->histogram(c.u[0], c.weight.data(), kCount, kPerNode, kOrigin, kNodes, b);
-  EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
+  EXPECT_EQ(std::memcmp(a, b, sizeof a), 0) << "histogram";
+}
+
+/// Scored candidates, some of them outside the bounds, without a proposal, or without a likelihood.
+struct Scored {
+  static constexpr int kSize = 64;
+  alignas(64) double likelihood[kSize], initial[kSize], first[kSize], second[kSize], proposal[kSize];
+  simd::PriorTerms prior;
+
+  Scored() {
+    std::mt19937_64 g(12);
+    std::uniform_real_distribution<double> some(0.1, 2.0);
+    for (std::size_t k = 0; k < kSize; ++k) {
+      for (auto* row : {likelihood, initial, first, second, proposal}) row[k] = some(g);
+      if (k % 7 == 3) initial[k] = 0.0;
+    }
+    proposal[11] = 0.0;
+    likelihood[20] = std::nan("");
+    likelihood[33] = HUGE_VAL;
+    likelihood[31] = 100.0;  // outside the bounds
+    prior.initial = initial;
+    prior.initial_share = 0.3;
+    prior.memory[0] = first;
+    prior.memory[1] = second;
+    prior.memory_share[0] = 0.5;
+    prior.memory_share[1] = 0.2;
+  }
+  Scored(const Scored&) = delete;  // the prior points into it
+  Scored& operator=(const Scored&) = delete;
+  [[nodiscard]] double Prior(std::size_t k) const { return 0.3 * initial[k] + 0.5 * first[k] + 0.2 * second[k]; }
+};
+
+TEST(WeightKernels, WeighLikelihoodTimesPriorOverProposal) {
+  const Scored s;
+  for (const simd::Kernels* kernels : test::RunnableKernels())
+    for (const bool with_proposal : {true, false}) {
+      alignas(64) double weight[Scored::kSize];
+      std::copy_n(s.likelihood, Scored::kSize, weight);
+      kernels->weigh(s.prior, with_proposal ? s.proposal : nullptr, Scored::kSize, weight);
+      for (std::size_t k = 0; k < Scored::kSize; ++k) {
+        const double expected = s.likelihood[k] * s.Prior(k) / (with_proposal ? s.proposal[k] : 1.0);
+        if (s.initial[k] > 0.0 && std::isfinite(expected)) {
+          EXPECT_NEAR(weight[k], expected, 1e-14 * expected) << kernels->name << " " << k;
+        } else {
+          EXPECT_EQ(weight[k], 0.0) << kernels->name << " " << k;
+        }
+      }
+    }
+}
+
+TEST(WeightKernels, ShareEachDrawAmongItsPriors) {
+  const Scored s;
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    alignas(64) double first_share[Scored::kSize];
+    double sums[2], expected[2] = {};
+    kernels->share_prior(s.prior, s.second, Scored::kSize, first_share, sums);
+    for (std::size_t k = 0; k < Scored::kSize; ++k) {
+      const double share = 0.5 * s.first[k] / s.Prior(k);
+      EXPECT_NEAR(first_share[k], share, 1e-14) << kernels->name << " " << k;
+      expected[0] += s.second[k] * share;
+      expected[1] += s.second[k] * 0.3 * s.initial[k] / s.Prior(k);
+    }
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(sums[i], expected[i], 1e-12) << kernels->name;
+  }
+}
+
+TEST(WeightKernels, FindTheBestUsableCandidate) {
+  const Scored s;
+  double largest = 0.0;
+  for (std::size_t k = 0; k < Scored::kSize; ++k)
+    if (s.initial[k] > 0.0 && std::isfinite(s.likelihood[k])) largest = std::max(largest, s.likelihood[k]);
+  ASSERT_LE(largest, 2.0);
+  const std::vector<double> nowhere(Scored::kSize, 0.0);
+  std::vector<double> a(Scored::kSize, 1.0), b(Scored::kSize, 2.0);
+  a[42] = a[30] = b[10] = 3.0;  // 3 x 2 twice, 1 x 3
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    EXPECT_EQ(kernels->largest_inside(s.likelihood, s.initial, Scored::kSize), largest) << kernels->name;
+    EXPECT_EQ(kernels->largest_inside(s.likelihood, nowhere.data(), Scored::kSize), -HUGE_VAL) << kernels->name;
+    EXPECT_EQ(kernels->largest_product(a.data(), b.data(), Scored::kSize), 30) << kernels->name;
+    EXPECT_EQ(kernels->largest_product(b.data(), nullptr, Scored::kSize), 10) << kernels->name;
+  }
 }
 
 }  // namespace

@@ -27,16 +27,6 @@ std::string ErrorOf(const EstimatorSettings& settings) {
   return "";
 }
 
-TEST(BuiltinSettings, AreValid) {
-  for (const char* name : {"hunt_crossley", "soft_actuator", "soft_actuator_excited"})
-    EXPECT_EQ(ErrorOf(BuiltinSettings(name)), "") << name;
-}
-
-TEST(BuiltinSettings, ExcitedActuatorHasItsOwnGain) {
-  EXPECT_EQ(BuiltinSettings("soft_actuator").constants.q1, 1408.5);
-  EXPECT_EQ(BuiltinSettings("soft_actuator_excited").constants.q1, 0.0704);
-}
-
 TEST(BuiltinSettings, UnknownNameListsTheKnownOnes) {
   try {
     (void)BuiltinSettings("hunt_crossly");
@@ -74,9 +64,9 @@ const std::vector<Wrong> kWrong{
     {"forgetting.threshold", "nan", [](EstimatorSettings& s) { s.forgetting.threshold = kNan; }},
     {"forgetting.mu", "inf", [](EstimatorSettings& s) { s.forgetting.mu = kInfinity; }},
     {"forgetting.lambda_max", "= 1", [](EstimatorSettings& s) { s.forgetting.lambda_max = 1.0; }},
-    {"forgetting.rho", "= 1.5", [](EstimatorSettings& s) { s.forgetting.rho = 1.5; }},
+    {"forgetting.rho", "= 1.5 is outside [0, 1]", [](EstimatorSettings& s) { s.forgetting.rho = 1.5; }},
     {"forgetting.min_samples", "= 0", [](EstimatorSettings& s) { s.forgetting.min_samples = 0; }},
-    {"sampler.epsilon", "= 0", [](EstimatorSettings& s) { s.sampler.epsilon = 0.0; }},
+    {"sampler.epsilon", "= 0 is outside (0, 1)", [](EstimatorSettings& s) { s.sampler.epsilon = 0.0; }},
     {"sampler.delta", "= 1", [](EstimatorSettings& s) { s.sampler.delta = 1.0; }},
     {"sampler.max_draws", "= 10", [](EstimatorSettings& s) { s.sampler.max_draws = 10; }},
     {"sampler.max_draws", "= 150001", [](EstimatorSettings& s) { s.sampler.max_draws = kMaxDraws + 1; }},
@@ -95,23 +85,28 @@ const std::vector<Wrong> kWrong{
     {"constants.q1", "nan", [](EstimatorSettings& s) { s.constants.q1 = kNan; }},
     {"constants.q2", "nan", [](EstimatorSettings& s) { s.constants.q2 = kNan; }},
     {"constants.q3", "inf", [](EstimatorSettings& s) { s.constants.q3 = kInfinity; }},
+    {"model.pressure_rate", "has no pressure", [](EstimatorSettings& s) { s.pressure_rate = true; }},
+    {"takes no effects", "",
+     [](EstimatorSettings& s) {
+       s.method = Method::kRls;
+       s.effects[0] = MakeEffect("coulomb_friction");
+       s.num_effects = 1;
+     }},
+    {"takes no effects", "",
+     [](EstimatorSettings& s) {
+       s.method = Method::kParticleFilter;
+       s.baseline.pf_updates = 2;
+       s.effects[0] = MakeEffect("coulomb_friction");
+       s.num_effects = 1;
+     }},
 };
 
-TEST(EstimatorSettings, ValidateNamesKeyAndValueOfWhatIsWrong) {
+TEST(EstimatorSettings, ValidateNamesKeyValueAndRangeOfWhatIsWrong) {
   for (const Wrong& wrong : kWrong) {
     EstimatorSettings settings = BuiltinSettings("hunt_crossley");
     wrong.spoil(settings);
     EXPECT_THAT(ErrorOf(settings), AllOf(HasSubstr(wrong.key), HasSubstr(wrong.value)));
   }
-}
-
-TEST(EstimatorSettings, ValidateShowsTheRange) {
-  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
-  settings.forgetting.rho = -0.5;
-  EXPECT_THAT(ErrorOf(settings), HasSubstr("[0, 1]"));
-  settings = BuiltinSettings("hunt_crossley");
-  settings.sampler.epsilon = 1.0;
-  EXPECT_THAT(ErrorOf(settings), HasSubstr("(0, 1)"));
 }
 
 TEST(EstimatorSettings, ValidateLooksAtTheNoiseOfEveryMode) {

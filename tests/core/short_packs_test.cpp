@@ -8,7 +8,7 @@
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
-#include "statistical/contact_packs.hpp"
+#include "support/packs.hpp"
 
 namespace armcmc {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "estimator_rig.hpp"
+#include "core/estimator_rig.hpp"
 #include "support/alloc_counter.hpp"
 
 namespace armcmc {

@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
-#include "estimator_rig.hpp"
+#include "core/estimator_rig.hpp"
 
 namespace armcmc {
 namespace {
@@ -60,6 +63,75 @@ TEST(SoftActuator, ReportsTheGainAndThePaperParametersConsistently) {
   EXPECT_NEAR(m[2].ar_ap, m[0].ar_ap - m[1].ar_ap * PlantConstants{}.p_atm, 1e-12);
   EXPECT_NEAR(m[1].ar_ap, 6.12e-9, 4.0 * m[1].sd);
   EXPECT_NEAR(m[2].ar_ap, -2.14e-4, 4.0 * m[2].sd);
+}
+
+/// The posterior of packs of mode 0 in closed form, in standard deviations of the prior: where the noise is known the
+/// flow is linear in g and theta2, and the prior is normal but for bounds five standard deviations away.
+class LinearPosterior {
+ public:
+  explicit LinearPosterior(const EstimatorSettings& settings)
+      : scale_(settings.parameters[0].sd, settings.parameters[1].sd),
+        noise_std_(settings.noise[0].std),
+        constants_(settings.constants) {}
+
+  /// Adds a pack. @return log p(pack | packs before).
+  double Add(const DataPack& pack) {
+    const Eigen::Matrix2d precision_before = precision_;
+    const Eigen::Vector2d mean_before = mean_;
+    Eigen::Vector2d right = precision_ * mean_;
+    std::vector<Eigen::Vector2d> slope;
+    std::vector<double> target;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
+      const auto& u = pack.u[n];
+      const double rate = u[3] / noise_std_;
+      slope.emplace_back(scale_[0] * rate, scale_[1] * rate * (u[2] - constants_.p_atm));
+      target.push_back(u[0] * std::sqrt(constants_.p_supply - u[2]) / noise_std_);
+      precision_ += slope[n] * slope[n].transpose();
+      right += slope[n] * target[n];
+    }
+    mean_ = precision_.ldlt().solve(right);
+    const Eigen::Vector2d moved = mean_ - mean_before;
+    double square = moved.dot(precision_before * moved);
+    for (std::size_t n = 0; n < slope.size(); ++n) square += std::pow(target[n] - slope[n].dot(mean_), 2.0);
+    const double occam = std::log(precision_.determinant() / precision_before.determinant());
+    return -0.5 * (square + occam) - pack.num_samples * std::log(noise_std_ * std::sqrt(2.0 * M_PI));
+  }
+  [[nodiscard]] double Mean(int d) const { return scale_[d] * mean_[d]; }
+  [[nodiscard]] double Sd(int d) const {
+    const Eigen::Matrix2d covariance = precision_.inverse();
+    return scale_[d] * std::sqrt(covariance(d, d));
+  }
+
+ private:
+  Eigen::Vector2d scale_;
+  double noise_std_;
+  PlantConstants constants_;
+  Eigen::Matrix2d precision_ = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
+};
+
+TEST(SoftActuator, EvidenceAndPosteriorOfTwoPacksEqualTheClosedForm) {
+  EstimatorSettings settings = test::ActuatorSettings();
+  for (NoiseSettings& noise : settings.noise) noise.estimate_std = false;
+  Rig rig(settings);
+  LinearPosterior exact(settings);
+  for (const int seq : {1, 2}) {
+    const DataPack pack = Actuator{}.Pack(seq, 100);
+    const double log_evidence = exact.Add(pack);
+    const ModeEstimate& e = rig.Step(pack).modes[0];
+    EXPECT_EQ(e.decision, seq == 1 ? Decision::kModification : Decision::kReinforcement);
+    // Some five thousand effective draws of the chain, and more by their weights; the second pack starts from a density
+    // that was fitted to those of the first.
+    EXPECT_NEAR(e.log_evidence, log_evidence, 0.05 * seq) << seq;
+    for (int d = 0; d < 2; ++d) {
+      const MarginalSummary& m = e.marginal[static_cast<std::size_t>(d)];
+      const double mean = exact.Mean(d), sd = exact.Sd(d);
+      EXPECT_NEAR(m.ar_ap, mean, 0.05 * seq * sd) << seq << " " << d;
+      EXPECT_NEAR(m.sd / sd, 1.0, 0.06) << seq << " " << d;
+      EXPECT_NEAR(m.q025, mean - 1.96 * sd, 0.1 * seq * sd) << seq << " " << d;
+      EXPECT_NEAR(m.q975, mean + 1.96 * sd, 0.1 * seq * sd) << seq << " " << d;
+    }
+  }
 }
 
 TEST(SoftActuator, ShutValvesHoldBothModes) {

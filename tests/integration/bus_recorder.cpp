@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "armcmc/data_pack_t.hpp"
 
 namespace armcmc::test {
 
-BusRecorder::BusRecorder(const std::string& url, const std::filesystem::path& log)
-    : bus_(url + "&recv_buf_size=4194304"), log_(log, "w") {
+BusRecorder::BusRecorder(const std::string& url, const std::filesystem::path& log, std::string prefix)
+    : prefix_(std::move(prefix)), bus_(url + "&recv_buf_size=4194304"), log_(log, "w") {
   if (!bus_.good() || !log_.good()) throw std::runtime_error("cannot record " + url);
   bus_.subscribeFunction(".*", &BusRecorder::OnMessage, this)->setQueueCapacity(1000);
   if (bus_.getFileno() < 0) throw std::runtime_error("cannot listen on " + url);
@@ -20,8 +22,14 @@ BusRecorder::BusRecorder(const std::string& url, const std::filesystem::path& lo
 }
 
 void BusRecorder::Stop() {
+  if (!thread_.joinable()) return;
   stop_.store(true);
-  if (thread_.joinable()) thread_.join();
+  thread_.join();
+  // What was sent before this call is in the file, the end of the last message included; a plant may go on for ever.
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(200);
+  while (bus_.handleTimeout(10) > 0 && std::chrono::steady_clock::now() < end) {
+  }
+  std::fflush(log_.getFilePtr());
 }
 
 void BusRecorder::OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel, BusRecorder* self) {
@@ -39,13 +47,13 @@ void BusRecorder::Record(const lcm::ReceiveBuffer* buffer, const std::string& ch
 
   const std::scoped_lock lock(mutex_);
   const int size = static_cast<int>(buffer->data_size);
-  if (channel == "EST_ESTIMATE") {
+  if (channel == prefix_ + "EST_ESTIMATE") {
     estimate_t estimate{};
     if (estimate.decode(buffer->data, 0, size) >= 0) estimates_.push_back(estimate);
-  } else if (channel == "EST_STATUS") {
+  } else if (channel == prefix_ + "EST_STATUS") {
     estimator_status_t status{};
     if (status.decode(buffer->data, 0, size) >= 0) statuses_.push_back(status);
-  } else if (channel == "PLANT_PACK") {
+  } else if (channel == prefix_ + "PLANT_PACK") {
     const auto pack = std::make_unique<data_pack_t>();
     if (pack->decode(buffer->data, 0, size) >= 0) last_pack_ns_ = std::max(last_pack_ns_, pack->t_last_ns);
   }
@@ -70,13 +78,16 @@ bool BusRecorder::WaitUntil(const std::function<bool()>& condition) const {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (std::chrono::steady_clock::now() < end) {
     if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return false;
 }
 
 bool BusRecorder::WaitForEstimates(std::size_t count) const {
-  return WaitUntil([&] { return estimates().size() >= count; });
+  return WaitUntil([&] {
+    const std::scoped_lock lock(mutex_);  // without a copy of them all
+    return estimates_.size() >= count;
+  });
 }
 
 }  // namespace armcmc::test

@@ -5,11 +5,9 @@
 #include <filesystem>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
-#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "armcmc/estimate_t.hpp"
@@ -17,11 +15,12 @@
 
 namespace armcmc::test {
 
-/// Writes everything on a bus to an LCM log, as lcm-logger does, and keeps estimates and states of health.
+/// Writes everything on a bus to an LCM log, as lcm-logger does, and keeps the estimates and states of health of the
+/// channels behind a prefix.
 class BusRecorder {
  public:
   /// @throws std::runtime_error when the bus cannot be joined.
-  BusRecorder(const std::string& url, const std::filesystem::path& log);
+  BusRecorder(const std::string& url, const std::filesystem::path& log, std::string prefix = "");
   ~BusRecorder() { Stop(); }
   BusRecorder(const BusRecorder&) = delete;
   BusRecorder& operator=(const BusRecorder&) = delete;
@@ -40,6 +39,7 @@ class BusRecorder {
   static void OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel, BusRecorder* self);
   void Record(const lcm::ReceiveBuffer* buffer, const std::string& channel);
 
+  std::string prefix_;
   lcm::LCM bus_;
   lcm::LogFile log_;
   mutable std::mutex mutex_;

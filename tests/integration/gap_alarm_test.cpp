@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <vector>
 
 #include "armcmc/support/csv.hpp"
 #include "integration/live_pair.hpp"
@@ -10,17 +11,14 @@
 namespace armcmc::test {
 namespace {
 
-using namespace std::chrono_literals;
-
 class GapAlarm : public LivePair {};
 
 TEST_F(GapAlarm, RisesForAHiddenEffectAndKeepsTheData) {
   auto estimator = StartEstimator({"--gap-log", dir_ / "logs"});
-  auto plant = StartPlant("22", {"--hide-effect", "coulomb_friction", "--sealed", dir_ / "truth.json"});
-  ASSERT_EQ(plant->Wait(60s).code, 0) << plant->err();
-  ASSERT_TRUE(recorder_->WaitForEstimates(220)) << estimator->err();
+  ASSERT_EQ(Play("22", {"--hide-effect", "coulomb_friction", "--sealed", dir_ / "truth.json"}), 220u)
+      << estimator->err();
   const std::vector<estimator_status_t> statuses = recorder_->statuses();
-  const nlohmann::json report = Finish(estimator.get());
+  const Json report = Finish(estimator.get());
 
   const estimator_status_t& last = statuses.back();
   EXPECT_EQ(last.gap_watched, 1);
@@ -32,7 +30,7 @@ TEST_F(GapAlarm, RisesForAHiddenEffectAndKeepsTheData) {
   EXPECT_NE(last.gap_where[0], 0);
   EXPECT_EQ(statuses.front().gap_suspected, 0);
 
-  const nlohmann::json& gap = report["gap"];
+  const Json gap = report["gap"];
   EXPECT_EQ(gap["suspected"], true);
   EXPECT_EQ(gap["alarm_pack"], last.gap_alarm_seq);
   for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
@@ -47,18 +45,15 @@ TEST_F(GapAlarm, RisesForAHiddenEffectAndKeepsTheData) {
       Program("armcmc-replay"), {"--config", (SourceDir() / "rt/config/hunt_crossley.toml").string(), "--data", Log(),
                                  "--out", dir_ / "replay.csv", "--report", dir_ / "replay.json"});
   ASSERT_EQ(replay.code, 0) << replay.err;
-  std::ifstream file(dir_ / "replay.json");
-  const nlohmann::json again = nlohmann::json::parse(file)["gap"];
+  const Json again = ReadJson(dir_ / "replay.json")["gap"];
   for (const char* key : {"suspected", "where", "log_evidence", "alarm_pack", "since_pack"})
     EXPECT_EQ(again[key], gap[key]) << key;
 }
 
 TEST_F(GapAlarm, StaysDownForThePlantThatTheModelDescribes) {
   auto estimator = StartEstimator({"--gap-log", dir_ / "logs"});
-  auto plant = StartPlant("18");
-  ASSERT_EQ(plant->Wait(60s).code, 0) << plant->err();
-  ASSERT_TRUE(recorder_->WaitForEstimates(180)) << estimator->err();
-  const nlohmann::json gap = Finish(estimator.get())["gap"];
+  ASSERT_EQ(Play("18"), 180u) << estimator->err();
+  const Json gap = Finish(estimator.get())["gap"];
   EXPECT_EQ(gap["suspected"], false);
   EXPECT_EQ(gap["blocks"], 1);
   EXPECT_TRUE(gap["window"].is_null());

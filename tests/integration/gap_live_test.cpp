@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -20,25 +19,21 @@ namespace {
 class LiveModel : public LivePair {};
 
 TEST_F(LiveModel, TheEstimatorRunsItAndFindsTheHiddenEffect) {
-  const std::string scenario = (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string();
+  scenario_ = SourceDir() / "plant_sim/scenarios/contact_rich.toml";
+  seed_ = "5";
   const std::vector<std::string> hide = {"--hide-effect", "force_bias",       "--effect-strength", "5",
                                          "--sealed",      dir_ / "truth.json"};
-  std::vector<std::string> offline = {"--scenario", scenario, "--seed", "5", "--csv", dir_ / "run.csv"};
+  std::vector<std::string> offline = {"--scenario", scenario_.string(), "--seed", seed_, "--csv", dir_ / "run.csv"};
   offline.insert(offline.end(), hide.begin(), hide.end());
   ASSERT_EQ(RunProgram(Program("armcmc-plant"), offline).code, 0);
   const Outcome gap = RunProgram(Program("armcmc-gap"), {"--data", dir_ / "run.csv", "--out", dir_ / "gap"});
   ASSERT_EQ(gap.code, 0) << gap.err;
   ASSERT_THAT(gap.out, ::testing::HasSubstr("Missing: force_bias"));
-  std::ifstream sealed(dir_ / "truth.json");
-  const double truth = nlohmann::json::parse(sealed)["effects"][0]["parameters"]["force"]["value"];
+  const double truth = ReadJson(dir_ / "truth.json")["effects"][0]["parameters"]["force"]["value"];
 
   auto estimator = StartEstimator({"--model", dir_ / "gap/model.toml"});
-  std::vector<std::string> live = {"--scenario", scenario, "--seed", "5", "--duration", "4", "--lcm-url", bus_->url()};
-  live.insert(live.end(), hide.begin(), hide.end());
-  Process plant(Program("armcmc-plant"), live);
-  ASSERT_EQ(plant.Wait(std::chrono::seconds(30)).code, 0) << plant.err();
+  ASSERT_EQ(Play("4", hide), 40u) << estimator->err();
   Finish(estimator.get());
-  ASSERT_GT(recorder_->estimates().size(), 20u);
   const estimate_t last = recorder_->estimates().back();
   ASSERT_EQ(last.n_params, 4);
   EXPECT_THAT(reinterpret_cast<const char*>(last.param_name[3]), ::testing::StartsWith("force_bias"));
@@ -49,20 +44,10 @@ TEST_F(LiveModel, TheEstimatorRunsItAndFindsTheHiddenEffect) {
       Program("armcmc-replay"), {"--config", (SourceDir() / "rt/config/hunt_crossley.toml").string(), "--data", Log(),
                                  "--model", dir_ / "gap/model.toml", "--out", dir_ / "replay.csv"});
   ASSERT_EQ(replay.code, 0) << replay.err;
-  std::ifstream csv(dir_ / "replay.csv");
-  std::string line, final_line;
-  std::getline(csv, line);
-  const auto column = [](const std::string& text, const std::string& wanted, const std::string& header) {
-    std::istringstream names(header), cells(text);
-    for (std::string name, cell; std::getline(names, name, ',') && std::getline(cells, cell, ',');)
-      if (name == wanted) return cell;
-    return std::string("no column ") + wanted;
-  };
-  const std::string header = line;
-  while (std::getline(csv, line)) final_line = line;
-  EXPECT_EQ(column(final_line, "pack", header), std::to_string(last.seq));
-  EXPECT_EQ(std::strtod(column(final_line, "K", header).c_str(), nullptr), last.ar_map[0]);
-  EXPECT_EQ(std::strtod(column(final_line, "force_bias_force", header).c_str(), nullptr), last.ar_map[3]);
+  const Table replayed = ReadTable(dir_ / "replay.csv");
+  EXPECT_EQ(replayed.at("pack").back(), std::to_string(last.seq));
+  EXPECT_EQ(std::stod(replayed.at("K").back()), last.ar_map[0]);
+  EXPECT_EQ(std::stod(replayed.at("force_bias_force").back()), last.ar_map[3]);
 }
 
 /// A model file of three additive effects. `amplitudes`: mean and standard deviation of each.
@@ -97,12 +82,9 @@ TEST_F(LiveModel, TheActuatorsEstimatorFindsItsLeak) {
   auto estimator = StartEstimator({"--model", dir_ / "gap/model.toml"});
   std::vector<std::string> again = hide;  // another leak than the recorded one, of the same law
   again.insert(again.end(), {"--sealed", dir_ / "live_truth.json"});
-  auto plant = StartPlant("15", again);
-  ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
-  ASSERT_TRUE(recorder_->WaitForEstimates(150)) << estimator->err();
-  const nlohmann::json report = Finish(estimator.get());
-  std::ifstream sealed(dir_ / "live_truth.json");
-  const double truth = nlohmann::json::parse(sealed)["effects"][0]["parameters"]["rate"]["value"];
+  ASSERT_EQ(Play("15", again), 150u) << estimator->err();
+  const Json report = Finish(estimator.get());
+  const double truth = ReadJson(dir_ / "live_truth.json")["effects"][0]["parameters"]["rate"]["value"];
 
   for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
   if (report["rt"]["policy"] == "SCHED_FIFO") {
@@ -125,10 +107,8 @@ TEST_F(LiveModel, ThreeAddedEffectsAreLearntWithoutAMissOrAnAllocation) {
   std::ofstream(dir_ / "plant.toml") << ThreeEffects({{{kTruth[0], 0.1}, {kTruth[1], 0.1}, {kTruth[2], 0.1}}});
   std::ofstream(dir_ / "model.toml") << ThreeEffects({{{-0.5, kPriorSd}, {1.2, kPriorSd}, {1.2, kPriorSd}}});
   auto estimator = StartEstimator({"--model", dir_ / "model.toml"});
-  auto plant = StartPlant("15", {"--model", dir_ / "plant.toml"});
-  ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
-  ASSERT_TRUE(recorder_->WaitForEstimates(150)) << estimator->err();
-  const nlohmann::json report = Finish(estimator.get());
+  ASSERT_EQ(Play("15", {"--model", dir_ / "plant.toml"}), 150u) << estimator->err();
+  const Json report = Finish(estimator.get());
   for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
   // Without real-time scheduling other programs of the machine may take the processor, which nobody witnesses.
   if (report["rt"]["policy"] == "SCHED_FIFO") {

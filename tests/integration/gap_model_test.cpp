@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "armcmc/gap/model_writer.hpp"
 #include "armcmc/support/model_file.hpp"
+#include "integration/files.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
 #include "tools/gap/gap_rig.hpp"
@@ -19,20 +19,6 @@ namespace armcmc::test {
 namespace {
 
 std::string Scenario() { return (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string(); }
-
-std::vector<double> Forces(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  std::vector<double> forces;
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    std::string cell;
-    for (int i = 0; i < 4; ++i) std::getline(cells, cell, ',');
-    forces.push_back(std::stod(cell));
-  }
-  return forces;
-}
 
 class WrittenModel : public ::testing::TestWithParam<HiddenEffect> {
  protected:
@@ -43,7 +29,10 @@ class WrittenModel : public ::testing::TestWithParam<HiddenEffect> {
         RunProgram(Program("armcmc-plant"), {"--scenario", Scenario(), "--model", dir_ / "model.toml", "--seed", "3",
                                              "--duration", "4", "--csv", dir_ / "run.csv"});
     EXPECT_EQ(o.code, 0) << o.err;
-    return Forces(dir_ / "run.csv");
+    const Table run = ReadTable(dir_ / "run.csv");
+    std::vector<double> forces;
+    for (const std::string& f : run.at("f")) forces.push_back(std::stod(f));
+    return forces;
   }
   ScratchDir dir_;
 };

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "integration/files.hpp"
+#include "support/json.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
@@ -23,11 +23,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-std::string Text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 using Row = std::vector<std::string>;
 
@@ -53,25 +48,29 @@ std::string Csv(const std::vector<Row>& rows) {
 
 class GapProgram : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    shared_ = new ScratchDir();
-    const auto plant = [](std::vector<std::string> arguments) {
-      const Outcome o = RunProgram(Program("armcmc-plant"), arguments);
-      ASSERT_EQ(o.code, 0) << o.err;
-    };
-    const std::string scenario = (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string();
-    for (const auto& [name, seed] : {std::pair{"run", "5"}, {"other", "6"}})
-      plant({"--scenario", scenario, "--seed", seed, "--duration", "4", "--hide-effect", "force_bias",
-             "--effect-strength", "3", "--sealed", *shared_ / (std::string(name) + ".json"), "--csv",
-             *shared_ / (std::string(name) + ".csv")});
-    plant({"--scenario", scenario, "--seed", "5", "--duration", "4", "--csv", *shared_ / "plain.csv"});
-  }
+  static void SetUpTestSuite() { shared_ = new ScratchDir(); }
   static void TearDownTestSuite() {
     delete shared_;
     shared_ = nullptr;
   }
 
-  [[nodiscard]] static std::string Data(const std::string& name = "run.csv") { return *shared_ / name; }
+  /// Four seconds of a plant that hides a bias (its truth beside it, in run.json), or of one that hides nothing
+  /// (plain.csv). Made when first asked for.
+  static std::string Data(const std::string& name = "run.csv") {
+    const std::string path = *shared_ / name;
+    if (std::filesystem::exists(path)) return path;
+    std::vector<std::string> arguments = {
+        "--scenario", (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string(),
+        "--seed",     "5",
+        "--duration", "4",
+        "--csv",      path};
+    if (name == "run.csv")
+      arguments.insert(arguments.end(),
+                       {"--hide-effect", "force_bias", "--effect-strength", "3", "--sealed", *shared_ / "run.json"});
+    const Outcome o = RunProgram(Program("armcmc-plant"), arguments);
+    EXPECT_EQ(o.code, 0) << o.err;
+    return path;
+  }
   [[nodiscard]] std::string Out() const { return dir_ / "out"; }
   /// The first sample rows of the run, changed; index 0 is the header.
   std::string Changed(const std::function<void(std::vector<Row>*)>& change, std::size_t rows = 4001) const {
@@ -86,7 +85,7 @@ class GapProgram : public ::testing::Test {
     arguments.insert(arguments.end(), {"--out", Out(), "--no-pairs"});
     return RunProgram(Program("armcmc-gap"), arguments);
   }
-  [[nodiscard]] nlohmann::json Result() const { return nlohmann::json::parse(Text(dir_ / "out/result.json")); }
+  [[nodiscard]] Json Result() const { return Json::Parse(Text(dir_ / "out/result.json")); }
   void ExpectRefused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
     const Outcome o = Gap(arguments);
     EXPECT_EQ(o.code, 2) << o.out << o.err;
@@ -119,32 +118,12 @@ TEST_F(GapProgram, BadFilesAreRefusedInOneLineThatNamesThePlace) {
   ExpectRefused({"--data", Changed([](auto* rows) { rows->resize(1); })}, {"changed.csv"});
   ExpectRefused({"--data", Changed([](auto* rows) { rows->resize(2); })}, {"changed.csv", "1 samples"});
   ExpectRefused({"--data", Changed([](auto* rows) { (*rows)[500][3] = "nan"; })}, {"changed.csv:501", "f = nan"});
-  ExpectRefused({"--data", Changed([](auto* rows) { (*rows)[500][1] = "1.2.3"; })}, {"changed.csv:501", "x"});
   ExpectRefused({"--data", Changed([](auto* rows) { std::swap((*rows)[500], (*rows)[501]); })},
-                {"changed.csv:502", "time must increase"});
-  ExpectRefused({"--data", Changed([](auto* rows) { rows->insert(rows->begin() + 500, (*rows)[500]); })},
                 {"changed.csv:502", "time must increase"});
   ExpectRefused({"--data", Changed([](auto* rows) {
                    for (Row& row : *rows) row.resize(3);
                  })},
                 {"changed.csv:1", "column f is missing"});
-  ExpectRefused({"--data", Changed([](auto* rows) {
-                   for (Row& row : *rows) row.erase(row.begin() + 1);
-                 })},
-                {"changed.csv:1", "column x is missing"});
-  const std::string cut = Text(Data());
-  std::ofstream(dir_ / "cut.csv") << cut.substr(0, cut.size() - 7);
-  ExpectRefused({"--data", dir_ / "cut.csv"}, {"cut.csv:4002", "cut off"});
-}
-
-TEST_F(GapProgram, DataThatSayNothingAreRefusedInWords) {
-  const auto constant = [](std::size_t column, const char* value) {
-    return [column, value](auto* rows) {
-      for (std::size_t i = 1; i < rows->size(); ++i) (*rows)[i][column] = value;
-    };
-  };
-  ExpectRefused({"--data", Changed(constant(1, "0.1"))}, {"changed.csv", "does not move"});
-  ExpectRefused({"--data", Changed(constant(3, "0.5"))}, {"changed.csv", "f does not change"});
   ExpectRefused({"--data", Changed([](auto*) {}, 301)}, {"changed.csv", "samples; at least"});
 }
 
@@ -165,13 +144,13 @@ TEST_F(GapProgram, NamesWhatIsHiddenAndWritesEveryFile) {
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, IsEmpty());
   EXPECT_THAT(o.out, HasSubstr("Missing: force_bias"));
-  const nlohmann::json result = Result();
+  const Json result = Result();
   EXPECT_EQ(result.at("schema"), 1);
   EXPECT_EQ(result.at("verdict"), "named");
   ASSERT_EQ(result.at("effects").size(), 1u);
-  const nlohmann::json& effect = result["effects"][0];
+  const Json effect = result["effects"][0];
   EXPECT_EQ(effect.at("name"), "force_bias");
-  const double truth = nlohmann::json::parse(Text(Data("run.json")))["effects"][0]["parameters"]["force"]["value"];
+  const double truth = Json::Parse(Text(*shared_ / "run.json"))["effects"][0]["parameters"]["force"]["value"];
   const double mean = effect.at("parameters").at("force").at("mean"), sd = effect["parameters"]["force"].at("sd");
   EXPECT_LT(std::abs(mean - truth), 4.0 * sd);
   EXPECT_GT(result.at("gap").at("closed_fraction").get<double>(), 0.95);
@@ -198,32 +177,29 @@ TEST_F(GapProgram, StopsEarlyAndLeavesNothingOfAnOlderRun) {
   EXPECT_EQ(Text(dir_ / "out/notes.txt"), "of the user");
   EXPECT_THAT(o.out, Not(HasSubstr("report:")));
   // A run that finds nothing takes the model of one that did away, too.
-  ASSERT_EQ(Gap({"--data", Data()}).code, 0);
+  std::ofstream(dir_ / "out/model.toml") << "of an older run";
   ASSERT_EQ(Gap({"--data", Data("plain.csv")}).code, 0);
   EXPECT_EQ(Result().at("verdict"), "none");
   EXPECT_FALSE(std::filesystem::exists(dir_ / "out/model.toml"));
   // And so does one that fails after its data were read.
-  ASSERT_EQ(Gap({"--data", Data()}).code, 0);
+  std::ofstream(dir_ / "out/model.toml") << "of an older run";
   ExpectRefused({"--data", Changed([](auto* rows) {
                    for (std::size_t i = 1; i < rows->size(); ++i) (*rows)[i][1] = "0.1";
                  })},
-                {"does not move"});
+                {"changed.csv", "does not move"});
 }
 
 TEST_F(GapProgram, TheSameSeedGivesTheSameBytes) {
   const auto run = [this](const std::string& seed) {
     EXPECT_EQ(Gap({"--data", Data(), "--seed", seed}).code, 0);
-    nlohmann::json result = Result();
-    result.erase("seconds");
-    result.erase("budget");
-    return std::pair{result.dump(), Text(dir_ / "out/model.toml")};
+    return std::pair{Result().Without({"seconds", "budget"}).dump(), Text(dir_ / "out/model.toml")};
   };
   const auto first = run("3"), second = run("3"), other = run("4");
   EXPECT_EQ(first.first, second.first);
   EXPECT_EQ(first.second, second.second);
   // Another seed draws another bootstrap and changes no fit.
   EXPECT_EQ(first.second, other.second);
-  const nlohmann::json a = nlohmann::json::parse(first.first), b = nlohmann::json::parse(other.first);
+  const Json a = Json::Parse(first.first), b = Json::Parse(other.first);
   EXPECT_EQ(a["verdict"], b["verdict"]);
   EXPECT_EQ(a["parameters"], b["parameters"]);
   EXPECT_EQ(a["effects"][0]["parameters"], b["effects"][0]["parameters"]);
@@ -274,27 +250,11 @@ TEST_F(GapProgram, AWrongUnitGivesNoFalseName) {
         4001);
     const Outcome o = Gap({"--data", wrong, "--steps", "name"});
     ASSERT_EQ(o.code, 0) << o.err;
-    const nlohmann::json result = Result();
+    const Json result = Result();
     if (result["verdict"] == "named") {
       EXPECT_EQ(result["effects"][0]["name"], "force_bias") << o.out;
     }
   }
-}
-
-TEST_F(GapProgram, AlwaysInContactIsFine) {
-  const std::string pressed = Changed(
-      [](auto* rows) {
-        // The law of the plant, from a surface that it never leaves.
-        for (std::size_t i = 1; i < rows->size(); ++i) {
-          const double x = std::stod((*rows)[i][1]) + 0.5, v = std::stod((*rows)[i][2]);
-          (*rows)[i][1] = std::to_string(x);
-          (*rows)[i][3] = std::to_string(std::pow(x, 1.6) * (4.0 + 1.2 * v) + 0.004 * std::sin(1e4 * x));
-        }
-      },
-      4001);
-  const Outcome o = Gap({"--data", pressed, "--steps", "name"});
-  ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_TRUE(Result()["effects"].empty()) << o.out;
 }
 
 TEST_F(GapProgram, SamplesThatMakeNoPacksAreDiagnosedAllTheSame) {
@@ -316,17 +276,12 @@ TEST_F(GapProgram, SamplesThatMakeNoPacksAreDiagnosedAllTheSame) {
 /// Root mean square of column `value` less column `reference` over the rows of a CSV file.
 double Error(const std::filesystem::path& path, const std::string& value, const std::string& reference,
              std::size_t first_row) {
-  const std::vector<Row> rows = Rows(path);
-  const auto at = [&](const std::string& name) {
-    const auto found = std::find(rows[0].begin(), rows[0].end(), name);
-    EXPECT_NE(found, rows[0].end()) << name << " is no column of " << path;
-    return static_cast<std::size_t>(found - rows[0].begin());
-  };
-  const std::size_t v = at(value), r = at(reference);
+  const Table table = ReadTable(path);
+  const std::vector<std::string>&values = table.at(value), &references = table.at(reference);
   double sum = 0.0, count = 0.0;
-  for (std::size_t i = 1 + first_row; i < rows.size(); ++i) {
-    if (rows[i].size() <= std::max(v, r) || rows[i][v].empty() || rows[i][r].empty()) continue;
-    const double error = std::stod(rows[i][v]) - std::stod(rows[i][r]);
+  for (std::size_t i = first_row; i < values.size(); ++i) {
+    if (values[i].empty() || references[i].empty()) continue;
+    const double error = std::stod(values[i]) - std::stod(references[i]);
     sum += error * error;
     count += 1.0;
   }

@@ -16,7 +16,7 @@ TEST_F(RealtimeLive, TheWholeEstimatorRunsWithoutAComplaintOfTheSanitizer) {
   auto plant = StartPlant("4");
   ASSERT_TRUE(recorder_->WaitForEstimates(20)) << estimator->err();
   EXPECT_EQ(plant->Wait(30s).code, 0) << plant->err();
-  const nlohmann::json report = Finish(estimator.get());  // a sanitizer would have another exit code
+  const Json report = Finish(estimator.get());  // a sanitizer would have another exit code
   EXPECT_GE(report["steps"], 20);
   EXPECT_GT(report["snapshot"]["written"], 0);
   EXPECT_EQ(estimator->err().find("Sanitizer"), std::string::npos) << estimator->err();

@@ -18,7 +18,7 @@ class Restart : public LivePair {};
 TEST_F(Restart, AKilledPlantIsNoticedWithinTwoStepsAndANewOneContinues) {
   auto estimator = StartEstimator();
   auto plant = StartPlant("60");
-  ASSERT_TRUE(recorder_->WaitForEstimates(25)) << estimator->err();
+  ASSERT_TRUE(recorder_->WaitForEstimates(20)) << estimator->err();
   plant->Signal(SIGKILL);
   EXPECT_EQ(plant->Wait(5s).signal, SIGKILL);
 
@@ -35,10 +35,10 @@ TEST_F(Restart, AKilledPlantIsNoticedWithinTwoStepsAndANewOneContinues) {
   EXPECT_LE(first.t_status_ns - recorder_->last_pack_ns(), 2 * first.period_ns + first.witness_max_ns);
   const estimate_t learnt = recorder_->estimates().back();
 
-  auto second = StartPlant("3");
+  auto second = StartPlant("1");
   ASSERT_TRUE(recorder_->WaitUntil([&] {
     const auto all = recorder_->estimates();
-    return all.back().run_id != learnt.run_id && all.back().seq >= 30;
+    return all.back().run_id != learnt.run_id && all.back().seq >= 10;
   })) << estimator->err();
   EXPECT_EQ(second->Wait(30s).code, 0);
   EXPECT_TRUE(estimator->WaitForErr("plant was restarted", 1s)) << estimator->err();
@@ -50,27 +50,30 @@ TEST_F(Restart, AKilledPlantIsNoticedWithinTwoStepsAndANewOneContinues) {
   EXPECT_EQ(again->known, 1) << "what was learnt is kept";
   // Not the sd: it holds the small probability that the plant changed meanwhile, which is far out.
   EXPECT_LE(again->q75[0] - again->q25[0], 2.0 * (learnt.q75[0] - learnt.q25[0]));
-  const nlohmann::json report = Finish(estimator.get());
+  const Json report = Finish(estimator.get());
   EXPECT_EQ(report["plant"]["restarts"], 1);
   EXPECT_EQ(report["packs"]["lost"], 0);
 }
 
 TEST_F(Restart, AKilledEstimatorIsNoticedByThePlantAndANewOneTakesOver) {
   auto estimator = StartEstimator();
-  auto plant = StartPlant("6");
-  ASSERT_TRUE(recorder_->WaitForEstimates(15)) << estimator->err();
+  auto plant = StartPlant("60");
+  ASSERT_TRUE(recorder_->WaitForEstimates(8)) << estimator->err();
   estimator->Signal(SIGKILL);
   EXPECT_EQ(estimator->Wait(5s).signal, SIGKILL);
   EXPECT_TRUE(plant->WaitForErr("the estimator is silent", 10s)) << plant->err();
 
   const std::size_t before = recorder_->estimates().size();
   auto second = StartEstimator();
-  ASSERT_TRUE(recorder_->WaitForEstimates(before + 5)) << second->err();
+  ASSERT_TRUE(recorder_->WaitUntil([&] {
+    const auto all = recorder_->estimates();
+    return all.size() >= before + 5 && all.back().known == 1;
+  })) << second->err();
   EXPECT_TRUE(plant->WaitForErr("the estimator answers again", 10s)) << plant->err();
+  plant->Signal(SIGINT);
   EXPECT_EQ(plant->Wait(30s).code, 0) << plant->err();
-  const nlohmann::json report = Finish(second.get());
+  const Json report = Finish(second.get());
   EXPECT_EQ(report["packs"]["lost"], 0) << "packs from before its start are not lost";
-  EXPECT_EQ(recorder_->estimates().back().known, 1);
 }
 
 }  // namespace

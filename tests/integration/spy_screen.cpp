@@ -54,7 +54,7 @@ int Picture::Colours(const Region& region) const {
 
 std::string SpyScreen::MissingTools() {
   std::string missing;
-  for (const char* program : {"Xvfb", "xdotool", "import", "convert", "java"}) {
+  for (const char* program : {"Xvfb", "xdotool", "import", "convert", "java", "lcm-logger"}) {
     if (!OnPath(program)) missing += std::string(missing.empty() ? "" : ", ") + program;
   }
   for (const fs::path& file :

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "armcmc/plant_sim/sha256.hpp"
-#include "process.hpp"
+#include "files.hpp"
+#include "plant_program.hpp"
+#include "support/json.hpp"
 #include "support/paths.hpp"
 
 namespace armcmc::plant_sim {
@@ -21,37 +22,12 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-struct Ended {
-  int code;
-  std::string out, err;
-};
-
-Ended RunPlant(const std::vector<std::string>& arguments, const test::ScratchDir& folder) {
-  Process process(test::Program("armcmc-plant").string(), arguments, folder.path().string());
-  const int code = process.Wait();
-  return {code, process.Out(), process.Err()};
-}
-
-std::string Text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::vector<std::string> Fields(const std::string& line) {
-  std::vector<std::string> fields;
-  std::stringstream stream(line);
-  for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-  return fields;
-}
-
 TEST(PlantProgramHides, OnlyTheMeasuredForceDiffersFromAPlantWithoutTheEffect) {
   const test::ScratchDir folder;
-  ASSERT_EQ(RunPlant({"--seed", "3", "--csv", "plain.csv", "--log", "plain.lcm"}, folder).code, 0);
-  const Ended ended = RunPlant({"--seed", "3", "--csv", "a.csv", "--hide-effect", "coulomb_friction:tanh",
-                                "--effect-gate", "from:8", "--sealed", "truth.json"},
-                               folder);
+  ASSERT_EQ(RunPlant({"--seed", "3", "--csv", "plain.csv"}, folder).code, 0);
+  const test::Outcome ended = RunPlant({"--seed", "3", "--csv", "a.csv", "--hide-effect", "coulomb_friction:tanh",
+                                        "--effect-gate", "from:8", "--sealed", "truth.json"},
+                                       folder);
   ASSERT_EQ(ended.code, 0) << ended.err;
   std::ifstream plain(folder / "plain.csv"), hiding(folder / "a.csv");
   int line_number = 0, changed = 0;
@@ -72,13 +48,13 @@ TEST(PlantProgramHides, OnlyTheMeasuredForceDiffersFromAPlantWithoutTheEffect) {
 
 TEST(PlantProgramHides, NothingButTheSealedFileTellsWhat) {
   const test::ScratchDir folder;
-  const Ended ended = RunPlant({"--seed", "3", "--csv", "a.csv", "--log", "a.lcm", "--hide-effect",
-                                "coulomb_friction,sensor_delay", "--sealed", "truth.json"},
-                               folder);
+  const test::Outcome ended = RunPlant({"--seed", "3", "--csv", "a.csv", "--log", "a.lcm", "--hide-effect",
+                                        "coulomb_friction,sensor_delay", "--sealed", "truth.json"},
+                                       folder);
   ASSERT_EQ(ended.code, 0) << ended.err;
   const std::string sealed = Text(folder / "truth.json");
   EXPECT_THAT(ended.out, HasSubstr(Sha256(sealed)));
-  const nlohmann::json truth = nlohmann::json::parse(sealed);
+  const test::Json truth = test::Json::Parse(sealed);
   EXPECT_EQ(truth.at("schema"), 1);
   EXPECT_EQ(truth.at("kind"), "pair");
   ASSERT_EQ(truth.at("effects").size(), 2u);
@@ -95,6 +71,7 @@ TEST(PlantProgramHides, NothingButTheSealedFileTellsWhat) {
 
 TEST(PlantProgramHides, ARandomDrawIsReproducedToTheByteAndNoneIsSealedToo) {
   const test::ScratchDir folder;
+  // Seed 6 draws a pair.
   for (const std::string name : {"a", "b"})
     ASSERT_EQ(
         RunPlant({"--seed", "6", "--csv", name + ".csv", "--hide-effect", "random", "--sealed", name + ".json"}, folder)
@@ -106,27 +83,28 @@ TEST(PlantProgramHides, ARandomDrawIsReproducedToTheByteAndNoneIsSealedToo) {
   ASSERT_EQ(
       RunPlant({"--seed", "6", "--csv", "none.csv", "--hide-effect", "none", "--sealed", "none.json"}, folder).code, 0);
   EXPECT_EQ(Text(folder / "none.csv"), Text(folder / "plain.csv"));
-  EXPECT_EQ(nlohmann::json::parse(Text(folder / "none.json")).at("kind"), "none");
+  EXPECT_EQ(test::Json::Parse(Text(folder / "none.json")).at("kind"), "none");
 }
 
 TEST(PlantProgramHides, TheSealedFileTellsAllThatAScorerNeeds) {
   const test::ScratchDir folder;
   const auto run = [&folder](const std::string& seed) {
-    const Ended ended = RunPlant({"--scenario", "contact_rich_mm", "--seed", seed, "--csv", seed + ".csv", "--sealed",
-                                  seed + ".json", "--hide-effect", "coulomb_friction:tanh", "--effect-gate", "from:4"},
-                                 folder);
+    const test::Outcome ended =
+        RunPlant({"--scenario", "contact_rich_mm", "--seed", seed, "--csv", seed + ".csv", "--sealed", seed + ".json",
+                  "--hide-effect", "coulomb_friction:tanh", "--effect-gate", "from:4"},
+                 folder);
     EXPECT_EQ(ended.code, 0) << ended.err;
-    return nlohmann::json::parse(Text(folder / (seed + ".json")));
+    return test::Json::Parse(Text(folder / (seed + ".json")));
   };
-  const nlohmann::json truth = run("7"), other = run("8");
-  const nlohmann::json& effect = truth.at("effects").at(0);
+  const test::Json truth = run("7"), other = run("8");
+  const test::Json effect = truth.at("effects").at(0);
   EXPECT_EQ(effect.at("formula_kind"), "catalogue");
   EXPECT_EQ(effect.at("onset_s"), 4.0);
   EXPECT_TRUE(effect.at("end_s").is_null());
   EXPECT_NEAR(truth.at("gap_ratio").get<double>(), 1.0, 0.05);
   EXPECT_EQ(truth.at("motion").at("program"), "rich");
   EXPECT_EQ(truth.at("motion").at("depth"), 8e-3);
-  const nlohmann::json& noise = truth.at("noise").at("f");
+  const test::Json noise = truth.at("noise").at("f");
   EXPECT_EQ(noise.at("kind"), "gaussian");
   EXPECT_EQ(noise.at("unit"), "N");
   EXPECT_NEAR(noise.at("sd").get<double>(), 0.01 * noise.at("reference").get<double>(), 1e-12);
@@ -167,7 +145,8 @@ TEST(PlantProgram, AModelFileBecomesThePlant) {
   const test::ScratchDir folder;
   const auto run = [&folder](const std::string& text, const std::string& name) {
     std::ofstream(folder / "model.toml") << "schema = 1\nbase = \"hunt_crossley\"\n" << text;
-    const Ended ended = RunPlant({"--scenario", "contact_rich", "--model", "model.toml", "--csv", name}, folder);
+    const test::Outcome ended =
+        RunPlant({"--scenario", "contact_rich", "--model", "model.toml", "--csv", name}, folder);
     EXPECT_EQ(ended.code, 0) << ended.err;
     return Text(folder / name);
   };
@@ -193,11 +172,11 @@ TEST(PlantProgramHides, AScenarioFileMayNameTheEffect) {
     return RunPlant({"--scenario", "s.toml", "--csv", "a.csv", "--sealed", "truth.json"}, folder);
   };
   ASSERT_EQ(run("name = \"force_bias\"\ngate = \"until:5\"\n[hidden_effect.parameters]\nforce = -0.25\n").code, 0);
-  const nlohmann::json effect = nlohmann::json::parse(Text(folder / "truth.json")).at("effects").at(0);
+  const test::Json effect = test::Json::Parse(Text(folder / "truth.json")).at("effects").at(0);
   EXPECT_EQ(effect.at("parameters").at("force").at("value"), -0.25);
   EXPECT_EQ(effect.at("gate"), "until:5");
   const auto expect = [&](const std::string& table, const std::string& words) {
-    const Ended ended = run(table);
+    const test::Outcome ended = run(table);
     EXPECT_EQ(ended.code, 2) << table;
     EXPECT_THAT(ended.err, HasSubstr(words));
   };
@@ -214,7 +193,7 @@ TEST(PlantProgramHides, BadUsageEndsWithTwoAndOneClearLine) {
   const test::ScratchDir folder;
   const auto expect = [&folder](std::vector<std::string> arguments, const std::string& words) {
     arguments.insert(arguments.end(), {"--csv", "a.csv"});
-    const Ended ended = RunPlant(arguments, folder);
+    const test::Outcome ended = RunPlant(arguments, folder);
     EXPECT_EQ(ended.code, 2) << words;
     EXPECT_THAT(ended.err, HasSubstr(words));
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;

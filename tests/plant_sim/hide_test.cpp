@@ -2,23 +2,32 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "armcmc/plant_sim/effects/gap_meter.hpp"
-#include "armcmc/plant_sim/simulation.hpp"
 #include "builtin_scenario.hpp"
+#include "samples.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
 
-/// The paper's contact, short, so that many searches take seconds.
+/// The paper's contact, short.
 Scenario Short() {
   Scenario scenario = BuiltinScenario("hunt_crossley_paper");
   scenario.duration_s = 8.0;
+  return scenario;
+}
+
+/// For gaps that are proportional to their strength, and for none: a search is as long as it has samples to refit.
+Scenario Coarse(Scenario scenario) {
+  scenario.sample_interval_s = 0.005;
+  scenario.pack_samples = 20;
   return scenario;
 }
 
@@ -46,30 +55,24 @@ TEST(GapMeter, MeasuresWhatAConstantLeaves) {
   request.values = {{"force", 0.1}};
   request.gate = Gate::Parse("free");
   const Scenario scenario = Short();
-  Simulation simulation(scenario, 1);
   int free_samples = 0;
-  for (int i = 0; i <= 8000; ++i) {
-    ASSERT_TRUE(simulation.Next());
-    free_samples += simulation.truth().mode;
-  }
+  for (const PlantSample& sample : TrueSamples(scenario, 8001)) free_samples += sample.mode;
   EXPECT_NEAR(DecideEffects(scenario, {request}, 1)[0].gap_ratio, std::sqrt(free_samples / 8001.0), 1e-6);
 }
 
 TEST(Hide, TheStrengthGivesTheGapRatioOfEveryEffect) {
-  Scenario scenario = Short();
+  const Scenario scenario = Short();
   const std::unique_ptr<GapMeter> meter = MakeGapMeter(scenario);
+  constexpr double kGapRatio = 0.3;
   for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
-    for (const double gap_ratio : {0.3, 1.0}) {
-      const std::vector<HiddenEffect> effects =
-          DecideEffects(scenario, {Request(spec.name, spec.variant, gap_ratio)}, 3);
-      ASSERT_EQ(effects.size(), 1u);
-      EXPECT_NEAR(meter->GapRatio(effects), gap_ratio, 0.05 * gap_ratio) << spec.name << ":" << spec.variant;
-    }
+    const std::vector<HiddenEffect> effects = DecideEffects(scenario, {Request(spec.name, spec.variant, kGapRatio)}, 3);
+    ASSERT_EQ(effects.size(), 1u);
+    EXPECT_NEAR(meter->GapRatio(effects), kGapRatio, 0.05 * kGapRatio) << spec.name << ":" << spec.variant;
   }
 }
 
 TEST(Hide, InTheAirOnlyEffectsThatAreFeltThereCanBeHidden) {
-  const Scenario scenario = BuiltinScenario("experiment_free_air_chirp");
+  const Scenario scenario = Coarse(BuiltinScenario("experiment_free_air_chirp"));
   for (const char* name : {"inertia", "force_bias", "force_drift", "viscous_friction", "coulomb_friction",
                            "presliding_friction", "periodic_disturbance"})
     EXPECT_NEAR(DecideEffects(scenario, {Request(name, "", 3.0)}, 1)[0].gap_ratio, 3.0, 0.031) << name;
@@ -83,11 +86,9 @@ TEST(Hide, TheGapRatioCountsANoiseThatGrowsByItsRms) {
   EffectRequest request = Request("viscous_friction", "linear", 1.0);
   request.values = {{"damping", 0.5}};
   const double plain = DecideEffects(scenario, {request}, 1)[0].gap_ratio;
-  Simulation simulation(scenario, 1);
   double sum = 0.0;
-  for (int i = 0; i <= 8000; ++i) {
-    ASSERT_TRUE(simulation.Next());
-    const double factor = 1.0 + 2.0 * std::abs(simulation.truth().output) / 1.5;
+  for (const PlantSample& sample : TrueSamples(scenario, 8001)) {
+    const double factor = 1.0 + 2.0 * std::abs(sample.output) / 1.5;
     sum += factor * factor / 8001;
   }
   scenario.noise.back().growth = 2.0;
@@ -95,30 +96,14 @@ TEST(Hide, TheGapRatioCountsANoiseThatGrowsByItsRms) {
   EXPECT_NEAR(DecideEffects(scenario, {request}, 1)[0].gap_ratio, plain / std::sqrt(sum), 1e-9 * plain);
 }
 
-TEST(Hide, FindsStrengthsOnEveryContactScenario) {
-  for (const char* name : {"contact_rich", "contact_rich_mm", "contact_slow_triangle", "contact_sine"}) {
+TEST(Hide, FindsStrengthsWhateverTheSizeAndTheMotionOfTheContact) {
+  for (const char* name : {"contact_rich_mm", "contact_sine"}) {
     const Scenario scenario = BuiltinScenario(name);
     for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
       const HiddenEffect effect = DecideEffects(scenario, {Request(spec.name, spec.variant, 0.5)}, 3).front();
       EXPECT_NEAR(effect.gap_ratio, 0.5, 0.0051) << name << " " << spec.name << ":" << spec.variant;
     }
   }
-}
-
-TEST(Hide, TheSimulationCarriesTheEffectAndOnlyInTheOutput) {
-  Scenario scenario = Short();
-  Simulation plain(scenario, 5);
-  scenario.hidden = DecideEffects(scenario, {Request("coulomb_friction", "tanh", 1.0)}, 5);
-  Simulation hiding(scenario, 5), again(scenario, 5);
-  double largest = 0.0;
-  for (int i = 0; i <= 8000; ++i) {
-    ASSERT_TRUE(plain.Next() && hiding.Next() && again.Next());
-    ASSERT_EQ(hiding.truth().output, plain.truth().output);
-    ASSERT_EQ(hiding.measured().inputs, plain.measured().inputs);
-    ASSERT_EQ(hiding.measured().output, again.measured().output);
-    largest = std::max(largest, std::abs(hiding.measured().output - plain.measured().output));
-  }
-  EXPECT_NEAR(largest, scenario.hidden[0].values[0], 0.05 * largest);
 }
 
 TEST(Hide, TheDrawIsTheSameForASeedAndComesToEverythingOverSeeds) {
@@ -128,10 +113,10 @@ TEST(Hide, TheDrawIsTheSameForASeedAndComesToEverythingOverSeeds) {
   scenario.pack_samples = 10;
   std::map<HiddenKind, int> kinds;
   std::set<std::string> names, gates, forms;
-  constexpr int kSeeds = 400;
+  constexpr int kSeeds = 200;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const std::vector<HiddenEffect> effects = DrawEffects(scenario, 1.0, {}, seed);
-    if (seed <= 20) {
+    if (seed <= 10) {
       const std::vector<HiddenEffect> again = DrawEffects(scenario, 1.0, {}, seed);
       ASSERT_EQ(again.size(), effects.size());
       for (std::size_t i = 0; i < effects.size(); ++i) {
@@ -159,7 +144,7 @@ TEST(Hide, TheDrawIsTheSameForASeedAndComesToEverythingOverSeeds) {
 }
 
 TEST(Hide, NamesWhatIsWrongWithARequest) {
-  const Scenario scenario = Short();
+  const Scenario scenario = Coarse(Short());
   const auto problem = [&scenario](const std::string& text, double gap_ratio = 1.0) -> std::string {
     try {
       static_cast<void>(DecideEffects(scenario, ParseEffectRequests(text, {}, gap_ratio), 1));

@@ -5,27 +5,36 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "armcmc/data_pack_t.hpp"
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
-#include "process.hpp"
+#include "support/json.hpp"
 #include "support/paths.hpp"
+#include "support/process.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
 
+using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::Not;
+
+/// Starts armcmc-plant on a bus, in a folder into which it writes its report.
+test::Process StartPlant(const test::ScratchDir& folder, const test::TestBus& bus, std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--lcm-url", bus.url(), "--report", "r.json"});
+  return {test::Program("armcmc-plant"), arguments, folder.path()};
+}
 
 /// Answers packs with the paper's true parameters, while `answers` says so.
 class StandIn {
@@ -34,8 +43,8 @@ class StandIn {
     bus_.subscribeFunction("PLANT_PACK", &StandIn::OnPack, this);
   }
 
-  void RunWhile(Process* process) {
-    while (process->Running()) bus_.handleTimeout(20);
+  void RunWhile(test::Process* process) {
+    while (process->running()) bus_.handleTimeout(20);
   }
 
   std::set<std::int64_t> seqs, run_ids;
@@ -73,24 +82,17 @@ class StandIn {
   std::function<bool(std::int64_t)> answers_;
 };
 
-nlohmann::json ReadJson(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return nlohmann::json::parse(file);
-}
-
 TEST(LivePlant, ScoresAPerfectEstimatorAsPerfect) {
   ARMCMC_REQUIRE_MULTICAST();
   const test::TestBus bus;
   const test::ScratchDir folder;
   StandIn estimator(bus.url(), [](std::int64_t) { return true; });
-  Process plant(test::Program("armcmc-plant").string(),
-                {"--duration", "2", "--lcm-url", bus.url(), "--report", "r.json", "--log", "r.lcm", "--csv", "r.csv"},
-                folder.path().string());
+  test::Process plant = StartPlant(folder, bus, {"--duration", "1", "--log", "r.lcm", "--csv", "r.csv"});
   estimator.RunWhile(&plant);
-  ASSERT_EQ(plant.Wait(), 0) << plant.Err();
-  const nlohmann::json report = ReadJson(folder / "r.json");
+  ASSERT_EQ(plant.Wait(10s).code, 0) << plant.err();
+  const test::Json report = test::ReadJson(folder / "r.json");
   EXPECT_EQ(report["schema"], 1);
-  EXPECT_EQ(report["packs"]["sent"], 20);
+  EXPECT_EQ(report["packs"]["sent"], 10);
   EXPECT_EQ(report["packs"]["answered"], static_cast<int>(estimator.seqs.size()));
   // The stranger's message follows the answer: the one after the last answer may meet a plant that has stopped.
   EXPECT_GE(report["estimates"]["foreign"], static_cast<int>(estimator.seqs.size()) - 1);
@@ -99,43 +101,41 @@ TEST(LivePlant, ScoresAPerfectEstimatorAsPerfect) {
   EXPECT_EQ(report["coverage95"]["p"], 1.0);
   EXPECT_EQ(report["estimator"]["misses"]["own"], 2);
   EXPECT_EQ(report["estimator"]["degraded"].size(), 1u);
-  EXPECT_THAT(plant.Out(), HasSubstr("20 of 20 sent"));
+  EXPECT_THAT(plant.out(), HasSubstr("10 of 10 sent"));
   EXPECT_EQ(estimator.run_ids.size(), 1u);
 
   lcm::LogFile log((folder / "r.lcm").string(), "r");
   int packs = 0;
   while (const lcm::LogEvent* event = log.readNextEvent()) packs += event->channel == "PLANT_PACK" ? 1 : 0;
-  EXPECT_EQ(packs, 20);
+  EXPECT_EQ(packs, 10);
   std::ifstream csv(folder / "r.csv");
   int lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
-  EXPECT_EQ(lines, 2'002);
+  EXPECT_EQ(lines, 1'002);
 }
 
 TEST(LivePlant, NoticesOnceThatTheEstimatorWentSilentAndOnceThatItCameBack) {
   ARMCMC_REQUIRE_MULTICAST();
   const test::TestBus bus;
   const test::ScratchDir folder;
-  StandIn estimator(bus.url(), [](std::int64_t seq) { return seq <= 5 || seq > 14; });
-  Process plant(test::Program("armcmc-plant").string(),
-                {"--duration", "2", "--lcm-url", bus.url(), "--report", "r.json"}, folder.path().string());
+  StandIn estimator(bus.url(), [](std::int64_t seq) { return seq <= 3 || seq > 9; });
+  test::Process plant = StartPlant(folder, bus, {"--duration", "1.4"});
   estimator.RunWhile(&plant);
-  ASSERT_EQ(plant.Wait(), 0) << plant.Err();
-  EXPECT_THAT(plant.Err(), HasSubstr("silent"));
-  EXPECT_THAT(plant.Err(), HasSubstr("answers again, at pack"));
-  EXPECT_GE(ReadJson(folder / "r.json")["estimator_silences"]["noticed"], 1);
+  ASSERT_EQ(plant.Wait(10s).code, 0) << plant.err();
+  EXPECT_THAT(plant.err(), HasSubstr("silent"));
+  EXPECT_THAT(plant.err(), HasSubstr("answers again, at pack"));
+  EXPECT_GE(test::ReadJson(folder / "r.json")["estimator_silences"]["noticed"], 1);
 }
 
 TEST(LivePlant, SaysThatNobodyAnsweredAndGoesOn) {
   ARMCMC_REQUIRE_MULTICAST();
   const test::TestBus bus;
   const test::ScratchDir folder;
-  Process plant(test::Program("armcmc-plant").string(),
-                {"--duration", "0.3", "--lcm-url", bus.url(), "--report", "r.json"}, folder.path().string());
-  ASSERT_EQ(plant.Wait(), 0) << plant.Err();
-  EXPECT_THAT(plant.Out(), HasSubstr("No estimator answered"));
-  EXPECT_TRUE(ReadJson(folder / "r.json")["mae_active_contact"]["K"].is_null());
-  EXPECT_THAT(plant.Err(), Not(HasSubstr("silent")));
+  test::Process plant = StartPlant(folder, bus, {"--duration", "0.3"});
+  ASSERT_EQ(plant.Wait(10s).code, 0) << plant.err();
+  EXPECT_THAT(plant.out(), HasSubstr("No estimator answered"));
+  EXPECT_TRUE(test::ReadJson(folder / "r.json")["mae_active_contact"]["K"].is_null());
+  EXPECT_THAT(plant.err(), Not(HasSubstr("silent")));
 }
 
 TEST(LivePlant, StopsCleanlyOnASignalWithItsTableAndReport) {
@@ -143,13 +143,12 @@ TEST(LivePlant, StopsCleanlyOnASignalWithItsTableAndReport) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const test::TestBus bus;
     const test::ScratchDir folder;
-    Process plant(test::Program("armcmc-plant").string(),
-                  {"--duration", "1000", "--lcm-url", bus.url(), "--report", "r.json"}, folder.path().string());
-    while (plant.Running() && plant.Out().find("packs of") == std::string::npos) usleep(10'000);
+    test::Process plant = StartPlant(folder, bus, {"--duration", "1000"});
+    while (plant.running() && plant.out().find("packs of") == std::string::npos) usleep(10'000);
     plant.Signal(signal);
-    EXPECT_EQ(plant.Wait(), 0) << plant.Err();
-    EXPECT_THAT(plant.Out(), HasSubstr("Stopped early"));
-    EXPECT_EQ(ReadJson(folder / "r.json")["interrupted"], true);
+    EXPECT_EQ(plant.Wait(10s).code, 0) << plant.err();
+    EXPECT_THAT(plant.out(), HasSubstr("Stopped early"));
+    EXPECT_EQ(test::ReadJson(folder / "r.json")["interrupted"], true);
   }
 }
 

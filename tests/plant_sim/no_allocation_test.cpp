@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "armcmc/plant_sim/effects/effect.hpp"
 #include "armcmc/plant_sim/latency_histogram.hpp"
@@ -39,32 +40,33 @@ TEST_P(PublishingPath, DoesNotAllocate) {
   EXPECT_EQ(allocations, 0);
 }
 
-TEST(HiddenEffects, DoNotAllocateOnThePublishingPath) {
-  if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
-  Scenario scenario = BuiltinScenario("hunt_crossley_paper");
-  for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
-    std::vector<double> values;
-    for (const EffectParameter& parameter : spec.parameters) values.push_back(0.05 * parameter.hi);
-    scenario.hidden = {HiddenEffect{&spec, values, Gate{}, 0.0}};
-    PackBuilder builder(scenario, 1, 1);
-    bool finite = true;
-    long allocations = 0;
-    {
-      test::AllocCounter guard;
-      for (int k = 0; k < 20; ++k) finite = builder.Next() && finite;
-      allocations = guard.count();
-    }
-    EXPECT_TRUE(finite) << spec.name;
-    EXPECT_EQ(allocations, 0) << spec.name;
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Scenarios, PublishingPath,
                          testing::Values("hunt_crossley_paper", "hunt_crossley_drift", "soft_actuator_paper",
-                                         "soft_actuator_excited", "contact_rich", "experiment_step_hold",
-                                         "experiment_closed_valve_hold", "experiment_u_triangle",
-                                         "experiment_fast_and_slow_fills"),
+                                         "soft_actuator_excited", "contact_rich", "experiment_closed_valve_hold",
+                                         "experiment_u_triangle", "experiment_fast_and_slow_fills"),
                          [](const auto& at) { return std::string(at.param); });
+
+TEST(HiddenEffects, DoNotAllocateOnThePublishingPath) {
+  if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  for (const char* name : {"hunt_crossley_paper", "soft_actuator_excited"}) {
+    Scenario scenario = BuiltinScenario(name);
+    for (const EffectSpec& spec : EffectRegistry(*scenario.family)) {
+      std::vector<double> values;
+      for (const EffectParameter& parameter : spec.parameters) values.push_back(0.05 * parameter.hi);
+      scenario.hidden = {HiddenEffect{&spec, values, Gate{}, 0.0}};
+      PackBuilder builder(scenario, 1, 1);
+      bool finite = true;
+      long allocations = 0;
+      {
+        test::AllocCounter guard;
+        for (int k = 0; k < 20; ++k) finite = builder.Next() && finite;
+        allocations = guard.count();
+      }
+      EXPECT_TRUE(finite) << spec.name;
+      EXPECT_EQ(allocations, 0) << spec.name;
+    }
+  }
+}
 
 }  // namespace
 }  // namespace armcmc::plant_sim

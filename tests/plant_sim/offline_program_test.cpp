@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <fstream>
 #include <lcm/lcm-cpp.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "armcmc/data_pack_t.hpp"
-#include "process.hpp"
+#include "files.hpp"
+#include "plant_program.hpp"
 #include "support/paths.hpp"
 
 namespace armcmc::plant_sim {
@@ -19,24 +19,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-
-struct Ended {
-  int code;
-  std::string out, err;
-};
-
-Ended RunPlant(const std::vector<std::string>& arguments, const test::ScratchDir& folder) {
-  Process process(test::Program("armcmc-plant").string(), arguments, folder.path().string());
-  const int code = process.Wait();
-  return {code, process.Out(), process.Err()};
-}
-
-std::string Text(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 TEST(PlantProgram, WritesTheSameCsvForTheSameSeedFromAnyFolder) {
   const test::ScratchDir folder;
@@ -59,7 +41,7 @@ TEST(PlantProgram, WritesTheActuatorsColumns) {
 
 TEST(PlantProgram, WritesALogOfPacksWithoutABus) {
   const test::ScratchDir folder;
-  const Ended ended =
+  const test::Outcome ended =
       RunPlant({"--duration", "2", "--csv", "a.csv", "--log", "a.lcm", "--prefix", "X_", "--inject", "drop@5"}, folder);
   ASSERT_EQ(ended.code, 0) << ended.err;
   lcm::LogFile log((folder / "a.lcm").string(), "r");
@@ -79,7 +61,7 @@ TEST(PlantProgram, WritesALogOfPacksWithoutABus) {
 TEST(PlantProgram, BadUsageEndsWithTwoAndOneClearLine) {
   const test::ScratchDir folder;
   const auto expect = [&folder](const std::vector<std::string>& arguments, const std::string& words) {
-    const Ended ended = RunPlant(arguments, folder);
+    const test::Outcome ended = RunPlant(arguments, folder);
     EXPECT_EQ(ended.code, 2) << words;
     EXPECT_THAT(ended.err, HasSubstr(words));
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
@@ -99,14 +81,14 @@ TEST(PlantProgram, BadUsageEndsWithTwoAndOneClearLine) {
 
 TEST(PlantProgram, AFileThatCannotBeWrittenEndsWithOne) {
   const test::ScratchDir folder;
-  const Ended ended = RunPlant({"--csv", "no/such/folder.csv"}, folder);
+  const test::Outcome ended = RunPlant({"--csv", "no/such/folder.csv"}, folder);
   EXPECT_EQ(ended.code, 1);
   EXPECT_THAT(ended.err, HasSubstr("no/such/folder.csv"));
 }
 
 TEST(PlantProgram, HelpTeachesWithAnExample) {
   const test::ScratchDir folder;
-  const Ended help = RunPlant({"--help"}, folder);
+  const test::Outcome help = RunPlant({"--help"}, folder);
   EXPECT_EQ(help.code, 0);
   EXPECT_THAT(help.out, HasSubstr("armcmc-plant --scenario"));
   EXPECT_EQ(RunPlant({"--version"}, folder).code, 0);

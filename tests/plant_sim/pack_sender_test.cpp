@@ -50,20 +50,12 @@ TEST(PackSender, SendsEveryPackAndItsTruthUnderThePrefix) {
   EXPECT_EQ(Decode(sink.On("B_PLANT_PACK")[1]).t_last_ns, 200);
 }
 
-TEST(PackSender, FitsOneDatagramAndTheLogRing) {
-  const RecordingSink sink = SendPacks(1, "");
-  EXPECT_LT(sink.On("PLANT_PACK")[0].bytes.size(), 16'384u);
-}
-
 TEST(PackSender, DropsDuplicatesAndReorders) {
   EXPECT_THAT(SendPacks(4, "drop@2").Seqs("PLANT_PACK"), ElementsAre(1, 3, 4));
   EXPECT_THAT(SendPacks(4, "duplicate@2").Seqs("PLANT_PACK"), ElementsAre(1, 2, 2, 3, 4));
   EXPECT_THAT(SendPacks(4, "reorder@2").Seqs("PLANT_PACK"), ElementsAre(1, 3, 2, 4));
   EXPECT_THAT(SendPacks(4, "reorder@2,reorder@3").Seqs("PLANT_PACK"), ElementsAre(1, 2, 4, 3));
-}
-
-TEST(PackSender, SendsTheLastPackLateWhenNothingFollowsIt) {
-  EXPECT_THAT(SendPacks(2, "reorder@2").Seqs("PLANT_PACK"), ElementsAre(1, 2));
+  EXPECT_THAT(SendPacks(2, "reorder@2").Seqs("PLANT_PACK"), ElementsAre(1, 2)) << "nothing follows the last";
 }
 
 TEST(PackSender, SpoilsTheContentOfOnePackOnly) {
@@ -75,6 +67,33 @@ TEST(PackSender, SpoilsTheContentOfOnePackOnly) {
   EXPECT_EQ(Decode(packs[1]).n_samples, 257);
   EXPECT_EQ(Decode(packs[2]).n_samples, 100);
   for (const double y : Decode(packs[2]).y) EXPECT_FALSE(std::isnan(y));
+}
+
+TEST(PackSender, ZeroesBlowsUpAndDamagesOnePackOnly) {
+  const RecordingSink sink = SendPacks(4, "zero@1,huge@2,corrupt@3");
+  const std::vector<RecordingSink::Message> packs = sink.On("PLANT_PACK");
+  ASSERT_EQ(packs.size(), 4u);
+  const data_pack_t zero = Decode(packs[0]), huge = Decode(packs[1]), corrupt = Decode(packs[2]);
+  EXPECT_EQ(zero.seq, 1);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(zero.y[i], 0.0);
+    EXPECT_EQ(zero.u[i][0], 0.0);
+  }
+  EXPECT_EQ(huge.y[50], 1e300);
+  EXPECT_LT(std::abs(huge.y[49]), 1e3);
+  EXPECT_NE(huge.u[50][0], 0.0);
+  EXPECT_NE(corrupt.seq, 3) << "the type is whole, all behind it is not";
+  EXPECT_EQ(Decode(packs[3]).seq, 4);
+  EXPECT_LT(std::abs(Decode(packs[3]).y[50]), 1e3);
+}
+
+TEST(PackSender, AJumpOfTheClockShowsInThePackAloneAndStays) {
+  const RecordingSink sink = SendPacks(3, "clock@2:1.5");
+  const std::vector<RecordingSink::Message> packs = sink.On("PLANT_PACK");
+  ASSERT_EQ(packs.size(), 3u);
+  EXPECT_EQ(Decode(packs[0]).t_last_ns, 100);
+  EXPECT_EQ(Decode(packs[1]).t_last_ns, 200 + 1'500'000);
+  EXPECT_EQ(Decode(packs[2]).t_last_ns, 300 + 1'500'000);
 }
 
 TEST(PackSender, PutsForeignAndUndecodableMessagesBeforeThePack) {

@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "armcmc/plant_sim/simulation.hpp"
 #include "builtin_scenario.hpp"
+#include "files.hpp"
 #include "support/paths.hpp"
 
 namespace armcmc::plant_sim {
@@ -19,20 +19,11 @@ namespace {
 
 using Columns = std::map<std::string, std::vector<double>>;
 
-Columns ReadCsv(const std::string& relative) {
-  std::ifstream file(*test::FindData(relative));
-  std::string line, cell;
-  std::vector<std::string> names;
-  std::getline(file, line);
-  for (std::istringstream cells(line); std::getline(cells, cell, ',');) names.push_back(cell);
+Columns ReadColumns(const std::string& relative) {
+  const CsvTable table = ReadTable(*test::FindData(relative));
   Columns columns;
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    for (const std::string& name : names) {
-      std::getline(cells, cell, ',');
-      columns[name].push_back(std::stod(cell));
-    }
-  }
+  for (const std::vector<double>& row : table.rows)
+    for (std::size_t i = 0; i < table.names.size(); ++i) columns[table.names[i]].push_back(row.at(i));
   return columns;
 }
 
@@ -43,7 +34,7 @@ double PrintPrecision(double value, int digits) {
 
 TEST(HuntCrossleyPaper, AgreesWithTheStoredTraceToPrintPrecision) {
   ARMCMC_REQUIRE_DATA("paper/hunt_crossley.csv");
-  const Columns stored = ReadCsv("paper/hunt_crossley.csv");
+  const Columns stored = ReadColumns("paper/hunt_crossley.csv");
   Simulation simulation(BuiltinScenario("hunt_crossley_paper"), 1);
   ASSERT_EQ(stored.at("t").size(), 20'001u);
   for (std::size_t i = 0; i < stored.at("t").size(); ++i) {
@@ -91,8 +82,9 @@ TEST(HuntCrossley, ExactTrackingSolvesTheEquationOfMotion) {
 
 TEST(SoftActuatorPaper, AgreesWithTheStoredTraceToPrintPrecision) {
   ARMCMC_REQUIRE_DATA("paper/soft_actuator.csv");
-  const Columns stored = ReadCsv("paper/soft_actuator.csv");
+  const Columns stored = ReadColumns("paper/soft_actuator.csv");
   Simulation simulation(BuiltinScenario("soft_actuator_paper"), 1);
+  ASSERT_EQ(stored.at("t").size(), 20'001u);
   for (std::size_t i = 0; i < stored.at("t").size(); ++i) {
     ASSERT_TRUE(simulation.Next());
     const PlantSample& truth = simulation.truth();

@@ -45,6 +45,10 @@ TEST(Scorer, ScoresTheShareOfContactOfThePaper) {
   const Score score = scorer.Result(Convention::kOnePackLater);
   EXPECT_NEAR(static_cast<double>(score.in_mode_samples) / 20'001.0, 0.693, 5e-4);
   EXPECT_EQ(score.target_rel_l2, 1.0);  // nothing known: the prediction is 0
+  // Out of contact there is no force, and 0 is right.
+  EXPECT_GT(score.target_mae_in_mode, 1.0);
+  EXPECT_NEAR(score.target_mae_overall * 20'001.0,
+              score.target_mae_in_mode * static_cast<double>(score.in_mode_samples), 1e-6);
   EXPECT_NEAR(score.modes[0][1].mae, 2.3, 1e-11);
   EXPECT_TRUE(std::isnan(score.modes[0][1].mae_active));
   EXPECT_TRUE(std::isnan(scorer.Coverage(0)));
@@ -87,17 +91,17 @@ TEST(Scorer, FollowsAStepOfTheTruth) {
 
 TEST(Scorer, CountsTheIntervalsThatHoldTheTruthOfTheirTime) {
   Scorer scorer(BuiltinScenario("hunt_crossley_step"), 1);
-  const auto add = [&scorer](std::int64_t seq, double lo, double hi) {
+  const auto add = [&scorer](std::int64_t seq, double k, double b) {
     ReceivedEstimate estimate = Contact(seq, 0.1 * static_cast<double>(seq), {3.0, 2.3, 1.7});
     estimate.interval_mode = 0;
-    estimate.lo = {lo, 2.4, 1.6};
-    estimate.hi = {hi, 2.5, 1.8};
+    estimate.lo = {k - 0.1, b - 0.05, 1.6};
+    estimate.hi = {k + 0.1, b + 0.05, 1.8};
     scorer.Add(estimate);
   };
-  add(10, 3.9, 4.1);  // K is 4 here,
-  add(79, 3.9, 4.1);
-  add(80, 3.9, 4.1);  // and 2 from the end of this pack on.
-  add(90, 1.9, 2.1);
+  add(10, 4.0, 2.45);  // K is 4 here,
+  add(79, 4.0, 2.15);  // and B is always 2.3: above this interval, below the others.
+  add(80, 4.0, 2.45);  // K is 2 from the end of this pack on.
+  add(90, 2.0, 2.45);
   EXPECT_DOUBLE_EQ(scorer.Coverage(0), 0.75);
   EXPECT_DOUBLE_EQ(scorer.Coverage(1), 0.0);
   EXPECT_DOUBLE_EQ(scorer.Coverage(2), 1.0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <set>
 #include <vector>
@@ -13,10 +14,10 @@ namespace {
 constexpr int kSamples = 200'000;
 
 /// Errors of the output channel while it truly is `level`.
-std::vector<double> Errors(const NoiseLaw& law, double level, std::uint64_t seed = 3) {
+std::vector<double> Errors(const NoiseLaw& law, double level, std::uint64_t seed = 3, int count = kSamples) {
   Sensors sensors({NoiseLaw{}, law}, seed);
   std::vector<double> errors;
-  for (int i = 0; i < kSamples; ++i) {
+  for (int i = 0; i < count; ++i) {
     PlantSample truth, measured;
     truth.output = level;
     truth.inputs[0] = 7.0;
@@ -34,8 +35,9 @@ double Covariance(const std::vector<double>& e, std::size_t lag) {
 }
 
 TEST(Sensors, ColourKeepsTheStandardDeviationAndDecaysGeometrically) {
-  for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kLaplace, NoiseKind::kMixture}) {
+  for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture}) {
     NoiseLaw law{kind, 0.5};
+    law.dof = 10.0;
     law.correlation = 0.8;
     const std::vector<double> errors = Errors(law, 0.0);
     const double variance = Covariance(errors, 0), expected = NoiseSd(law) * NoiseSd(law);
@@ -96,11 +98,11 @@ TEST(Sensors, RecordedNoiseIsPlayedForthAndBackFromAPlaceThatTheSeedDraws) {
   law.recording = series;
   std::set<double> starts;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const std::vector<double> errors = Errors(law, 3.0, seed);
+    const std::vector<double> errors = Errors(law, 3.0, seed, 4000);
     starts.insert(errors.front());
     int turns = 0;
     double step = errors[1] - errors[0];
-    for (std::size_t i = 1; i < 4000; ++i) {
+    for (std::size_t i = 1; i < errors.size(); ++i) {
       const double end = step > 0.0 ? 499.5 : 0.0;
       const bool turn = std::abs(errors[i - 1] - end) < 1e-9;
       ASSERT_NEAR(errors[i] - errors[i - 1], turn ? 0.0 : step, 1e-9) << i;

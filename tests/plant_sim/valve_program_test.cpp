@@ -4,26 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
-#include "armcmc/plant_sim/simulation.hpp"
 #include "armcmc/plant_sim/soft_actuator_plant.hpp"
 #include "builtin_scenario.hpp"
+#include "samples.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
 
 using Actuator = SoftActuatorPlant;
 
-std::vector<PlantSample> Follow(const std::string& name) {
-  Simulation simulation(BuiltinScenario(name), 1);
-  std::vector<PlantSample> samples;
-  for (int i = 0; i <= 10'000; ++i) {
-    EXPECT_TRUE(simulation.Next());
-    samples.push_back(simulation.truth());
-  }
-  return samples;
-}
+std::vector<PlantSample> Follow(const std::string& name) { return TrueSamples(BuiltinScenario(name), 10'001); }
 
 TEST(ValveProgram, HoldsClosedValvesAfterEveryStep) {
   const std::vector<PlantSample> samples = Follow("experiment_closed_valve_hold");
@@ -44,11 +37,17 @@ TEST(ValveProgram, HoldsClosedValvesAfterEveryStep) {
 
 TEST(ValveProgram, FollowsTrianglesOfTwoHeightsAroundZero) {
   const std::vector<PlantSample> samples = Follow("experiment_u_triangle");
-  for (const PlantSample& sample : samples) {
-    const double t = sample.t_s, share = t - std::floor(t), height = std::fmod(std::floor(t), 2.0) == 0.0 ? 0.1 : 0.04;
-    const double opening = height * (1.0 - std::abs(4.0 * std::fmod(share, 0.5) - 1.0));
-    ASSERT_NEAR(sample.inputs[Actuator::kUc], share < 0.5 ? 0.3 * opening : 0.0, 1e-12) << t;
-    ASSERT_NEAR(sample.inputs[Actuator::kUd], share < 0.5 ? 0.0 : opening, 1e-12) << t;
+  struct Point {
+    std::size_t sample;
+    double fill, vent;
+  };
+  // Half a second of the fill valve, up to 0.3 of the height, and half a second of the vent valve, up to the height.
+  for (const Point& at :
+       {Point{0, 0.0, 0.0}, Point{125, 0.015, 0.0}, Point{250, 0.03, 0.0}, Point{375, 0.015, 0.0}, Point{500, 0.0, 0.0},
+        Point{625, 0.0, 0.05}, Point{750, 0.0, 0.1}, Point{1000, 0.0, 0.0}, Point{1250, 0.012, 0.0},
+        Point{1750, 0.0, 0.04}, Point{2250, 0.03, 0.0}, Point{9625, 0.0, 0.02}, Point{9750, 0.0, 0.04}}) {
+    EXPECT_NEAR(samples[at.sample].inputs[Actuator::kUc], at.fill, 1e-12) << at.sample;
+    EXPECT_NEAR(samples[at.sample].inputs[Actuator::kUd], at.vent, 1e-12) << at.sample;
   }
   // It stays in a range in which the angle means something.
   const auto [least, most] = std::minmax_element(samples.begin() + 2000, samples.end(),

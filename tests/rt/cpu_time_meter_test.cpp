@@ -1,29 +1,18 @@
 #include "armcmc/rt/cpu_time_meter.hpp"
 
 #include <gtest/gtest.h>
-#include <pthread.h>
-#include <sched.h>
 
 #include <thread>
 
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/process_setup.hpp"
+#include "test_threads.hpp"
 
 namespace armcmc::rt {
 namespace {
 
-/// Keeps the CPU until the calling thread has had so much more of it.
-void WorkFor(Nanos cpu_time_ns) {
-  for (const Nanos end = ThreadCpuTime() + cpu_time_ns; ThreadCpuTime() < end;) {
-  }
-}
-
-void PinTo(int cpu) {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  CPU_SET(static_cast<unsigned>(cpu), &set);
-  ASSERT_EQ(pthread_setaffinity_np(pthread_self(), sizeof set, &set), 0);
-}
+using test::PinTo;
+using test::WorkFor;
 
 TEST(CpuTimeMeter, WithoutTheRightToTheCpuNothingIsWithheld) {
   CpuTimeMeter meter;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "armcmc/rt/miss_cause.hpp"
 #include "armcmc/rt/pack_codec.hpp"
+#include "armcmc/rt/watchdog.hpp"
 
 namespace armcmc::app {
 namespace {
@@ -29,10 +31,24 @@ TEST(EventPrinter, HoldsAStormBackAndSaysHowMuch) {
   EXPECT_NE(text.find("NaN or infinite value"), std::string::npos);
 }
 
-TEST(EventText, KnowsEveryKind) {
-  for (int kind = 0; kind < rt::kNumEventKinds; ++kind) {
-    EXPECT_NE(EventText({0, static_cast<rt::EventKind>(kind), 1, 1, 1}), "unknown event") << kind;
+TEST(EventPrinter, KeepsLostAndDroppedPacksForVerbose) {
+  for (const bool verbose : {false, true}) {
+    std::ostringstream out;
+    EventPrinter printer(out, 0, verbose);
+    printer.Print({0, rt::EventKind::kPacksLost, 0, 1, 9});
+    printer.Print({0, rt::EventKind::kPackDropped, 0, 9, 0});
+    EXPECT_EQ(out.str().empty(), !verbose);
   }
+}
+
+TEST(EventText, SaysWhichPackByHowMuchAndWhy) {
+  const auto machine = static_cast<std::uint8_t>(rt::MissCause::kMachine);
+  EXPECT_EQ(EventText({0, rt::EventKind::kDeadlineMissed, machine, 7, 1'500'000}),
+            "deadline of pack 7 missed by 1.500 ms, cause: machine");
+  EXPECT_EQ(EventText({0, rt::EventKind::kPacksLost, 0, 3, 9}), "3 packs lost before pack 9");
+  EXPECT_EQ(EventText({0, rt::EventKind::kPlantBack, 0, 9, 1}), "plant is back with pack 9 after 1 silent period");
+  EXPECT_EQ(EventText({0, rt::EventKind::kStageHung, static_cast<std::uint8_t>(rt::Watched::kExecute), 250'000'000, 0}),
+            "stage execute hangs: overdue by 250.000 ms");
 }
 
 }  // namespace

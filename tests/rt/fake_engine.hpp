@@ -9,8 +9,8 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/clock.hpp"
-#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/step_engine.hpp"
+#include "test_threads.hpp"
 
 namespace armcmc::rt::test {
 
@@ -55,10 +55,7 @@ class FakeEngine : public StepEngine {
     adjusted.fetch_add(1);
     last_budget_ns.store(deadline_ns - clock.Now());
     if (const Nanos sleep_ns = adjust_sleep_ns.load(); sleep_ns > 0) SleepUntil(clock.Now() + sleep_ns);
-    if (const Nanos work_ns = adjust_work_ns.load(); work_ns > 0) {
-      for (const Nanos end = ThreadCpuTime() + work_ns; ThreadCpuTime() < end;) {
-      }
-    }
+    WorkFor(adjust_work_ns.load());
     PlantedFault(planted.load());
     return status.load();
   }

@@ -1,14 +1,16 @@
 #include "gap_log.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
+#include <atomic>
+#include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "armcmc/support/csv.hpp"
+#include "full_disk.hpp"
 #include "support/paths.hpp"
 
 namespace armcmc::app {
@@ -144,14 +146,11 @@ TEST_F(GapLogTest, KeepsTheNewestFilesOnly) {
 TEST_F(GapLogTest, AFullDiskIsSaidAndLeavesNothing) {
   auto log = Make(Settings());
   for (std::int64_t seq = 1; seq <= 10; ++seq) Send(log.get(), seq);
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit little{4096, before.rlim_max};
-  std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &little), 0);
   alarm_ = 10;
-  log->Poll();
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  {
+    const test::FullDisk full(4096);
+    log->Poll();
+  }
   EXPECT_TRUE(log->path().empty());
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_NE(said_[0].find("could not be written"), std::string::npos) << said_[0];

@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <lcm/lcm.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -15,12 +14,13 @@
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/pack_codec.hpp"
 #include "support/paths.hpp"
+#include "test_bus.hpp"
 #include "test_packs.hpp"
 
 namespace armcmc::rt {
 namespace {
 
-constexpr Nanos kLong = 20 * kNanosPerSecond;  // a bound for a hung test, never reached otherwise
+using test::kLong;
 
 std::vector<std::uint8_t> Wire(std::uint32_t magic, const std::string& channel, std::size_t payload) {
   std::vector<std::uint8_t> bytes(8 + channel.size() + 1 + payload, 0);
@@ -50,13 +50,10 @@ class LcmReceiverTest : public ::testing::Test {
   void SetUp() override {
     ARMCMC_REQUIRE_MULTICAST();
     receiver_ = std::make_unique<LcmReceiver>(ParseLcmUrl(bus_.url()), "PLANT_PACK");
-    lcm_.reset(lcm_create(bus_.url().c_str()));
-    ASSERT_NE(lcm_, nullptr);
+    peer_ = std::make_unique<test::Peer>(bus_.url());
   }
 
-  void Publish(const char* channel, const std::vector<std::uint8_t>& bytes) {
-    ASSERT_EQ(lcm_publish(lcm_.get(), channel, bytes.data(), static_cast<unsigned>(bytes.size())), 0);
-  }
+  void Publish(const char* channel, const std::vector<std::uint8_t>& bytes) { peer_->Publish(channel, bytes); }
 
   void SendRaw(const std::vector<std::uint8_t>& bytes, const char* group = nullptr) {
     const LcmUrl url = ParseLcmUrl(bus_.url());
@@ -82,12 +79,9 @@ class LcmReceiverTest : public ::testing::Test {
     return false;
   }
 
-  struct Destroy {
-    void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
-  };
   armcmc::test::TestBus bus_;
   std::unique_ptr<LcmReceiver> receiver_;
-  std::unique_ptr<lcm_t, Destroy> lcm_;
+  std::unique_ptr<test::Peer> peer_;
 };
 
 TEST_F(LcmReceiverTest, HearsAPackThatLiblcmPublished) {
@@ -146,13 +140,13 @@ TEST_F(LcmReceiverTest, DrainThrowsAwayWhatIsQueued) {
 }
 
 TEST_F(LcmReceiverTest, HoldsAHundredPacksThatNobodyReads) {
+  if (receiver_->recv_buf_size() < 4'000'000) GTEST_SKIP() << "needs the right to a larger receive buffer";
   const auto bytes = test::Encode(test::ValidPack(1));
   for (int i = 0; i < 100; ++i) Publish("PLANT_PACK", bytes);
   Datagram datagram;
   int received = 0;
   while (receiver_->TryReceive(&datagram)) ++received;
-  // Without the right to a larger buffer the kernel grants less; what it grants is read back.
-  EXPECT_EQ(received, receiver_->recv_buf_size() >= 4'000'000 ? 100 : received);
+  EXPECT_EQ(received, 100);
 }
 
 TEST(LcmReceiver, RefusesAChannelNameThatLcmWouldNotSend) {

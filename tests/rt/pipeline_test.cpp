@@ -1,12 +1,10 @@
 #include "armcmc/rt/pipeline.hpp"
 
 #include <gtest/gtest.h>
-#include <lcm/lcm.h>
 
-#include <cmath>
+#include <algorithm>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "armcmc/estimate_t.hpp"
@@ -16,13 +14,13 @@
 #include "armcmc/rt/clock.hpp"
 #include "fake_engine.hpp"
 #include "report.hpp"
+#include "support/json.hpp"
 #include "support/paths.hpp"
+#include "test_bus.hpp"
 #include "test_packs.hpp"
 
 namespace armcmc::rt {
 namespace {
-
-constexpr Nanos kLong = 20 * kNanosPerSecond;  // bound of a hung test, never reached otherwise
 
 /// Everything published on one channel, decoded.
 template <typename Message>
@@ -53,8 +51,7 @@ class PipelineTest : public ::testing::Test {
     settings_.period_ns = 50 * kNanosPerMilli;
     settings_.deadline_ns = 500 * kNanosPerMilli;  // wide: what a test is not about must not be decided by the machine
     settings_.adjust_budget_ns = 20 * kNanosPerMilli;
-    lcm_.reset(lcm_create(bus_.url().c_str()));
-    ASSERT_NE(lcm_, nullptr);
+    peer_ = std::make_unique<test::Peer>(bus_.url());
     statuses_ = std::make_unique<Listener<estimator_status_t>>(bus_.url(), "T_EST_STATUS");
     estimates_ = std::make_unique<Listener<estimate_t>>(bus_.url(), "T_EST_ESTIMATE");
     posteriors_ = std::make_unique<Listener<posterior_t>>(bus_.url(), "T_EST_POSTERIOR");
@@ -70,13 +67,11 @@ class PipelineTest : public ::testing::Test {
     ASSERT_TRUE(WaitFor([this] { return !statuses_->Poll().empty(); }));
   }
 
-  void Publish(const std::vector<std::uint8_t>& bytes) {
-    ASSERT_EQ(lcm_publish(lcm_.get(), "T_PLANT_PACK", bytes.data(), static_cast<unsigned>(bytes.size())), 0);
-  }
-  void Publish(const data_pack_t& pack) { Publish(test::Encode(pack)); }
+  void Publish(const data_pack_t& pack) { peer_->Publish("T_PLANT_PACK", test::Encode(pack)); }
 
   static bool WaitFor(const std::function<bool()>& condition) {
-    for (const Nanos end = MonotonicNow() + kLong; MonotonicNow() < end; SleepUntil(MonotonicNow() + kNanosPerMilli)) {
+    for (const Nanos end = MonotonicNow() + test::kLong; MonotonicNow() < end;
+         SleepUntil(MonotonicNow() + kNanosPerMilli)) {
       if (condition()) return true;
     }
     return false;
@@ -90,13 +85,10 @@ class PipelineTest : public ::testing::Test {
   }
   std::int64_t Misses(MissCause cause) const { return pipeline_->monitor().misses(cause); }
 
-  struct Destroy {
-    void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
-  };
   armcmc::test::TestBus bus_;
   RtSettings settings_;
   test::FakeEngine engine_;
-  std::unique_ptr<lcm_t, Destroy> lcm_;
+  std::unique_ptr<test::Peer> peer_;
   std::unique_ptr<Listener<estimator_status_t>> statuses_;
   std::unique_ptr<Listener<estimate_t>> estimates_;
   std::unique_ptr<Listener<posterior_t>> posteriors_;
@@ -125,14 +117,7 @@ TEST_F(PipelineTest, AnswersEveryPackWithEstimatePosteriorAndStatus) {
   EXPECT_EQ(last.packs_received, 5);
   EXPECT_EQ(last.packs_lost, 0);
   EXPECT_NE(last.degraded_flags & estimator_status_t::DEGRADED_NO_MLOCK, 0) << "not locked here, and it says so";
-}
-
-TEST_F(PipelineTest, MakesNoHeapCallInItsStages) {
-  if (!HeapCallsAreCounted()) GTEST_SKIP() << "a sanitizer owns malloc; heap calls are not counted in this build";
-  StartPipeline();
-  for (std::int64_t seq = 1; seq <= 5; ++seq) Publish(test::ValidPack(seq));
-  ASSERT_TRUE(WaitForSteps(5));
-  Stop();
+  // 0 also where a sanitizer owns malloc and nothing is counted; the next test tells the two apart.
   for (const Counter& calls : pipeline_->counters().heap_calls) EXPECT_EQ(calls.Get(), 0);
 }
 
@@ -147,33 +132,6 @@ TEST_F(PipelineTest, CountsAHeapCallInAStage) {
   EXPECT_EQ(pipeline_->counters().heap_calls[IndexOf(Stage::kExecute)].Get(), 0);
 }
 
-TEST_F(PipelineTest, CountsBadPacksByCauseAndGoesOn) {
-  StartPipeline();
-  Publish(test::ValidPack(1));
-  data_pack_t nan = test::ValidPack(2);
-  nan.y[0] = std::nan("");
-  Publish(nan);
-  data_pack_t size = test::ValidPack(2);
-  size.n_samples = 0;
-  Publish(size);
-  Publish(std::vector<std::uint8_t>(100, 7));
-  Publish(test::ValidPack(3));
-  Publish(test::ValidPack(3));
-  Publish(test::ValidPack(6));
-  Publish(test::ValidPack(5));
-  ASSERT_TRUE(WaitForSteps(3));
-  ASSERT_TRUE(WaitFor([this] { return statuses_->Poll().back().packs_reordered == 1; }));
-  Stop();
-  const estimator_status_t& status = statuses_->Poll().back();
-  EXPECT_EQ(status.packs_received, 3);
-  EXPECT_EQ(status.packs_rejected, 3);
-  EXPECT_EQ(status.rejected_value, 1);
-  EXPECT_EQ(status.rejected_size, 1);
-  EXPECT_EQ(status.rejected_type, 1);
-  EXPECT_EQ(status.packs_duplicate, 1);
-  EXPECT_EQ(status.packs_lost, 1) << "pack 4; pack 2 was rejected, pack 5 came late";
-}
-
 TEST_F(PipelineTest, GoesOnPublishingItsStatusWhileThePlantIsSilent) {
   StartPipeline();
   Publish(test::ValidPack(1));
@@ -185,6 +143,11 @@ TEST_F(PipelineTest, GoesOnPublishingItsStatusWhileThePlantIsSilent) {
   ASSERT_TRUE(WaitFor([this] { return statuses_->Poll().back().step == 2; }));
   Stop();
   EXPECT_EQ(statuses_->Poll().back().plant_restarts, 1);
+  const auto flags_restart = [](const estimator_status_t& status) {
+    return (status.fault_flags & estimator_status_t::FAULT_PLANT_RESTARTED) != 0;
+  };
+  const std::vector<estimator_status_t>& all = statuses_->Poll();
+  EXPECT_EQ(std::count_if(all.begin(), all.end(), flags_restart), 1) << "told once";
   EXPECT_EQ(engine_.adjusted.load(), 2) << "the engine was not reset";
   EXPECT_EQ(Misses(MissCause::kLateData), 0) << "silence is no miss";
 }
@@ -192,13 +155,13 @@ TEST_F(PipelineTest, GoesOnPublishingItsStatusWhileThePlantIsSilent) {
 TEST_F(PipelineTest, AnOverrunOfAStageIsAMissOfOurOwn) {
   settings_.deadline_ns = 30 * kNanosPerMilli;
   StartPipeline();
-  engine_.adjust_sleep_ns = 330 * kNanosPerMilli;
+  engine_.adjust_sleep_ns = 130 * kNanosPerMilli;
   for (std::int64_t seq = 1; seq <= 3; ++seq) {
     Publish(test::ValidPack(seq, /*run_id=*/seq));  // each its own run: none is late on a grid
     ASSERT_TRUE(WaitForSteps(seq));
   }
   Stop();
-  // A miss of the machine would need a stall of 300 ms in every step.
+  // A miss of the machine would need a stall of 100 ms in every step.
   EXPECT_EQ(Misses(MissCause::kOwn) + Misses(MissCause::kMachine), 3);
   EXPECT_GE(Misses(MissCause::kOwn), 1);
   EXPECT_EQ(Misses(MissCause::kLateData), 0);
@@ -233,7 +196,7 @@ TEST_F(PipelineTest, ReportsWithTheAgreedKeys) {
   for (std::int64_t seq = 1; seq <= 3; ++seq) Publish(test::ValidPack(seq));
   ASSERT_TRUE(WaitForSteps(3));
   Stop();
-  const auto report = nlohmann::json::parse(ReportJson(*pipeline_));
+  const auto report = armcmc::test::Json::Parse(ReportJson(*pipeline_));
   EXPECT_EQ(report.at("schema"), 1);
   EXPECT_EQ(report.at("steps"), 3);
   EXPECT_EQ(report.at("period_ms"), 50.0);

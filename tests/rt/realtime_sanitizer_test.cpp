@@ -1,12 +1,8 @@
 // Faults planted into a stage are caught at run time.
 #include <gtest/gtest.h>
 
-#include <memory>
-
-#include "armcmc/rt/adjust_stage.hpp"
 #include "armcmc/rt/clock.hpp"
-#include "armcmc/rt/waiter.hpp"
-#include "fake_engine.hpp"
+#include "stage_rig.hpp"
 
 namespace armcmc::rt {
 namespace {
@@ -15,30 +11,16 @@ namespace {
 #error "these tests are for the preset rtsan"
 #endif
 
-class RealtimeSanitizer : public ::testing::Test {
+class RealtimeSanitizer : public test::StageRig {
  protected:
   void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 
   /// One pack through the adjust stage, as its thread calls it.
   void Step(test::Planted planted) {
     engine_.planted = planted;
-    PackSlot* slot = ring_->Claim();
-    slot->pack.seq = 1;
-    slot->pack.num_samples = 1;
-    slot->times = {};
-    slot->times.deadline_ns = MonotonicNow() + kNanosPerSecond;
-    ring_->Commit();
-    (void)stage_.Step();
+    Push(1, kNanosPerSecond);
+    (void)adjust_.Step();
   }
-
-  RtSettings settings_;
-  test::FakeEngine engine_;
-  std::unique_ptr<PackRing> ring_ = std::make_unique<PackRing>();
-  std::unique_ptr<ResultHandOver> results_ = std::make_unique<ResultHandOver>();
-  std::unique_ptr<DeadlineMonitor> monitor_ = std::make_unique<DeadlineMonitor>(settings_);
-  std::unique_ptr<Counters> counters_ = std::make_unique<Counters>();
-  EventLog events_;
-  AdjustStage stage_{settings_, &engine_, ring_.get(), results_.get(), monitor_.get(), counters_.get(), &events_};
 };
 
 TEST_F(RealtimeSanitizer, LetsAStepThatDoesNothingWrongPass) {

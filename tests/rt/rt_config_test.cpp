@@ -29,12 +29,6 @@ std::string Complaint(const std::string& text) {
   return "accepted";
 }
 
-TEST(ReadRtSettings, TakesTheDefaultsFromNothing) {
-  const rt::RtSettings settings = Read("");
-  EXPECT_EQ(settings.period_ns, 100'000'000);
-  EXPECT_EQ(settings.mode, rt::RtMode::kBestEffort);
-}
-
 TEST(ReadRtSettings, DerivesDeadlineAndBudgetFromThePeriod) {
   const rt::RtSettings settings = Read("[timing]\nperiod_ms = 10\n");
   EXPECT_EQ(settings.deadline_ns, 10'000'000);
@@ -47,7 +41,7 @@ TEST(ReadRtSettings, ReadsEveryKey) {
       "[rt]\nmode = \"enforce\"\nlock_memory = false\ncpu_idle = \"sleep\"\n"
       "[rt.collect]\npriority = 61\ncpu = 2\n[rt.adjust]\npriority = 62\ncpu = 3\n[rt.execute]\npriority = 63\ncpu = "
       "4\n"
-      "[rt.publish]\npriority = 20\ncpu = 5\n[rt.witness]\npriority = 64\n"
+      "[rt.publish]\npriority = 20\ncpu = 5\n[rt.witness]\npriority = 64\n[rt.watchdog]\non_hang = \"exit\"\n"
       "[lcm]\nurl = \"udpm://239.255.76.67:7700?ttl=1\"\nprefix = \"A_\"\n");
   EXPECT_EQ(s.period_ns, 1'000'000);
   EXPECT_EQ(s.deadline_ns, 2'500'000);
@@ -58,10 +52,15 @@ TEST(ReadRtSettings, ReadsEveryKey) {
   EXPECT_EQ(Read("[rt]\ncpu_idle = \"awake\"\n").cpu_idle, rt::CpuIdle::kAwake);
   EXPECT_EQ(Read("").cpu_idle, rt::CpuIdle::kAuto);
   EXPECT_EQ(s.collect.priority, 61);
+  EXPECT_EQ(s.collect.cpu, 2);
+  EXPECT_EQ(s.adjust.priority, 62);
   EXPECT_EQ(s.adjust.cpu, 3);
   EXPECT_EQ(s.execute.priority, 63);
+  EXPECT_EQ(s.execute.cpu, 4);
+  EXPECT_EQ(s.publish.priority, 20);
   EXPECT_EQ(s.publish.cpu, 5);
   EXPECT_EQ(s.witness_priority, 64);
+  EXPECT_EQ(s.on_hang, rt::OnHang::kExit);
   EXPECT_EQ(s.lcm_url, "udpm://239.255.76.67:7700?ttl=1");
   EXPECT_EQ(s.prefix, "A_");
 }
@@ -76,11 +75,6 @@ TEST(ReadRtSettings, NamesLineKeyAndRangeOfAMistake) {
   EXPECT_NE(Complaint("[rt.witness]\npriority = 10\n").find("rt.witness.priority"), std::string::npos);
   EXPECT_NE(Complaint("[timing]\ndeadline_ms = 50\nadjust_budget_ms = 50\n").find("adjust_budget_ms"),
             std::string::npos);
-}
-
-TEST(ReadRtSettings, ReadsWhatAHangMeans) {
-  EXPECT_EQ(Read("").on_hang, rt::OnHang::kDegrade);
-  EXPECT_EQ(Read("[rt.watchdog]\non_hang = \"exit\"\n").on_hang, rt::OnHang::kExit);
 }
 
 TEST(ReadInjections, ReadsAPlanAndNamesTheKeyOfAMistake) {

@@ -5,8 +5,8 @@
 
 #include <atomic>
 
-#include "armcmc/rt/cpu_time_meter.hpp"
 #include "armcmc/rt/process_setup.hpp"
+#include "test_threads.hpp"
 
 namespace armcmc::rt {
 namespace {
@@ -44,8 +44,7 @@ struct Turns {
     turns.short_turn_ns = turns.thread.cpu_time_ns().load() - second_ns;
   }
   [[nodiscard]] Nanos Work() const noexcept {
-    for (const Nanos end = ThreadCpuTime() + 5'000'000; ThreadCpuTime() < end;) {
-    }
+    test::WorkFor(5'000'000);
     return thread.cpu_time_ns().load();
   }
 };

@@ -73,12 +73,5 @@ TEST(ServiceNotify, AnotherProcessOfTheServiceIsNotWatched) {
   EXPECT_EQ(manager.Next(), "");
 }
 
-TEST(ServiceNotify, WithoutAManagerNothingHappens) {
-  ServiceNotify service;
-  EXPECT_FALSE(service.connected());
-  service.Ready();
-  service.Alive(1);
-}
-
 }  // namespace
 }  // namespace armcmc::app

@@ -9,8 +9,6 @@
 namespace armcmc::rt {
 namespace {
 
-TEST(RtSettings, DefaultsAreValid) { EXPECT_NO_THROW(RtSettings{}.Validate()); }
-
 TEST(RtSettings, NamesTheKeyThatIsWrong) {
   const auto complaint = [](const std::function<void(RtSettings*)>& change) -> std::string {
     RtSettings settings;

@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -15,6 +12,7 @@
 #include "armcmc/rt/step_engine.hpp"
 #include "armcmc/rt/warm_up.hpp"
 #include "armcmc/snapshot.hpp"
+#include "full_disk.hpp"
 #include "snapshot_saver.hpp"
 #include "support/paths.hpp"
 
@@ -167,17 +165,12 @@ TEST_F(SnapshotSaverTest, AFullDiskIsCountedToldOnceAndTheOldFileStays) {
   auto saver = Make();
   Learn(1, 1);
   saver->Save();
-  // As on a full disk, a write fails half way: a process that ignores the signal gets an error instead.
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small{40, before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
   Learn(2, 2);
-  saver->Save();
-  saver->Save();
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, SIG_DFL);
+  {
+    const test::FullDisk full(40);
+    saver->Save();
+    saver->Save();
+  }
   EXPECT_EQ(saver->failed(), 2);
   EXPECT_EQ(faults_, 2);
   ASSERT_EQ(said_.size(), 1U);

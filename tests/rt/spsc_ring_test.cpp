@@ -2,16 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <thread>
+
+#include "armcmc/rt/event_log.hpp"
 
 namespace armcmc::rt {
 namespace {
-
-TEST(SpscRing, IsEmptyAtFirst) {
-  SpscRing<int, 4> ring;
-  EXPECT_EQ(ring.Front(), nullptr);
-  EXPECT_EQ(ring.size(), 0U);
-}
 
 TEST(SpscRing, HandsElementsOnInOrderWithoutCopying) {
   SpscRing<int, 4> ring;
@@ -78,6 +75,16 @@ TEST(SpscRing, LosesNothingBetweenTwoThreads) {
   }
   producer.join();
   EXPECT_EQ(wrong, 0);
+}
+
+TEST(EventLog, CountsWhatDoesNotFitAndKeepsTheOldest) {
+  EventLog log;
+  for (std::int64_t i = 0; i < 300; ++i) log.Add({0, EventKind::kPacksLost, 0, i, 0});
+  Event event;
+  std::int64_t kept = 0;
+  for (; log.Take(&event); ++kept) EXPECT_EQ(event.a, kept);
+  EXPECT_GT(kept, 0);
+  EXPECT_EQ(kept + log.dropped(), 300);
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
-#include <lcm/lcm.h>
 #include <pthread.h>
 #include <sched.h>
 
-#include <memory>
 #include <thread>
 
 #include "armcmc/rt/clock.hpp"
@@ -11,7 +9,9 @@
 #include "armcmc/rt/process_setup.hpp"
 #include "fake_engine.hpp"
 #include "support/paths.hpp"
+#include "test_bus.hpp"
 #include "test_packs.hpp"
+#include "test_threads.hpp"
 
 namespace armcmc::rt {
 namespace {
@@ -19,10 +19,7 @@ namespace {
 /// Takes three quarters of a CPU like a hypervisor that is short of time: in slices shorter than a period of the
 /// witness, above every thread of the pipeline.
 void TakeInSlices(int cpu, Nanos until_ns) {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  CPU_SET(static_cast<unsigned>(cpu), &set);
-  ASSERT_EQ(pthread_setaffinity_np(pthread_self(), sizeof set, &set), 0);
+  test::PinTo(cpu);
   sched_param param{};
   param.sched_priority = 99;
   ASSERT_EQ(pthread_setschedparam(pthread_self(), SCHED_FIFO, &param), 0);
@@ -52,14 +49,13 @@ TEST(StolenCpu, WhatIsTakenInShortSlicesIsNotOurOwn) {
   const ThreadPlacement adjust = pipeline.placements()[IndexOf(Stage::kAdjust)];
   if (!adjust.fifo || !adjust.pinned) GTEST_SKIP() << "needs the right to real-time priorities";
 
-  const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm(lcm_create(bus.url().c_str()), &lcm_destroy);
+  test::Peer peer(bus.url());
   const Nanos end_ns = MonotonicNow() + 2 * kNanosPerSecond;
   std::thread thief([&] { TakeInSlices(adjust.cpu, end_ns); });
   Nanos due_ns = MonotonicNow();
   for (std::int64_t seq = 1; due_ns < end_ns; ++seq, due_ns += settings.period_ns) {
     SleepUntil(due_ns);
-    const auto bytes = test::Encode(test::ValidPack(seq));
-    EXPECT_EQ(lcm_publish(lcm.get(), "PLANT_PACK", bytes.data(), static_cast<unsigned>(bytes.size())), 0);
+    peer.Publish("PLANT_PACK", test::Encode(test::ValidPack(seq)));
   }
   thief.join();
   pipeline.RequestStop();

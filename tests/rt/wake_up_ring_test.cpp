@@ -63,11 +63,5 @@ TEST(WakeUpRing, KeepsTheNewestWhenItWrapsAround) {
   EXPECT_EQ(ring->StalledTime(due - 50 * kMs, due + 5 * kMs, due + 5 * kMs), 0);
 }
 
-TEST(Witness, SeesSeveralWakeUpsInAStep) {
-  EXPECT_EQ(Witness::PeriodFor(100 * kMs), kMs);
-  EXPECT_EQ(Witness::PeriodFor(10 * kMs), kMs / 4);
-  EXPECT_EQ(Witness::PeriodFor(kMs), kMs / 4);
-}
-
 }  // namespace
 }  // namespace armcmc::rt

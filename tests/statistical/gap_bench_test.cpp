@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "armcmc/gap_bench/report.hpp"
@@ -132,21 +131,6 @@ TEST(GapBench, EffectsOfTheActuatorAreNamedInTheirEquation) {
   EXPECT_GE(actuator.Covered(), actuator.counted() - 1) << actuator.Others();
   for (const Outcome& outcome : actuator.outcomes())
     EXPECT_TRUE(outcome.equation_right.value_or(false)) << Line(outcome) << ", " << outcome.answer.result.equation;
-}
-
-TEST(GapBench, AHalfOfARecordingIsAllThatTheToolIsGiven) {
-  const test::ScratchDir folder;
-  const PlantProcess plant(test::Program("armcmc-plant"), folder.path());
-  Case what;
-  what.scenario = "contact_rich";
-  what.effect = "inertia:rigid";
-  for (const auto& [part, rows] : std::vector<std::pair<Part, long long>>{
-           {Part::kWhole, 10'001}, {Part::kFirstHalf, 5'000}, {Part::kSecondHalf, 5'001}}) {
-    what.part = part;
-    const Outcome outcome = RunCase(plant, what, false);
-    EXPECT_EQ(outcome.answer.result.rows, rows) << outcome.answer.error;
-    EXPECT_EQ(outcome.grade, Grade::kRight) << Line(outcome);
-  }
 }
 
 TEST(GapBench, EffectsAreNamedAlongRealMotions) {

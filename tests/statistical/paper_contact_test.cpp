@@ -4,12 +4,13 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/support/csv.hpp"
-#include "statistical/contact_packs.hpp"
+#include "support/packs.hpp"
 #include "support/paths.hpp"
 
 namespace armcmc {
@@ -46,16 +47,11 @@ Score Replay(const Recording& data, const std::vector<double>& force) {
   std::vector<ModeEstimate> estimates(static_cast<std::size_t>(packs) + 1);
   int known = 0;
   for (int k = 1; k <= packs; ++k) {
-    DataPack pack;
-    pack.seq = k;
-    pack.dt = 1e-3;
-    pack.plant = PlantKind::kHuntCrossley;
-    pack.num_samples = kPackSamples;
-    pack.num_inputs = 2;
+    DataPack pack = test::BlankPack(PlantKind::kHuntCrossley, k, kPackSamples);
     for (int n = 0; n < kPackSamples; ++n) {
       const auto row = static_cast<std::size_t>(kPackSamples * (k - 1) + 1 + n);
       pack.y[static_cast<std::size_t>(n)] = force[row];
-      pack.u[static_cast<std::size_t>(n)] = {data.x[row], data.v[row], 0.0, 0.0};
+      pack.u[static_cast<std::size_t>(n)] = {data.x[row], data.v[row]};
     }
     estimator.Adjust(pack, 0, {}, result.get());
     estimator.Execute(*result, &e);

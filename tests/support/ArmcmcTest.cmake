@@ -1,55 +1,156 @@
-# armcmc_add_test(NAME source... LIBS target... [LABELS label...] [TIMEOUT seconds] [SERIAL])
+# armcmc_add_tests(ROOM source... [LIBS target...] [INCLUDES folder...] [PROGRAMS target...] [KERNELS] [TIMEOUT seconds]
+#                  [COST seconds] [THREADS] [REALTIME] [DEADLINES] [BROWSER] [NATIVE] [LONG])
 #
-# A GoogleTest executable, every TEST of it a test of ctest. Tests find recordings and programs through
-# "support/paths.hpp", under ctest as well as by hand. TIMEOUT (60 s) is per TEST. SERIAL: never
-# beside another test, for what needs the processors to itself. Labels default to the folder's name. Tests with
+# Adds test sources to the one GoogleTest executable of a room, ROOM_test; every TEST is a test of ctest with the label
+# ROOM. Tests find recordings and programs through "support/paths.hpp", under ctest as well as by hand. Tests with
 # parameters name them by the last argument of INSTANTIATE_TEST_SUITE_P: their values are not printed into names.
-# What tools/test builds for a preset that runs a part of the tests only.
-add_custom_target(realtime_tests)      # marked code and the process around it
-add_custom_target(tests_with_threads)
-set(ARMCMC_GROUPS_OF_core realtime_tests)
-set(ARMCMC_GROUPS_OF_rt realtime_tests tests_with_threads)
-set(ARMCMC_GROUPS_OF_realtime realtime_tests tests_with_threads)
-set(ARMCMC_GROUPS_OF_threads tests_with_threads)
+#
+#   LIBS, INCLUDES  what the sources need beyond GoogleTest and tests/support
+#   PROGRAMS        programs that the tests run
+#   KERNELS         the sources see the private headers of core, and the instruction sets that it was built with
+#   TIMEOUT         of one TEST, 60 s if not given
+#   COST            seconds that the slowest of them takes, about: ctest starts the most expensive first
+#   THREADS         part of the build with ThreadSanitizer
+#   REALTIME        part of the build with RealtimeSanitizer
+#   DEADLINES       runs programs that have deadlines, in real time: one such test at a time, as two would make each
+#                   other miss; not instrumented, as instrumented code is too slow for deadlines
+#   BROWSER         opens pages in a browser, which is not ours to instrument
+#   NATIVE          what runs is not ours, or runs under AddressSanitizer in other tests
+#   LONG            shows what only chance or a long load can show: run by `tools/test --long` alone
+#
+# A build with a sanitizer compiles only what it runs, and runs each executable as a whole, as one test of ctest: starting
+# an instrumented program a thousand times takes longer than what most tests do.
+add_custom_target(all_tests)
 
-function(armcmc_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "TIMEOUT" "LIBS;LABELS")
-  if(NOT arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "armcmc_add_test(${name}): no sources")
+# What the sources of all tests include. One for all: it takes longer to make than any test takes to compile.
+function(armcmc_make_test_headers)
+  add_library(armcmc_test_headers OBJECT "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/test_headers.cpp")
+  target_include_directories(armcmc_test_headers PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+  target_link_libraries(armcmc_test_headers PRIVATE Eigen3::Eigen armcmc_warnings GTest::gmock)
+  armcmc_set_test_options(armcmc_test_headers)
+  target_precompile_headers(armcmc_test_headers PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/test_headers.hpp")
+endfunction()
+
+# A precompiled header fits only where the options are those it was made with.
+function(armcmc_set_test_options target)
+  # Tests are compiled more often than they are run: -O1 takes half the time of -O3. The code under test keeps its own.
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
+  # For ccache.
+  target_compile_options(${target} PRIVATE
+    $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
+    "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
+endfunction()
+
+# armcmc_is_admitted(VARIABLE option...): whether tests with these options are part of this build.
+function(armcmc_is_admitted variable)
+  set(admitted TRUE)
+  if(ARMCMC_SANITIZER STREQUAL "address" AND ARGN MATCHES "DEADLINES|BROWSER|NATIVE|LONG")
+    set(admitted FALSE)
+  elseif(ARMCMC_SANITIZER STREQUAL "thread" AND NOT "THREADS" IN_LIST ARGN)
+    set(admitted FALSE)
+  elseif(ARMCMC_SANITIZER STREQUAL "realtime" AND NOT "REALTIME" IN_LIST ARGN)
+    set(admitted FALSE)
   endif()
+  set(${variable} ${admitted} PARENT_SCOPE)
+endfunction()
+
+function(armcmc_add_room room)
+  set(target ${room}_test)
+  add_executable(${target})
+  # Beside the programs stands nothing but programs.
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+  target_link_libraries(${target} PRIVATE armcmc_test_support armcmc_warnings Eigen3::Eigen GTest::gmock GTest::gtest_main)
+  armcmc_set_test_options(${target})
+  target_precompile_headers(${target} REUSE_FROM armcmc_test_headers)
+  add_dependencies(all_tests ${target})
+  if(ARMCMC_SANITIZER)
+    add_test(NAME ${room} COMMAND ${target})
+    # The whole room, at a tenth of the speed.
+    set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 1200 COST 100)
+  endif()
+endfunction()
+
+# The filter of GoogleTest for all suites of some files.
+function(armcmc_filter_of_sources variable)
+  set(suites "")
+  foreach(source IN LISTS ARGN)
+    # A new suite is seen without configuring by hand.
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${source}")
+    file(STRINGS "${source}" lines REGEX "^(TEST|TEST_F|TEST_P|TYPED_TEST|RC_GTEST_PROP|RC_GTEST_FIXTURE_PROP)\\(")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^[A-Z_]+\\(([A-Za-z0-9_]+).*" "\\1" suite "${line}")
+      list(APPEND suites "${suite}.*" "*/${suite}.*" "${suite}/*")
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES suites)
+  list(JOIN suites ":" filter)
+  set(${variable} "${filter}" PARENT_SCOPE)
+endfunction()
+
+function(armcmc_add_tests room)
+  set(marks THREADS REALTIME DEADLINES BROWSER NATIVE LONG)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "KERNELS;${marks}" "TIMEOUT;COST" "LIBS;INCLUDES;PROGRAMS")
+  set(sources "${arg_UNPARSED_ARGUMENTS}")
+  set(has "")
+  foreach(mark IN LISTS marks)
+    if(arg_${mark})
+      list(APPEND has ${mark})
+    endif()
+  endforeach()
+  armcmc_is_admitted(admitted ${has})
+  if(NOT admitted)
+    return()
+  endif()
+
+  set(target ${room}_test)
+  if(NOT TARGET ${target})
+    armcmc_add_room(${room})
+  endif()
+  list(TRANSFORM sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" REGEX "^[^/]")
+  target_sources(${target} PRIVATE ${sources})
+  target_link_libraries(${target} PRIVATE ${arg_LIBS})
+  target_include_directories(${target} PRIVATE ${arg_INCLUDES})
+  if(arg_KERNELS)
+    target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/core/src")
+    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:armcmc_core,COMPILE_DEFINITIONS>)
+  endif()
+  foreach(program IN LISTS arg_PROGRAMS)
+    if(TARGET ${program})
+      add_dependencies(${target} ${program})
+    endif()
+  endforeach()
+  if(ARMCMC_SANITIZER)
+    if(arg_DEADLINES)
+      set_tests_properties(${room} PROPERTIES RESOURCE_LOCK deadlines)
+    endif()
+    return()
+  endif()
+
+  set(labels ${room})
+  foreach(mark IN LISTS has)
+    string(TOLOWER "${mark}" label)
+    list(APPEND labels ${label})
+  endforeach()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)
   endif()
-  if(NOT arg_LABELS)
-    get_filename_component(arg_LABELS "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
-  endif()
-  add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
-  # Beside the programs stands nothing but programs.
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
-  target_link_libraries(${name} PRIVATE
-    ${arg_LIBS} armcmc_test_support armcmc_warnings GTest::gmock GTest::gtest_main)
-  foreach(label IN LISTS arg_LABELS)
-    foreach(group IN LISTS ARMCMC_GROUPS_OF_${label})
-      add_dependencies(${group} ${name})
-    endforeach()
-  endforeach()
-  # No tests under AddressSanitizer, and built there by name only: the programs that live tests run have deadlines, which
-  # instrumented code is too slow for; a browser and what is packed are not ours; "slow" are hundreds of whole runs of
-  # code that other tests run, too.
-  set(not_with_address ${arg_LABELS})
-  list(FILTER not_with_address INCLUDE REGEX "^(live|package|browser|slow)$")
-  if(ARMCMC_SANITIZER STREQUAL "address" AND not_with_address)
-    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
-    return()
-  endif()
   set(properties TIMEOUT ${arg_TIMEOUT})
-  if(arg_SERIAL)
-    list(APPEND properties RUN_SERIAL TRUE)
+  if(arg_DEADLINES)
+    # They wait for one another: the first has to start with the first of all.
+    list(APPEND properties RESOURCE_LOCK deadlines COST 1000)
+  elseif(arg_COST)
+    list(APPEND properties COST ${arg_COST})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_LIST ${name}_tests PROPERTIES ${properties})
+  armcmc_filter_of_sources(filter ${sources})
   # A list does not survive the way through gtest_discover_tests, so the labels are set where ctest reads the tests.
-  set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake")
-  file(WRITE "${labels_file}" "if(${name}_tests)\n"
-    "  set_tests_properties(\${${name}_tests} PROPERTIES LABELS \"${arg_LABELS}\")\nendif()\n")
+  string(MAKE_C_IDENTIFIER "${room}_${sources}" id)
+  string(MD5 id "${id}")
+  set(list_name tests_${id})
+  gtest_discover_tests(${target} TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_LIST ${list_name}
+    PROPERTIES ${properties})
+  set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/labels_${id}.cmake")
+  file(WRITE "${labels_file}" "if(${list_name})\n"
+    "  set_tests_properties(\${${list_name}} PROPERTIES LABELS \"${labels}\")\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${labels_file}")
 endfunction()

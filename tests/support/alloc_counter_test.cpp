@@ -5,12 +5,8 @@
 
 #include <cstdint>
 #include <cstdlib>
-#include <functional>
-#include <memory>
 #include <new>
-#include <string>
 #include <thread>
-#include <vector>
 
 namespace armcmc::test {
 namespace {
@@ -27,11 +23,6 @@ long CountOf(F&& call) {
   const AllocCounter guard;
   call();
   return guard.count();
-}
-
-TEST(AllocCounter, SeesNothingWhenNothingIsAllocated) {
-  double on_the_stack[64] = {};
-  EXPECT_EQ(CountOf([&] { Escape(on_the_stack); }), 0);
 }
 
 TEST(AllocCounter, SeesEveryFunctionOfTheCLibrary) {
@@ -113,27 +104,6 @@ TEST(AllocCounter, SeesOperatorNew) {
             }),
             1)
       << "nothrow new";
-}
-
-TEST(AllocCounter, SeesWhatTheStandardLibraryHides) {
-  SKIP_WHEN_INACTIVE();
-  EXPECT_GE(CountOf([] {
-              std::vector<double> v(100);
-              Escape(v.data());
-            }),
-            1);
-  EXPECT_GE(CountOf([] {
-              std::string s(64, 'x');
-              Escape(s.data());
-            }),
-            1);
-  EXPECT_GE(CountOf([] {
-              try {
-                throw 1;
-              } catch (int) {
-              }
-            }),
-            1);
 }
 
 TEST(AllocCounter, CountsFrees) {

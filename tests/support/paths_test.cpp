@@ -2,27 +2,43 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "support/paths.hpp"
 
 namespace armcmc::test {
 namespace {
 
-TEST(Paths, SourceDirHoldsTheTopLevelCMakeFile) {
-  EXPECT_TRUE(std::filesystem::is_regular_file(SourceDir() / "CMakeLists.txt"));
-}
+/// Sets a variable of the environment for the length of a test: others of this program read it, too.
+class EnvironmentVariable {
+ public:
+  EnvironmentVariable(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    setenv(name, value.c_str(), 1);
+  }
+  ~EnvironmentVariable() {
+    if (before_)
+      setenv(name_, before_->c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+  EnvironmentVariable(const EnvironmentVariable&) = delete;
+  EnvironmentVariable& operator=(const EnvironmentVariable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
 
 TEST(Paths, DataIsLookedForInTheFolderOfTheEnvironment) {
   const ScratchDir dir;
   std::ofstream(dir / "some.csv") << "t\n";
-  setenv("ARMCMC_DATA", dir.path().c_str(), 1);
+  const EnvironmentVariable data("ARMCMC_DATA", dir.path().string());
   EXPECT_EQ(FindData("some.csv"), dir / "some.csv");
   EXPECT_FALSE(FindData("absent.csv").has_value());
   EXPECT_NE(DataSkipReason("absent.csv").find((dir / "absent.csv").string()), std::string::npos);
-  unsetenv("ARMCMC_DATA");
 }
 
 TEST(Paths, ScratchDirIsGoneAfterItsLife) {

@@ -23,7 +23,8 @@ std::string Contents(const std::filesystem::path& path) {
 
 }  // namespace
 
-Process::Process(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
+Process::Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                 const std::filesystem::path& working_directory) {
   std::string pattern = (std::filesystem::temp_directory_path() / "armcmc-process-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make " + pattern);
   dir_ = pattern;
@@ -40,6 +41,7 @@ Process::Process(const std::filesystem::path& program, const std::vector<std::st
   const std::string out = dir_ / "out", err = dir_ / "err";
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (!working_directory.empty()) posix_spawn_file_actions_addchdir_np(&actions, working_directory.c_str());
   const int error = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
@@ -103,8 +105,8 @@ bool Process::WaitForErr(const std::string& text, std::chrono::milliseconds time
 }
 
 Outcome RunProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                   std::chrono::milliseconds timeout) {
-  Process process(program, arguments);
+                   std::chrono::milliseconds timeout, const std::filesystem::path& working_directory) {
+  Process process(program, arguments, working_directory);
   const Process::Exit exit = process.Wait(timeout);
   return {exit.code, process.out(), process.err()};
 }

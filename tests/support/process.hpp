@@ -18,8 +18,10 @@ class Process {
     bool timed_out = false;
   };
 
-  /// Starts it. @throws std::runtime_error when it cannot be started.
-  Process(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+  /// Starts it. @param working_directory where it starts; empty: where the test runs. With one, `program` is absolute.
+  /// @throws std::runtime_error when it cannot be started.
+  Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+          const std::filesystem::path& working_directory = {});
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -48,6 +50,7 @@ struct Outcome {
   std::string out, err;
 };
 [[nodiscard]] Outcome RunProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                                 std::chrono::milliseconds timeout = std::chrono::minutes(10));
+                                 std::chrono::milliseconds timeout = std::chrono::minutes(10),
+                                 const std::filesystem::path& working_directory = {});
 
 }  // namespace armcmc::test

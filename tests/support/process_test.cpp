@@ -4,7 +4,10 @@
 #include <signal.h>
 
 #include <chrono>
+#include <filesystem>
 #include <stdexcept>
+
+#include "support/paths.hpp"
 
 namespace armcmc::test {
 namespace {
@@ -41,7 +44,17 @@ TEST(Process, WaitsForWords) {
   EXPECT_FALSE(quiet.WaitForErr("ready", 10s));
 }
 
-TEST(Process, AProgramThatIsNotThereIsAnError) { EXPECT_THROW(Process("/no/such/program", {}), std::runtime_error); }
+TEST(Process, StartsInTheFolderThatItIsGiven) {
+  const ScratchDir dir;
+  const Outcome o = RunProgram("/bin/sh", {"-c", "echo here > found"}, 10s, dir.path());
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_TRUE(std::filesystem::exists(dir / "found"));
+}
+
+TEST(Process, WhatCannotBeStartedIsAnError) {
+  EXPECT_THROW(Process("/no/such/program", {}), std::runtime_error);
+  EXPECT_THROW(Process("/bin/sh", {"-c", "exit 0"}, "/no/such/folder"), std::runtime_error);
+}
 
 }  // namespace
 }  // namespace armcmc::test

@@ -132,13 +132,5 @@ TEST_F(Csv, EveryFiniteDoubleSurvivesWritingAndReading) {
   }));
 }
 
-TEST_F(Csv, ReadsAMillionRows) {
-  std::string text = "t,x,v\n";
-  for (int i = 0; i < 1'000'000; ++i) text += std::to_string(i) + ",0.25,1\n";
-  const CsvSamples s = Read(text);
-  EXPECT_EQ(s.num_rows(), 1'000'000u);
-  EXPECT_EQ(s.columns[0].back(), 999'999.0);
-}
-
 }  // namespace
 }  // namespace armcmc::support

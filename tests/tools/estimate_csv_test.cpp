@@ -7,9 +7,9 @@
 #include <map>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "armcmc/estimator.hpp"
+#include "tools/csv_rows.hpp"
 
 namespace armcmc::replay {
 namespace {
@@ -21,31 +21,8 @@ EstimatorSettings Small(const std::string& model) {
   return settings;
 }
 
-std::vector<std::string> Fields(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
-/// Header and first row as a map.
-std::map<std::string, std::string> Row(const std::string& text) {
-  std::istringstream lines(text);
-  std::string header, row;
-  std::getline(lines, header);
-  std::getline(lines, row);
-  const auto names = Fields(header), values = Fields(row);
-  EXPECT_EQ(names.size(), values.size());
-  std::map<std::string, std::string> map;
-  for (std::size_t i = 0; i < names.size(); ++i) map[names[i]] = values[i];
-  EXPECT_EQ(map.size(), names.size()) << "a column twice";
-  return map;
-}
+/// The first row, by the names in the header.
+std::map<std::string, std::string> Row(const std::string& text) { return test::RowsOf(text).at(0); }
 
 TEST(EstimateCsv, HasTheColumnsOfTheInterface) {
   const Estimator estimator(Small("hunt_crossley"));

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <lcm/lcm-cpp.hpp>
 #include <string>
 #include <vector>
 
 #include "armcmc/support/program.hpp"
 #include "support/paths.hpp"
+#include "tools/file_text.hpp"
 
 namespace armcmc::support {
 namespace {
@@ -34,10 +34,7 @@ class LcmLog : public ::testing::Test {
       ASSERT_EQ(log.writeEvent(&event), 0);
     }
   }
-  std::string Bytes() const {
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
+  std::string Bytes() const { return test::TextOf(path_); }
   void Put(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
 
   struct Result {
@@ -200,7 +197,8 @@ TEST_F(LcmLog, ASyncWordInTheDataIsData) {
   {
     lcm::LogFile log(path_, "w");
     for (int i = 0; i < 3; ++i) {
-      std::string data = std::string("x\xED\xA1\xDA\x01", 5) + std::string(60, '\0');
+      std::string data("x\xED\xA1\xDA\x01", 5);
+      data.resize(65, '\0');
       lcm::LogEvent event{};
       event.channel = "PACK";
       event.datalen = static_cast<std::int32_t>(data.size());

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
 
 namespace armcmc::replay {
@@ -36,10 +36,7 @@ class ReplayProgram : public ::testing::Test {
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
     EXPECT_THAT(o.err, HasSubstr(words));
   }
-  std::string Text(const std::string& name) {
-    std::ifstream file(dir_ / name);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
+  std::string Text(const std::string& name) { return test::TextOf(dir_ / name); }
   test::ScratchDir dir_;
 };
 
@@ -91,13 +88,6 @@ TEST_F(ReplayProgram, ADamagedLogIsReadAsFarAsItGoesAndTheLossIsSaid) {
   EXPECT_THAT(o.out, HasSubstr("the log is damaged: 1 place skipped (" + std::to_string(event + 100) +
                                " bytes), 1 event missing, cut off at its end"));
   EXPECT_THAT(Text("report.json"), HasSubstr("\"bytes_skipped\": " + std::to_string(event + 100)));
-}
-
-TEST_F(ReplayProgram, HelpTeachesWithAnExample) {
-  const Outcome help = Run({"--help"});
-  EXPECT_EQ(help.code, 0);
-  EXPECT_THAT(help.out, HasSubstr("Example:"));
-  EXPECT_EQ(Run({"--version"}).code, 0);
 }
 
 TEST_F(ReplayProgram, FindsTheConfigurationThatCameWithItByName) {

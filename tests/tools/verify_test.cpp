@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "armcmc/support/program.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
 
 namespace armcmc::replay {
@@ -120,9 +120,7 @@ TEST_F(VerifyTest, AnotherSeedIsAnotherRun) {
   const test::Outcome o = Program({"--seed", "99", "--report", dir_ / "r.json"});
   EXPECT_EQ(o.code, 1);
   EXPECT_THAT(o.out, HasSubstr("(--seed)"));
-  std::ifstream file(dir_ / "r.json");
-  const std::string json{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  EXPECT_THAT(json, HasSubstr("\"equal\": false"));
+  EXPECT_THAT(test::TextOf(dir_ / "r.json"), HasSubstr("\"equal\": false"));
 }
 
 TEST_F(VerifyTest, ALostPackIsSaidToBeTheCause) {
@@ -142,7 +140,7 @@ TEST_F(VerifyTest, WhatCannotBeVerifiedIsBadInput) {
   test::Outcome o = Program();
   EXPECT_EQ(o.code, 2);
   EXPECT_THAT(o.err, HasSubstr("holds no EST_ESTIMATE to compare with"));
-  std::ofstream(dir_ / "run.lcm") << ContactCsv(301);
+  std::ofstream(dir_ / "packs.csv") << ContactCsv(301);
   o = test::RunProgram(test::Program("armcmc-replay"),
                        {"--data", dir_ / "packs.csv", "--config", dir_ / "own.toml", "--verify"});
   EXPECT_EQ(o.code, 2);

@@ -6,8 +6,8 @@
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
-#include "statistical/contact_packs.hpp"
 #include "support/alloc_counter.hpp"
+#include "support/packs.hpp"
 
 namespace armcmc {
 namespace {
@@ -65,15 +65,6 @@ TEST_P(Baseline, RepeatsToTheBitAndAfterAReset) {
   EXPECT_GT(runs[0], 0.0);
 }
 
-TEST_P(Baseline, HoldsWithoutContact) {
-  Estimator estimator(SettingsOf(GetParam()));
-  const auto result = estimator.MakeResult();
-  test::Normal normal(3);
-  DataPack pack = Pack(1, &normal);
-  for (auto& u : pack.u) u[0] = -0.1;
-  EXPECT_EQ(estimator.Adjust(pack, 0, {}, result.get()), Status::kHeld);
-}
-
 INSTANTIATE_TEST_SUITE_P(All, Baseline, ::testing::Values(Method::kRls, Method::kParticleFilter, Method::kMetropolis),
                          [](const auto& m) {
                            return std::string(m.param == Method::kRls              ? "Rls"
@@ -129,21 +120,8 @@ TEST(Rls, FindsTheContactWhereItsLinearisationHolds) {
   EXPECT_NEAR(estimate->modes[0].marginal[2].ar_map, 1.7, 0.06);
 }
 
-TEST(Rls, RefusesEffects) {
-  EstimatorSettings settings = SettingsOf(Method::kRls);
-  settings.effects[0] = MakeEffect("coulomb_friction");
-  settings.num_effects = 1;
-  EXPECT_THROW(settings.Validate(), std::invalid_argument);
-}
-
 DataPack ValvePack(int seq, int mode, double gain) {
-  DataPack pack;
-  pack.seq = seq;
-  pack.run_id = 1;
-  pack.dt = 1e-3;
-  pack.plant = PlantKind::kSoftActuator;
-  pack.num_samples = 100;
-  pack.num_inputs = 4;
+  DataPack pack = test::BlankPack(PlantKind::kSoftActuator, seq);
   for (std::size_t n = 0; n < 100; ++n) {
     const double p = 101'325.0 + 1.0 + 0.01 * static_cast<double>(n), pdot = 10.0;
     const double head = mode == 0 ? std::sqrt(800e3 - p) : std::sqrt(p - 101'325.0);

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "contact_series.hpp"
+#include "core/effects/contact_series.hpp"
 
 namespace armcmc {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "armcmc/effects/registry.hpp"
-#include "estimator_rig.hpp"
+#include "core/effects/valve_series.hpp"
+#include "core/estimator_rig.hpp"
 #include "support/alloc_counter.hpp"
-#include "valve_series.hpp"
 
 namespace armcmc {
 namespace {
@@ -157,12 +157,6 @@ TEST(FlowEstimator, TheBaselinesTakeTheNoiseOfThePressureRate) {
   }
 }
 
-TEST(FlowEstimator, AContactHasNoPressureRate) {
-  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
-  settings.pressure_rate = true;
-  EXPECT_THROW(settings.Validate(), std::invalid_argument);
-}
-
 TEST(FlowEstimator, ReportsAmplitudesAfterTheModelsOwnQuantities) {
   const Estimator estimator(WithFlowEffects({FlowCases()[4], FlowCases()[0]}));
   ASSERT_EQ(estimator.num_reported(), 5);
@@ -207,25 +201,19 @@ TEST(FlowEstimator, ThePredictedAngleFeelsTheLeak) {
   EXPECT_NEAR(other, 0.0, 0.01);
 }
 
-TEST(FlowEstimator, TwoRunsAreEqualToTheBit) {
+TEST(FlowEstimator, ResetEqualsAFreshEstimatorToTheBit) {
   const std::vector<FlowCase> cases{FlowCases()[1], FlowCases()[4]};
   const std::vector<DataPack> packs = Measured(cases, 1000).Packs();
   const EstimatorSettings settings = Quick(WithFlowEffects(cases));
-  Rig first(settings), second(settings);
-  for (const DataPack& pack : packs) test::ExpectSameBits(first.Step(pack), second.Step(pack));
-  first.estimator.Reset();
-  Rig fresh(settings);
-  for (const DataPack& pack : packs) {
-    first.Step(pack);
-    fresh.Step(pack);
-  }
-  for (std::size_t d = 0; d < 5; ++d)
-    EXPECT_EQ(first.estimate().modes[0].marginal[d].ar_ap, fresh.estimate().modes[0].marginal[d].ar_ap);
+  Rig used(settings), fresh(settings);
+  for (std::size_t k = 0; k < 4; ++k) used.Step(packs[k]);
+  used.estimator.Reset();
+  for (std::size_t k = 4; k < packs.size(); ++k) test::ExpectSameBits(used.Step(packs[k]), fresh.Step(packs[k]));
 }
 
 TEST(FlowEstimator, ARestoredEstimatorGoesOnToTheBit) {
   const FlowCase leak = FlowCases()[4];
-  const std::vector<DataPack> packs = Measured({leak}, 3000).Packs();
+  const std::vector<DataPack> packs = Measured({leak}, 2000).Packs();
   const EstimatorSettings settings = Quick(WithFlowEffects({leak}));
   Rig whole(settings), resumed(settings);
   for (std::size_t k = 0; k < 15; ++k) whole.Step(packs[k]);
@@ -291,7 +279,6 @@ TEST(FlowSettings, TheFlowsEffectsAreTheOnlineOnesOfTheActuator) {
     if (info->online) online.push_back(info->name);
   for (const EffectInfo* info : FlowEffects::kInfos) flow.push_back(info->name);
   EXPECT_EQ(online, flow);
-  EXPECT_EQ(ActuatorEffects::kSize, 13);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/data_pack.hpp"
 #include "armcmc/settings.hpp"
+#include "support/packs.hpp"
 
 namespace armcmc::test {
 
@@ -65,13 +65,7 @@ struct ValveSeries {
 
   /// Samples [first, first + count) as pack number seq.
   [[nodiscard]] DataPack Pack(std::int64_t seq, std::size_t first, std::size_t count) const {
-    DataPack pack;
-    pack.seq = seq;
-    pack.run_id = 1;
-    pack.dt = dt;
-    pack.plant = PlantKind::kSoftActuator;
-    pack.num_samples = static_cast<int>(count);
-    pack.num_inputs = 4;
+    DataPack pack = BlankPack(PlantKind::kSoftActuator, seq, static_cast<int>(count), dt);
     for (std::size_t n = 0; n < count; ++n) pack.u[n] = {u_c[first + n], u_d[first + n], p[first + n], pdot[first + n]};
     pack.t_last_s = t[first + count - 1];
     pack.t_last_ns = static_cast<Nanos>(pack.t_last_s * 1e9);

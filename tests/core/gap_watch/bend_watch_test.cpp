@@ -14,6 +14,7 @@
 #include "armcmc/models/soft_actuator.hpp"
 #include "armcmc/snapshot.hpp"
 #include "support/alloc_counter.hpp"
+#include "support/packs.hpp"
 
 namespace armcmc {
 namespace {
@@ -30,13 +31,8 @@ class BendRig {
         watch_(settings_, rate) {}
 
   DataPack Next() {
-    DataPack pack;
-    pack.seq = ++seq;
+    DataPack pack = test::BlankPack(PlantKind::kSoftActuator, ++seq, samples);
     pack.run_id = run_id;
-    pack.plant = PlantKind::kSoftActuator;
-    pack.dt = 1e-3;
-    pack.num_samples = samples;
-    pack.num_inputs = 4;
     for (std::size_t n = 0; n < static_cast<std::size_t>(samples); ++n) {
       pack.t_last_s = t_;
       pack.u[n] = {0.0, 0.0, Pressure(t_) + pressure_noise * normal_(random_), 0.0};

@@ -25,12 +25,6 @@ TEST(GapEvidence, StakesAreTheRateOverAnHour) {
   EXPECT_EQ(evidence.total(), 0.0);
 }
 
-TEST(GapEvidence, NothingSpeaksAgainstTheModel) {
-  GapEvidence evidence(kChecks, 0.01);
-  for (int block = 0; block < 50; ++block) evidence.Add(Scores(0.0), 1.0 / 300.0);
-  EXPECT_LT(evidence.total(), evidence.stakes());
-}
-
 TEST(GapEvidence, EitherSignCountsAndTheMarginIsTakenOff) {
   for (const double z : {4.0, -4.0}) {
     GapEvidence evidence(kChecks, 0.01);

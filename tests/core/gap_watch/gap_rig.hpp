@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <random>
 #include <string>
 
@@ -9,10 +10,11 @@
 #include "armcmc/models/registry.hpp"
 #include "armcmc/settings.hpp"
 #include "simd/kernels.hpp"
+#include "support/packs.hpp"
 
 namespace armcmc::test {
 
-/// One sample of the contact plant before noise.
+/// One sample of the sliding contact before noise.
 struct ContactSample {
   double t, x, v, a;
 };
@@ -20,11 +22,12 @@ using ForceLaw = std::function<double(const ContactSample&)>;
 using NoiseLaw = std::function<double(const ContactSample&)>;
 
 inline double BaseForce(double x, double v, double k = 4.0, double b = 2.3, double p = 1.7) {
-  return x >= 0.0 ? std::pow(x, p) * (k + b * v) : 0.0;
+  return ContactTruth{k, b, p}.Force(x, v);
 }
 
 inline ContactSample SampleAt(double t) {
-  return {t, 0.6 + 1.14 * std::sin(t - 0.6), 1.14 * std::cos(t - 0.6), -1.14 * std::sin(t - 0.6)};
+  const Place place = Contact::At(t);
+  return {t, place.x, place.v, -1.14 * std::sin(t - 0.6)};
 }
 
 /// Noise of standard deviation 0.1 N, each law with a stream of its own.
@@ -58,18 +61,12 @@ class GapRig {
   }
 
   DataPack Pack(std::int64_t seq, const ForceLaw& force, const NoiseLaw& noise) const {
-    DataPack pack;
-    pack.seq = seq;
+    const auto measured = [&](double t, const Place&) {
+      const ContactSample s = SampleAt(t);
+      return force(s) + noise(s);
+    };
+    DataPack pack = FillContactPack(seq, &Contact::At, measured, samples);
     pack.run_id = run_id;
-    pack.dt = 1e-3;
-    pack.num_samples = samples;
-    pack.num_inputs = 2;
-    for (int n = 0; n < samples; ++n) {
-      const ContactSample s = SampleAt(pack.dt * static_cast<double>((seq - 1) * samples + n));
-      pack.u[static_cast<std::size_t>(n)] = {s.x, s.v};
-      pack.y[static_cast<std::size_t>(n)] = force(s) + noise(s);
-      pack.t_last_s = s.t;
-    }
     return pack;
   }
 

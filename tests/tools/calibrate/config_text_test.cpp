@@ -3,11 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "armcmc/support/estimator_config.hpp"
 #include "support/paths.hpp"
+#include "tools/file_text.hpp"
 
 namespace armcmc::calibrate {
 namespace {
@@ -15,10 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string TextOf(const std::string& name) {
-  std::ifstream file(test::SourceDir() / "rt/config" / name);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
+std::string Shipped(const std::string& name) { return test::TextOf(test::SourceDir() / "rt/config" / name); }
 
 EstimatorSettings Read(const std::string& text) {
   auto root = support::StrictTable::FromText(text, "calibrated.toml");
@@ -36,7 +31,7 @@ TEST(CalibratedConfig, ReplacesNoiseAndThresholdAndKeepsTheRest) {
   wanted.noise[0].outlier_scale = 8.5;
   wanted.forgetting.threshold = 0.375;
   wanted.forgetting.rho = 0.01;
-  const std::string text = CalibratedConfig(TextOf("hunt_crossley.toml"), wanted, {"contact"});
+  const std::string text = CalibratedConfig(Shipped("hunt_crossley.toml"), wanted, {"contact"});
   const EstimatorSettings read = Read(text);
   EXPECT_EQ(read.noise[0].kind, NoiseKind::kMixture);
   EXPECT_EQ(read.noise[0].std, wanted.noise[0].std);
@@ -57,7 +52,7 @@ TEST(CalibratedConfig, EveryModeHasItsNoise) {
   wanted.noise[1].std = 3e-6;
   wanted.noise[1].kind = NoiseKind::kStudentT;
   wanted.noise[1].dof = 5.5;
-  const EstimatorSettings read = Read(CalibratedConfig(TextOf("soft_actuator.toml"), wanted, {"u_c", "u_d"}));
+  const EstimatorSettings read = Read(CalibratedConfig(Shipped("soft_actuator.toml"), wanted, {"u_c", "u_d"}));
   EXPECT_EQ(read.noise[0].std, 2e-6);
   EXPECT_EQ(read.noise[1].std, 3e-6);
   EXPECT_EQ(read.noise[1].kind, NoiseKind::kStudentT);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 #include "tools/compare/traces.hpp"
+#include "tools/file_text.hpp"
 
 namespace armcmc::compare {
 namespace {
@@ -88,10 +88,7 @@ class CompareProgram : public ::testing::Test {
     more.insert(more.begin(), {"--data", dir_ / "run.lcm", "--config", dir_ / "a.toml", "--out", dir_ / "r.html"});
     return test::RunProgram(test::Program("armcmc-replay"), more);
   }
-  std::string Page() {
-    std::ifstream file(dir_ / "r.html");
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
+  std::string Page() { return test::TextOf(dir_ / "r.html"); }
   test::ScratchDir dir_;
 };
 

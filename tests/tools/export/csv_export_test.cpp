@@ -22,6 +22,8 @@
 #include "armcmc/support/program.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "tools/csv_rows.hpp"
+#include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
 
 namespace armcmc::log_export {
@@ -29,37 +31,11 @@ namespace {
 
 using replay::ContactPack;
 using replay::LogWriter;
+using test::TextOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 using Rows = std::vector<std::map<std::string, std::string>>;
-
-std::string TextOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-std::vector<std::string> Cells(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line + ",");
-  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-Rows ReadRows(const std::filesystem::path& path) {
-  std::istringstream text(TextOf(path));
-  std::string line;
-  std::getline(text, line);
-  const std::vector<std::string> names = Cells(line);
-  Rows rows;
-  while (std::getline(text, line)) {
-    const std::vector<std::string> cells = Cells(line);
-    EXPECT_EQ(cells.size(), names.size()) << line;
-    auto& row = rows.emplace_back();
-    for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells.at(i);
-  }
-  return rows;
-}
 
 double Number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
 
@@ -88,7 +64,7 @@ class CsvExport : public ::testing::Test {
   ExportSummary Export() {
     return ExportLog(request_, [](double) {});
   }
-  Rows Table(const std::string& channel) { return ReadRows(request_.out / (channel + ".csv")); }
+  Rows Table(const std::string& channel) { return test::RowsOf(TextOf(request_.out / (channel + ".csv"))); }
   test::Outcome Program(std::vector<std::string> more) {
     more.insert(more.begin(), {"--data", request_.log, "--out", request_.out});
     return test::RunProgram(test::Program("armcmc-export"), more);

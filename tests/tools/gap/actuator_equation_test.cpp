@@ -195,21 +195,5 @@ TEST_P(Derivatives, AreTheSameToTheBitHoweverFewOfThemAreWanted) {
 INSTANTIATE_TEST_SUITE_P(Actuator, Derivatives, ::testing::Values(kFlow, kBend),
                          [](const auto& at) { return at.param == kFlow ? "flow" : "bend"; });
 
-TEST(ActuatorEquation, CatalogueHoldsTheEffectsOfTheActuatorOnceByTheirOwnFormula) {
-  const Recording recording = RecordPlant("soft_actuator_excited", {}, 5, 2.0);
-  std::vector<std::string> names;
-  for (const int which : {kFlow, kBend}) {
-    const auto equation = ActuatorEquation(which);
-    for (const EffectForm& form : equation->Catalogue(equation->Prepare(recording, kWindow)))
-      if (form.exact()) names.push_back(form.effect);
-  }
-  std::sort(names.begin(), names.end());
-  const std::vector<std::string> expected = {
-      "angle_bias",   "cubic_stiffness", "gravity_load",         "hysteresis",    "joint_friction",
-      "leak",         "payload_step",    "periodic_disturbance", "pressure_bias", "pressure_bias",
-      "sensor_delay", "supply_droop",    "valve_dead_band",      "valve_lag"};
-  EXPECT_EQ(names, expected);  // the pressure sensor is read by both equations
-}
-
 }  // namespace
 }  // namespace armcmc::gap::test

@@ -93,7 +93,7 @@ double WorstDifference(const Named& named, const EstimatorSettings& settings, do
 
 class FlowWriteBack : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(FlowWriteBack, TheEstimatorPredictsWhatTheWorkflowPredicts) {
+TEST_P(FlowWriteBack, TheEstimatorPredictsWhatTheWorkflowPredictsAndItsFileReadsBackToTheBit) {
   const Named named(GetParam());
   const EstimatorSettings settings = AugmentedSettings(kModel, *named.fitter, named.fit, kNoise);
   ASSERT_EQ(settings.num_effects, 1);
@@ -104,11 +104,7 @@ TEST_P(FlowWriteBack, TheEstimatorPredictsWhatTheWorkflowPredicts) {
   EXPECT_LT(WorstDifference(named, settings), tolerance);
   const double step = 0.2 * settings.effects[0].amplitudes[0].mean;
   EXPECT_GT(WorstDifference(named, settings, step), 1e-4) << "the added amplitude is not active";
-}
 
-TEST_P(FlowWriteBack, AModelFileReadsBackToTheBit) {
-  const Named named(GetParam());
-  const EstimatorSettings settings = AugmentedSettings(kModel, *named.fitter, named.fit, kNoise);
   const armcmc::test::ScratchDir dir;
   const std::string text = support::ModelFileText(settings, kModel);
   std::ofstream(dir / "model.toml") << text;
@@ -132,21 +128,14 @@ WorkflowOutcome Diagnosed(const std::vector<HiddenInPlant>& hidden, unsigned lon
   return RunWorkflow(request);
 }
 
-TEST(ActuatorWorkflow, WritesAModelForWhatTheFlowLacks) {
-  const WorkflowOutcome outcome = Diagnosed({{"leak", 1.0, {}}}, 61);
-  ASSERT_TRUE(outcome.augmented);
-  ASSERT_EQ(outcome.augmented->num_effects, 1);
-  EXPECT_EQ(outcome.augmented->effects[0].name, "leak");
-}
-
-TEST(ActuatorWorkflow, SaysWhyThereIsNoModelForWhatTheBendEquationLacks) {
+TEST(ActuatorModelFile, SaysWhyThereIsNoModelForWhatTheBendEquationLacks) {
   const WorkflowOutcome outcome = Diagnosed({{"cubic_stiffness", 2.0, {}}}, 61);
   EXPECT_FALSE(outcome.augmented);
   EXPECT_THAT(outcome.result.notes, Contains(HasSubstr("cubic_stiffness: for offline fits only")));
 }
 
 // The bend equation sees the sensor's zero best; the estimator runs it where it has the sensor, too.
-TEST(ActuatorWorkflow, ASensorThatBothEquationsReadRunsInTheFlow) {
+TEST(ActuatorModelFile, ASensorThatBothEquationsReadRunsInTheFlow) {
   const WorkflowOutcome outcome = Diagnosed({{"pressure_bias", 1.0, {-3000.0}}}, 61);
   ASSERT_TRUE(outcome.augmented);
   ASSERT_EQ(outcome.augmented->num_effects, 1);

@@ -4,6 +4,13 @@
 #include <stdexcept>
 
 namespace armcmc::gap::test {
+namespace {
+
+Vector Column(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
 
 Recording MakeRecording(const Vector& t, const Vector& x, const Vector& v, const Vector& f) {
   Recording recording;
@@ -21,6 +28,14 @@ Vector Noise(Eigen::Index rows, unsigned seed) {
   return Vector::NullaryExpr(rows, [&] { return normal(engine); });
 }
 
+Recording RecordingOf(const armcmc::test::Series& series, double noise_sd, unsigned seed) {
+  const auto rows = static_cast<Eigen::Index>(series.size());
+  Recording recording = MakeRecording(Column(series.t), Column(series.x), Column(series.v),
+                                      Column(series.f) + noise_sd * Noise(rows, seed));
+  recording.dt = series.dt;
+  return recording;
+}
+
 Made Measure(const std::vector<armcmc::test::HiddenEffect>& effects, int rows, double noise_sd, unsigned seed,
              double dt) {
   armcmc::test::Series series(rows);
@@ -34,15 +49,7 @@ Made Measure(const std::vector<armcmc::test::HiddenEffect>& effects, int rows, d
         0.5 * 3.1 * std::cos(3.1 * s - 0.4) + 0.3 * 7.3 * std::cos(7.3 * s) + 0.12 * 17.9 * std::cos(17.9 * s + 1.0);
   }
   armcmc::test::Simulate(effects, &series);
-  const auto column = [](const std::vector<double>& values) -> Vector {
-    return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
-  };
-  Made made;
-  made.clean = column(series.f);
-  made.recording =
-      MakeRecording(column(series.t), column(series.x), column(series.v), made.clean + noise_sd * Noise(rows, seed));
-  made.recording.dt = dt;
-  return made;
+  return {RecordingOf(series, noise_sd, seed), Column(series.f)};
 }
 
 armcmc::test::HiddenEffect Hidden(const std::string& name) {

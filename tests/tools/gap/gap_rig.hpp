@@ -17,6 +17,9 @@ namespace armcmc::gap::test {
 /// Standard normal numbers.
 [[nodiscard]] Vector Noise(Eigen::Index rows, unsigned seed);
 
+/// A simulated series as it is measured, its force with white noise.
+[[nodiscard]] Recording RecordingOf(const armcmc::test::Series& series, double noise_sd, unsigned seed);
+
 struct Made {
   Recording recording;
   Vector clean;  ///< Force without noise, N.

@@ -81,7 +81,7 @@ TEST_P(Onset, IsFoundToAFewSamples) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ScanGates, Onset, ::testing::Values("force_bias", "viscous_friction", "coulomb_friction"),
+INSTANTIATE_TEST_SUITE_P(ScanGates, Onset, ::testing::Values("force_bias", "coulomb_friction"),
                          [](const auto& at) { return std::string(at.param); });
 
 TEST(ScanGates, AnEffectThatIsSeenInFewBlocksHasNoGate) {

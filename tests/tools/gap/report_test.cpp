@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/file_text.hpp"
 #include "tools/gap/report_fixture.hpp"
 
 namespace armcmc::gap {
 namespace {
 
-// Instead of a matcher, which would print the whole page.
-bool Holds(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
+using armcmc::test::Holds;
 
 TEST(Report, NamedTellsEffectGapAndParameter) {
   const std::string html = ReportHtml(test::ExampleResult(Verdict::kNamed));

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iterator>
+
+#include "armcmc/effects/registry.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -17,11 +18,9 @@ TEST(EffectTitle, ReadsAsAPersonWouldSayIt) {
   EXPECT_EQ(InSentence("viscous_friction + coulomb_friction"), "viscous friction + Coulomb friction");
 }
 
-TEST(WordsOf, KnowsEveryEffectOfTheContactCatalogue) {
-  for (const char* name : {"force_bias", "force_drift", "coulomb_friction", "presliding_friction", "viscous_friction",
-                           "inertia", "sensor_delay", "sensor_lag", "stress_relaxation", "adhesion", "contact_offset",
-                           "sensor_saturation", "periodic_disturbance", "stiffness_drift"})
-    EXPECT_FALSE(WordsOf(name).formula.empty()) << name;
+TEST(WordsOf, KnowsEveryEffectOfTheCatalogues) {
+  for (const PlantKind plant : {PlantKind::kHuntCrossley, PlantKind::kSoftActuator})
+    for (const EffectInfo* info : EffectsOf(plant)) EXPECT_FALSE(WordsOf(info->name).formula.empty()) << info->name;
   EXPECT_TRUE(WordsOf("not_there").formula.empty());
 }
 

@@ -76,6 +76,8 @@ TEST(ResultJson, KeepsTheNumbersOfCandidatesAndPlaces) {
   EXPECT_EQ(out.at("candidates").at(0).at("heldout_score"), 9120.4);
   EXPECT_EQ(out.at("where").at(0).at("share_of_excess_error"), 0.91);
   EXPECT_EQ(out.at("where").at(0).at("region"), "v near 0, both signs");
+  EXPECT_EQ(out.at("gap").at("heldout_rmse_before"), 0.0801);
+  EXPECT_EQ(out.at("gap").at("heldout_rmse_after"), 0.0203);
 }
 
 TEST(ResultJson, DoesNotCallAnUnmeasuredTimeZero) {

@@ -149,11 +149,6 @@ TEST(LocateOnsets, CountsOfThoseFoundAlsoTheOnesWithoutATime) {
   EXPECT_NE(Html(outcomes, 1).find("50 % were dated within 0.2 s and 25 % within 20 ms"), std::string::npos);
 }
 
-TEST(LocateOnsets, HasNoGateWithoutItsStratum) {
-  EXPECT_EQ(Find(Gates({Made("null", Grade::kRight, 1, true)}), "onset", "onset within 20 ms, of those found"),
-            nullptr);
-}
-
 TEST(Quantile, IsLinearBetweenValues) {
   EXPECT_NEAR(Quantile({3.0, 1.0, 2.0}, 0.25), 1.5, 1e-12);
   EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));

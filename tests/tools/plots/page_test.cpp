@@ -4,11 +4,12 @@
 
 #include <cmath>
 
+#include "tools/file_text.hpp"
+
 namespace armcmc::plots {
 namespace {
 
-// Instead of a matcher, which would print the whole page.
-bool Holds(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
+using test::Holds;
 
 XyChart OneCurve(const std::string& label) {
   XyChart chart;

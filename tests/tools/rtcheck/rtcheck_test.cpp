@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "armcmc/rtcheck/findings.hpp"
+#include "support/json.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
@@ -149,7 +149,7 @@ TEST_F(RtCheck, TheProgramTellsItsVerdictByItsExitCode) {
   using test::RunProgram;
   const auto fit = RunProgram(test::Program("armcmc-rtcheck"), {"--root", dir_.path(), "--seconds", "0", "--json"});
   EXPECT_EQ(fit.code, 0) << fit.err;
-  EXPECT_TRUE(nlohmann::json::parse(fit.out)["fit"].get<bool>());
+  EXPECT_TRUE(test::Json::Parse(fit.out)["fit"].get<bool>());
   Put("proc/net/route", "Iface Destination\n");
   const auto unfit = RunProgram(test::Program("armcmc-rtcheck"), {"--root", dir_.path(), "--seconds", "0"});
   EXPECT_EQ(unfit.code, 3);
@@ -160,7 +160,7 @@ TEST_F(RtCheck, TheProgramTellsItsVerdictByItsExitCode) {
 TEST_F(RtCheck, MeasuresWakeUps) {
   const auto run = test::RunProgram(test::Program("armcmc-rtcheck"),
                                     {"--root", dir_.path(), "--cpu", "0", "--seconds", "0.2", "--json"});
-  const auto json = nlohmann::json::parse(run.out);
+  const auto json = test::Json::Parse(run.out);
   EXPECT_GT(json["wake_up_ms"]["count"], 0);
   EXPECT_GT(json["wake_up_ms"]["histogram"].size(), 0U);
 }

@@ -5,8 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
+
+#include "tools/file_text.hpp"
 
 namespace armcmc::stress {
 namespace {
@@ -28,12 +29,7 @@ class FlightRecorderTest : public ::testing::Test {
   }
   ~FlightRecorderTest() override { std::filesystem::remove(file_); }
 
-  std::string Text() const {
-    std::ifstream in(file_);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
+  std::string Text() const { return test::TextOf(file_); }
 
   // Of this process: tests run side by side.
   std::filesystem::path file_ = ::testing::TempDir() + "flight_recorder_test." + std::to_string(getpid());

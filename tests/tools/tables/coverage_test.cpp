@@ -13,12 +13,6 @@
 namespace armcmc::tables {
 namespace {
 
-TEST(NullCoverageVariance, OfOnePackIsThatOfOneDecision) {
-  const std::array<double, 1> sd{0.3};
-  for (std::size_t l = 0; l < kLevels.size(); ++l)
-    EXPECT_NEAR(NullCoverageVariance(sd, l), kLevels[l] * (1.0 - kLevels[l]), 1e-12);
-}
-
 TEST(NullCoverageVariance, OfPacksThatTeachNothingIsThatOfOneDecision) {
   const std::vector<double> sd(50, 0.3);
   for (std::size_t l = 0; l < kLevels.size(); ++l)

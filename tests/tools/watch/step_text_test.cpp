@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
+#include "support/json.hpp"
 #include "tools/watch/watch_messages.hpp"
 
 namespace armcmc::watch {
@@ -29,7 +29,7 @@ TEST(StepLine, NamesWhatIsWrong) {
 }
 
 TEST(StepJson, IsOneObjectWithTheSameNumbers) {
-  const auto json = nlohmann::json::parse(StepJson(test::SomeState()));
+  const auto json = test::Json::Parse(StepJson(test::SomeState()));
   EXPECT_EQ(json["pack"], 11);
   EXPECT_EQ(json["parameters"]["K"]["mean"], 3.25);
   EXPECT_EQ(json["parameters"]["K"]["truth"], 3.5);
@@ -45,7 +45,7 @@ TEST(StepJson, WritesNullForWhatIsNotKnown) {
   WatchState state = test::SomeState();
   state.estimate->known = 0;
   state.estimate->zeta = std::numeric_limits<double>::quiet_NaN();
-  const auto json = nlohmann::json::parse(StepJson(state));
+  const auto json = test::Json::Parse(StepJson(state));
   EXPECT_TRUE(json["parameters"]["K"]["mean"].is_null());
   EXPECT_TRUE(json["zeta"].is_null());
 }
@@ -53,7 +53,7 @@ TEST(StepJson, WritesNullForWhatIsNotKnown) {
 TEST(StepJson, DoesWithoutAnEstimate) {
   WatchState state;
   state.Take(test::SomeStatus(), 0.0);
-  EXPECT_EQ(nlohmann::json::parse(StepJson(state))["deadline_ms"], 100.0);
+  EXPECT_EQ(test::Json::Parse(StepJson(state))["deadline_ms"], 100.0);
   EXPECT_THAT(StepLine(state), HasSubstr("52 of 100 ms"));
 }
 

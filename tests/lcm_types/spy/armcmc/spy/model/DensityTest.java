@@ -12,12 +12,6 @@ public class DensityTest {
     Check.near(0.25, d.peak(), 1e-12);
   }
 
-  public void isNormalisedWhateverItsScale() {
-    Density d = new Density(0, 1, new double[] {3, 1}, 2);
-    Check.near(1.5, d.height(0), 1e-12);
-    Check.near(0.5, d.height(1), 1e-12);
-  }
-
   public void quantilesSkipEmptyBins() {
     Density d = new Density(0, 4, new double[] {0, 1, 0, 1}, 4);
     Check.near(1, d.quantile(0), 1e-12);

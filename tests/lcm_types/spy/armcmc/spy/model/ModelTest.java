@@ -127,8 +127,8 @@ public class ModelTest {
   }
 
   public void everyFlagHasAWord() {
-    Check.equal(5, StatusFlags.degraded(31).size());
-    Check.equal(7, StatusFlags.faults(127).size());
+    Check.equal(7, StatusFlags.degraded(127).size());
+    Check.equal(11, StatusFlags.faults(2047).size());
     Check.equal("bus flooded", StatusFlags.faults(256).get(0));
     Check.equal("unknown flag 4096", StatusFlags.faults(4096).get(0));
   }

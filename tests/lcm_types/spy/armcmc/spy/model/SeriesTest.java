@@ -40,11 +40,4 @@ public class SeriesTest {
     Check.near(10.9, clock.time(1001, 10.9), 1e-9);    // faster than the first: no message comes before it is sent
     Check.near(20, clock.time(5, 20), 1e-9);           // another clock
   }
-
-  public void theGateLetsThroughOneInATime() {
-    Gate gate = new Gate(0.04);
-    int passed = 0;
-    for (int i = 0; i < 1000; ++i) passed += gate.pass(0.001 * i) ? 1 : 0;
-    Check.near(25, passed, 1);
-  }
 }
