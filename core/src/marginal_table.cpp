@@ -8,16 +8,16 @@
 namespace armcmc {
 namespace {
 
-constexpr double kStep = 1.0 / MarginalTable::kNodesPerUnit;
+constexpr double kNodeStep = 1.0 / MarginalTable::kNodesPerUnit;
 
 template <class F>
 MarginalTable Tabulate(double half_width, F density) {
   std::array<double, MarginalTable::kMaxNodes> values{};
   const int half = std::min(static_cast<int>(std::ceil(half_width * MarginalTable::kNodesPerUnit - 1e-9)),
                             (MarginalTable::kMaxNodes - 1) / 2);
-  for (int i = 0; i <= 2 * half; ++i) values[static_cast<std::size_t>(i)] = density((i - half) * kStep);
+  for (int i = 0; i <= 2 * half; ++i) values[static_cast<std::size_t>(i)] = density((i - half) * kNodeStep);
   MarginalTable table;
-  table.Build(values.data(), 2 * half + 1, -half * kStep);
+  table.Build(values.data(), 2 * half + 1, -half * kNodeStep);
   return table;
 }
 
@@ -42,7 +42,7 @@ void MarginalTable::Build(const double* values, int num_nodes, double lower) noe
   cdf_[0] = 0.0;
   for (int i = 1; i < num_nodes_; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    mass += 0.5 * kStep * (values[i - 1] + values[i]);
+    mass += 0.5 * kNodeStep * (values[i - 1] + values[i]);
     cdf_[k] = mass;
   }
   const double scale = 1.0 / mass;
@@ -93,11 +93,11 @@ double MarginalTable::Density(double x) const noexcept ARMCMC_NONBLOCKING {
 double MarginalTable::Mean() const noexcept {
   double sum = 0.0;
   for (int i = 0; i < num_nodes_; ++i) {
-    const double x = lower_ + i * kStep;
+    const double x = lower_ + i * kNodeStep;
     const double ends = (i == 0 || i == num_nodes_ - 1) ? 0.5 : 1.0;
     // Exact for interior nodes: the mean of a hat function is its node; at the ends the half hat leans inward.
-    const double lean = i == 0 ? kStep / 3.0 : (i == num_nodes_ - 1 ? -kStep / 3.0 : 0.0);
-    sum += ends * pdf_[static_cast<std::size_t>(i)] * kStep * (x + lean);
+    const double lean = i == 0 ? kNodeStep / 3.0 : (i == num_nodes_ - 1 ? -kNodeStep / 3.0 : 0.0);
+    sum += ends * pdf_[static_cast<std::size_t>(i)] * kNodeStep * (x + lean);
   }
   return sum;
 }
@@ -107,10 +107,11 @@ double MarginalTable::Variance() const noexcept {
   double sum = 0.0;
   for (int i = 0; i < num_nodes_; ++i) {
     const double ends = (i == 0 || i == num_nodes_ - 1) ? 0.5 : 1.0;
-    const double lean = i == 0 ? kStep / 3.0 : (i == num_nodes_ - 1 ? -kStep / 3.0 : 0.0);
-    const double x = lower_ + i * kStep - mean;
+    const double lean = i == 0 ? kNodeStep / 3.0 : (i == num_nodes_ - 1 ? -kNodeStep / 3.0 : 0.0);
+    const double x = lower_ + i * kNodeStep - mean;
     // Second moment of a hat about its node: h^2 / 6; of a half hat about its edge: also h^2 / 6.
-    sum += ends * pdf_[static_cast<std::size_t>(i)] * kStep * (x * x + 2.0 * x * lean + kStep * kStep / 6.0);
+    sum +=
+        ends * pdf_[static_cast<std::size_t>(i)] * kNodeStep * (x * x + 2.0 * x * lean + kNodeStep * kNodeStep / 6.0);
   }
   return sum;
 }

@@ -11,7 +11,7 @@
 namespace armcmc {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknownAngle = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -114,7 +114,7 @@ void OutputPredictor::Predict(const DataPack& pack, const ShownEstimates& shown,
       const auto& theta = shown.theta[0];
       (*output)[i] = x < 0.0          ? 0.0
                      : shown.known[0] ? std::pow(x, theta[2]) * (theta[0] + theta[1] * pack.u[i][1])
-                                      : kUnknown;
+                                      : kUnknownAngle;
       (*free_run)[i] = (*output)[i];
     }
     return;

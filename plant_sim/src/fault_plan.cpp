@@ -8,9 +8,9 @@
 namespace armcmc::plant_sim {
 namespace {
 
-constexpr std::array kKinds = {FaultKind::kNan,  FaultKind::kSize,    FaultKind::kDuplicate, FaultKind::kReorder,
-                               FaultKind::kDrop, FaultKind::kForeign, FaultKind::kGarbage,   FaultKind::kLate,
-                               FaultKind::kZero, FaultKind::kHuge,    FaultKind::kCorrupt,   FaultKind::kClock};
+constexpr std::array kFaultKinds = {FaultKind::kNan,  FaultKind::kSize,    FaultKind::kDuplicate, FaultKind::kReorder,
+                                    FaultKind::kDrop, FaultKind::kForeign, FaultKind::kGarbage,   FaultKind::kLate,
+                                    FaultKind::kZero, FaultKind::kHuge,    FaultKind::kCorrupt,   FaultKind::kClock};
 
 constexpr bool HasAmount(FaultKind kind) noexcept { return kind == FaultKind::kLate || kind == FaultKind::kClock; }
 
@@ -35,7 +35,7 @@ Fault ParseItem(const std::string& item) {
   std::string_view number = text.substr(at + 1);
   Fault fault;
   bool known = false;
-  for (const FaultKind kind : kKinds)
+  for (const FaultKind kind : kFaultKinds)
     if (name == ToString(kind)) {
       fault.kind = kind;
       known = true;

@@ -10,7 +10,7 @@
 namespace armcmc::plant_sim {
 namespace {
 
-enum Parameter { kK = 0, kB = 1, kP = 2 };
+enum ContactParameter { kK = 0, kB = 1, kP = 2 };
 enum Input { kX = 0, kV = 1 };
 
 // The slave's own mass, damping and stiffness act bare only while no command is sent.
@@ -22,7 +22,7 @@ double ContactForce(double k, double b, double p, double x, double v) noexcept {
   return x >= 0.0 ? std::pow(x, p) * (k + b * v) : 0.0;
 }
 
-std::unique_ptr<Plant> Make(const PlantSetup& setup) { return std::make_unique<HuntCrossleyPlant>(setup); }
+std::unique_ptr<Plant> MakeHuntCrossley(const PlantSetup& setup) { return std::make_unique<HuntCrossleyPlant>(setup); }
 
 }  // namespace
 
@@ -127,7 +127,7 @@ const PlantFamily& HuntCrossleyFamily() {
     f.modes = {"contact"};
     f.truth_names = {"K", "B", "p"};
     f.target = {"f_true", "clean_force_mae_mN", 1e3, "noisy_force_l2_N"};
-    f.make = Make;
+    f.make = MakeHuntCrossley;
     return f;
   }();
   return family;

@@ -10,11 +10,11 @@
 namespace armcmc::plant_sim {
 namespace {
 
-enum Parameter { kTheta1Fill = 0, kTheta2Fill = 1, kTheta1Vent = 2, kTheta2Vent = 3 };
+enum ActuatorParameter { kTheta1Fill = 0, kTheta2Fill = 1, kTheta1Vent = 2, kTheta2Vent = 3 };
 
 double SignedRoot(double difference) noexcept { return std::copysign(std::sqrt(std::abs(difference)), difference); }
 
-std::unique_ptr<Plant> Make(const PlantSetup& setup) { return std::make_unique<SoftActuatorPlant>(setup); }
+std::unique_ptr<Plant> MakeSoftActuator(const PlantSetup& setup) { return std::make_unique<SoftActuatorPlant>(setup); }
 
 }  // namespace
 
@@ -147,7 +147,7 @@ const PlantFamily& SoftActuatorFamily() {
     f.modes = {"u_c", "u_d"};
     f.truth_names = {"g", "theta2"};
     f.target = {"flow", "clean_flow_mae", 1.0, "noisy_flow_l2"};
-    f.make = Make;
+    f.make = MakeSoftActuator;
     return f;
   }();
   return family;

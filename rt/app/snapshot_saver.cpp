@@ -8,7 +8,7 @@
 namespace armcmc::app {
 namespace {
 
-constexpr auto kPause = std::chrono::milliseconds(50);
+constexpr auto kWritePause = std::chrono::milliseconds(50);
 constexpr auto kInterval = std::chrono::seconds(1);
 
 }  // namespace
@@ -56,7 +56,7 @@ void SnapshotSaver::Start() {
   thread_ = std::thread([this] {
     auto due = std::chrono::steady_clock::now() + kInterval;
     while (!stop_.load(std::memory_order_acquire)) {
-      std::this_thread::sleep_for(kPause);
+      std::this_thread::sleep_for(kWritePause);
       if (std::chrono::steady_clock::now() < due) continue;
       Save();
       due = std::chrono::steady_clock::now() + kInterval;

@@ -74,6 +74,12 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
     EXPECT_NE(contents.out.find(path), std::string::npos) << path << " is missing in\n" << contents.out;
   }
   EXPECT_NE(Shell("dpkg-deb -f " + deb + " Depends").out.find("liblcm1"), std::string::npos);
+  const std::string control = dir / "control";
+  ASSERT_EQ(Shell("dpkg-deb -e " + deb + " " + control).code, 0);
+  for (const char* script : {"postinst", "prerm", "postrm"}) {
+    const Outcome parsed = Shell("test -x " + control + "/" + script + " && sh -n " + control + "/" + script);
+    EXPECT_EQ(parsed.code, 0) << script << ": " << parsed.err;
+  }
   const std::string root = dir / "root";
   ASSERT_EQ(Shell("dpkg-deb -x " + deb + " " + root).code, 0);
   const Outcome plant = RunProgram(fs::path(root) / "usr/bin/armcmc-plant",

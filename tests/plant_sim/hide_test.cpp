@@ -137,7 +137,7 @@ TEST(Hide, TheDrawIsTheSameForASeedAndComesToEverythingOverSeeds) {
     }
   }
   for (const HiddenKind kind : {HiddenKind::kNone, HiddenKind::kSingle, HiddenKind::kPair, HiddenKind::kOutside})
-    EXPECT_NEAR(kinds[kind], kSeeds / 4, kSeeds / 10) << HiddenKindName(kind);
+    EXPECT_NEAR(kinds[kind], 0.25 * kSeeds, 0.1 * kSeeds) << HiddenKindName(kind);
   EXPECT_EQ(names.size(), EffectNames(*scenario.family).size());
   EXPECT_EQ(gates, (std::set<std::string>{"alwa", "cont", "free", "from", "unti"}));
   EXPECT_EQ(forms.size(), 3u);

@@ -31,7 +31,7 @@ Json Json::Parse(std::string_view text) {
   }
 }
 
-Json Json::operator[](std::string_view key) const {
+Json Json::Member(std::string_view key) const {
   if (!contains(key)) throw std::out_of_range("no \"" + std::string(key) + "\" in " + dump().substr(0, 200));
   return Json(std::make_shared<const Node>(Node{node_->document, &(*node_->value)[std::string(key)]}));
 }

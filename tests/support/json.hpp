@@ -31,7 +31,10 @@ class Json {
   [[nodiscard]] static Json Parse(std::string_view text);
 
   /// A member of an object; throws std::out_of_range naming a key that is not there.
-  [[nodiscard]] Json operator[](std::string_view key) const;
+  template <std::convertible_to<std::string_view> Key>
+  [[nodiscard]] Json operator[](const Key& key) const {
+    return Member(key);
+  }
   /// An element of an array; throws std::out_of_range past its end.
   template <std::integral Index>
   [[nodiscard]] Json operator[](Index index) const {
@@ -118,6 +121,7 @@ class Json {
  private:
   struct Node;
   explicit Json(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
+  [[nodiscard]] Json Member(std::string_view key) const;
   [[nodiscard]] Json Element(std::size_t index) const;
   [[nodiscard]] Json Value(std::size_t index) const;
 

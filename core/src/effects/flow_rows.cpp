@@ -11,12 +11,12 @@
 namespace armcmc {
 namespace {
 
-constexpr double kRemembered = 8.0;   // time constants after which a spool has forgotten its start
-constexpr double kUnsure = 4.0;       // longest time constants after a start
-constexpr double kLeastShare = 0.01;  // of the size of the gains in the prior
+constexpr double kRemembered = 8.0;       // time constants after which a spool has forgotten its start
+constexpr double kUnsure = 4.0;           // longest time constants after a start
+constexpr double kLeastGainShare = 0.01;  // of the size of the gains in the prior
 constexpr int kNone = SoftActuator::kInfo.num_modes;
 
-std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
+std::size_t Index(int i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -24,13 +24,13 @@ FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
     : empty(false), p_atm(settings.constants.p_atm), supply(settings.constants.p_supply - settings.constants.p_atm) {
   const ParameterSettings& gain = settings.parameters[0];
   const bool normal = gain.prior == PriorKind::kNormal;
-  least_gain = kLeastShare * (normal ? std::max(std::fabs(gain.mean), gain.sd)
-                                     : std::max(std::fabs(gain.lower), std::fabs(gain.upper)));
+  least_gain = kLeastGainShare * (normal ? std::max(std::fabs(gain.mean), gain.sd)
+                                         : std::max(std::fabs(gain.lower), std::fabs(gain.upper)));
   for (int e = 0; e < settings.num_effects; ++e) {
-    const EffectSettings& effect = settings.effects[At(e)];
+    const EffectSettings& effect = settings.effects[Index(e)];
     const int index = FlowEffects::Find(effect.name);
-    term[At(index)] = {first_amplitude, effect.gate, effect.from_s, effect.until_s};
-    const EffectInfo& info = *FlowEffects::kInfos[At(index)];
+    term[Index(index)] = {first_amplitude, effect.gate, effect.from_s, effect.until_s};
+    const EffectInfo& info = *FlowEffects::kInfos[Index(index)];
     first_amplitude += info.num_amplitudes;
     head_moves = head_moves || (info.needs.pressure && info.slot != EffectSlot::kAdditive);
     if (effect.name == std::string_view(ValveLag::kInfo.name)) {
@@ -59,7 +59,7 @@ void FlowRows::Recall(const DataPack& pack) noexcept {
   const double wanted = std::fmin(std::ceil(kRemembered * plan_.longest_lag / pack.dt) + 1.0, kMaxFlowHistory);
   history_ = std::min(static_cast<int>(wanted), rows_);
   const int first = rows_ - history_;
-  if (first > 0) before_ = spool_[At(first - 1)];
+  if (first > 0) before_ = spool_[Index(first - 1)];
   std::copy_n(command_.begin() + first, history_, command_.begin());
   std::copy_n(spool_.begin() + first, history_, spool_.begin());
 }
@@ -75,25 +75,25 @@ void FlowRows::Prepare(const DataPack& pack, FlowPack* out) noexcept {
   out->head_moves = plan_.head_moves;
   for (std::size_t e = 0; e < plan_.term.size(); ++e) out->amplitude[e] = plan_.term[e].parameter;
   for (int n = 0; n < pack.num_samples; ++n) {
-    const auto& u = pack.u[At(n)];
+    const auto& u = pack.u[Index(n)];
     const double t = pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt;
     const int told = SoftActuator::ModeOf(pack, n);
     const double command = told == 0 ? u[0] : (told == 1 ? -u[1] : 0.0);
-    out->gauge[At(n)] = u[2] - plan_.p_atm;
-    out->pdot[At(n)] = u[3];
-    out->head[At(n)] =
-        told < kNone ? FlowLaw<ScalarOps>::Head({command, out->gauge[At(n)], plan_.supply, 0.0}, told) : 0.0;
+    out->gauge[Index(n)] = u[2] - plan_.p_atm;
+    out->pdot[Index(n)] = u[3];
+    out->head[Index(n)] =
+        told < kNone ? FlowLaw<ScalarOps>::Head({command, out->gauge[Index(n)], plan_.supply, 0.0}, told) : 0.0;
     for (std::size_t e = 0; e < plan_.term.size(); ++e)
-      out->gate[e][At(n)] = plan_.term[e].there() && plan_.term[e].ActsAt(t) ? 1.0 : 0.0;
+      out->gate[e][Index(n)] = plan_.term[e].there() && plan_.term[e].ActsAt(t) ? 1.0 : 0.0;
     bool sure = true;
     if (plan_.lag().there()) {
-      spool_[At(rows_)] = typical.Next(rows_ > 0 ? spool_[At(rows_ - 1)] : before_, command);
+      spool_[Index(rows_)] = typical.Next(rows_ > 0 ? spool_[Index(rows_ - 1)] : before_, command);
       slowest_ = slowest.Next(slowest_, command);
       sure = !plan_.lag().ActsAt(t) || (unsure_ == 0 && slowest_ * command > 0.0);
       unsure_ = std::max(unsure_ - 1, 0);
     }
-    command_[At(rows_++)] = command;
-    out->mode[At(n)] = static_cast<std::int8_t>(sure ? told : kNone);
+    command_[Index(rows_++)] = command;
+    out->mode[Index(n)] = static_cast<std::int8_t>(sure ? told : kNone);
   }
   out->history = history_;
   out->spool = before_;
@@ -103,9 +103,9 @@ void FlowRows::Prepare(const DataPack& pack, FlowPack* out) noexcept {
 void FlowRows::Fill(const FlowPack& flow, int mode, ModeData* data) noexcept {
   int m = 0;
   for (int n = 0; n < flow.num_samples; ++n) {
-    if (flow.mode[At(n)] != mode) continue;
-    data->sample[At(m)] = static_cast<std::int16_t>(n);
-    data->target[At(m++)] = flow.pdot[At(n)];
+    if (flow.mode[Index(n)] != mode) continue;
+    data->sample[Index(m)] = static_cast<std::int16_t>(n);
+    data->target[Index(m++)] = flow.pdot[Index(n)];
   }
   data->num_samples = m;
   data->mode = mode;

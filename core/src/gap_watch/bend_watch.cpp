@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include "gap_tools.hpp"
 
 namespace armcmc {
 namespace {
 
-constexpr double kDeep = 0.75;      // of the largest angle
 constexpr int kMostStretches = 50;  // that the scale of the noise remembers
-
-std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
-double Sign(double v) noexcept { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); }
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "gap_tools.hpp"
 
 namespace armcmc {
 namespace {
@@ -16,8 +17,6 @@ double Dot(const double* a, const double* b, int n) noexcept {
   for (int i = 0; i < n; ++i) sum += a[i] * b[i];
   return sum;
 }
-
-std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

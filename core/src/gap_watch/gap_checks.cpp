@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include "gap_tools.hpp"
 
 namespace armcmc {
 namespace {
 
 constexpr double kEarly = 0.25;    // s after a change of mode
 constexpr double kShallow = 0.25;  // of the largest magnitude
-constexpr double kDeep = 0.75;
-constexpr double kHigh = 0.9;  // of the largest output
-
-double Sign(double v) noexcept { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); }
+constexpr double kHigh = 0.9;      // of the largest output
 
 /// Time since the last change of mode, carried from pack to pack.
 double TimeInMode(int mode, double dt, RegionMemory* memory) noexcept {

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "armcmc/snapshot.hpp"
+#include "gap_tools.hpp"
 
 namespace armcmc {
 namespace {
 
 constexpr double kLeastEvidence = 1e-12;
 constexpr double kFade = 0.9;  // of the shares, from block to block
-
-std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "armcmc/models/registry.hpp"
+#include "gap_tools.hpp"
 #include "simd/kernels.hpp"
 
 namespace armcmc {
 namespace {
 
-constexpr double kStep = 1e-4;  // of a difference quotient, relative to the size of the parameter
-
-std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
+constexpr double kRelativeStep = 1e-4;  // of a difference quotient, relative to the size of the parameter
 
 }  // namespace
 
@@ -40,7 +39,7 @@ void GapLineariser::FillTheta(const std::array<double, kMaxParams>& theta) noexc
   for (int d = 0; d < info().num_parameters; ++d) {
     const ParameterSettings& p = parameter(d);
     const double size = p.prior == PriorKind::kNormal ? p.sd : p.upper - p.lower;
-    const double step = kStep * std::max(std::fabs(theta[At(d)]), size);
+    const double step = kRelativeStep * std::max(std::fabs(theta[At(d)]), size);
     auto& lanes = theta_.value[At(d)];
     lanes.fill(theta[At(d)]);
     lanes[At(1 + 2 * d)] = std::min(theta[At(d)] + step, p.upper);

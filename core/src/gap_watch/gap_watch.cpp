@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "armcmc/models/registry.hpp"
+#include "gap_tools.hpp"
 
 namespace armcmc {
 namespace {
 
 constexpr int kFirstChange = 3;    // an earlier one just shortens the block
 constexpr int kPacksOfChange = 3;  // that the estimator may need to settle
-
-std::size_t At(int i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -14,7 +14,6 @@ namespace armcmc::plant_sim {
 namespace {
 
 using Values = std::vector<double>;
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 /// Angular acceleration from a function of state and base acceleration.
 template <typename Function>
@@ -166,7 +165,7 @@ std::vector<EffectSpec> ActuatorEffects() {
       Inner("periodic_disturbance", "sine", kCatalogue, "alpha'' + acceleration sin(2 pi frequency t)",
             {acceleration, {"frequency", "Hz", kOne, 1.0, 20.0}},
             [](const Values& v, const EffectTiming&) {
-              return MakeBend([a = v[0], omega = kTwoPi * v[1]](const ActuatorState& state, double) {
+              return MakeBend([a = v[0], omega = (2.0 * std::numbers::pi) * v[1]](const ActuatorState& state, double) {
                 return a * std::sin(omega * state.t_s);
               });
             }),

@@ -9,7 +9,6 @@ namespace armcmc::plant_sim {
 namespace {
 
 using Values = std::vector<double>;
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 }  // namespace
 
@@ -19,7 +18,7 @@ std::vector<EffectSpec> ForceEffects() {
   const EffectParameter force{"force", "N", kForce, 1e-5, 10.0, true};
   const EffectParameter amplitude{"amplitude", "N", kForce, 1e-5, 10.0};
   const EffectParameter frequency{"frequency", "Hz", kOne, 3.0, 60.0};
-  const EffectParameter phase{"phase", "rad", kOne, 0.0, kTwoPi};
+  const EffectParameter phase{"phase", "rad", kOne, 0.0, (2.0 * std::numbers::pi)};
   const EffectParameter origin{"origin", "s", kOne, 0.0, 0.0};  // Never drawn: what it does, a bias does, too.
   return {
       {"force_bias",
@@ -74,7 +73,7 @@ std::vector<EffectSpec> ForceEffects() {
        true,
        {amplitude, frequency, phase},
        [](const Values& v, const EffectTiming&) {
-         return MakeEffect([a = v[0], omega = kTwoPi * v[1], phase = v[2]](EffectSignal* s) {
+         return MakeEffect([a = v[0], omega = (2.0 * std::numbers::pi) * v[1], phase = v[2]](EffectSignal* s) {
            s->seen.output += a * std::sin(omega * s->truth.t_s + phase);
          });
        }},
@@ -86,7 +85,7 @@ std::vector<EffectSpec> ForceEffects() {
        true,
        {amplitude, frequency, phase},
        [](const Values& v, const EffectTiming&) {
-         return MakeEffect([a = v[0], omega = kTwoPi * v[1], phase = v[2]](EffectSignal* s) {
+         return MakeEffect([a = v[0], omega = (2.0 * std::numbers::pi) * v[1], phase = v[2]](EffectSignal* s) {
            s->seen.output += std::copysign(a, std::sin(omega * s->truth.t_s + phase));
          });
        }},
@@ -98,7 +97,7 @@ std::vector<EffectSpec> ForceEffects() {
        false,
        {amplitude, {"wavelength", "m", kDepth, 0.05, 0.3}, phase},
        [](const Values& v, const EffectTiming&) {
-         return MakeEffect([a = v[0], k = kTwoPi / v[1], phase = v[2]](EffectSignal* s) {
+         return MakeEffect([a = v[0], k = (2.0 * std::numbers::pi) / v[1], phase = v[2]](EffectSignal* s) {
            const double x = s->truth.inputs[0];
            if (x >= 0.0) s->seen.output += a * std::sin(k * x + phase);
          });

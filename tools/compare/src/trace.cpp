@@ -9,7 +9,7 @@
 namespace armcmc::compare {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
 
 QuantityTrace& TraceOf(RunTrace* trace, const Estimator& estimator, int mode, int quantity) {
   return trace->quantities[static_cast<std::size_t>(mode * estimator.num_reported() + quantity)];
@@ -47,10 +47,10 @@ void AddStep(const Estimate& e, RunTrace* trace) {
     draws += mode.draws;
   }
   const ModeEstimate& shown = e.modes[static_cast<std::size_t>(e.report_mode)];
-  const auto if_shown = [&shown](double value) { return shown.updated ? value : kNone; };
+  const auto if_shown = [&shown](double value) { return shown.updated ? value : kNoSample; };
   trace->t.push_back(e.t_last_s);
-  trace->log_evidence.push_back(updated ? evidence : kNone);
-  trace->draws.push_back(updated ? draws : kNone);
+  trace->log_evidence.push_back(updated ? evidence : kNoSample);
+  trace->draws.push_back(updated ? draws : kNoSample);
   trace->zeta.push_back(if_shown(shown.zeta));
   trace->zeta_threshold.push_back(if_shown(shown.zeta_threshold));
   trace->lambda.push_back(if_shown(shown.lambda));
@@ -113,7 +113,7 @@ double RunTrace::residual_rms() const {
   double square = 0.0, count = 0.0;
   for (const double r : residual)
     if (std::isfinite(r)) square += r * r, count += 1.0;
-  return count > 0.0 ? std::sqrt(square / count) : kNone;
+  return count > 0.0 ? std::sqrt(square / count) : kNoSample;
 }
 
 double RunTrace::total_log_evidence() const {

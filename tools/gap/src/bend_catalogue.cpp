@@ -148,7 +148,7 @@ void AddSensors(const Signals& s, const PlantConstants& constants, std::vector<E
   out->push_back(delay);
 }
 
-void AddUnlisted(const Signals& s, double strength, const PlantConstants& constants, std::vector<EffectForm>* out) {
+void AddUnlistedBend(const Signals& s, double strength, const PlantConstants& constants, std::vector<EffectForm>* out) {
   const double speed = s.scale_of(Role::kVelocity), angle = s.scale_of(Role::kPosition);
   EffectForm wrong = UnlistedForm("constants q1, q2, q3 that are not those of this actuator", "constants",
                                   "(q1 + dq1) (p - p_atm) - (q2 + dq2) alpha' - (q3 + dq3) alpha", Slot::kForce);
@@ -191,7 +191,7 @@ std::vector<EffectForm> BendCatalogue(const Signals& signals, const PlantConstan
   AddPayload(signals, &forms);
   AddPeriodic(signals, strength, &forms);
   AddSensors(signals, constants, &forms);
-  AddUnlisted(signals, strength, constants, &forms);
+  AddUnlistedBend(signals, strength, constants, &forms);
   return forms;
 }
 

@@ -18,7 +18,7 @@ constexpr double kStep = 1e-4;        // of a coordinate of order one
 constexpr double kSettling_s = 0.1;   // in which a state at the start is felt,
 constexpr double kForgotten_s = 0.5;  // and after which it is forgotten
 constexpr int kStartCoordinates = 2;
-constexpr int kWiden = 4;             // the error of the angle has no corners
+constexpr int kWidenAngle = 4;        // the error of the angle has no corners
 constexpr double kNegligible = 1e-4;  // error over angle, below which it is rounding, not physics
 
 class BendEquation final : public Equation {
@@ -189,7 +189,7 @@ class BendEquation final : public Equation {
     const BendSimulation simulation(constants_, s.dt);
     Vector angle(s.rows()), rate(s.rows());
     simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, &rate);
-    const int wide = kWiden * window + 1;
+    const int wide = kWidenAngle * window + 1;
     const Vector error = s.output - angle;
     const Vector slow = SavitzkyGolay(error, wide, 0);
     const double share = ShareOfMotion(error, slow, wide);

@@ -14,9 +14,9 @@ namespace armcmc::gap {
 namespace {
 
 enum Base { kStiffness = 0, kDamping = 1, kExponent = 2, kNumBase = 3 };
-constexpr double kMinContactShare = 0.02;  // of the samples, below which a law of contact cannot be fitted
-constexpr Eigen::Index kMinRows = 400;     // ten samples a block
-constexpr int kAccelerationExtra = 26;     // samples by which the window of a derivative is wider
+constexpr double kMinContactShare = 0.02;      // of the samples, below which a law of contact cannot be fitted
+constexpr Eigen::Index kMinContactRows = 400;  // ten samples a block
+constexpr int kAccelerationExtra = 26;         // samples by which the window of a derivative is wider
 constexpr double kPeakQuantile = 0.9995;
 
 double Rms(const Vector& series, const Vector& weight) {
@@ -70,9 +70,9 @@ class ContactEquation final : public Equation {
 
   Signals Prepare(const Recording& recording, int window) const override {
     Signals s = Smooth(recording, window);
-    if (s.rows() < kMinRows)
+    if (s.rows() < kMinContactRows)
       throw std::invalid_argument(recording.source + ": holds " + std::to_string(s.rows()) + " samples; at least " +
-                                  std::to_string(kMinRows) + " are needed to judge a model");
+                                  std::to_string(kMinContactRows) + " are needed to judge a model");
     // Without contact the law says nothing, but what acts in free motion can still be told apart.
     s.law_seen = s.active.mean() >= kMinContactShare;
     const Vector all = Vector::Ones(s.rows());

@@ -72,12 +72,6 @@ std::unique_ptr<Look> LookAt(const Equation& equation, const Recording& recordin
   return look;
 }
 
-std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
-  std::set<std::vector<std::string>> names;
-  for (const CandidatePtr& candidate : finding.set) names.insert(candidate->names());
-  return names;
-}
-
 bool Names(const Finding& finding) {
   return finding.verdict == Verdict::kNamed || finding.verdict == Verdict::kAmbiguous;
 }

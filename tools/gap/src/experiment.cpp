@@ -47,12 +47,12 @@ double ContactChirp(double t) { return 0.6 + 0.35 * std::sin(Sweep(t)); }
 double FreeAirChirp(double t) { return -0.6 + 0.4 * std::sin(Sweep(t)); }
 
 /// A motion of the plant's library, in units of the deepest press.
-struct Program {
+struct ContactProgram {
   const char* name;
   const char* words;
   double (*position)(double t);
 };
-constexpr std::array<Program, 6> kPrograms = {{
+constexpr std::array<ContactProgram, 6> kContactPrograms = {{
     {"taps_of_depths", "press and release to several depths, one tap every 0.8 s", TapsOfDepths},
     {"fast_taps", "tap five times a second, to full depth", FastTaps},
     {"step_hold", "press quickly and hold for more than a second, at three depths", StepHold},
@@ -62,7 +62,7 @@ constexpr std::array<Program, 6> kPrograms = {{
 }};
 
 /// @param refine  Samples for each that there would be at the rate of `like`.
-Signals Simulate(const Program& program, double pace, const Signals& like, double depth, int refine) {
+Signals Simulate(const ContactProgram& program, double pace, const Signals& like, double depth, int refine) {
   Signals s = like;
   const auto rows = refine * std::min(static_cast<Eigen::Index>(kSeconds / like.dt), kMaxRows);
   const double dt = kSeconds / static_cast<double>(rows);
@@ -133,9 +133,9 @@ Experiment SeparatingExperiment(const Equation& equation, const Look& look,
       candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(std::min(candidates.size(), kCompared)));
   const double depth = std::max(look.signals.at(Role::kPosition).maxCoeff(), look.signals.scale_of(Role::kPosition));
   Experiment best;
-  const Program* chosen = nullptr;
+  const ContactProgram* chosen = nullptr;
   double most = -1.0;
-  const auto consider = [&](const Program& program, double pace, int refine, double worth) {
+  const auto consider = [&](const ContactProgram& program, double pace, int refine, double worth) {
     Signals s = Simulate(program, pace, look.signals, depth, refine);
     const Prospect prospect = Expect(equation, &s, Refined(look.fitter->whitener(), refine), compared);
     if (prospect.decided <= worth * most) return;
@@ -149,7 +149,7 @@ Experiment SeparatingExperiment(const Equation& equation, const Look& look,
   };
   for (const double pace : kPaces) {
     // A quicker motion must be worth its wear.
-    for (const Program& program : kPrograms) consider(program, pace, 1, pace > 1.0 ? kWorth : 1.0);
+    for (const ContactProgram& program : kContactPrograms) consider(program, pace, 1, pace > 1.0 ? kWorth : 1.0);
     if (most > kDecided) break;
   }
   // Latencies that are short against a sample differ in what happens between samples.

@@ -14,7 +14,7 @@ constexpr int kBins = 24;
 constexpr int kMapBins = 16;
 constexpr int kMinInBin = 20;
 constexpr int kSegments = 16;  // of the spectrum, averaged
-constexpr double kBand95 = 1.96;
+constexpr double kDrawnBand = 1.96;
 
 std::vector<double> Copy(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 
@@ -57,8 +57,8 @@ Curve Binned(const std::string& label, const Vector& feature, const Vector& valu
     const double sd = std::sqrt(std::max(square[b] / count[b] - mean * mean, 0.0) * inflation / count[b]);
     curve.x.push_back(at[b] / count[b]);
     curve.y.push_back(mean);
-    curve.low.push_back(mean - kBand95 * sd);
-    curve.high.push_back(mean + kBand95 * sd);
+    curve.low.push_back(mean - kDrawnBand * sd);
+    curve.high.push_back(mean + kDrawnBand * sd);
   }
   return curve;
 }

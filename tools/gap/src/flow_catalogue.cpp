@@ -17,7 +17,7 @@ const Vector& Opening(const Signals& s) { return s.at(Role::kOpening); }
 
 /// An effect that the estimator runs, too: its formulas are those of core.
 template <class E>
-EffectForm FromCore() {
+EffectForm FlowFromCore() {
   EffectForm form;
   form.effect = E::kInfo.name;
   form.family = E::kInfo.family;
@@ -39,7 +39,7 @@ Vector Behind(const Vector& opening, double tau, double dt) {
 
 void AddLeak(const Signals& s, std::vector<EffectForm>* out) {
   const double pressure = s.scale_of(Role::kPressure);
-  EffectForm leak = FromCore<Leak>();
+  EffectForm leak = FlowFromCore<Leak>();
   leak.coordinates = {AmplitudeOf("rate", "1/s", s.output_scale / pressure, true)};
   leak.own_groups = {"pressure"};
   leak.features = [pressure](const Signals& in, const double*) -> Matrix {
@@ -62,7 +62,7 @@ void AddLeak(const Signals& s, std::vector<EffectForm>* out) {
 
 void AddDeadBand(const Signals& s, std::vector<EffectForm>* out) {
   const double opening = s.scale_of(Role::kOpening);
-  EffectForm band = FromCore<ValveDeadBand>();
+  EffectForm band = FlowFromCore<ValveDeadBand>();
   band.slot = Slot::kDrive;
   band.num_amplitudes = 0;
   band.linear = false;
@@ -83,7 +83,7 @@ void AddDeadBand(const Signals& s, std::vector<EffectForm>* out) {
 }
 
 void AddLag(const Signals& s, std::vector<EffectForm>* out) {
-  EffectForm lag = FromCore<ValveLag>();
+  EffectForm lag = FlowFromCore<ValveLag>();
   lag.slot = Slot::kDrive;
   lag.num_amplitudes = 0;
   lag.linear = false;
@@ -131,7 +131,7 @@ Vector Drooped(const Signals& s, const Vector& droop, const PlantConstants& cons
 
 void AddDroop(const Signals& s, const PlantConstants& constants, std::vector<EffectForm>* out) {
   const double supply = constants.p_supply - constants.p_atm, opening = s.scale_of(Role::kOpening);
-  EffectForm droop = FromCore<SupplyDroop>();
+  EffectForm droop = FlowFromCore<SupplyDroop>();
   droop.slot = Slot::kDrive;
   droop.num_amplitudes = 0;
   droop.linear = false;
@@ -163,7 +163,7 @@ void AddDroop(const Signals& s, const PlantConstants& constants, std::vector<Eff
 }
 
 void AddPressureBias(const Signals& s, std::vector<EffectForm>* out) {
-  EffectForm bias = FromCore<PressureBias>();
+  EffectForm bias = FlowFromCore<PressureBias>();
   bias.slot = Slot::kInputMap;
   bias.coordinates = {AmplitudeOf("bias", "Pa", s.scale_of(Role::kPressure), false, 0.2, 0.8)};
   bias.own_groups = {"pressure", "pressure x rate"};
@@ -175,7 +175,7 @@ void AddPressureBias(const Signals& s, std::vector<EffectForm>* out) {
   out->push_back(bias);
 }
 
-void AddUnlisted(const Signals& s, std::vector<EffectForm>* out) {
+void AddUnlistedFlow(const Signals& s, std::vector<EffectForm>* out) {
   EffectForm zero =
       UnlistedForm("an offset of the pressure-rate sensor", "rate sensor zero", "p' + offset", Slot::kAdditive);
   zero.coordinates = {AmplitudeOf("offset", "Pa/s", s.output_scale, false)};
@@ -234,7 +234,7 @@ std::vector<EffectForm> FlowCatalogue(const Signals& signals, const PlantConstan
   AddLag(signals, &forms);
   AddDroop(signals, constants, &forms);
   AddPressureBias(signals, &forms);
-  AddUnlisted(signals, &forms);
+  AddUnlistedFlow(signals, &forms);
   return forms;
 }
 

@@ -13,7 +13,7 @@
 namespace armcmc::gap {
 namespace {
 
-enum Base { kGainFill = 0, kSlopeFill = 1, kGainVent = 2, kSlopeVent = 3, kNumBase = 4 };
+enum FlowBase { kGainFill = 0, kSlopeFill = 1, kGainVent = 2, kSlopeVent = 3, kNumFlowBase = 4 };
 constexpr double kTypicalGain = 4e-4;   // sqrt(Pa) s/Pa: the coordinates are of order one for valves of this size
 constexpr double kLeastGain = 0.02;     // of the typical one: a valve that passes fifty times more is none
 constexpr double kMaxCondition = 1e3;   // of (p', p' p), above which p did not vary enough to tell effects apart
@@ -140,7 +140,7 @@ class FlowEquation final : public Equation {
                                         const Matrix& covariance) const override {
     const std::vector<Coordinate> coordinates = base(s);
     std::vector<ParameterEstimate> report;
-    for (Eigen::Index i = 0; i < kNumBase; ++i) {
+    for (Eigen::Index i = 0; i < kNumFlowBase; ++i) {
       const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
       report.push_back({c.name, c.unit, c.Value(theta[i]), c.unit_size * std::sqrt(std::max(covariance(i, i), 0.0))});
     }

@@ -13,7 +13,7 @@ constexpr double kSame = 0.02;       // relative: closer than that, nobody repea
 constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth
 constexpr double kDecides = 10.0;    // nats; what a proposed experiment is to bring, too
 constexpr double kNearPromise = 0.5;
-constexpr int kSteps = 30;
+constexpr int kJointSteps = 30;
 
 /// A member of the first recording's set with what the second says of it.
 struct Asked {
@@ -79,7 +79,7 @@ std::unique_ptr<Look> LookLike(const Equation& equation, const Recording& record
   look->fitter = std::make_unique<Fitter>(equation, look->signals, second.look->fitter->whitener());
   const Fitted& base = first.finding.base->fit;
   look->search = std::make_unique<Search>(*look->fitter, look->catalogue, *second.bootstrap, thresholds,
-                                          look->fitter->Fit(base.hypothesis, base.theta, kSteps));
+                                          look->fitter->Fit(base.hypothesis, base.theta, kJointSteps));
   look->finding = second.finding;
   look->finding.base = look->search->base();
   return look;
@@ -100,7 +100,7 @@ std::vector<Asked> Ask(const Look& first, const Look& look, const std::vector<Ca
     one.candidate->num_known = look.finding.base->num_known;
     Vector start = before->theta;
     start.head(num_base) = look.finding.base->fit.theta;
-    one.candidate->fit = look.fitter->Fit(hypothesis, start, kSteps, &prior);
+    one.candidate->fit = look.fitter->Fit(hypothesis, start, kJointSteps, &prior);
     one.log_predictive = LogPredictive(one.candidate->fit, prior, look.fitter->whitener().s2, num_base);
     asked.push_back(std::move(one));
   }

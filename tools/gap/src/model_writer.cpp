@@ -12,13 +12,13 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr double kWiden = 5.0;       // posterior standard deviations
+constexpr double kWidenSd = 5.0;     // posterior standard deviations
 constexpr double kLeastShare = 0.1;  // of the value
 constexpr double kBoundSds = 10.0;
 constexpr double kUsefulNoiseShare = 0.3;  // of the force noise, that a differentiated velocity may add
 
 ParameterSettings Prior(const std::string& name, double mean, double sd, double lower) {
-  const double wide = std::max({kWiden * sd, kLeastShare * std::abs(mean), 1e-9});
+  const double wide = std::max({kWidenSd * sd, kLeastShare * std::abs(mean), 1e-9});
   return {name, PriorKind::kNormal, mean, wide, std::max(lower, mean - kBoundSds * wide), mean + kBoundSds * wide};
 }
 

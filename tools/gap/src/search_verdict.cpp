@@ -7,6 +7,12 @@
 
 namespace armcmc::gap {
 
+std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
+  std::set<std::vector<std::string>> names;
+  for (const CandidatePtr& candidate : finding.set) names.insert(candidate->names());
+  return names;
+}
+
 void Search::PreferCatalogue(Candidates* good) {
   // Where the catalogue's own formulas do, others are not needed. One that acts at times only, which are fitted, too,
   // is no simpler than another formula that always acts.

@@ -42,7 +42,7 @@ double LjungBox(const Vector& series) {
   return n * (n + 2.0) * sum / kLags;
 }
 
-double Quantile(Vector values, double q) {
+double QuantileOf(Vector values, double q) {
   const auto at = static_cast<Eigen::Index>(q * static_cast<double>(values.size() - 1));
   std::nth_element(values.data(), values.data() + at, values.data() + values.size());
   return values[at];
@@ -93,7 +93,7 @@ Fit HeldOut::Judge(const Trial& trial) const {
   Fit fit;
   fit.rmse = Rms(trial.residual);
   fit.mae = size.mean();
-  fit.worst_1_percent = Quantile(size, 0.99);
+  fit.worst_1_percent = QuantileOf(size, 0.99);
   fit.coverage95 = (size.array() <= kBand95 * trial.band_sd.array()).cast<double>().mean();
   fit.whiteness = LjungBox(trial.whitened);
   return fit;

@@ -11,7 +11,7 @@ namespace armcmc::gap {
 namespace {
 
 constexpr int kMaxOrder = 8;
-constexpr double kMinImprovement = 6.0;  // nats of the criterion that a further lag must bring
+constexpr double kMinLagGain = 6.0;  // nats of the criterion that a further lag must bring
 
 /// Autocovariances of the quieter half of the blocks. An effect that acts in a few events (a clipped peak) must not
 /// pass for coloured noise: it would be whitened away.
@@ -99,7 +99,7 @@ Whitener FitNoise(const Vector& residual) {
     const double s2 = covariance[0] - phi.dot(covariance.segment(1, order));
     if (!(s2 > 0.0)) break;
     const double criterion = static_cast<double>(n) * std::log(s2) + order * std::log(static_cast<double>(n));
-    if (criterion < best_criterion - kMinImprovement) {
+    if (criterion < best_criterion - kMinLagGain) {
       best_criterion = criterion;
       best = {phi, s2};
     }

@@ -192,13 +192,6 @@ bool RestCannotConfirm(const EquationDiagnosis& one, const Parts& parts) {
              .gap_ratio < kUnseenRatio;
 }
 
-/// Effects of every hypothesis that remains.
-std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
-  std::set<std::vector<std::string>> names;
-  for (const CandidatePtr& candidate : finding.set) names.insert(candidate->names());
-  return names;
-}
-
 /// Whether all of the recording is worth a second look, which costs as much as the first. In a plant with several
 /// equations always where the first part lacks nothing: a load may come late.
 bool DeservesSecondLook(const WorkflowRequest& request, const Parts& parts, const PlantDiagnosis& plant) {

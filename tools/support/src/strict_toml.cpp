@@ -14,13 +14,14 @@
 #include "nearest.hpp"
 
 namespace armcmc::support {
-namespace {
 
 /// The document outlives every table handed out of it.
-struct Document {
+struct StrictTable::Document {
   std::string name;
   toml::table root;
 };
+
+namespace {
 
 std::string ShortNumber(double value) {
   std::array<char, 32> text{};

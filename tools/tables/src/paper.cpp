@@ -7,7 +7,7 @@
 namespace armcmc::tables {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -22,11 +22,12 @@ const std::vector<PaperRow>& PublishedContact() {
 
 const std::vector<PaperRow>& StoredContact() {
   // MCMC: in contact, with 0 shown until there is an estimate; the others: while an estimate is shown.
-  static const std::vector<PaperRow> rows = {{"rls", "RLS", {0.653, 0.592, 0.127, 312.0, 216.0, 51.745}},
-                                             {"mcmc_1", "MCMC-1", {0.817, 0.688, 0.278, 233.0, 165.0, 76.695}},
-                                             {"mcmc_2", "MCMC-2", {1.017, 0.955, 0.362, 654.0, 469.0, 101.88}},
-                                             {"armcmc_ap", "AR-AP", {0.278, 0.204, 0.106, 153.9, 107.6, 33.774}},
-                                             {"armcmc_map", "AR-MAP", {kNone, kNone, kNone, kNone, kNone, kNone}}};
+  static const std::vector<PaperRow> rows = {
+      {"rls", "RLS", {0.653, 0.592, 0.127, 312.0, 216.0, 51.745}},
+      {"mcmc_1", "MCMC-1", {0.817, 0.688, 0.278, 233.0, 165.0, 76.695}},
+      {"mcmc_2", "MCMC-2", {1.017, 0.955, 0.362, 654.0, 469.0, 101.88}},
+      {"armcmc_ap", "AR-AP", {0.278, 0.204, 0.106, 153.9, 107.6, 33.774}},
+      {"armcmc_map", "AR-MAP", {kNotGiven, kNotGiven, kNotGiven, kNotGiven, kNotGiven, kNotGiven}}};
   return rows;
 }
 
@@ -39,7 +40,7 @@ const std::vector<PaperRow>& PublishedActuator() {
 
 const std::vector<PaperRow>& StoredActuator() {
   static const std::vector<PaperRow> rows = {{"rls", "RLS", {0.0235, 0.60, 32.48, 0.185}},
-                                             {"pf", "particle filter", {kNone, kNone, kNone, kNone}},
+                                             {"pf", "particle filter", {kNotGiven, kNotGiven, kNotGiven, kNotGiven}},
                                              {"armcmc_map", "AR-MAP", {0.0733, 5.78, 61.49, 7.15}}};
   return rows;
 }

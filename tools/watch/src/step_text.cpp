@@ -10,10 +10,9 @@
 namespace armcmc::watch {
 namespace {
 
-using support::Significant;
 using Json = nlohmann::ordered_json;
 
-double Ms(std::int64_t ns) { return 1e-6 * static_cast<double>(ns); }
+double Milliseconds(std::int64_t ns) { return 1e-6 * static_cast<double>(ns); }
 
 Json Parameters(const WatchState& state) {
   Json parameters = Json::object();
@@ -58,14 +57,14 @@ std::string StepLine(const WatchState& state) {
     const int n = std::clamp<int>(e.n_params, 0, estimate_t::MAX_PARAMS);
     for (int i = 0; i < n; ++i) {
       line += "  " + FieldText(e.param_name[i], 16) + " ";
-      line += e.known != 0 ? Significant(e.ar_ap[i], 5) + " +- " + Significant(e.sd[i], 2) : "?";
+      line += e.known != 0 ? support::Significant(e.ar_ap[i], 5) + " +- " + support::Significant(e.sd[i], 2) : "?";
     }
-    line += "  zeta " + Significant(e.zeta, 2) + "/" + Significant(e.zeta_threshold, 3) + "  lambda " +
-            Significant(e.lambda, 3) + "  ESS " + Significant(e.ess, 4);
+    line += "  zeta " + support::Significant(e.zeta, 2) + "/" + support::Significant(e.zeta_threshold, 3) +
+            "  lambda " + support::Significant(e.lambda, 3) + "  ESS " + support::Significant(e.ess, 4);
   }
-  line += "  " + Significant(Ms(s.end_to_end_ns), 3) + " of " + Significant(Ms(s.deadline_ns), 3) + " ms  missed " +
-          std::to_string(s.missed_own) + "/" + std::to_string(s.missed_machine) + "/" +
-          std::to_string(s.missed_late_data);
+  line += "  " + support::Significant(Milliseconds(s.end_to_end_ns), 3) + " of " +
+          support::Significant(Milliseconds(s.deadline_ns), 3) + " ms  missed " + std::to_string(s.missed_own) + "/" +
+          std::to_string(s.missed_machine) + "/" + std::to_string(s.missed_late_data);
   if (s.packs_lost > 0) line += "  lost " + std::to_string(s.packs_lost);
   if (s.packs_rejected > 0) line += "  rejected " + std::to_string(s.packs_rejected);
   if (s.fault_flags != 0) line += "  FAULTS " + Joined(FaultWords(s.fault_flags));
@@ -81,12 +80,12 @@ std::string StepJson(const WatchState& state) {
     json["parameters"] = Parameters(state);
     json.update(Sampler(*state.estimate));
   }
-  json["stage_ms"] = {{"collect", Ms(s.collect_ns)},
-                      {"adjust", Ms(s.adjust_ns)},
-                      {"execute", Ms(s.execute_ns)},
-                      {"end_to_end", Ms(s.end_to_end_ns)}};
-  json["deadline_ms"] = Ms(s.deadline_ns);
-  json["slack_ms"] = Ms(s.slack_ns);
+  json["stage_ms"] = {{"collect", Milliseconds(s.collect_ns)},
+                      {"adjust", Milliseconds(s.adjust_ns)},
+                      {"execute", Milliseconds(s.execute_ns)},
+                      {"end_to_end", Milliseconds(s.end_to_end_ns)}};
+  json["deadline_ms"] = Milliseconds(s.deadline_ns);
+  json["slack_ms"] = Milliseconds(s.slack_ns);
   json["misses"] = {{"own", s.missed_own}, {"machine", s.missed_machine}, {"late_data", s.missed_late_data}};
   json["packs"] = {{"received", s.packs_received},   {"lost", s.packs_lost},         {"duplicate", s.packs_duplicate},
                    {"reordered", s.packs_reordered}, {"rejected", s.packs_rejected}, {"dropped", s.packs_dropped}};

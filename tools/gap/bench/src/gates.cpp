@@ -20,7 +20,7 @@ bool Right(const Outcome& o) { return o.grade == Grade::kRight; }
 bool Wrong(const Outcome& o) { return IsGrade(o, {Grade::kWrong, Grade::kFailed}); }
 bool FamilyHolds(const Outcome& o) { return IsGrade(o, {Grade::kRight, Grade::kTie, Grade::kFamily}); }
 bool Flagged(const Outcome& o) { return o.grade == Grade::kUnnamed; }
-bool Names(const Outcome& o) { return !SetsOf(o.answer.result).empty(); }
+bool NamesAnything(const Outcome& o) { return !SetsOf(o.answer.result).empty(); }
 
 Test In(std::initializer_list<const char*> strata) {
   const std::vector<std::string> names(strata.begin(), strata.end());
@@ -77,7 +77,7 @@ void AddNames(Gatherer* g) {
   g->Share("singles", "wrong, R = 0.1", Exactly(singles, 0.1), Wrong, 0.01, false);
   g->Share("pairs", "truth in the set", pairs, Covers, 0.97, true);
   g->Share("pairs", "wrong", pairs, Wrong, 0.02, false);
-  g->Share("outside", "false name", outside, Names, 0.03, false);
+  g->Share("outside", "false name", outside, NamesAnything, 0.03, false);
   g->Share("outside", "unnamed", outside, Right, 0.93, true);
   g->Share("ablation", "false family", In({"ablation"}), Wrong, 0.05, false);
   g->Share("variants", "right family", In({"variants"}), FamilyHolds, 0.88, true);
@@ -98,7 +98,7 @@ void AddActuator(Gatherer* g) {
   g->Share(
       "actuator", "right equation", [=](const Outcome& o) { return hidden(o) && o.equation_right.has_value(); },
       [](const Outcome& o) { return o.equation_right.value_or(false); }, 0.98, true);
-  g->Share("actuator", "outside the catalogue: false name", outside, Names, 0.03, false);
+  g->Share("actuator", "outside the catalogue: false name", outside, NamesAnything, 0.03, false);
 }
 
 void AddMotions(Gatherer* g) {
@@ -110,8 +110,8 @@ void AddMotions(Gatherer* g) {
       [](const Outcome& o) { return o.when_right.value_or(false); }, 0.85, true);
   g->Share("poor", "wrong", poor, Wrong, 0.01, false);
   g->Share(
-      "poor", "truth in the set, where there is one", [&](const Outcome& o) { return poor(o) && Names(o); }, Covers,
-      0.99, true);
+      "poor", "truth in the set, where there is one", [&](const Outcome& o) { return poor(o) && NamesAnything(o); },
+      Covers, 0.99, true);
   g->Share("ties", "right alone after the experiment", In({"ties"}), Right, 0.90, true);
   g->Share("ties", "wrong", In({"ties"}), Wrong, 0.02, false);
   g->Share("paper", "truth in the set", paper, Covers, 1.0, true);

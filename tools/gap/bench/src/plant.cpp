@@ -10,16 +10,12 @@
 #include "armcmc/gap/recording.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/subprocess.hpp"
+#include "contents.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string Contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 /// Leaves the first columns, those that a robot would record: the ones after them are the plant's own truth.
 void HideTruth(const std::filesystem::path& path, std::size_t columns) {

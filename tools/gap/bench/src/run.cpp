@@ -20,6 +20,7 @@
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "armcmc/gap_bench/score.hpp"
 #include "armcmc/support/shared_files.hpp"
+#include "contents.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -29,11 +30,6 @@ double CpuSeconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-std::string Contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 /// The rows of a recording that are part of it.

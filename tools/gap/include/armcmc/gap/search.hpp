@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,9 @@ struct Finding {
   double remainder = 0.0;           ///< Share of the noise variance that `best` leaves explainable.
   double p_unnamed = 0.0;           ///< Of what is missing: that `best` leaves some, or that it has no name.
 };
+
+/// Effects of every hypothesis that remains.
+[[nodiscard]] std::set<std::vector<std::string>> NamesOf(const Finding& finding);
 
 /// The third step: names what is missing.
 class Search {

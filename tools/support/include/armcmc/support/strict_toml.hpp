@@ -67,6 +67,7 @@ class StrictTable {
   [[nodiscard]] ConfigError Error(std::string_view key, std::string_view problem) const;
 
  private:
+  struct Document;
   struct Node;
   explicit StrictTable(std::shared_ptr<Node> node);
   std::shared_ptr<Node> node_;
