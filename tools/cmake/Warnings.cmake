@@ -1,7 +1,8 @@
 # Warnings are errors: a warning nobody has to read is a warning nobody reads.
 option(ARMCMC_WERROR "Treat warnings as errors" ${PROJECT_IS_TOP_LEVEL})
 add_library(armcmc_warnings INTERFACE)
+# In a batch of sources a local name may be one of another file's: tools/tidy looks for shadows, file by file.
 target_compile_options(armcmc_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
+  -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wconversion -Wsign-conversion -Wold-style-cast
   -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2 -Wundef
   $<$<BOOL:${ARMCMC_WERROR}>:-Werror>)
