@@ -68,6 +68,11 @@ function(armcmc_add_room room)
     add_test(NAME ${room} COMMAND ${target})
     # The whole room, at a tenth of the speed.
     set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 1200 COST 100)
+    # What a test runs as a process writes to the same file, and the room over it, at its end.
+    if(ARMCMC_COVERAGE)
+      set_tests_properties(${room} PROPERTIES
+        ENVIRONMENT "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${room}.profraw")
+    endif()
   endif()
 endfunction()
 
