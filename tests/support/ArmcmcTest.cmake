@@ -66,8 +66,8 @@ function(armcmc_add_room room)
   add_dependencies(all_tests ${target})
   if(ARMCMC_SANITIZER)
     add_test(NAME ${room} COMMAND ${target})
-    # The whole room, at a tenth of the speed.
-    set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 1200 COST 100)
+    # The whole room, at a tenth of the speed, on a machine that may be busy.
+    set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 3600 COST 100)
     # What a test runs as a process writes to the same file, and the room over it, at its end.
     if(ARMCMC_COVERAGE)
       set_tests_properties(${room} PROPERTIES
@@ -126,6 +126,10 @@ function(armcmc_add_tests room)
     endif()
   endforeach()
   if(ARMCMC_SANITIZER)
+    # The rooms with the longest tests start first.
+    if(arg_TIMEOUT)
+      set_tests_properties(${room} PROPERTIES COST ${arg_TIMEOUT})
+    endif()
     if(arg_DEADLINES)
       set_tests_properties(${room} PROPERTIES RESOURCE_LOCK deadlines)
     endif()
