@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include "gap_tools.hpp"
 
 namespace armcmc {

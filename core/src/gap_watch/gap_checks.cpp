@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+
 #include "gap_tools.hpp"
 
 namespace armcmc {
