@@ -10,7 +10,7 @@
 
 #include "simd/kernels.hpp"
 
-namespace armcmc {
+namespace armcmc::control_variates_test {
 namespace {
 
 constexpr double kFar = 500.0;  // of the coordinates from 0, as posteriors are that have contracted
@@ -116,4 +116,4 @@ TEST(ControlVariates, LeaveTheWeightsAloneWithoutAUsableGuide) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::control_variates_test

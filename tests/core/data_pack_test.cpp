@@ -6,7 +6,7 @@
 
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::data_pack_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -72,4 +72,4 @@ TEST(DataPack, DoesNotReadPastItsSamplesAndInputs) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::data_pack_test

@@ -12,7 +12,7 @@
 #include "bend_fit.hpp"
 #include "core/kernel_sets.hpp"
 
-namespace armcmc {
+namespace armcmc::density_fit_test {
 namespace {
 
 std::normal_distribution<double> normal;  // keeps a number back, which must not reach the next test
@@ -439,4 +439,4 @@ TEST(FitBlock, AShapeBeyondChanceIsHandedOn) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::density_fit_test

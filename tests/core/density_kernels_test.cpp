@@ -12,7 +12,7 @@
 #include "armcmc/rng.hpp"
 #include "core/kernel_sets.hpp"
 
-namespace armcmc {
+namespace armcmc::density_kernels_test {
 namespace {
 
 /// A correlated, bent and tapered block with marginals of different shape: the fit to draws along a curved ridge.
@@ -277,4 +277,4 @@ TEST(DensityKernels, FusedInstructionSetsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::density_kernels_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc {
+namespace armcmc::draw_pace_test {
 namespace {
 
 TEST(DrawPace, TellsHowMuchSlowerAPackIs) {
@@ -38,4 +38,4 @@ TEST(DrawPace, AClockThatStandsStillIsNoTrouble) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::draw_pace_test

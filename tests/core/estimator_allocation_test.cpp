@@ -6,7 +6,7 @@
 #include "core/estimator_rig.hpp"
 #include "support/alloc_counter.hpp"
 
-namespace armcmc {
+namespace armcmc::estimator_allocation_test {
 namespace {
 
 using test::AllocCounter;
@@ -84,4 +84,4 @@ TEST(Allocation, ConstructionDoes) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::estimator_allocation_test

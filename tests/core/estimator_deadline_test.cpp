@@ -6,7 +6,7 @@
 #include "core/estimator_rig.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::estimator_deadline_test {
 namespace {
 
 using test::Contact;
@@ -204,4 +204,4 @@ TEST(Deadline, AStallOfTheMachineDoesNotCutThePacksAfterIt) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::estimator_deadline_test

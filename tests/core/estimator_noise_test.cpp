@@ -9,7 +9,7 @@
 #include "armcmc/parameter_space.hpp"
 #include "core/estimator_rig.hpp"
 
-namespace armcmc {
+namespace armcmc::estimator_noise_test {
 namespace {
 
 using test::Contact;
@@ -112,4 +112,4 @@ TEST(Rho, OldSamplesOfAPackCountLess) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::estimator_noise_test

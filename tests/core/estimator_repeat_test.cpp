@@ -2,7 +2,7 @@
 
 #include "core/estimator_rig.hpp"
 
-namespace armcmc {
+namespace armcmc::estimator_repeat_test {
 namespace {
 
 using test::Contact;
@@ -89,4 +89,4 @@ TEST(Repeat, ResetEqualsAFreshEstimator) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::estimator_repeat_test

@@ -10,7 +10,7 @@
 
 #include "core/estimator_rig.hpp"
 
-namespace armcmc {
+namespace armcmc::estimator_test {
 namespace {
 
 using test::Contact;
@@ -245,4 +245,4 @@ TEST(Estimator, RejectsWrongSettings) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::estimator_test

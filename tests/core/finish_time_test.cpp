@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc {
+namespace armcmc::finish_time_test {
 namespace {
 
 TEST(FinishTime, FewerDrawsAreHeldToTakeAsLong) {
@@ -43,4 +43,4 @@ TEST(FinishTime, OneStallDoublesItAtMost) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::finish_time_test

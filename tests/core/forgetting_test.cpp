@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-namespace armcmc {
+namespace armcmc::forgetting_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -201,4 +201,4 @@ TEST(Mismatch, WhatIsNotFiniteIsAModificationAndLambdaStaysInRange) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::forgetting_test

@@ -11,7 +11,7 @@
 #include "armcmc/models/registry.hpp"
 #include "core/kernel_sets.hpp"
 
-namespace armcmc {
+namespace armcmc::laplace_test {
 namespace {
 
 struct Problem {
@@ -160,4 +160,4 @@ TEST(LaplaceFit, WithoutInformationReturnsThePrior) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::laplace_test

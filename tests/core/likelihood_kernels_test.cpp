@@ -9,7 +9,7 @@
 #include "armcmc/models/registry.hpp"
 #include "core/kernel_sets.hpp"
 
-namespace armcmc {
+namespace armcmc::likelihood_kernels_test {
 namespace {
 
 constexpr int kHuntCrossley = FindModel("hunt_crossley");
@@ -275,4 +275,4 @@ TEST(LikelihoodKernels, FusedInstructionSetsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::likelihood_kernels_test

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace armcmc {
+namespace armcmc::marginal_table_test {
 namespace {
 
 constexpr double kStep = 1.0 / MarginalTable::kNodesPerUnit;
@@ -106,4 +106,4 @@ TEST(MarginalTable, StandardLawsHaveTheirMoments) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::marginal_table_test

@@ -9,7 +9,7 @@
 #include "armcmc/types.hpp"
 #include "core/kernel_sets.hpp"
 
-namespace armcmc {
+namespace armcmc::moment_kernels_test {
 namespace {
 
 using test::Wide;
@@ -193,4 +193,4 @@ TEST(WeightKernels, FindTheBestUsableCandidate) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::moment_kernels_test

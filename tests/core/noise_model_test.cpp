@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace armcmc {
+namespace armcmc::noise_model_test {
 namespace {
 
 NoiseModel Law(NoiseKind kind, double dof = 4.0) {
@@ -113,4 +113,4 @@ TEST(NoiseModel, SquareWeightIsTheScoreOverTheError) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::noise_model_test

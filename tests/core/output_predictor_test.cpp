@@ -10,7 +10,7 @@
 #include "armcmc/models/soft_actuator.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::output_predictor_test {
 namespace {
 
 using Outputs = std::array<double, kMaxPackSamples>;
@@ -170,4 +170,4 @@ TEST(OutputPredictor, AGapAndAnotherRunRestartFromTheMeasurements) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::output_predictor_test

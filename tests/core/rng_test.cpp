@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace armcmc {
+namespace armcmc::rng_test {
 namespace {
 
 TEST(RandomStream, MatchesTheReferenceGenerator) {
@@ -58,4 +58,4 @@ TEST(RandomStream, UniformsFillTheOpenIntervalEvenly) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::rng_test

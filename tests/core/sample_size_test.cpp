@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace armcmc {
+namespace armcmc::sample_size_test {
 namespace {
 
 constexpr double kEpsilon = 0.01;
@@ -45,4 +45,4 @@ TEST(ChernoffDraws, NeverAsksForLessWhenThePrecisionIsOutOfReach) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::sample_size_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace armcmc {
+namespace armcmc::settings_test {
 namespace {
 
 using ::testing::AllOf;
@@ -123,4 +123,4 @@ TEST(EstimatorSettings, WhatALawDoesNotUseMayStayAtItsDefault) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::settings_test

@@ -10,7 +10,7 @@
 #include "armcmc/estimator.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::short_packs_test {
 namespace {
 
 constexpr int kCycle = 49, kStable = 41;  // packs: of a cycle, and of them those before the plant is another
@@ -67,4 +67,4 @@ TEST(ShortPacks, APackOfTwoPlantsIsSampledAtTheEdgeOfTheBounds) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::short_packs_test

@@ -8,7 +8,7 @@
 #include "core/estimator_rig.hpp"
 #include "support/alloc_counter.hpp"
 
-namespace armcmc {
+namespace armcmc::snapshot_test {
 namespace {
 
 using test::Contact;
@@ -192,4 +192,4 @@ TEST(SnapshotIdentity, IsThatOfTheQuestionAndNotOfTheSampler) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::snapshot_test

@@ -8,7 +8,7 @@
 
 #include "core/estimator_rig.hpp"
 
-namespace armcmc {
+namespace armcmc::soft_actuator_test {
 namespace {
 
 using test::Actuator;
@@ -167,4 +167,4 @@ TEST(SoftActuator, ThetaTwoStaysWideWhenThePressureDoesNotMove) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::soft_actuator_test

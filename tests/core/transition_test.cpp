@@ -7,7 +7,7 @@
 #include "armcmc/estimator.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::transition_test {
 namespace {
 
 /// Runs packs of a well excited contact; K halves in the middle of pack `change`, or between two packs.
@@ -99,4 +99,4 @@ TEST(Transition, AChangeOfEverythingIsStillFollowed) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::transition_test

@@ -5,7 +5,7 @@
 
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::faults_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -50,4 +50,4 @@ TEST_F(Faults, BadPacksAreCountedByCauseAndNothingLearntIsLost) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::faults_test

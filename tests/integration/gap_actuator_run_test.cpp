@@ -15,7 +15,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::gap_actuator_run_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -104,4 +104,4 @@ INSTANTIATE_TEST_SUITE_P(Flow, ActuatorModel,
                          [](const auto& at) { return at.param.effect; });
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::gap_actuator_run_test

@@ -8,7 +8,7 @@
 #include "armcmc/support/csv.hpp"
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::gap_alarm_test {
 namespace {
 
 class GapAlarm : public LivePair {};
@@ -61,4 +61,4 @@ TEST_F(GapAlarm, StaysDownForThePlantThatTheModelDescribes) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::gap_alarm_test

@@ -13,7 +13,7 @@
 #include "armcmc/estimate_t.hpp"
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::gap_live_test {
 namespace {
 
 class LiveModel : public LivePair {};
@@ -127,4 +127,4 @@ TEST_F(LiveModel, ThreeAddedEffectsAreLearntWithoutAMissOrAnAllocation) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::gap_live_test

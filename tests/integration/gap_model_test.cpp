@@ -15,7 +15,7 @@
 #include "support/process.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::gap_model_test {
 namespace {
 
 std::string Scenario() { return (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string(); }
@@ -63,4 +63,4 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, WrittenModel, ::testing::ValuesIn(armcmc::te
                          [](const auto& at) { return at.param.name; });
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::gap_model_test

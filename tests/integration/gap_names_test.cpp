@@ -12,7 +12,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::gap_names_test {
 namespace {
 
 /// Sets of effect names that the verdict holds possible.
@@ -224,4 +224,4 @@ TEST_F(Names, ASensorThatClipsPullsAsWellAsPushesHasASaturation) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::gap_names_test

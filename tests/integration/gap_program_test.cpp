@@ -17,7 +17,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::gap_program_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -309,4 +309,4 @@ TEST_F(GapProgram, TheModelRunsInReplayAndErrsLess) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::gap_program_test

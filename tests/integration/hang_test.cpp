@@ -12,7 +12,7 @@
 
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::hang_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -88,4 +88,4 @@ TEST_F(Hang, TheServiceManagerHearsNothingWhileAStageHangs) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::hang_test

@@ -10,7 +10,7 @@
 #include "armcmc/estimate_t.hpp"
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::live_run_test {
 namespace {
 
 double Value(const std::string& text) { return text.empty() ? 0.0 : std::strtod(text.c_str(), nullptr); }
@@ -140,4 +140,4 @@ TEST_F(LiveRun, ALogOfLcmLoggerIsVerifiedToTheBit) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::live_run_test

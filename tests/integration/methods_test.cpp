@@ -6,7 +6,7 @@
 
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::methods_test {
 namespace {
 
 class Methods : public LivePair, public ::testing::WithParamInterface<std::string> {};
@@ -31,4 +31,4 @@ INSTANTIATE_TEST_SUITE_P(Baselines, Methods, ::testing::Values("rls", "pf", "mcm
                          [](const auto& at) { return at.param; });
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::methods_test

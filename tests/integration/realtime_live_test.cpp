@@ -4,7 +4,7 @@
 
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::realtime_live_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,4 +23,4 @@ TEST_F(RealtimeLive, TheWholeEstimatorRunsWithoutAComplaintOfTheSanitizer) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::realtime_live_test

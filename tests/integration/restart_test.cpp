@@ -8,7 +8,7 @@
 #include "armcmc/estimator_status_t.hpp"
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::restart_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -77,4 +77,4 @@ TEST_F(Restart, AKilledEstimatorIsNoticedByThePlantAndANewOneTakesOver) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::restart_test

@@ -12,7 +12,7 @@
 #include "armcmc/estimate_t.hpp"
 #include "integration/live_pair.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::resume_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -105,4 +105,4 @@ TEST_F(Resume, ADiskThatRefusesIsPublishedAndCountedAndNothingElseHappens) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::resume_test

@@ -11,7 +11,7 @@
 #include "integration/live_pair.hpp"
 #include "integration/spy_screen.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::spy_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -157,4 +157,4 @@ TEST_F(Spy, OpensThePanelsOfAPrefixAtOnce) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::spy_test

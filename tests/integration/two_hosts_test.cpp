@@ -14,7 +14,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::two_hosts_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -125,4 +125,4 @@ TEST_F(TwoHosts, LossAndDelayOfTheCableAreCountedAndSurvived) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::two_hosts_test

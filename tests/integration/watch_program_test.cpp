@@ -13,7 +13,7 @@
 #include "integration/live_pair.hpp"
 #include "integration/pty_process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::watch_program_test {
 namespace {
 
 using ::testing::EndsWith;
@@ -139,4 +139,4 @@ TEST(WatchArguments, AreChecked) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::watch_program_test

@@ -11,7 +11,7 @@
 
 #include "support/paths.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::include_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -83,4 +83,4 @@ TEST(IncludeRules, HoldForTheWholeTree) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::include_rules_test

@@ -8,7 +8,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::installed_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST(Installed, SystemdAcceptsTheService) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::installed_test

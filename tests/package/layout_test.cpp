@@ -9,7 +9,7 @@
 
 #include "support/paths.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::layout_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,4 +58,4 @@ TEST(Layout, NothingIsLeftToDo) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::layout_test

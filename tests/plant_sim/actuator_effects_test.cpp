@@ -15,7 +15,7 @@
 #include "builtin_scenario.hpp"
 #include "samples.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::actuator_effects_test {
 namespace {
 
 constexpr double kPAtm = 101'325.0, kQ1 = 0.0704, kQ2 = 132.28, kQ3 = 3319.4;
@@ -100,4 +100,4 @@ TEST(ActuatorEffects, TheStrengthGivesTheGapRatioOfEveryEffect) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::actuator_effects_test

@@ -16,7 +16,7 @@
 
 #include "armcmc/plant_sim/effects/effect_chain.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::effects_test {
 namespace {
 
 constexpr double kDt = 1e-3, kDuration = 10.0;
@@ -226,4 +226,4 @@ TEST(Gate, ReadsWhatItWritesAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::effects_test

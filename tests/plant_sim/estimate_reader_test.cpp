@@ -9,7 +9,7 @@
 
 #include "armcmc/plant_sim/plant.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::estimate_reader_test {
 namespace {
 
 estimate_t Message(const std::vector<std::string>& names) {
@@ -70,4 +70,4 @@ TEST(EstimateReader, SurvivesCountsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::estimate_reader_test

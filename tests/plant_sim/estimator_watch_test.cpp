@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::estimator_watch_test {
 namespace {
 
 TEST(EstimatorWatch, NoticesASilenceOnceAndItsEndOnce) {
@@ -20,4 +20,4 @@ TEST(EstimatorWatch, NoticesASilenceOnceAndItsEndOnce) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::estimator_watch_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::fault_plan_test {
 namespace {
 
 TEST(FaultPlan, AClockThatJumpedStaysAhead) {
@@ -22,4 +22,4 @@ TEST(FaultPlan, RejectsWhatItDoesNotUnderstand) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::fault_plan_test

@@ -16,7 +16,7 @@
 #include "support/json.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::hidden_program_test {
 namespace {
 
 using testing::HasSubstr;
@@ -212,4 +212,4 @@ TEST(PlantProgramHides, BadUsageEndsWithTwoAndOneClearLine) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::hidden_program_test

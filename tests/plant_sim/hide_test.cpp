@@ -14,7 +14,7 @@
 #include "builtin_scenario.hpp"
 #include "samples.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::hide_test {
 namespace {
 
 /// The paper's contact, short.
@@ -165,4 +165,4 @@ TEST(Hide, NamesWhatIsWrongWithARequest) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::hide_test

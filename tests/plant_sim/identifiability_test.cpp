@@ -12,7 +12,7 @@
 #include "armcmc/plant_sim/soft_actuator_plant.hpp"
 #include "builtin_scenario.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::identifiability_test {
 namespace {
 
 struct Fit {
@@ -87,4 +87,4 @@ TEST(SoftActuatorExcited, SwingsAsARealActuatorWould) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::identifiability_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::latency_histogram_test {
 namespace {
 
 TEST(LatencyHistogram, QuantilesAreWithinOneBin) {
@@ -24,4 +24,4 @@ TEST(LatencyHistogram, SurvivesExtremes) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::latency_histogram_test

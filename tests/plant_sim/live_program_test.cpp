@@ -23,7 +23,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::live_program_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -153,4 +153,4 @@ TEST(LivePlant, StopsCleanlyOnASignalWithItsTableAndReport) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::live_program_test

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::log_ring_test {
 namespace {
 
 TEST(LogRing, KeepsOrderAndCountsWhatDoesNotFit) {
@@ -60,4 +60,4 @@ TEST(LogRing, HandsEverythingFromOneThreadToAnother) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::log_ring_test

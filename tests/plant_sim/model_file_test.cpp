@@ -23,7 +23,7 @@
 #include "simd/kernels.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::model_file_test {
 namespace {
 
 using support::ConfigError;
@@ -351,4 +351,4 @@ TEST(ModelFile, SaysWhyItDoesNotFitAScenario) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::model_file_test

@@ -13,7 +13,7 @@
 
 #include "armcmc/plant_sim/hunt_crossley_plant.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::motion_test {
 namespace {
 
 constexpr double kDt = 1e-3;
@@ -219,4 +219,4 @@ TEST(Motion, ThePlantFollowsItExactly) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::motion_test

@@ -11,7 +11,7 @@
 #include "builtin_scenario.hpp"
 #include "support/alloc_counter.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::no_allocation_test {
 namespace {
 
 class PublishingPath : public testing::TestWithParam<const char*> {};
@@ -69,4 +69,4 @@ TEST(HiddenEffects, DoNotAllocateOnThePublishingPath) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::no_allocation_test

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::noise_test {
 namespace {
 
 constexpr int kDraws = 200'000;
@@ -87,4 +87,4 @@ TEST(Noise, IsWhite) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::noise_test

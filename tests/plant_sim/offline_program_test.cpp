@@ -14,7 +14,7 @@
 #include "plant_program.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::offline_program_test {
 namespace {
 
 using testing::HasSubstr;
@@ -95,4 +95,4 @@ TEST(PlantProgram, HelpTeachesWithAnExample) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::offline_program_test

@@ -11,7 +11,7 @@
 #include "files.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::pack_builder_test {
 namespace {
 
 TEST(PackBuilder, PackKHoldsSamplesAfterTheLastPackAndSampleZeroIsInNone) {
@@ -97,4 +97,4 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, CsvAgainstPacks,
                          [](const auto& at) { return std::string(at.param); });
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::pack_builder_test

@@ -12,7 +12,7 @@
 #include "builtin_scenario.hpp"
 #include "recording_sink.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::pack_sender_test {
 namespace {
 
 using testing::ElementsAre;
@@ -115,4 +115,4 @@ TEST(PackSender, CountsWhatTheBusDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::pack_sender_test

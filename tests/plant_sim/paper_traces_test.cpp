@@ -14,7 +14,7 @@
 #include "files.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::paper_traces_test {
 namespace {
 
 using Columns = std::map<std::string, std::vector<double>>;
@@ -106,4 +106,4 @@ TEST(SoftActuatorPaper, AgreesWithTheStoredTraceToPrintPrecision) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::paper_traces_test

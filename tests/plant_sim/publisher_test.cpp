@@ -9,7 +9,7 @@
 #include "builtin_scenario.hpp"
 #include "recording_sink.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::publisher_test {
 namespace {
 
 Scenario Fast(double duration_s) {
@@ -83,4 +83,4 @@ TEST(Publisher, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::publisher_test

@@ -16,7 +16,7 @@
 #include "samples.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::scenario_file_test {
 namespace {
 
 using support::ConfigError;
@@ -221,4 +221,4 @@ TEST(ScenarioFile, RefusesARecordingThatIsNoneOrNotEven) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::scenario_file_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::schedule_test {
 namespace {
 
 TEST(Schedule, StepHoldsFromItsTimeOn) {
@@ -38,4 +38,4 @@ TEST(Schedule, RejectsNonsense) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::schedule_test

@@ -6,7 +6,7 @@
 
 #include "builtin_scenario.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::scorer_test {
 namespace {
 
 ReceivedEstimate Contact(std::int64_t seq, double arrival_s, Theta theta) {
@@ -125,4 +125,4 @@ TEST(Scorer, ScoresEachValveOfTheActuatorWhileItActs) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::scorer_test

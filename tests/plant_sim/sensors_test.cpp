@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::sensors_test {
 namespace {
 
 constexpr int kSamples = 200'000;
@@ -116,4 +116,4 @@ TEST(Sensors, RecordedNoiseIsPlayedForthAndBackFromAPlaceThatTheSeedDraws) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::sensors_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::sha256_test {
 namespace {
 
 TEST(Sha256, GivesTheStandardsExamples) {
@@ -16,4 +16,4 @@ TEST(Sha256, GivesTheStandardsExamples) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::sha256_test

@@ -11,7 +11,7 @@
 #include "builtin_scenario.hpp"
 #include "samples.hpp"
 
-namespace armcmc::plant_sim {
+namespace armcmc::plant_sim::valve_program_test {
 namespace {
 
 using Actuator = SoftActuatorPlant;
@@ -71,4 +71,4 @@ TEST(ValveProgram, FillsFastAndSlowlyByTurns) {
 }
 
 }  // namespace
-}  // namespace armcmc::plant_sim
+}  // namespace armcmc::plant_sim::valve_program_test

@@ -5,7 +5,7 @@
 #include "armcmc/estimator_status_t.hpp"
 #include "stage_rig.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::adjust_stage_test {
 namespace {
 
 using test::kHour;
@@ -120,4 +120,4 @@ TEST_F(AdjustStageTest, FlagsTruncationAndNumericTrouble) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::adjust_stage_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-namespace armcmc::rt {
+namespace armcmc::rt::allocation_counter_test {
 namespace {
 
 /// Escapes a pointer: an allocation that nobody looks at is deleted by the optimiser.
@@ -107,4 +107,4 @@ TEST_F(AllocationCounterTest, CountsEachThreadForItself) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::allocation_counter_test

@@ -9,7 +9,7 @@
 #include "armcmc/estimator_status_t.hpp"
 #include "test_packs.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::collect_stage_test {
 namespace {
 
 constexpr Nanos kT = 100'000'000;
@@ -192,4 +192,4 @@ TEST_F(CollectStageTest, CountsWhatDoesNotFitIntoTheRing) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::collect_stage_test

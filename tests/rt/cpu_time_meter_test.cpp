@@ -8,7 +8,7 @@
 #include "armcmc/rt/process_setup.hpp"
 #include "test_threads.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::cpu_time_meter_test {
 namespace {
 
 using test::PinTo;
@@ -99,4 +99,4 @@ TEST(CpuTimeMeter, AThreadOfOursIsNotTheMachine) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::cpu_time_meter_test

@@ -11,11 +11,11 @@
 #include "armcmc/rt/settings.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::cpu_wake_request_test {
 namespace {
 
 TEST(CpuWakeRequest, AsksForABoundOfZeroMicroseconds) {
-  const test::ScratchDir dir;
+  const armcmc::test::ScratchDir dir;
   const std::filesystem::path device = dir / "device";
   std::ofstream(device) << "as it was before";
   CpuWakeRequest request;
@@ -51,4 +51,4 @@ TEST(RtSettings, KeepsTheCpusAwakeForShortPeriodsUnlessToldOtherwise) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::cpu_wake_request_test

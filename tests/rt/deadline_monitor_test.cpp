@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-namespace armcmc::rt {
+namespace armcmc::rt::deadline_monitor_test {
 namespace {
 
 constexpr Nanos kMs = 1'000'000;
@@ -268,4 +268,4 @@ TEST_F(DeadlineMonitorTest, ADroppedPackWouldHaveTakenItsTime) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::deadline_monitor_test

@@ -9,7 +9,7 @@
 #include "armcmc/rt/pack_codec.hpp"
 #include "armcmc/rt/watchdog.hpp"
 
-namespace armcmc::app {
+namespace armcmc::app::event_printer_test {
 namespace {
 
 TEST(EventPrinter, PrintsOneLineWithTheTimeSinceTheStart) {
@@ -52,4 +52,4 @@ TEST(EventText, SaysWhichPackByHowMuchAndWhy) {
 }
 
 }  // namespace
-}  // namespace armcmc::app
+}  // namespace armcmc::app::event_printer_test

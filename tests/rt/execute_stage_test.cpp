@@ -4,7 +4,7 @@
 
 #include "stage_rig.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::execute_stage_test {
 namespace {
 
 class ExecuteStageTest : public test::StageRig {
@@ -58,4 +58,4 @@ TEST_F(ExecuteStageTest, GoesOnWhileThePublisherIsStuckAndCountsWhatItCannotTake
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::execute_stage_test

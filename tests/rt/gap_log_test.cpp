@@ -13,7 +13,7 @@
 #include "full_disk.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::app {
+namespace armcmc::app::gap_log_test {
 namespace {
 
 class GapLogTest : public ::testing::Test {
@@ -58,7 +58,7 @@ class GapLogTest : public ::testing::Test {
     return count;
   }
 
-  test::ScratchDir dir_;
+  armcmc::test::ScratchDir dir_;
   rt::RecordRing ring_;
   std::atomic<std::int64_t> alarm_{0};
   std::vector<std::string> said_;
@@ -182,4 +182,4 @@ TEST_F(GapLogTest, MemoryIsBounded) {
 }
 
 }  // namespace
-}  // namespace armcmc::app
+}  // namespace armcmc::app::gap_log_test

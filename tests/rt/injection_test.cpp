@@ -8,7 +8,7 @@
 #include "armcmc/rt/warm_up.hpp"
 #include "fake_engine.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::injection_test {
 namespace {
 
 TEST(ParseInjections, ReadsEveryKind) {
@@ -85,4 +85,4 @@ TEST(DisturbedEngine, TellsAWrongPlantAgainAndAgainToCollapseThePosterior) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::injection_test

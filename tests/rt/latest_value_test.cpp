@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-namespace armcmc::rt {
+namespace armcmc::rt::latest_value_test {
 namespace {
 
 TEST(LatestValue, HandsTheWrittenSlotOver) {
@@ -71,4 +71,4 @@ TEST(LatestValue, NeverGivesOneSlotToBothThreads) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::latest_value_test

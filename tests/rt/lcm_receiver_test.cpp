@@ -17,7 +17,7 @@
 #include "test_bus.hpp"
 #include "test_packs.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::lcm_receiver_test {
 namespace {
 
 using test::kLong;
@@ -155,4 +155,4 @@ TEST(LcmReceiver, RefusesAChannelNameThatLcmWouldNotSend) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::lcm_receiver_test

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace armcmc::rt {
+namespace armcmc::rt::lcm_url_test {
 namespace {
 
 TEST(ParseLcmUrl, ReadsEveryPart) {
@@ -41,4 +41,4 @@ TEST(MulticastRouteRemedy, NamesTheCommand) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::lcm_url_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace armcmc::rt {
+namespace armcmc::rt::log_histogram_test {
 namespace {
 
 TEST(LogHistogram, IsZeroWhenEmptyAndExactForOneRepeatedValue) {
@@ -62,4 +62,4 @@ TEST(LogHistogram, MergesCountsAndExtremes) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::log_histogram_test

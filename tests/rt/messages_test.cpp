@@ -12,7 +12,7 @@
 #include "armcmc/effects/registry.hpp"
 #include "fake_engine.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::messages_test {
 namespace {
 
 std::unique_ptr<StepOutput> Output(test::FakeEngine* engine) {
@@ -196,4 +196,4 @@ TEST(FillStatus, CarriesTimesCountersAndFlags) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::messages_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::rt {
+namespace armcmc::rt::miss_cause_test {
 namespace {
 
 TEST(Attribute, BlamesWhatAloneMadeTheStepLate) {
@@ -21,4 +21,4 @@ TEST(Attribute, BlamesTheLargerPartWhenOnlyBothExplainIt) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::miss_cause_test

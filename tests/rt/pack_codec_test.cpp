@@ -9,7 +9,7 @@
 #include "armcmc/plant_truth_t.hpp"
 #include "test_packs.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::pack_codec_test {
 namespace {
 
 using test::Encode;
@@ -98,4 +98,4 @@ TEST(PackCodec, IgnoresValuesThatAreNotUsed) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::pack_codec_test

@@ -19,7 +19,7 @@
 #include "test_bus.hpp"
 #include "test_packs.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::pipeline_test {
 namespace {
 
 /// Everything published on one channel, decoded.
@@ -239,4 +239,4 @@ TEST(WriteReport, NamesAFileThatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::pipeline_test

@@ -4,7 +4,7 @@
 #include "armcmc/rt/clock.hpp"
 #include "stage_rig.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::realtime_sanitizer_test {
 namespace {
 
 #if !defined(ARMCMC_RTSAN_RUNS)
@@ -53,4 +53,4 @@ TEST_F(RealtimeSanitizer, KnowsTheWaitsThatAreMeantAndNothingBeyondTheirScope) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::realtime_sanitizer_test

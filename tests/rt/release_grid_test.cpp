@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::rt {
+namespace armcmc::rt::release_grid_test {
 namespace {
 
 TEST(NextRelease, IsTheNextPointOfTheGridAndCountsWhatPassed) {
@@ -148,4 +148,4 @@ TEST(ReleaseGrid, KeepsANewPhaseWhenAPackIsALittleEarly) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::release_grid_test

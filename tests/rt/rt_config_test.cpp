@@ -7,7 +7,7 @@
 #include "armcmc/support/estimator_config.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::app {
+namespace armcmc::app::rt_config_test {
 namespace {
 
 using support::ConfigError;
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
                          [](const auto& at) { return std::string(at.param); });
 
 }  // namespace
-}  // namespace armcmc::app
+}  // namespace armcmc::app::rt_config_test

@@ -8,7 +8,7 @@
 #include "armcmc/rt/process_setup.hpp"
 #include "test_threads.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::rt_thread_test {
 namespace {
 
 void Raise(void* flag) noexcept { static_cast<std::atomic<bool>*>(flag)->store(true); }
@@ -98,4 +98,4 @@ TEST(PrivilegeRemedy, NamesEveryWay) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::rt_thread_test

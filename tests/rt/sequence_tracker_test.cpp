@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::rt {
+namespace armcmc::rt::sequence_tracker_test {
 namespace {
 
 using V = SequenceVerdict;
@@ -105,4 +105,4 @@ TEST(SequenceTracker, ForgetsWhatLiesBeyondItsWindowWithoutOverflow) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::sequence_tracker_test

@@ -12,7 +12,7 @@
 
 #include "support/paths.hpp"
 
-namespace armcmc::app {
+namespace armcmc::app::service_notify_test {
 namespace {
 
 /// A service manager's end of the socket; sets the environment as systemd does.
@@ -40,7 +40,7 @@ class Manager {
   }
 
  private:
-  test::ScratchDir dir_;
+  armcmc::test::ScratchDir dir_;
   int socket_ = -1;
 };
 
@@ -74,4 +74,4 @@ TEST(ServiceNotify, AnotherProcessOfTheServiceIsNotWatched) {
 }
 
 }  // namespace
-}  // namespace armcmc::app
+}  // namespace armcmc::app::service_notify_test

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace armcmc::rt {
+namespace armcmc::rt::settings_test {
 namespace {
 
 TEST(RtSettings, NamesTheKeyThatIsWrong) {
@@ -41,4 +41,4 @@ TEST(RtSettings, LeavesExecuteAReserve) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::settings_test

@@ -16,7 +16,7 @@
 #include "snapshot_saver.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::app {
+namespace armcmc::app::snapshot_test {
 namespace {
 
 constexpr std::uint64_t kIdentity = 42;
@@ -123,7 +123,7 @@ class SnapshotSaverTest : public ::testing::Test {
         [this](const std::string& line) { said_.push_back(line); });
   }
 
-  test::ScratchDir dir_;
+  armcmc::test::ScratchDir dir_;
   rt::SnapshotHandOver parts_{64};
   std::vector<std::string> said_;
   int faults_ = 0;
@@ -244,4 +244,4 @@ TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
 }
 
 }  // namespace
-}  // namespace armcmc::app
+}  // namespace armcmc::app::snapshot_test

@@ -7,7 +7,7 @@
 
 #include "armcmc/rt/event_log.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::spsc_ring_test {
 namespace {
 
 TEST(SpscRing, HandsElementsOnInOrderWithoutCopying) {
@@ -88,4 +88,4 @@ TEST(EventLog, CountsWhatDoesNotFitAndKeepsTheOldest) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::spsc_ring_test

@@ -13,7 +13,7 @@
 #include "test_packs.hpp"
 #include "test_threads.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::stolen_cpu_test {
 namespace {
 
 /// Takes three quarters of a CPU like a hypervisor that is short of time: in slices shorter than a period of the
@@ -66,4 +66,4 @@ TEST(StolenCpu, WhatIsTakenInShortSlicesIsNotOurOwn) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::stolen_cpu_test

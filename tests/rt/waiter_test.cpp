@@ -6,7 +6,7 @@
 
 #include "armcmc/rt/clock.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::waiter_test {
 namespace {
 
 TEST(Waiter, ReturnsAtOnceAfterAPost) {
@@ -49,4 +49,4 @@ TEST(SleepUntil, DoesNotWakeBeforeItsTime) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::waiter_test

@@ -4,7 +4,7 @@
 
 #include "armcmc/rt/witness.hpp"
 
-namespace armcmc::rt {
+namespace armcmc::rt::wake_up_ring_test {
 namespace {
 
 constexpr Nanos kMs = 1'000'000;
@@ -64,4 +64,4 @@ TEST(WakeUpRing, KeepsTheNewestWhenItWrapsAround) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::wake_up_ring_test

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace armcmc::rt {
+namespace armcmc::rt::watchdog_test {
 namespace {
 
 constexpr Nanos kT = 100'000'000;
@@ -88,4 +88,4 @@ TEST_F(WatchdogTest, AThreadThatHasEndedIsNotMissed) {
 }
 
 }  // namespace
-}  // namespace armcmc::rt
+}  // namespace armcmc::rt::watchdog_test

@@ -15,7 +15,7 @@
 #include "armcmc/gap_bench/summary.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::gap_bench {
+namespace armcmc::gap_bench::gap_bench_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20'000;
@@ -180,4 +180,4 @@ TEST(GapBench, TheProposedExperimentResolvesTies) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap_bench
+}  // namespace armcmc::gap_bench::gap_bench_test

@@ -10,7 +10,7 @@
 #include "armcmc/plant_sim/pack_builder.hpp"
 #include "builtin_scenario.hpp"
 
-namespace armcmc {
+namespace armcmc::gap_watch_power_test {
 namespace {
 
 /// State of the watch after `seconds` of a scenario, through the whole estimator.
@@ -109,4 +109,4 @@ TEST(GapWatchPower, IsSilentWithoutAHiddenEffect) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::gap_watch_power_test

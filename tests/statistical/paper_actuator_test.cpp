@@ -11,7 +11,7 @@
 #include "support/packs.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc {
+namespace armcmc::paper_actuator_test {
 namespace {
 
 TEST(PaperActuator, FindsBothGainsAndPredictsTheAngle) {
@@ -57,4 +57,4 @@ TEST(PaperActuator, FindsBothGainsAndPredictsTheAngle) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::paper_actuator_test

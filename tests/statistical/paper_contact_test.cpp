@@ -13,7 +13,7 @@
 #include "support/packs.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc {
+namespace armcmc::paper_contact_test {
 namespace {
 
 constexpr int kPackSamples = 100;
@@ -132,4 +132,4 @@ TEST(PaperContact, CoversTheTruthOverTwentyNoiseSeeds) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::paper_contact_test

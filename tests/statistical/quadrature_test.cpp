@@ -16,7 +16,7 @@
 #include "statistical/quadrature.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::quadrature_test {
 namespace {
 
 using test::ContactQuadrature;
@@ -200,4 +200,4 @@ TEST(Quadrature, AgreesWhenAChangeIsTooSmallForAModification) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::quadrature_test

@@ -9,7 +9,7 @@
 #include "armcmc/parameter_space.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::sbc_test {
 namespace {
 
 using test::ContactTruth;
@@ -96,4 +96,4 @@ TEST(SimulationBasedCalibration, FailsWhenTheProposalRatioIsDropped) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::sbc_test

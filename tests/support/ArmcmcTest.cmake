@@ -63,6 +63,8 @@ function(armcmc_add_room room)
   target_link_libraries(${target} PRIVATE armcmc_test_support armcmc_warnings Eigen3::Eigen GTest::gmock GTest::gtest_main)
   armcmc_set_test_options(${target})
   target_precompile_headers(${target} REUSE_FROM armcmc_test_headers)
+  # Each test source has a namespace of its own, so that any of them fit into one batch.
+  armcmc_compile_in_batches(${target} SIZE 8)
   add_dependencies(all_tests ${target})
   if(ARMCMC_SANITIZER)
     add_test(NAME ${room} COMMAND ${target})

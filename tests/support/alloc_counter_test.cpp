@@ -8,7 +8,7 @@
 #include <new>
 #include <thread>
 
-namespace armcmc::test {
+namespace armcmc::test::alloc_counter_test {
 namespace {
 
 // Escapes a pointer: at -O2 the optimiser deletes an allocation that nobody looks at, and the counter would
@@ -160,4 +160,4 @@ TEST(AllocCounter, NestedCountersCountFromTheirOwnStart) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::alloc_counter_test

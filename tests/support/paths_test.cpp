@@ -8,7 +8,7 @@
 
 #include "support/paths.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::paths_test {
 namespace {
 
 /// Sets a variable of the environment for the length of a test: others of this program read it, too.
@@ -59,4 +59,4 @@ TEST(TestBus, GivesEveryLivingBusItsOwnPort) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::paths_test

@@ -9,7 +9,7 @@
 
 #include "support/paths.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::process_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -57,4 +57,4 @@ TEST(Process, WhatCannotBeStartedIsAnError) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::process_test

@@ -15,7 +15,7 @@
 #include "armcmc/support/program.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::support {
+namespace armcmc::support::csv_test {
 namespace {
 
 using ::testing::AllOf;
@@ -133,4 +133,4 @@ TEST_F(Csv, EveryFiniteDoubleSurvivesWritingAndReading) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::csv_test

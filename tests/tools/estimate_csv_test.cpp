@@ -11,7 +11,7 @@
 #include "armcmc/estimator.hpp"
 #include "tools/csv_rows.hpp"
 
-namespace armcmc::replay {
+namespace armcmc::replay::estimate_csv_test {
 namespace {
 
 EstimatorSettings Small(const std::string& model) {
@@ -122,4 +122,4 @@ TEST(EstimateCsv, PlantsWithSeveralModesShowAllOfThem) {
 }
 
 }  // namespace
-}  // namespace armcmc::replay
+}  // namespace armcmc::replay::estimate_csv_test

@@ -7,7 +7,7 @@
 
 #include "armcmc/estimator.hpp"
 
-namespace armcmc::support {
+namespace armcmc::support::estimator_config_test {
 namespace {
 
 using ::testing::AllOf;
@@ -224,4 +224,4 @@ TEST(EstimatorConfig, ValuesOutOfRangeAreErrors) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::estimator_config_test

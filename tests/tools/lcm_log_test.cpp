@@ -13,7 +13,7 @@
 #include "support/paths.hpp"
 #include "tools/file_text.hpp"
 
-namespace armcmc::support {
+namespace armcmc::support::lcm_log_test {
 namespace {
 
 constexpr int kDataSize = 100;
@@ -256,4 +256,4 @@ TEST_F(LcmLog, AnyBytesAtAllAreReadToTheEnd) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::lcm_log_test

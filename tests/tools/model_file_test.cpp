@@ -10,7 +10,7 @@
 #include "armcmc/support/estimator_config.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::support {
+namespace armcmc::support::model_file_test {
 namespace {
 
 using ::testing::AllOf;
@@ -175,4 +175,4 @@ TEST_F(ModelFile, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::model_file_test

@@ -15,7 +15,7 @@
 #include "support/paths.hpp"
 #include "tools/replay_data.hpp"
 
-namespace armcmc::replay {
+namespace armcmc::replay::pack_source_test {
 namespace {
 
 using support::InputError;
@@ -255,4 +255,4 @@ TEST_F(PackSourceTest, LogsAreToldByContentOrName) {
 }
 
 }  // namespace
-}  // namespace armcmc::replay
+}  // namespace armcmc::replay::pack_source_test

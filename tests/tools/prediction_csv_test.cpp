@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-namespace armcmc::replay {
+namespace armcmc::replay::prediction_csv_test {
 namespace {
 
 TEST(PredictionCsv, WritesOneRowASampleAndNothingForWhatWasNotKnown) {
@@ -24,4 +24,4 @@ TEST(PredictionCsv, WritesOneRowASampleAndNothingForWhatWasNotKnown) {
 }
 
 }  // namespace
-}  // namespace armcmc::replay
+}  // namespace armcmc::replay::prediction_csv_test

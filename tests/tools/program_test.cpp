@@ -10,7 +10,7 @@
 
 #include "armcmc/support/strict_toml.hpp"
 
-namespace armcmc::support {
+namespace armcmc::support::program_test {
 namespace {
 
 struct Outcome {
@@ -68,4 +68,4 @@ TEST(Program, BadInputIsTwoOtherTroubleIsOneEachWithOneLine) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::program_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::support {
+namespace armcmc::support::progress_test {
 namespace {
 
 TEST(Progress, LineShowsShareAndRemainingTime) {
@@ -39,4 +39,4 @@ TEST(Progress, NotesAreSeenOnNoTerminalToo) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::progress_test

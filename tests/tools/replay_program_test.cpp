@@ -11,7 +11,7 @@
 #include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
 
-namespace armcmc::replay {
+namespace armcmc::replay::replay_program_test {
 namespace {
 
 using test::Outcome;
@@ -124,4 +124,4 @@ TEST_F(ReplayProgram, BadInputIsOneLineThatNamesThePlace) {
 }
 
 }  // namespace
-}  // namespace armcmc::replay
+}  // namespace armcmc::replay::replay_program_test

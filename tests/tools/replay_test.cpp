@@ -10,7 +10,7 @@
 #include "support/paths.hpp"
 #include "tools/replay_data.hpp"
 
-namespace armcmc::replay {
+namespace armcmc::replay::replay_test {
 namespace {
 
 EstimatorSettings Settings() {
@@ -73,4 +73,4 @@ TEST_F(ReplayTest, ACutRunIsRepeatedFromItsOwnOutput) {
 }
 
 }  // namespace
-}  // namespace armcmc::replay
+}  // namespace armcmc::replay::replay_test

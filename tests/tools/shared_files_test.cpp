@@ -8,7 +8,7 @@
 #include "armcmc/support/strict_toml.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::support {
+namespace armcmc::support::shared_files_test {
 namespace {
 
 TEST(SharedFiles, APathIsTakenAsItIs) {
@@ -47,4 +47,4 @@ TEST(SharedFiles, AFolderIsNoFile) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::shared_files_test

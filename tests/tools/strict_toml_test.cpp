@@ -12,7 +12,7 @@
 
 #include "support/paths.hpp"
 
-namespace armcmc::support {
+namespace armcmc::support::strict_toml_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -198,4 +198,4 @@ TEST(StrictToml, ANumberIsAcceptedExactlyWhenItIsInRange) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::strict_toml_test

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace armcmc::support {
+namespace armcmc::support::subprocess_test {
 namespace {
 
 const std::filesystem::path kHere = "/tmp";
@@ -59,4 +59,4 @@ TEST(ProgramBeside, IsInTheFolderOfThisOne) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::subprocess_test

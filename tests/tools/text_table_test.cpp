@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace armcmc::support {
+namespace armcmc::support::text_table_test {
 namespace {
 
 TEST(TextTable, AlignsNamesLeftAndNumbersRight) {
@@ -31,4 +31,4 @@ TEST(Significant, RoundsAndMarksWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace armcmc::support
+}  // namespace armcmc::support::text_table_test

@@ -18,7 +18,7 @@
 #include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
 
-namespace armcmc::replay {
+namespace armcmc::replay::verify_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -155,4 +155,4 @@ TEST_F(VerifyTest, TheConfigurationFollowsFromThePlantOfTheLog) {
 }
 
 }  // namespace
-}  // namespace armcmc::replay
+}  // namespace armcmc::replay::verify_test

@@ -9,7 +9,7 @@
 #include "support/alloc_counter.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::baselines_test {
 namespace {
 
 EstimatorSettings SettingsOf(Method method) {
@@ -150,4 +150,4 @@ TEST(Rls, HasOneVectorForBothValvesUnlessItRecalls) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::baselines_test

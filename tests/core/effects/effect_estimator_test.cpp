@@ -6,7 +6,7 @@
 #include "core/estimator_rig.hpp"
 #include "support/alloc_counter.hpp"
 
-namespace armcmc {
+namespace armcmc::effect_estimator_test {
 namespace {
 
 using test::Catalogue;
@@ -183,4 +183,4 @@ TEST(EffectEstimator, StepsDoNotTouchTheHeap) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::effect_estimator_test

@@ -7,7 +7,7 @@
 #include "core/effects/contact_series.hpp"
 #include "core/kernel_sets.hpp"
 
-namespace armcmc {
+namespace armcmc::effect_prediction_test {
 namespace {
 
 using test::Catalogue;
@@ -189,4 +189,4 @@ TEST(EffectPrediction, APackThatOverflowsIsRefusedAndForgotten) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::effect_prediction_test

@@ -5,7 +5,7 @@
 
 #include "core/effects/contact_series.hpp"
 
-namespace armcmc {
+namespace armcmc::effect_settings_test {
 namespace {
 
 using ::testing::AllOf;
@@ -88,4 +88,4 @@ TEST(EffectSettings, NamesTheKeyThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::effect_settings_test

@@ -9,7 +9,7 @@
 #include "core/estimator_rig.hpp"
 #include "support/alloc_counter.hpp"
 
-namespace armcmc {
+namespace armcmc::flow_estimator_test {
 namespace {
 
 using test::FlowCase;
@@ -282,4 +282,4 @@ TEST(FlowSettings, TheFlowsEffectsAreTheOnlineOnesOfTheActuator) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::flow_estimator_test

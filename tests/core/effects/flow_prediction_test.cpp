@@ -11,7 +11,7 @@
 #include "core/kernel_sets.hpp"
 #include "simd/kernels.hpp"
 
-namespace armcmc {
+namespace armcmc::flow_prediction_test {
 namespace {
 
 using test::FlowCase;
@@ -165,4 +165,4 @@ TEST(FlowPrediction, SamplesOfWhichTheValveIsNotSureAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::flow_prediction_test

@@ -16,7 +16,7 @@
 #include "support/alloc_counter.hpp"
 #include "support/packs.hpp"
 
-namespace armcmc {
+namespace armcmc::bend_watch_test {
 namespace {
 
 using Law = std::function<double(double t, const BendMotion::State& state)>;  // rad/s^2 beside the base equation's
@@ -212,4 +212,4 @@ TEST(GapCheckName, IsOfEitherEquation) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::bend_watch_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace armcmc {
+namespace armcmc::gap_evidence_test {
 namespace {
 
 constexpr int kChecks = 8;
@@ -78,4 +78,4 @@ TEST(GapEvidence, StaysFinite) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::gap_evidence_test

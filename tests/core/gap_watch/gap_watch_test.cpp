@@ -8,7 +8,7 @@
 #include "core/gap_watch/gap_rig.hpp"
 #include "support/alloc_counter.hpp"
 
-namespace armcmc {
+namespace armcmc::gap_watch_test {
 namespace {
 
 using test::BaseForce;
@@ -229,4 +229,4 @@ TEST(GapWatch, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace armcmc
+}  // namespace armcmc::gap_watch_test

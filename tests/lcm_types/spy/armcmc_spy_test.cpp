@@ -7,7 +7,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::armcmc_spy_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST_F(ArmcmcSpy, HandsOverUrlAndPrefix) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::armcmc_spy_test

@@ -10,7 +10,7 @@
 
 #include "tools/calibrate/calibration_rig.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::calibration_long_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST_F(LongCalibration, IndependentNoiseIsNeverTakenForAChangeAndAChangeIs) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::calibration_long_test

@@ -6,7 +6,7 @@
 #include "tools/calibrate/calibration_rig.hpp"
 #include "tools/plots/browser.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::calibration_program_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST_F(CalibrationProgram, ARecordingWithoutNoiseIsRefused) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::calibration_program_test

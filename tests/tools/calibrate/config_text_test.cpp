@@ -7,7 +7,7 @@
 #include "support/paths.hpp"
 #include "tools/file_text.hpp"
 
-namespace armcmc::calibrate {
+namespace armcmc::calibrate::config_text_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -68,4 +68,4 @@ TEST(CalibratedConfig, TablesThatAreMissingAreMade) {
 }
 
 }  // namespace
-}  // namespace armcmc::calibrate
+}  // namespace armcmc::calibrate::config_text_test

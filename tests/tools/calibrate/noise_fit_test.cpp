@@ -8,7 +8,7 @@
 
 #include "armcmc/noise_model.hpp"
 
-namespace armcmc::calibrate {
+namespace armcmc::calibrate::noise_fit_test {
 namespace {
 
 using Draw = std::function<double(std::mt19937_64&)>;
@@ -110,4 +110,4 @@ TEST(NoiseFit, CorrelationIsThatOfNeighbours) {
 }
 
 }  // namespace
-}  // namespace armcmc::calibrate
+}  // namespace armcmc::calibrate::noise_fit_test

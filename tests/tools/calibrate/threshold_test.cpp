@@ -8,7 +8,7 @@
 
 #include "armcmc/forgetting.hpp"
 
-namespace armcmc::calibrate {
+namespace armcmc::calibrate::threshold_test {
 namespace {
 
 /// Scores whose tail is exponential above 0.2 with mean excess 0.3.
@@ -76,4 +76,4 @@ TEST(Threshold, AScoreIsTheThresholdAtWhichTheDecisionTurns) {
 }
 
 }  // namespace
-}  // namespace armcmc::calibrate
+}  // namespace armcmc::calibrate::threshold_test

@@ -6,7 +6,7 @@
 #include "tools/compare/traces.hpp"
 #include "tools/plots/browser.hpp"
 
-namespace armcmc::compare {
+namespace armcmc::compare::compare_browser_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -33,4 +33,4 @@ TEST(ComparisonInBrowser, DrawsEveryPlotWithoutAComplaint) {
 }
 
 }  // namespace
-}  // namespace armcmc::compare
+}  // namespace armcmc::compare::compare_browser_test

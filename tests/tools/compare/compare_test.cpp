@@ -15,7 +15,7 @@
 #include "tools/compare/traces.hpp"
 #include "tools/file_text.hpp"
 
-namespace armcmc::compare {
+namespace armcmc::compare::compare_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -141,4 +141,4 @@ TEST_F(CompareProgram, BadUsageIsOneLine) {
 }
 
 }  // namespace
-}  // namespace armcmc::compare
+}  // namespace armcmc::compare::compare_test

@@ -26,7 +26,7 @@
 #include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
 
-namespace armcmc::log_export {
+namespace armcmc::log_export::csv_export_test {
 namespace {
 
 using replay::ContactPack;
@@ -297,4 +297,4 @@ TEST_F(CsvExport, ALogOfTheFirstReleasedTypesStaysReadable) {
 }
 
 }  // namespace
-}  // namespace armcmc::log_export
+}  // namespace armcmc::log_export::csv_export_test

@@ -12,7 +12,7 @@
 #include "armcmc/posterior_t.hpp"
 #include "armcmc/support/program.hpp"
 
-namespace armcmc::log_export {
+namespace armcmc::log_export::message_type_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST(MessageType, TextThatIsNotReadIsAnErrorWithItsLine) {
 }
 
 }  // namespace
-}  // namespace armcmc::log_export
+}  // namespace armcmc::log_export::message_type_test

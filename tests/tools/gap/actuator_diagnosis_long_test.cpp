@@ -9,7 +9,7 @@
 #include "tools/gap/actuator_rig.hpp"
 #include "tools/gap/findings.hpp"
 
-namespace armcmc::gap::test {
+namespace armcmc::gap::test::actuator_diagnosis_long_test {
 namespace {
 
 constexpr char kModel[] = "soft_actuator_excited";
@@ -48,4 +48,4 @@ TEST(ManyActuatorRecordings, LeaveTwoBiasesThatNothingTellsApartEquallyProbable)
 }
 
 }  // namespace
-}  // namespace armcmc::gap::test
+}  // namespace armcmc::gap::test::actuator_diagnosis_long_test

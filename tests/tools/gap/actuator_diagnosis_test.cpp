@@ -11,7 +11,7 @@
 #include "tools/gap/actuator_rig.hpp"
 #include "tools/gap/findings.hpp"
 
-namespace armcmc::gap::test {
+namespace armcmc::gap::test::actuator_diagnosis_test {
 namespace {
 
 constexpr char kModel[] = "soft_actuator_excited";
@@ -188,4 +188,4 @@ TEST(ActuatorWorkflow, JudgesTheBendEquationOfARecordingThatDoesNotExciteTheFlow
 }
 
 }  // namespace
-}  // namespace armcmc::gap::test
+}  // namespace armcmc::gap::test::actuator_diagnosis_test

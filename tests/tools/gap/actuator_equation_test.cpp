@@ -11,7 +11,7 @@
 #include "armcmc/gap/hypothesis.hpp"
 #include "tools/gap/actuator_rig.hpp"
 
-namespace armcmc::gap::test {
+namespace armcmc::gap::test::actuator_equation_test {
 namespace {
 
 constexpr int kFlow = 0, kBend = 1;
@@ -196,4 +196,4 @@ INSTANTIATE_TEST_SUITE_P(Actuator, Derivatives, ::testing::Values(kFlow, kBend),
                          [](const auto& at) { return at.param == kFlow ? "flow" : "bend"; });
 
 }  // namespace
-}  // namespace armcmc::gap::test
+}  // namespace armcmc::gap::test::actuator_equation_test

@@ -18,7 +18,7 @@
 #include "support/paths.hpp"
 #include "tools/gap/actuator_rig.hpp"
 
-namespace armcmc::gap::test {
+namespace armcmc::gap::test::actuator_model_test {
 namespace {
 
 using ::testing::Contains;
@@ -145,4 +145,4 @@ TEST(ActuatorModelFile, ASensorThatBothEquationsReadRunsInTheFlow) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap::test
+}  // namespace armcmc::gap::test::actuator_model_test

@@ -13,7 +13,7 @@
 #include "armcmc/gap/workflow.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::aliases_test {
 namespace {
 
 using test::Measure;
@@ -123,4 +123,4 @@ TEST(Aliases, NameWhatNeverActs) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::aliases_test

@@ -6,7 +6,7 @@
 
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::blocks_test {
 namespace {
 
 using test::Noise;
@@ -145,4 +145,4 @@ TEST(BlockBootstrap, RatioOfProportionalSumsHasNoSpread) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::blocks_test

@@ -8,7 +8,7 @@
 #include "armcmc/gap/hypothesis.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::evaluate_test {
 namespace {
 
 using test::Bench;
@@ -196,4 +196,4 @@ TEST(Evaluate, ALatencyIsTheSameTimeInARecordingOfAnotherRate) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::evaluate_test

@@ -14,7 +14,7 @@
 #include "support/process.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::experiment_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -83,4 +83,4 @@ TEST_F(SeparatingExperimentTest, IsAScenarioThatThePlantRuns) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::experiment_test

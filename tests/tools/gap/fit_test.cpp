@@ -7,7 +7,7 @@
 
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::fit_test {
 namespace {
 
 using test::Bench;
@@ -281,4 +281,4 @@ TEST(Fitter, AnOverParametrisedHypothesisDoesNotBreak) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::fit_test

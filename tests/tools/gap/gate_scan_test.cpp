@@ -8,7 +8,7 @@
 
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::gate_scan_test {
 namespace {
 
 using test::Bench;
@@ -106,4 +106,4 @@ TEST(ScanGates, ATemplateOfTheParentGainsNothing) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::gate_scan_test

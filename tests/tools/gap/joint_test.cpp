@@ -10,7 +10,7 @@
 #include "tools/gap/findings.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::joint_test {
 namespace {
 
 using armcmc::test::HiddenEffect;
@@ -121,4 +121,4 @@ TEST_F(JoinTest, EachRecordingHasItsOwnStart) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::joint_test

@@ -12,7 +12,7 @@
 #include "simd/kernels.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::model_writer_test {
 namespace {
 
 using test::Bench;
@@ -159,4 +159,4 @@ TEST(AugmentedSettings, AreValidWhateverTheNoise) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::model_writer_test

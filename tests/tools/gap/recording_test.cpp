@@ -11,7 +11,7 @@
 #include "armcmc/support/program.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::recording_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST_F(ReadRecordingTest, SaysWhenSpeedsAreNotThoseOfThePositions) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::recording_test

@@ -14,7 +14,7 @@
 #include "armcmc/gap/localise.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::referee_test {
 namespace {
 
 using test::Bench;
@@ -104,4 +104,4 @@ TEST(FindWhere, SaysInWhichModeTheErrorIsAndOnWhatItDepends) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::referee_test

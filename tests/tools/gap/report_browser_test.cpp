@@ -6,7 +6,7 @@
 #include "tools/gap/report_fixture.hpp"
 #include "tools/plots/browser.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::report_browser_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -30,4 +30,4 @@ INSTANTIATE_TEST_SUITE_P(Verdicts, ReportInBrowser, ::testing::Values(Verdict::k
                          [](const auto& verdict) { return std::string(Name(verdict.param)); });
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::report_browser_test

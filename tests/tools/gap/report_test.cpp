@@ -8,7 +8,7 @@
 #include "tools/file_text.hpp"
 #include "tools/gap/report_fixture.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::report_test {
 namespace {
 
 using armcmc::test::Holds;
@@ -118,4 +118,4 @@ TEST(Report, ComesOutOfAResultWithoutANumber) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::report_test

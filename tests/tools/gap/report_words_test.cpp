@@ -6,7 +6,7 @@
 
 #include "armcmc/effects/registry.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::report_words_test {
 namespace {
 
 TEST(EffectTitle, ReadsAsAPersonWouldSayIt) {
@@ -44,4 +44,4 @@ TEST(Readings, FollowTheNumbers) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::report_words_test

@@ -7,7 +7,7 @@
 
 #include "tools/gap/report_fixture.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::result_json_test {
 namespace {
 
 using nlohmann::json;
@@ -123,4 +123,4 @@ TEST(ResultJson, WritesValidTextWhateverTheNames) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::result_json_test

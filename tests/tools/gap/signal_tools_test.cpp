@@ -10,7 +10,7 @@
 #include "armcmc/gap/whitener.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::signal_tools_test {
 namespace {
 
 using test::Noise;
@@ -181,4 +181,4 @@ TEST(StrongestLine, AShortSeriesIsNoError) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::signal_tools_test

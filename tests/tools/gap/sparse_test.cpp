@@ -11,7 +11,7 @@
 
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::sparse_test {
 namespace {
 
 constexpr int kRows = 6000;
@@ -54,4 +54,4 @@ TEST(DescribeSparsely, SaysNothingOfNoise) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::sparse_test

@@ -11,7 +11,7 @@
 #include "armcmc/gap/workflow.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::verify_test {
 namespace {
 
 using test::Hidden;
@@ -211,4 +211,4 @@ TEST(Degenerate, AlwaysInContactIsFine) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::verify_test

@@ -8,7 +8,7 @@
 #include "armcmc/gap/diagnose.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap {
+namespace armcmc::gap::weak_effects_test {
 namespace {
 
 using armcmc::test::HiddenEffect;
@@ -68,4 +68,4 @@ TEST(WeakEffects, EventsThatNoEffectExplainsAreNotNothing) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap
+}  // namespace armcmc::gap::weak_effects_test

@@ -8,7 +8,7 @@
 #include "armcmc/gap_bench/report.hpp"
 #include "support/paths.hpp"
 
-namespace armcmc::gap_bench {
+namespace armcmc::gap_bench::run_test {
 namespace {
 
 TEST(RunCase, AHalfOfARecordingIsAllThatTheToolIsGiven) {
@@ -27,4 +27,4 @@ TEST(RunCase, AHalfOfARecordingIsAllThatTheToolIsGiven) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap_bench
+}  // namespace armcmc::gap_bench::run_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::gap_bench {
+namespace armcmc::gap_bench::scenario_text_test {
 namespace {
 
 constexpr const char* kScenario = "schema = 1\n[noise.f]\nstd = 0.1\n[noise.x]\nstd = 0.2\n";
@@ -24,4 +24,4 @@ TEST(ScenarioText, DropsTablesAndTablesOfTablesByPrefix) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap_bench
+}  // namespace armcmc::gap_bench::scenario_text_test

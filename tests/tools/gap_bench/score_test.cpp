@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace armcmc::gap_bench {
+namespace armcmc::gap_bench::score_test {
 namespace {
 
 Truth Hidden(const Names& names, const std::string& kind = "catalogue") {
@@ -180,4 +180,4 @@ TEST(OnsetError, CountsFromTheEdgesOfTheInterval) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap_bench
+}  // namespace armcmc::gap_bench::score_test

@@ -14,7 +14,7 @@
 
 #include "support/paths.hpp"
 
-namespace armcmc::gap_bench {
+namespace armcmc::gap_bench::strata_test {
 namespace {
 
 /// Files with the columns of the recordings that the stratum needs, a few seconds long.
@@ -87,4 +87,4 @@ TEST(Strata, AnUnknownStratumIsAnError) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap_bench
+}  // namespace armcmc::gap_bench::strata_test

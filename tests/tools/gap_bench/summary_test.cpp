@@ -9,7 +9,7 @@
 #include "armcmc/gap_bench/report.hpp"
 #include "armcmc/gap_bench/strata.hpp"
 
-namespace armcmc::gap_bench {
+namespace armcmc::gap_bench::summary_test {
 namespace {
 
 Outcome Made(const std::string& stratum, Grade grade, double probability, bool right) {
@@ -169,4 +169,4 @@ TEST(BenchReport, HoldsEveryCaseWithItsCommands) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap_bench
+}  // namespace armcmc::gap_bench::summary_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace armcmc::plots {
+namespace armcmc::plots::chart_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -85,4 +85,4 @@ TEST(HeatMap, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace armcmc::plots
+}  // namespace armcmc::plots::chart_test

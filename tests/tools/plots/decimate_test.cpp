@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace armcmc::plots {
+namespace armcmc::plots::decimate_test {
 namespace {
 
 using ::testing::Contains;
@@ -55,4 +55,4 @@ TEST(Decimate, RefusesRowsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace armcmc::plots
+}  // namespace armcmc::plots::decimate_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace armcmc::plots {
+namespace armcmc::plots::html_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -65,4 +65,4 @@ TEST(PercentText, IsNeverCertain) {
 }
 
 }  // namespace
-}  // namespace armcmc::plots
+}  // namespace armcmc::plots::html_test

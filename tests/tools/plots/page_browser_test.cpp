@@ -6,7 +6,7 @@
 #include "armcmc/plots/page.hpp"
 #include "tools/plots/browser.hpp"
 
-namespace armcmc::plots {
+namespace armcmc::plots::page_browser_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -91,4 +91,4 @@ TEST(PageInBrowser, AnErrorARequestAndAnEmptyPlotAreSeen) {
 }
 
 }  // namespace
-}  // namespace armcmc::plots
+}  // namespace armcmc::plots::page_browser_test

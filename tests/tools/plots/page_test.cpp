@@ -6,7 +6,7 @@
 
 #include "tools/file_text.hpp"
 
-namespace armcmc::plots {
+namespace armcmc::plots::page_test {
 namespace {
 
 using test::Holds;
@@ -51,4 +51,4 @@ TEST(Page, SaysWhenThereIsNothingToDraw) {
 }
 
 }  // namespace
-}  // namespace armcmc::plots
+}  // namespace armcmc::plots::page_test

@@ -9,7 +9,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::rtcheck {
+namespace armcmc::rtcheck::rtcheck_test {
 namespace {
 
 /// A tree that looks like /proc and /sys of a well-set-up computer with four processors.
@@ -166,4 +166,4 @@ TEST_F(RtCheck, MeasuresWakeUps) {
 }
 
 }  // namespace
-}  // namespace armcmc::rtcheck
+}  // namespace armcmc::rtcheck::rtcheck_test

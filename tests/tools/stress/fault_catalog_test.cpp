@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace armcmc::stress {
+namespace armcmc::stress::fault_catalog_test {
 namespace {
 
 TEST(FaultCatalog, NothingIsDetectedWhereNothingHappened) {
@@ -44,4 +44,4 @@ TEST(FlagNames, NamesEveryBit) {
 }
 
 }  // namespace
-}  // namespace armcmc::stress
+}  // namespace armcmc::stress::fault_catalog_test

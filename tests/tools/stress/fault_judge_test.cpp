@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace armcmc::stress {
+namespace armcmc::stress::fault_judge_test {
 namespace {
 
 constexpr std::int64_t kT = 100'000'000;
@@ -299,4 +299,4 @@ TEST_F(FaultJudgeTest, ANewRunOfThePlantIsJudgedFromItsFirstPackOn) {
 }
 
 }  // namespace
-}  // namespace armcmc::stress
+}  // namespace armcmc::stress::fault_judge_test

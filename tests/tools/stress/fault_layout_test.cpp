@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::stress {
+namespace armcmc::stress::fault_layout_test {
 namespace {
 
 TEST(LayOut, GivesEveryFaultASlotOfItsOwnAfterTheLearning) {
@@ -41,4 +41,4 @@ TEST(LayOut, StopsWhereThePacksEnd) {
 }
 
 }  // namespace
-}  // namespace armcmc::stress
+}  // namespace armcmc::stress::fault_layout_test

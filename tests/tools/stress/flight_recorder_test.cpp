@@ -9,7 +9,7 @@
 
 #include "tools/file_text.hpp"
 
-namespace armcmc::stress {
+namespace armcmc::stress::flight_recorder_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -67,4 +67,4 @@ TEST_F(FlightRecorderTest, AFileThatCannotBeWrittenIsAnError) {
 }
 
 }  // namespace
-}  // namespace armcmc::stress
+}  // namespace armcmc::stress::flight_recorder_test

@@ -8,7 +8,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::stress_faults_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -42,4 +42,4 @@ TEST(StressFaults, DetectsEveryFaultOfAShortRun) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::stress_faults_test

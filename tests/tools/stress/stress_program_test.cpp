@@ -7,7 +7,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::test {
+namespace armcmc::test::stress_program_test {
 namespace {
 
 TEST(StressProgram, WithoutFaultsOnePlantRunsForTheWholeTime) {
@@ -36,4 +36,4 @@ TEST(StressProgram, NamesWhatItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace armcmc::test
+}  // namespace armcmc::test::stress_program_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::stress {
+namespace armcmc::stress::verdict_test {
 namespace {
 
 PhaseResult GoodPhase() {
@@ -59,4 +59,4 @@ TEST(Judge, RefusesHeapCallsAndADeadEstimator) {
 }
 
 }  // namespace
-}  // namespace armcmc::stress
+}  // namespace armcmc::stress::verdict_test

@@ -10,7 +10,7 @@
 #include "armcmc/tables/experiment.hpp"
 #include "armcmc/tables/report.hpp"
 
-namespace armcmc::tables {
+namespace armcmc::tables::coverage_test {
 namespace {
 
 TEST(NullCoverageVariance, OfPacksThatTeachNothingIsThatOfOneDecision) {
@@ -116,4 +116,4 @@ TEST(CoverageSentence, NamesWhatIsOff) {
 }
 
 }  // namespace
-}  // namespace armcmc::tables
+}  // namespace armcmc::tables::coverage_test

@@ -19,7 +19,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
-namespace armcmc::tables {
+namespace armcmc::tables::excited_test {
 namespace {
 
 constexpr int kSeeds = 10;
@@ -105,4 +105,4 @@ TEST(ExcitedActuator, ArmcmcIsAheadOnEveryParameterAndItsIntervalsHold) {
 }
 
 }  // namespace
-}  // namespace armcmc::tables
+}  // namespace armcmc::tables::excited_test

@@ -11,7 +11,7 @@
 #include "tools/file_text.hpp"
 #include "tools/plots/browser.hpp"
 
-namespace armcmc::tables {
+namespace armcmc::tables::paper_test {
 namespace {
 
 using test::Json;
@@ -63,4 +63,4 @@ TEST(PaperTables, PutsArmcmcAheadOnTheAuthorsRecordingsAndDrawsEveryFigure) {
 }
 
 }  // namespace
-}  // namespace armcmc::tables
+}  // namespace armcmc::tables::paper_test

@@ -10,7 +10,7 @@
 #include "support/process.hpp"
 #include "tools/file_text.hpp"
 
-namespace armcmc::tables {
+namespace armcmc::tables::program_test {
 namespace {
 
 using test::Json;
@@ -47,4 +47,4 @@ TEST(TablesProgram, SaysWhatADataFolderMustHold) {
 }
 
 }  // namespace
-}  // namespace armcmc::tables
+}  // namespace armcmc::tables::program_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace armcmc::tables {
+namespace armcmc::tables::score_test {
 namespace {
 
 /// 501 samples at x = 1 m at rest, so that the force is K; truth 4, 2.3, 1.7.
@@ -106,4 +106,4 @@ TEST(RunBatch, FindsNoiselessParameters) {
 }
 
 }  // namespace
-}  // namespace armcmc::tables
+}  // namespace armcmc::tables::score_test

@@ -7,7 +7,7 @@
 
 #include "tools/watch/watch_messages.hpp"
 
-namespace armcmc::watch {
+namespace armcmc::watch::screen_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST(Screen, SurvivesAMessageThatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace armcmc::watch
+}  // namespace armcmc::watch::screen_test

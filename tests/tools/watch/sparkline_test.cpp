@@ -7,7 +7,7 @@
 
 #include "armcmc/watch/text_line.hpp"
 
-namespace armcmc::watch {
+namespace armcmc::watch::sparkline_test {
 namespace {
 
 TEST(Sparkline, GoesFromTheLeastToTheLargest) {
@@ -44,4 +44,4 @@ TEST(DensityLine, AveragesBinsIntoColumns) {
 }
 
 }  // namespace
-}  // namespace armcmc::watch
+}  // namespace armcmc::watch::sparkline_test

@@ -8,7 +8,7 @@
 #include "support/json.hpp"
 #include "tools/watch/watch_messages.hpp"
 
-namespace armcmc::watch {
+namespace armcmc::watch::step_text_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -58,4 +58,4 @@ TEST(StepJson, DoesWithoutAnEstimate) {
 }
 
 }  // namespace
-}  // namespace armcmc::watch
+}  // namespace armcmc::watch::step_text_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace armcmc::watch {
+namespace armcmc::watch::text_line_test {
 namespace {
 
 TEST(TextLine, CutsAtTheColumnAndNotInsideACharacter) {
@@ -28,4 +28,4 @@ TEST(TextLine, AlignsInFields) {
 }
 
 }  // namespace
-}  // namespace armcmc::watch
+}  // namespace armcmc::watch::text_line_test

@@ -8,7 +8,7 @@
 #include "armcmc/watch/names.hpp"
 #include "tools/watch/watch_messages.hpp"
 
-namespace armcmc::watch {
+namespace armcmc::watch::watch_state_test {
 namespace {
 
 TEST(History, KeepsTheNewest) {
@@ -95,4 +95,4 @@ TEST(TrueValue, IsThatOfTheModeThatActs) {
 }
 
 }  // namespace
-}  // namespace armcmc::watch
+}  // namespace armcmc::watch::watch_state_test
