@@ -64,7 +64,7 @@ function(armcmc_add_room room)
   armcmc_set_test_options(${target})
   target_precompile_headers(${target} REUSE_FROM armcmc_test_headers)
   # Each test source has a namespace of its own, so that any of them fit into one batch.
-  armcmc_compile_in_batches(${target} SIZE 8)
+  armcmc_compile_in_batches(${target} SIZE 12)
   add_dependencies(all_tests ${target})
   if(ARMCMC_SANITIZER)
     add_test(NAME ${room} COMMAND ${target})
