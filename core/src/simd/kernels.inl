@@ -204,4 +204,5 @@ void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, i
 #include "simd/density.inl"
 #include "simd/moments.inl"
 #include "simd/score.inl"
+#include "simd/tape.inl"
 #include "simd/weights.inl"

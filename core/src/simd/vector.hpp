@@ -102,11 +102,12 @@ struct Simd {
   }
   static V Abs(V a) noexcept { return FromBits(Bits(a) & (I{} + 0x7fffffffffffffffLL)); }
 
-  /// 2^x, relative error below 1 ulp for |x| <= 1000; clamped beyond. Round to nearest by the magic-number
-  /// addition, polynomial of degree 11 through the Chebyshev nodes of [-1/2, 1/2] (error 3e-18), exponent added as an
-  /// integer.
+  /// 2^x, relative error below 1 ulp for |x| <= 1000; clamped beyond; NaN stays NaN. Round to nearest by the
+  /// magic-number addition, polynomial of degree 11 through the Chebyshev nodes of [-1/2, 1/2] (error 3e-18), exponent
+  /// added as an integer.
   static V Exp2(V x) noexcept {
-    x = Min(Max(x, Set(-1000.0)), Set(1000.0));
+    // In this order of arguments what is not a number stays so.
+    x = Min(Set(1000.0), Max(Set(-1000.0), x));
     const V magic = Set(6755399441055744.0);  // 1.5 * 2^52
     const V shifted = x + magic;
     const V f = x - (shifted - magic);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "armcmc/expression/graph.hpp"
+#include "armcmc/expression/tape.hpp"
+
+namespace armcmc::expression {
+
+/// A tape, and the nodes of the graph that are its scalars.
+struct CompiledTape {
+  Tape tape;
+  std::vector<int> scalars;  ///< Nodes that depend on no parameter and no state.
+};
+
+/// Code for the values of `results`, whose parts that depend on neither parameter nor state become scalars.
+///
+/// Sums of products are gathered: what is linear in registers with scalar factors is one instruction.
+///
+/// @param scalars  Nodes that are scalars 0, 1, ... already: several tapes may share theirs.
+/// @throws std::length_error naming the limit that is passed; std::invalid_argument where a function with memory has an
+///         argument that depends on a parameter or a state.
+[[nodiscard]] CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, int num_parameters,
+                                       int num_states, std::vector<int> scalars = {});
+
+}  // namespace armcmc::expression

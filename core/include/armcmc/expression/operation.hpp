@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace armcmc::expression {
+
+/// What a node of an expression does. The same list serves the text, the graph and the tape.
+enum class Op : std::uint8_t {
+  kNumber,
+  kSymbol,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kPower,
+  kNegate,
+  kLess,
+  kLessEqual,
+  kEqual,
+  kNotEqual,
+  kAnd,
+  kOr,
+  kNot,
+  kAbs,
+  kSign,  ///< -1, 0, 1.
+  kSqrt,
+  kExp,
+  kLog,
+  kLog2,
+  kLog10,
+  kSin,
+  kCos,
+  kTan,
+  kAsin,
+  kAcos,
+  kAtan,
+  kTanh,
+  kMin,
+  kMax,
+  kClamp,  ///< clamp(x, lower, upper).
+  kStep,   ///< 1 from 0 on, 0 below.
+  kIf,     ///< if(condition, then, else).
+  // With memory. All are exact for arguments that are linear between samples.
+  kLowpass,   ///< lowpass(e, tau): tau y' = e - y, y = e at the first sample.
+  kDelay,     ///< delay(e, tau): e at t - tau, e of the first sample before it.
+  kIntegral,  ///< integral(e): from 0 at the first sample.
+  kPrevious,  ///< previous(e): e one sample earlier, e at the first sample.
+  kElapsed,   ///< elapsed(): s since the first sample.
+};
+
+inline constexpr int kMaxArguments = 3;
+
+struct OpInfo {
+  std::string_view name;  ///< Of a function as it is written, of an operator its sign.
+  int arguments;
+  bool function;   ///< Written name(arguments).
+  bool condition;  ///< True or false: 1 or 0 where a number is asked for.
+  bool memory;     ///< Depends on the samples before.
+};
+
+inline constexpr std::array<OpInfo, 39> kOps{{
+    {"number", 0, false, false, false}, {"name", 0, false, false, false},   {"+", 2, false, false, false},
+    {"-", 2, false, false, false},      {"*", 2, false, false, false},      {"/", 2, false, false, false},
+    {"^", 2, false, false, false},      {"-", 1, false, false, false},      {"<", 2, false, true, false},
+    {"<=", 2, false, true, false},      {"==", 2, false, true, false},      {"!=", 2, false, true, false},
+    {"and", 2, false, true, false},     {"or", 2, false, true, false},      {"not", 1, false, true, false},
+    {"abs", 1, true, false, false},     {"sign", 1, true, false, false},    {"sqrt", 1, true, false, false},
+    {"exp", 1, true, false, false},     {"log", 1, true, false, false},     {"log2", 1, true, false, false},
+    {"log10", 1, true, false, false},   {"sin", 1, true, false, false},     {"cos", 1, true, false, false},
+    {"tan", 1, true, false, false},     {"asin", 1, true, false, false},    {"acos", 1, true, false, false},
+    {"atan", 1, true, false, false},    {"tanh", 1, true, false, false},    {"min", 2, true, false, false},
+    {"max", 2, true, false, false},     {"clamp", 3, true, false, false},   {"step", 1, true, false, false},
+    {"if", 3, true, false, false},      {"lowpass", 2, true, false, true},  {"delay", 2, true, false, true},
+    {"integral", 1, true, false, true}, {"previous", 1, true, false, true}, {"elapsed", 0, true, false, true},
+}};
+static_assert(kOps.size() == static_cast<std::size_t>(Op::kElapsed) + 1);
+
+[[nodiscard]] constexpr const OpInfo& InfoOf(Op op) noexcept { return kOps[static_cast<std::size_t>(op)]; }
+
+}  // namespace armcmc::expression

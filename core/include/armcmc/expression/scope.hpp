@@ -1,0 +1,59 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "armcmc/expression/unit.hpp"
+
+namespace armcmc::expression {
+
+/// What a name stands for.
+enum class SymbolKind : std::uint8_t {
+  kSignal,     ///< Measured: given at every sample.
+  kTime,       ///< The plant's time t.
+  kConstant,   ///< A number.
+  kParameter,  ///< Sampled.
+  kState,      ///< Integrated from its rate.
+  kLet,        ///< Another expression.
+};
+
+/// Values that something can have.
+struct Interval {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+struct Symbol {
+  std::string name;
+  SymbolKind kind = SymbolKind::kSignal;
+  int index = 0;             ///< Among those of its kind.
+  std::optional<Unit> unit;  ///< None: fits everywhere (a constant without one), or depends on a parameter.
+  Interval range;
+  double value = 0.0;      ///< Of a constant.
+  bool condition = false;  ///< Of a let: true or false.
+  bool sampled = false;    ///< Depends on a parameter or a state.
+  bool fixed = false;      ///< A number that is known before any sample.
+};
+
+/// The names that an expression may use.
+class Scope {
+ public:
+  /// @pre No symbol of that name yet.
+  void Add(Symbol symbol) { symbols_.push_back(std::move(symbol)); }
+  [[nodiscard]] const Symbol* Find(std::string_view name) const noexcept {
+    for (const Symbol& symbol : symbols_)
+      if (symbol.name == name) return &symbol;
+    return nullptr;
+  }
+  [[nodiscard]] std::vector<Symbol>& symbols() noexcept { return symbols_; }
+  [[nodiscard]] const std::vector<Symbol>& symbols() const noexcept { return symbols_; }
+  [[nodiscard]] std::vector<std::string> Names() const;
+
+ private:
+  std::vector<Symbol> symbols_;
+};
+
+}  // namespace armcmc::expression

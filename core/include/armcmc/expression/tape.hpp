@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "armcmc/mode_data.hpp"
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc::expression {
+
+inline constexpr int kMaxTapeInstructions = 384;
+inline constexpr int kMaxTapeRegisters = 96;
+inline constexpr int kMaxTapeScalars = 48;  ///< Numbers that a sample brings along, constants included.
+inline constexpr int kMaxTapeResults = 9;   ///< Of a law and the rates of its states.
+
+/// What one instruction does with all candidates of a tile. R: a register, one number a candidate; S: a scalar, one
+/// number a sample.
+enum class TapeOp : std::uint8_t {
+  kSplat,         ///< R = S a
+  kCopy,          ///< R = R a
+  kLinear,        ///< R = S a + sum of `b` terms S x R, which follow, two an instruction
+  kAddLinear,     ///< R = R a + sum of `b` terms
+  kAdd,           ///< R = R a + R b
+  kSubtract,      ///< R = R a - R b
+  kMultiply,      ///< R = R a x R b
+  kMultiplyAdd,   ///< R = R a x R b + R c
+  kMultiplyAddS,  ///< R = R a x R b + S c
+  kDivide,        ///< R = R a / R b
+  kNegate,
+  kReciprocal,
+  kAbs,
+  kSign,
+  kSqrt,
+  kExp,
+  kExp2S,  ///< R = 2^(R a x S b): a power of what is known a sample
+  kLog,
+  kLog2,
+  kLog10,
+  kPower,     ///< R = R a ^ R b; not a number where R a is negative
+  kPowerInt,  ///< R = R a ^ b, b a small whole number
+  kSin,
+  kCos,
+  kTan,
+  kAsin,
+  kAcos,
+  kAtan,
+  kTanh,
+  kMin,
+  kMax,
+  kStep,
+  kLess,  ///< Conditions: 1 or 0.
+  kLessEqual,
+  kEqual,
+  kNotEqual,
+  kAnd,
+  kOr,
+  kNot,
+  kSelect,  ///< R = R a != 0 ? R b : R c
+};
+
+struct TapeInstruction {
+  TapeOp op = TapeOp::kCopy;
+  std::uint8_t to = 0, a = 0, b = 0, c = 0;
+};
+
+/// Straight-line code for all candidates of a tile at one sample. Registers 0 to num_parameters - 1 hold the
+/// parameters, the next num_states the states; both may be read only.
+struct Tape {
+  std::array<TapeInstruction, kMaxTapeInstructions> code{};
+  int size = 0;
+  int once = 0;  ///< The first instructions need no sample: they run once a tile.
+  int num_parameters = 0;
+  int num_states = 0;
+  int num_registers = 0;
+  int num_scalars = 0;
+  int num_results = 0;
+  std::array<std::uint8_t, kMaxTapeResults> result{};  ///< Registers.
+};
+
+/// Registers of one tile of candidates.
+struct alignas(64) TapeRegisters {
+  std::array<std::array<double, kTileLanes>, kMaxTapeRegisters> value;
+};
+
+/// The scalars of the samples of one pack: row n holds those of sample n.
+struct TapeScalars {
+  int num_samples = 0;
+  int stride = 0;  ///< Scalars of one sample.
+  alignas(64) std::array<double, static_cast<std::size_t>(kMaxPackSamples) * kMaxTapeScalars> value;
+
+  [[nodiscard]] const double* Row(int n) const noexcept { return value.data() + n * stride; }
+  [[nodiscard]] double* Row(int n) noexcept { return value.data() + n * stride; }
+};
+
+}  // namespace armcmc::expression

@@ -1,0 +1,159 @@
+// Functions of expressions, for vectors of candidates; included once per instruction set. Accurate to some 1e-15 of the
+// larger of result and 1; whatever is not a number, or has no result, gives NaN.
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+namespace {
+
+struct Math {
+  using V = Simd::V;
+  using I = Simd::I;
+
+  static V Nan() noexcept { return Simd::Set(__builtin_nan("")); }
+  /// 1 where the mask is set, else 0.
+  static V Condition(I mask) noexcept { return Simd::FromBits(mask & Simd::Bits(Simd::Set(1.0))); }
+  static I IsNan(V a) noexcept { return a != a; }
+
+  // The hardware's keep the second argument where one is not a number: so the first has to be looked at.
+  static V Min(V a, V b) noexcept { return Simd::Select(IsNan(a), a, Simd::Min(a, b)); }
+  static V Max(V a, V b) noexcept { return Simd::Select(IsNan(a), a, Simd::Max(a, b)); }
+
+  static V Sign(V a) noexcept {
+    return Simd::Select(a == V{}, V{}, Simd::Select(IsNan(a), a, Simd::CopySign(Simd::Set(1.0), a)));
+  }
+  static V Step(V a) noexcept { return Simd::Select(IsNan(a), a, Condition(a >= V{})); }
+
+  template <std::size_t kSize>
+  static V Polynomial(V x, const double (&highest_first)[kSize]) noexcept {
+    V p = Simd::Set(highest_first[0]);
+    for (std::size_t i = 1; i < kSize; ++i) p = Simd::Fma(p, x, Simd::Set(highest_first[i]));
+    return p;
+  }
+  /// a - n b, exact where n b is.
+  static V Less(V a, V n, double b) noexcept { return Simd::Fma(-n, Simd::Set(b), a); }
+
+  /// e^x, 0 below -690 and e^690 above 690 or so.
+  static V Exp(V x) noexcept {
+    const V bounded = Simd::Min(Simd::Set(690.0), Simd::Max(Simd::Set(-745.0), x));
+    const V magic = Simd::Set(6755399441055744.0);  // 1.5 * 2^52: rounds to a whole number
+    const V n = (bounded * Simd::Set(1.44269504088896340736) + magic) - magic;
+    // ln 2 in two parts; n times the first is exact.
+    const V rest = Less(Less(bounded, n, 6.93147180369123816490e-01), n, 1.90821492927058770002e-10);
+    // The fraction by itself, so that its rounding does not grow with x.
+    const V fraction = Simd::Exp2(rest * Simd::Set(1.44269504088896340736));
+    return fraction * Simd::Exp2(n);
+  }
+
+  /// log2 x; -1074 at 0, which keeps 0^p what it is.
+  static V Log2(V x) noexcept {
+    const V tiny = Simd::Set(2.2250738585072014e-308);
+    // Numbers below the smallest normal one are brought up to size.
+    const I small = x < tiny;
+    const V log2 = Simd::Log2(Simd::Select(small, x * Simd::Set(18014398509481984.0), x)) -
+                   Simd::FromBits(small & Simd::Bits(Simd::Set(54.0)));
+    const V infinity = Simd::Set(__builtin_inf());
+    const V of_zero = Simd::Select(x == V{}, Simd::Set(-1074.0), log2);
+    return Simd::Select(x < V{}, Nan(), Simd::Select(IsNan(x) | (x == infinity), x, of_zero));
+  }
+  /// factor log2 x, -infinity at 0.
+  static V Log(V x, double factor) noexcept {
+    return Simd::Select(x == V{}, Simd::Set(-__builtin_inf()), Log2(x) * Simd::Set(factor));
+  }
+  static V Power(V base, V exponent) noexcept { return Simd::Exp2(exponent * Log2(base)); }
+  /// By squaring; exponent in [0, 255].
+  static V PowerInt(V base, unsigned exponent) noexcept {
+    V power = Simd::Set(1.0);
+    for (unsigned bit = 128; bit != 0; bit >>= 1) {
+      power = power * power;
+      if ((exponent & bit) != 0) power = power * base;
+    }
+    return power;
+  }
+
+  /// sin and cos of x, |x| up to 1e7: the quarter turn, then polynomials on [-pi/4, pi/4].
+  static void SinCos(V x, V* sine, V* cosine) noexcept {
+    const V magic = Simd::Set(6755399441055744.0);
+    const V shifted = x * Simd::Set(0.63661977236758134308) + magic;
+    const V n = shifted - magic;
+    const V r = Less(Less(Less(x, n, 1.57079625129699707031e+00), n, 7.54978941586159635336e-08), n,
+                     5.39030285815811905290e-15);
+    const V z = r * r;
+    constexpr double kSine[] = {1.58962301576546568060e-10, -2.50507477628578072866e-8, 2.75573136213857245213e-6,
+                                -1.98412698295895385996e-4, 8.33333333332211858878e-3,  -1.66666666666666307295e-1};
+    constexpr double kCosine[] = {-1.13585365213876817300e-11, 2.08757008419747316778e-9,  -2.75573141792967388112e-7,
+                                  2.48015872888517179954e-5,   -1.38888888888730564116e-3, 4.16666666666665929218e-2};
+    const V s = Simd::Fma(r * z, Polynomial(z, kSine), r);
+    const V c = Simd::Fma(z * z, Polynomial(z, kCosine), Simd::Fma(z, Simd::Set(-0.5), Simd::Set(1.0)));
+    const I quarter = Simd::Bits(shifted);
+    const I swap = (quarter & 1) == (I{} + 1);
+    const V sine_sign = Simd::FromBits((quarter & 2) << 62);
+    const V cosine_sign = Simd::FromBits(((quarter + 1) & 2) << 62);
+    *sine = Flip(Simd::Select(swap, c, s), sine_sign);
+    *cosine = Flip(Simd::Select(swap, s, c), cosine_sign);
+  }
+  static V Sin(V x) noexcept {
+    V s;
+    V c;
+    SinCos(x, &s, &c);
+    return s;
+  }
+  static V Cos(V x) noexcept {
+    V s;
+    V c;
+    SinCos(x, &s, &c);
+    return c;
+  }
+  static V Tan(V x) noexcept {
+    V s;
+    V c;
+    SinCos(x, &s, &c);
+    return s / c;
+  }
+
+  /// Of |x| in three ranges around 0, 1 and infinity.
+  static V Atan(V x) noexcept {
+    const V one = Simd::Set(1.0);
+    const V size = Simd::Abs(x);
+    const I large = size > Simd::Set(2.41421356237309504880);
+    const I middle = (size > Simd::Set(0.66)) & ~large;
+    const V reduced =
+        Simd::Select(large, Simd::Set(-1.0) / size, Simd::Select(middle, (size - one) / (size + one), size));
+    const V base = Simd::Select(large, Simd::Set(1.57079632679489661923),
+                                Simd::Select(middle, Simd::Set(0.78539816339744830962), V{}));
+    const V z = reduced * reduced;
+    constexpr double kAbove[] = {-8.750608600031904122785e-1, -1.615753718733365076637e1, -7.500855792314704667340e1,
+                                 -1.228866684490136173410e2, -6.485021904942025371773e1};
+    constexpr double kBelow[] = {1.0,
+                                 2.485846490142306297962e1,
+                                 1.650270098316988542046e2,
+                                 4.328810604912902668951e2,
+                                 4.853903996359136964868e2,
+                                 1.945506571482613964425e2};
+    const V angle = base + Simd::Fma(reduced * z, Polynomial(z, kAbove) / Polynomial(z, kBelow), reduced);
+    return Simd::Select(IsNan(x), x, Simd::CopySign(angle, x));
+  }
+  static V Asin(V x) noexcept {
+    const V one = Simd::Set(1.0);
+    return Atan(x / Simd::Sqrt((one - x) * (one + x)));
+  }
+  static V Acos(V x) noexcept {
+    const V one = Simd::Set(1.0);
+    return Simd::Set(2.0) * Atan(Simd::Sqrt((one - x) / (one + x)));
+  }
+
+  static V Tanh(V x) noexcept {
+    const V size = Simd::Abs(x);
+    const V z = x * x;
+    constexpr double kAbove[] = {-9.64399179425052238628e-1, -9.92877231001918586564e1, -1.61468768441708447952e3};
+    constexpr double kBelow[] = {1.0, 1.12811678491632931402e2, 2.23548839060100448583e3, 4.84406305325125486048e3};
+    const V near = Simd::Fma(x * z, Polynomial(z, kAbove) / Polynomial(z, kBelow), x);
+    const V one = Simd::Set(1.0);
+    const V far = one - Simd::Set(2.0) / (Exp(size + size) + one);
+    return Simd::Select(size < Simd::Set(0.625), near, Simd::Select(IsNan(x), x, Simd::CopySign(far, x)));
+  }
+
+ private:
+  static V Flip(V a, V sign) noexcept { return Simd::FromBits(Simd::Bits(a) ^ Simd::Bits(sign)); }
+};
+
+}  // namespace
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE

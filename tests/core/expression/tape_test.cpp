@@ -1,0 +1,287 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "armcmc/expression/compile.hpp"
+#include "armcmc/expression/features.hpp"
+#include "core/expression/plant_words.hpp"
+#include "core/expression/tree_walk.hpp"
+#include "core/kernel_sets.hpp"
+
+namespace armcmc::tape_test {
+namespace {
+
+using expression::CompiledTape;
+using expression::CompileTape;
+using expression::FeatureInput;
+using expression::FeatureMemory;
+using expression::FeatureProgram;
+using expression::Graph;
+using expression::Parse;
+using expression::Syntax;
+using expression::TapeRegisters;
+using expression::TapeScalars;
+
+constexpr int kSamples = 6;
+constexpr int kParameters = 4;  // K, B, p, tau
+
+double SignalAt(int signal, int n) { return std::sin(1.3 * n + 2.1 * signal) * (1.0 + 0.5 * signal); }
+double ParameterOf(int parameter, int lane) {
+  return 0.05 + 0.37 * (1 + parameter) + 0.11 * ((lane * (3 + parameter)) % 17);
+}
+
+std::map<std::string, double> ValuesAt(int n, int lane) {
+  return {{"x", SignalAt(0, n)},
+          {"v", SignalAt(1, n)},
+          {"u", SignalAt(2, n)},
+          {"t", 0.1 * n},
+          {"g", 9.81},
+          {"L", 1.0},
+          {"K", ParameterOf(0, lane)},
+          {"B", ParameterOf(1, lane)},
+          {"p", ParameterOf(2, lane)},
+          {"tau", ParameterOf(3, lane)}};
+}
+
+/// A law on its way: text, graph, features, tape.
+struct Law {
+  explicit Law(const std::string& text) : syntax(Parse(text)) {
+    const expression::Scope scope = test::PlantWords();
+    node = graph.Lower(syntax, scope, {});
+    compiled = CompileTape(&graph, {node}, kParameters, 0);
+    const FeatureProgram features(graph, compiled.scalars);
+    FeatureMemory memory;
+    scalars->num_samples = kSamples;
+    scalars->stride = static_cast<int>(compiled.scalars.size());
+    for (int n = 0; n < kSamples; ++n) {
+      const double signals[] = {SignalAt(0, n), SignalAt(1, n), SignalAt(2, n)};
+      features.Evaluate({signals, 0.1 * n, 0.1}, &memory, scalars->Row(n));
+    }
+    for (int d = 0; d < kParameters; ++d)
+      for (int lane = 0; lane < kTileLanes; ++lane)
+        theta.value[static_cast<std::size_t>(d)][static_cast<std::size_t>(lane)] = ParameterOf(d, lane);
+  }
+
+  const PredictionTile& Predict(const simd::Kernels& kernels) {
+    kernels.predict_tape(compiled.tape, *scalars, theta, registers.get(), tile.get());
+    return *tile;
+  }
+
+  Syntax syntax;
+  Graph graph;
+  int node = -1;
+  CompiledTape compiled;
+  std::unique_ptr<TapeScalars> scalars = std::make_unique<TapeScalars>();
+  std::unique_ptr<TapeRegisters> registers = std::make_unique<TapeRegisters>();
+  std::unique_ptr<PredictionTile> tile = std::make_unique<PredictionTile>();
+  ThetaTile theta{};
+};
+
+/// Largest change of the tree's value when its inputs change by some 1e-13 of themselves: what rounding may do. Not a
+/// number where that decides whether there is a value.
+double Sensitivity(const Syntax& syntax, const std::map<std::string, double>& values, double value) {
+  double largest = 0.0;
+  for (int k = 0; k < 6; ++k) {
+    auto shifted = values;
+    int sign = k;
+    for (auto& [name, v] : shifted) v *= 1.0 + 1e-13 * (((sign = sign * 5 + 3) % 7) - 3);
+    const double other = test::TreeWalk<double>(syntax, shifted).Value();
+    if (std::isfinite(value) != std::isfinite(other)) return std::nan("");
+    if (std::isfinite(value)) largest = std::fmax(largest, std::fabs(other - value));
+  }
+  return largest;
+}
+
+enum class Without { kChecked, kSkipped };
+
+/// The first value that is not the tree's, of all instruction sets; empty where there is none.
+/// @param without_value  Where a part of the tree is not finite: zero times what is not a number is zero for the graph.
+std::string DifferenceFromTree(const std::string& text, Without without_value) {
+  Law law(text);
+  std::ostringstream said;
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const PredictionTile& tile = law.Predict(*kernels);
+    for (int n = 0; n < kSamples; ++n) {
+      for (int lane = 0; lane < kTileLanes; lane += 5) {
+        const auto values = ValuesAt(n, lane);
+        const test::TreeWalk<double> tree(law.syntax, values);
+        const double expected = tree.Value();
+        if (tree.overflowed() && without_value == Without::kSkipped) continue;
+        const double found = tile.value[static_cast<std::size_t>(n)][static_cast<std::size_t>(lane)];
+        const double rounding = Sensitivity(law.syntax, values, expected);
+        // Powers end where exponents of doubles do: those beyond are of another size, not of another sign.
+        if (std::isnan(rounding) || std::fabs(expected) > 1e150) continue;
+        const bool same = std::isfinite(expected)
+                              ? std::fabs(found - expected) <= 3e-13 * (1.0 + std::fabs(expected)) + 10.0 * rounding
+                              : !(std::fabs(found) < 1e100);
+        if (same) continue;
+        said << text << " is " << found << ", expected " << expected << " within " << rounding << " (" << kernels->name
+             << ", sample " << n << ", lane " << lane << ')';
+        return said.str();
+      }
+    }
+  }
+  return "";
+}
+
+TEST(Tape, EveryFunctionIsWhatTheTreeSays) {
+  for (const char* text : {"K",
+                           "2.5",
+                           "x",
+                           "-K",
+                           "K + B",
+                           "K - B",
+                           "K*B",
+                           "K/B",
+                           "x/K",
+                           "K/3",
+                           "K^2",
+                           "K^-3",
+                           "K^7",
+                           "K^0.5",
+                           "K^p",
+                           "abs(x)^p",
+                           "K^x",
+                           "(K - 1)^p",
+                           "abs(K - 1)",
+                           "sign(K - 1)",
+                           "sign(K - K)",
+                           "sqrt(K)",
+                           "sqrt(K - 1)",
+                           "exp(K*x)",
+                           "exp(-300*K)",
+                           "log(K)",
+                           "log(K - 1)",
+                           "log2(K)",
+                           "log10(K)",
+                           "sin(10*K)",
+                           "cos(10*K)",
+                           "tan(K)",
+                           "sin(1e5*K)",
+                           "asin(x*K/4)",
+                           "acos(x*K/4)",
+                           "asin(K)",
+                           "atan(K*x)",
+                           "atan(20*x*K)",
+                           "tanh(K*x)",
+                           "tanh(9*K)",
+                           "min(K, B)",
+                           "max(K, x)",
+                           "clamp(K, 0.5, B)",
+                           "step(K - 1)",
+                           "if(K < B, x, v)",
+                           "if(K <= B and x > 0, K, B)",
+                           "if(not K == B or x > v, K, 1)",
+                           "if(x != 0, K, B)",
+                           "max(x, 0)^p",
+                           "(K < B) + (x < K)"})
+    EXPECT_EQ(DifferenceFromTree(text, Without::kChecked), "");
+}
+
+TEST(Tape, LawsAreWhatTheTreeSays) {
+  for (const char* text : {"max(x, 0)^p * (K + B*v)", "K*x + B*v + p", "v*(K + B*(x - g)) + tau*x*v",
+                           "K*tanh(v/tau) + B*x^3 + p*x", "(K*x + B)*(p*v + tau)*(K + 1)", "(u - B*v - K*x)/p",
+                           "K*x*v*u/(1 + exp(-tau*x))", "g*sin(x)*K + B*v*abs(v) - tau",
+                           "(K + B*x)*(K + B*x) + sin(K + B*x)", "K*B*p*tau", "K*(B + p)*x - (B + p)*v + 0*K"})
+    EXPECT_EQ(DifferenceFromTree(text, Without::kChecked), "");
+}
+
+/// A random expression, small ones first.
+rc::Gen<std::string> AnyExpression(int depth) {
+  return rc::gen::exec([depth]() -> std::string {
+    const int kind = depth == 0 ? *rc::gen::inRange(0, 3) : *rc::gen::inRange(0, 12);
+    const auto inner = [depth] { return *AnyExpression(depth - 1); };
+    const auto one_of = [](std::vector<std::string> words) { return *rc::gen::elementOf(std::move(words)); };
+    if (kind == 0) return one_of({"0", "1", "2", "0.5", "3.75", "1e-2", "g", "L"});
+    if (kind == 1) return one_of({"x", "v", "u", "t"});
+    if (kind == 2) return one_of({"K", "B", "p", "tau"});
+    if (kind < 7) return '(' + inner() + one_of({" + ", " - ", "*", "*", "/"}) + inner() + ')';
+    if (kind == 7)
+      return one_of({"sin", "cos", "tanh", "atan", "exp", "abs", "sign", "step", "-"}) + '(' + inner() + ')';
+    if (kind == 8) return one_of({"sqrt", "log", "log2", "asin", "acos", "tan", "log10"}) + '(' + inner() + ')';
+    if (kind == 9) return one_of({"min(", "max("}) + inner() + ", " + inner() + ')';
+    if (kind == 10) return '(' + inner() + ")^" + one_of({"2", "3", "-1", "0.5", "p", "(K/2)"});
+    return "if(" + inner() + one_of({" < ", " <= ", " != "}) + inner() + ", " + inner() + ", " + inner() + ')';
+  });
+}
+
+TEST(Tape, TenThousandExpressionsAreWhatTheTreeSays) {
+  rc::detail::TestParams params;
+  params.maxSuccess = 10'000;
+  params.seed = 20'261'125;
+  const auto result = rc::detail::checkTestable(
+      [] {
+        const std::string text = *AnyExpression(4);
+        RC_ASSERT(DifferenceFromTree(text, Without::kSkipped) == "");
+      },
+      rc::detail::TestMetadata{}, params);
+  std::ostringstream said;
+  rc::detail::printResultMessage(result, said);
+  EXPECT_TRUE(result.is<rc::detail::SuccessResult>()) << said.str();
+}
+
+TEST(Tape, SameBitsOnEveryFusedInstructionSet) {
+  const auto sets = test::FusedKernels();
+  if (sets.size() < 2) GTEST_SKIP() << "this CPU has one of them only";
+  for (const char* text : {"max(x, 0)^p * (K + B*v)", "sin(K*x)*exp(-v/tau) + atan(B)/tanh(p*x) + log(K)^p"}) {
+    Law law(text);
+    const PredictionTile first = law.Predict(*sets[0]);
+    for (const simd::Kernels* kernels : sets) {
+      const PredictionTile& other = law.Predict(*kernels);
+      for (std::size_t n = 0; n < kSamples; ++n)
+        EXPECT_EQ(std::memcmp(&other.value[n], &first.value[n], sizeof first.value[n]), 0) << text;
+    }
+  }
+}
+
+TEST(Tape, SquaresAreThoseOfThePredictions) {
+  Law law("K*x + B*v - p*u");
+  const std::array<double, kMaxPackSamples> weight = [] {
+    std::array<double, kMaxPackSamples> w{};
+    for (std::size_t n = 0; n < kSamples; ++n) w[n] = 1.0 / (1.0 + static_cast<double>(n));
+    return w;
+  }();
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const PredictionTile& tile = law.Predict(*kernels);
+    alignas(64) std::array<double, kTileLanes> plain{};
+    alignas(64) std::array<double, kTileLanes> weighted{};
+    kernels->tape_squares(law.compiled.tape, *law.scalars, nullptr, law.theta, law.registers.get(), plain.data());
+    kernels->tape_squares(law.compiled.tape, *law.scalars, weight.data(), law.theta, law.registers.get(),
+                          weighted.data());
+    for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+      double sum = 0.0;
+      double weighted_sum = 0.0;
+      for (std::size_t n = 0; n < kSamples; ++n) {
+        sum += std::pow(tile.value[n][lane], 2);
+        weighted_sum += std::pow(tile.value[n][lane] * weight[n], 2);
+      }
+      EXPECT_NEAR(plain[lane], sum, 1e-13 * sum);
+      EXPECT_NEAR(weighted[lane], weighted_sum, 1e-13 * weighted_sum);
+    }
+  }
+}
+
+TEST(Tape, IsAsShortAsTheLawAllows) {
+  EXPECT_EQ(Law("K*x + B*v + p").compiled.tape.size, 2 + 0) << "one sum of two terms";
+  EXPECT_EQ(Law("max(x, 0)^p * (K + B*v)").compiled.tape.size, 1 + 2 + 1) << "a power, a sum, a product";
+  EXPECT_EQ(Law("v*(K + B*(x - g))").compiled.tape.size, 1 + 1) << "v and v (x - g) are features";
+  const Law once("exp(K*B)*x");
+  EXPECT_EQ(once.compiled.tape.once, 2) << "what needs no sample is computed once";
+}
+
+TEST(Tape, LimitsAreErrorsThatSaySo) {
+  std::string many = "K*x";
+  for (int k = 0; k < 60; ++k) many += " + B*sin(" + std::to_string(k + 2) + "*x)";
+  EXPECT_NO_THROW(Law{many}) << "one feature: the sum";
+  std::string scalars = "K";
+  for (int k = 0; k < 60; ++k) scalars += " + sin(B*(x + " + std::to_string(k + 1) + "))";
+  EXPECT_THROW(Law{scalars}, std::length_error);
+  EXPECT_THROW(Law{"lowpass(K*x, 0.1)"}, std::invalid_argument);
+  EXPECT_THROW(Law{"lowpass(x, tau)"}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace armcmc::tape_test
