@@ -40,7 +40,9 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       kernels(simd::Best()),
       predictor(info, s.constants, composition.flow()),
       summary(s.sampler.max_draws),
-      gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
+      gap_watch(info.described == nullptr
+                    ? std::make_unique<GapWatch>(settings, model, kernels, FalseAlarmRate(settings, info))
+                    : nullptr),
       bend_watch(info.plant == PlantKind::kSoftActuator
                      ? std::make_unique<BendWatch>(settings, FalseAlarmRate(settings, info))
                      : nullptr) {
@@ -63,10 +65,12 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
 void Estimator::Impl::ShowPrior() noexcept {
   for (ShownEstimates& s : shown) {
     s = ShownEstimates{};
-    if (info.plant != PlantKind::kHuntCrossley) continue;
-    s.known[0] = true;
-    for (int d = 0; d < info.num_parameters; ++d)
-      s.theta[0][static_cast<std::size_t>(d)] = samplers[0]->space().offset[static_cast<std::size_t>(d)];
+    if (!predicts_from_prior()) continue;
+    for (std::size_t m = 0; m < samplers.size(); ++m) {
+      s.known[m] = true;
+      for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
+        s.theta[m][d] = samplers[m]->space().offset[d];
+    }
   }
 }
 
@@ -110,7 +114,8 @@ Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, 
     draws.known = memory.slot[memory.current].valid && memory.slot[memory.current].informed;
     draws.num_samples = 0;
   }
-  if (pack.Validate() != Status::kOk || pack.plant != s.info.plant || pack.num_inputs < s.info.num_inputs ||
+  if (pack.Validate() != Status::kOk || pack.plant != s.info.plant || !s.IsOfThisPlant(pack) ||
+      pack.num_inputs < s.info.num_inputs ||
       (!s.composition.empty() && !s.composition.Prepare(pack, &result->effects))) {
     result->status = Status::kBadPack;
     result->pack = DataPack{};
@@ -194,7 +199,7 @@ void Estimator::Reset() noexcept {
   s.known_draws.fill(false);
   s.predictor.Reset();
   s.composition.Reset();
-  s.gap_watch.Reset();
+  if (s.gap_watch) s.gap_watch->Reset();
   if (s.bend_watch) s.bend_watch->Reset();
   s.report_mode = 0;
 }

@@ -30,7 +30,9 @@ void Estimator::Impl::ShareVector(Estimate* e) noexcept {
 
 void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
   const DataPack& pack = result.pack;
-  if (contact_effects()) {
+  if (info.described != nullptr) {
+    PredictDescribed(result, e);
+  } else if (contact_effects()) {
     PredictShown(result, e);
   } else {
     predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
@@ -60,6 +62,7 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
     }
     if (m == e->mode || contact_effects()) PredictLastSample(pack, m, e);
   }
+  if (info.described != nullptr && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
   e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
   if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
 }
@@ -74,6 +77,24 @@ void Estimator::Impl::PredictShown(const AdjustResult& result, Estimate* e) noex
     PrepareMode(result.pack, result.effects, 0, &execute_data);
     kernels.predict(model, execute_data, shown_theta, &band_prediction);
     for (std::size_t n = 0; n < samples; ++n) e->y_shown[n] = band_prediction.value[n][0];
+  }
+  std::copy_n(e->y_shown.begin(), samples, e->y_shown_free_run.begin());
+}
+
+void Estimator::Impl::PredictDescribed(const AdjustResult& result, Estimate* e) noexcept {
+  const PlantPack& plant = result.effects.described;
+  const auto samples = static_cast<std::size_t>(result.pack.num_samples);
+  for (std::size_t n = 0; n < samples; ++n) e->y_shown[n] = plant.passive[n];
+  for (int m = 0; m < info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    PrepareMode(result.pack, result.effects, m, &execute_data);
+    if (execute_data.num_samples == 0) continue;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
+      shown_theta.value[d].fill(shown[1].theta[i][d]);
+    kernels.predict(model, execute_data, shown_theta, &band_prediction);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(execute_data.num_samples); ++k)
+      e->y_shown[static_cast<std::size_t>(execute_data.sample[k])] =
+          shown[1].known[i] ? band_prediction.value[k][0] : kUnknown;
   }
   std::copy_n(e->y_shown.begin(), samples, e->y_shown_free_run.begin());
 }
@@ -111,6 +132,7 @@ void Estimator::Impl::PredictLastSample(const DataPack& pack, int mode, Estimate
 }
 
 void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
+  if (!gap_watch) return;
   GapReference estimate;
   bool changed = false;
   for (int m = 0; m < info.num_modes; ++m) {
@@ -122,13 +144,15 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
       estimate.theta[i][d] = mode.marginal[static_cast<std::size_t>(info.ReportedOf(static_cast<int>(d)))].ar_ap;
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
-  gap_watch.Step(pack, estimate, changed);
+  gap_watch->Step(pack, estimate, changed);
   if (bend_watch) bend_watch->Step(pack, predictor, shown[0]);
   e->gap = Gap();
 }
 
 const GapState& Estimator::Impl::Gap() const noexcept {
-  const GapState& fitted = gap_watch.state();
+  static constexpr GapState kNotWatched{};
+  if (!gap_watch) return kNotWatched;
+  const GapState& fitted = gap_watch->state();
   if (!bend_watch) return fitted;
   const GapState& bend = bend_watch->state();
   if (fitted.suspected != bend.suspected) return bend.suspected ? bend : fitted;
@@ -146,7 +170,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   e->num_reported = s.info.num_reported;
   e->num_modes = s.info.num_modes;
   e->num_samples = pack.num_samples;
-  e->mode = pack.num_samples > 0 ? s.info.mode_of(pack, pack.num_samples - 1) : s.info.num_modes;
+  e->mode = pack.num_samples > 0 ? s.composition.ModeOf(pack, result.effects, pack.num_samples - 1) : s.info.num_modes;
   e->active = e->mode < s.info.num_modes;
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
@@ -186,12 +210,13 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     s.known_draws[i] = s.known_draws[i] || mode.updated;
     // A force can be predicted before its parameters are known: from their mean. The mode of a posterior that knows
     // nothing is an accident. (The valves' gains cannot: their prior mean is zero flow.)
-    const bool contact = s.info.plant == PlantKind::kHuntCrossley;
-    s.shown[0].known[i] = mode.known || (contact && s.known_draws[i]) || (contact && s.shown[1].known[i]);
-    if (!mode.known && !(contact && s.known_draws[i])) continue;
+    const bool from_prior = s.predicts_from_prior();
+    s.shown[0].known[i] = mode.known || (from_prior && s.known_draws[i]) || (from_prior && s.shown[1].known[i]);
+    if (!mode.known && !(from_prior && s.known_draws[i])) continue;
     for (int d = 0; d < s.info.num_parameters; ++d) {
       const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(s.info.ReportedOf(d))];
-      s.shown[0].theta[i][static_cast<std::size_t>(d)] = mode.known ? marginal.ar_map : marginal.ar_ap;
+      s.shown[0].theta[i][static_cast<std::size_t>(d)] =
+          s.info.Sampled(d, mode.known ? marginal.ar_map : marginal.ar_ap);
     }
   }
 }

@@ -73,16 +73,27 @@ struct Estimator::Impl {
   std::array<ShownEstimates, 2> shown;        ///< After the previous pack, and after the one before it.
   std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
-  GapWatch gap_watch;
+  std::unique_ptr<GapWatch> gap_watch;    ///< Of a plant that is built in.
   std::unique_ptr<BendWatch> bend_watch;  ///< Of a plant that has a second equation.
 
+  [[nodiscard]] bool IsOfThisPlant(const DataPack& pack) const noexcept {
+    return info.described == nullptr || pack.fingerprint == info.described->plant().fingerprint();
+  }
+  /// The law is the output, so that the prior's mean predicts it. (The prior mean of the valves is no flow at all.)
+  [[nodiscard]] bool predicts_from_prior() const noexcept {
+    return info.plant == PlantKind::kHuntCrossley || info.described != nullptr;
+  }
   /// The effects of a contact act on the output that is predicted; those of the actuator on what bends it.
-  [[nodiscard]] bool contact_effects() const noexcept { return !composition.empty() && composition.flow().empty; }
+  [[nodiscard]] bool contact_effects() const noexcept {
+    return !composition.empty() && composition.flow().empty && info.described == nullptr;
+  }
   void WatchGap(const DataPack& pack, Estimate* e) noexcept;
   /// What is published: the watch that has an alarm, or the one that is closer to it.
   [[nodiscard]] const GapState& Gap() const noexcept;
   /// Output at every sample of the pack with the estimates on display, for a contact with effects.
   void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
+  /// The same of a described plant, mode by mode.
+  void PredictDescribed(const AdjustResult& result, Estimate* e) noexcept;
   void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
   void StoreBandDraws(int mode, const ModeDraws& draws) noexcept;
   /// Output at the last sample and its band; `band_prediction` holds the predictions of `mode`.

@@ -6,6 +6,7 @@
 
 #include "armcmc/effects/registry.hpp"
 #include "armcmc/models/registry.hpp"
+#include "armcmc/plant/program.hpp"
 #include "armcmc/sample_size.hpp"
 
 namespace armcmc {
@@ -136,8 +137,13 @@ EffectSettings MakeEffect(const std::string& name, const EffectScales& scales) {
 
 void EstimatorSettings::Validate() const {
   const int index = FindModel(model);
-  if (index < 0) throw std::invalid_argument("model.name = '" + model + "' is not a built-in model");
-  const ModelInfo& info = *AllModels::kInfos[static_cast<std::size_t>(index)];
+  if (index < 0 && plant == nullptr)
+    throw std::invalid_argument("model.name = '" + model + "' is not a built-in model");
+  const ModelInfo& info = plant != nullptr ? plant->info() : *AllModels::kInfos[static_cast<std::size_t>(index)];
+  if (plant != nullptr && num_effects > 0)
+    throw std::invalid_argument("model '" + model + "' takes no effects of the built-in catalogue");
+  if (plant != nullptr && method == Method::kRls)
+    throw std::invalid_argument("method = \"rls\" knows the built-in models only: choose another");
   if (num_parameters != info.num_parameters)
     throw std::invalid_argument("model '" + model + "' has " + std::to_string(info.num_parameters) +
                                 " parameters, settings have " + std::to_string(num_parameters));
@@ -181,6 +187,34 @@ void EstimatorSettings::Validate() const {
   Open("constants.q1", constants.q1, -HUGE_VAL, HUGE_VAL);
   Open("constants.q2", constants.q2, -HUGE_VAL, HUGE_VAL);
   Open("constants.q3", constants.q3, -HUGE_VAL, HUGE_VAL);
+}
+
+EstimatorSettings DescribedSettings(std::shared_ptr<const PlantProgram> plant) {
+  EstimatorSettings s;
+  const ModelInfo& info = plant->info();
+  s.model = info.name;
+  s.num_parameters = info.num_parameters;
+  for (std::size_t d = 0; d < plant->sampled().size(); ++d) {
+    const ParameterDescription& p = plant->sampled()[d];
+    ParameterSettings& prior = s.parameters[d];
+    prior = {p.name, p.prior == "uniform" ? PriorKind::kUniform : PriorKind::kNormal, p.mean, p.sd, *p.lower, *p.upper};
+    if (p.prior != "lognormal") continue;
+    constexpr double kReach = 8.0;  // a bound of 0 is beyond any
+    prior.mean = std::log(p.mean);
+    prior.lower = std::fmax(std::log(*p.lower), prior.mean - kReach * p.sd);
+    prior.upper = std::log(*p.upper);
+  }
+  const NoiseDescription& described = plant->plant().description().noise;
+  for (NoiseSettings& noise : s.noise) {
+    noise.kind = described.law == "student_t" ? NoiseKind::kStudentT
+                 : described.law == "laplace" ? NoiseKind::kLaplace
+                 : described.law == "mixture" ? NoiseKind::kMixture
+                                              : NoiseKind::kGaussian;
+    noise.std = described.std;
+    noise.estimate_std = described.estimate;
+  }
+  s.plant = std::move(plant);
+  return s;
 }
 
 EstimatorSettings BuiltinSettings(const std::string& model) {

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "armcmc/plant/program.hpp"
+
 namespace armcmc {
 namespace {
 
@@ -35,6 +37,10 @@ std::uint64_t SnapshotIdentity(const EstimatorSettings& s) noexcept {
   Hash hash;
   hash.Bytes(&kLayout, sizeof kLayout);
   hash.Add(s.model);
+  if (s.plant != nullptr) {
+    const std::uint64_t plant = s.plant->plant().identity();
+    hash.Bytes(&plant, sizeof plant);
+  }
   hash.Add(s.num_parameters);
   for (int i = 0; i < s.num_parameters; ++i) hash.Add(s.parameters[static_cast<std::size_t>(i)]);
   for (const NoiseSettings& n : s.noise) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "armcmc/plant/program.hpp"
 #include "simd/kernels.hpp"
 
 namespace armcmc {
@@ -12,7 +13,7 @@ namespace {
 void Reported(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
               const ModeDraws& draws, int r, double* value) noexcept {
   const auto ir = static_cast<std::size_t>(r);
-  if (info.report == nullptr) {
+  if (info.IsReportedAsSampled(r)) {
     const double* u = draws.u[ir];
     for (int k = 0; k < draws.draws; ++k) value[k] = space.Theta(r, u[k]);
     return;
@@ -22,6 +23,10 @@ void Reported(const ModelInfo& info, const PlantConstants& constants, const Para
     std::array<double, kMaxReported> reported{};
     for (int d = 0; d < space.num_parameters; ++d)
       theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
+    if (info.described != nullptr) {
+      value[k] = info.described->Report(r, theta.data());
+      continue;
+    }
     info.Report(theta.data(), constants, reported.data());
     value[k] = reported[ir];
   }
@@ -66,10 +71,11 @@ void Distribution(const double* value, const double* visits, int count, double t
   double inside = 0.0;
   for (int k = 0; k < count; ++k) {
     const double v = value[k];
-    fine[static_cast<std::size_t>(std::min((v - lo) * per_unit, kQuantileBins - 1.0))] += visits[k];
+    // Where a reported quantity is not a number for some draw it counts among the lowest.
+    fine[static_cast<std::size_t>(std::min(std::max(0.0, (v - lo) * per_unit), kQuantileBins - 1.0))] += visits[k];
     if (coarse_width > 0.0 && v >= m->histogram_lo && v <= m->histogram_hi) {
-      m->density[static_cast<std::size_t>(std::min((v - m->histogram_lo) * per_coarse, kHistogramBins - 1.0))] +=
-          visits[k];
+      m->density[static_cast<std::size_t>(
+          std::min(std::max(0.0, (v - m->histogram_lo) * per_coarse), kHistogramBins - 1.0))] += visits[k];
       inside += visits[k];
     }
   }

@@ -9,8 +9,8 @@ namespace armcmc::rt {
 
 static_assert(std::extent_v<decltype(data_pack_t::y)> == kMaxPackSamples);
 static_assert(std::extent_v<decltype(data_pack_t::u)> == kMaxPackSamples);
-static_assert(std::extent_v<decltype(data_pack_t::u), 1> == kMaxPackInputs);
-static_assert(data_pack_t::MAX_SAMPLES == kMaxPackSamples && data_pack_t::MAX_INPUTS == kMaxPackInputs);
+static_assert(std::extent_v<decltype(data_pack_t::u), 1> == data_pack_t::MAX_INPUTS);
+static_assert(data_pack_t::MAX_SAMPLES == kMaxPackSamples && data_pack_t::MAX_INPUTS <= kMaxPackInputs);
 static_assert(data_pack_t::PLANT_HUNT_CROSSLEY == static_cast<std::int32_t>(PlantKind::kHuntCrossley));
 static_assert(data_pack_t::PLANT_SOFT_ACTUATOR == static_cast<std::int32_t>(PlantKind::kSoftActuator));
 

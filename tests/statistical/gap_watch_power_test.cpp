@@ -37,7 +37,7 @@ GapState Watch(plant_sim::Scenario scenario, std::uint64_t seed, double seconds,
     pack->num_inputs = sent.n_inputs;
     std::copy_n(sent.y, sent.n_samples, pack->y.begin());
     for (std::size_t n = 0; n < static_cast<std::size_t>(sent.n_samples); ++n)
-      std::copy_n(sent.u[n], kMaxPackInputs, pack->u[n].begin());
+      std::copy_n(sent.u[n], sent.n_inputs, pack->u[n].begin());
     (void)estimator.Adjust(*pack, 0, ClockRef{}, result.get());
     estimator.Execute(*result, estimate.get());
   }

@@ -184,20 +184,20 @@ TEST(EstimatorConfig, TheModelOfTheCommandLineWins) {
 }
 
 TEST(EstimatorConfig, UnknownModelsAreNamed) {
-  EXPECT_THAT(ErrorOf("schema = 1\n[model]\nname = \"hunt\"\n"), HasSubstr("f.toml:3: model.name = \"hunt\""));
+  EXPECT_THAT(ErrorOf("schema = 1\n[model]\nname = \"hunt\"\n"), HasSubstr("f.toml:3:8: model.name = \"hunt\""));
   EXPECT_THAT(ErrorOf(kHunt, "hunt"), HasSubstr("--model hunt"));
   EXPECT_THAT(ErrorOf("schema = 1\n"), HasSubstr("model.name is missing"));
 }
 
 TEST(EstimatorConfig, TyposAndForeignNamesAreErrorsWithTheirLine) {
   EXPECT_THAT(ErrorOf(kHunt + "[sampler]\nsed = 1\n"), AllOf(HasSubstr("f.toml:5"), HasSubstr("did you mean seed?")));
-  EXPECT_THAT(ErrorOf(kHunt + "[model.parameters.Q]\nmean = 1\n"), HasSubstr("f.toml:4: model.parameters.Q"));
+  EXPECT_THAT(ErrorOf(kHunt + "[model.parameters.Q]\nmean = 1\n"), HasSubstr("f.toml:4:1: model.parameters.Q"));
   EXPECT_THAT(ErrorOf(kHunt + "[noise.valve]\nstd = 1\n"), HasSubstr("noise.valve"));
   EXPECT_THAT(ErrorOf(kHunt + "[samplr]\n"), HasSubstr("did you mean sampler?"));
 }
 
 TEST(EstimatorConfig, ValuesOutOfRangeAreErrors) {
-  EXPECT_THAT(ErrorOf("schema = 2\n[model]\nname = \"hunt_crossley\"\n"), HasSubstr("f.toml:1: schema = 2"));
+  EXPECT_THAT(ErrorOf("schema = 2\n[model]\nname = \"hunt_crossley\"\n"), HasSubstr("f.toml:1:10: schema = 2"));
   for (const char* line : {"[noise]\nstd = 0",
                            "[noise]\nstd = -1",
                            "[noise]\nkind = \"normal\"",

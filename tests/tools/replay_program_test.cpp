@@ -115,7 +115,7 @@ TEST_F(ReplayProgram, BadInputIsOneLineThatNamesThePlace) {
   std::ofstream(dir_ / "typo.toml") << Text("own.toml") << "[sampler2]\n";
   arguments = Good();
   arguments[1] = dir_ / "typo.toml";
-  ExpectBadInput(arguments, "typo.toml:10: sampler2: unknown key (did you mean sampler?)");
+  ExpectBadInput(arguments, "typo.toml:10:1: sampler2: unknown key (did you mean sampler?)");
 
   std::ofstream(dir_ / "nan.csv") << "t,x,v,f\n0,0,0,0\n0.001,nan,0,0\n";
   arguments = Good();

@@ -61,13 +61,13 @@ TEST(StrictToml, AbsentKeysGiveTheFallback) {
 TEST(StrictToml, RefusesANumberWhereAnIntegerIsWanted) {
   auto t = Toml("a = 3.0\n");
   EXPECT_THAT(MessageOf([&] { t.Integer("a", 0, 0, 10); }),
-              HasSubstr("f.toml:1: a = 3.0: expected an integer in [0, 10]"));
+              HasSubstr("f.toml:1:5: a = 3.0: expected an integer in [0, 10]"));
 }
 
 TEST(StrictToml, OutOfRangeNamesFileLineKeyValueAndRange) {
   auto t = Toml("schema = 1\n\n[timing]\nperiod_ms = -3\n");
   EXPECT_EQ(MessageOf([&] { t.Table("timing").Integer("period_ms", 100, 1, 10000); }),
-            "f.toml:4: timing.period_ms = -3: expected an integer in [1, 10000]");
+            "f.toml:4:13: timing.period_ms = -3: expected an integer in [1, 10000]");
 }
 
 TEST(StrictToml, RefusesNanAndInfinityEvenWithoutBounds) {
@@ -83,7 +83,7 @@ TEST(StrictToml, RefusesNanAndInfinityEvenWithoutBounds) {
 TEST(StrictToml, WrongTypesAreNamed) {
   auto t = Toml("a = \"1\"\nb = 1\nc = [1]\n");
   EXPECT_THAT(MessageOf([&] { t.Number("a", 0, 0, 1); }), HasSubstr("expected a number"));
-  EXPECT_THAT(MessageOf([&] { t.Text("b", ""); }), HasSubstr("f.toml:2: b = 1: expected a text in quotes"));
+  EXPECT_THAT(MessageOf([&] { t.Text("b", ""); }), HasSubstr("f.toml:2:5: b = 1: expected a text in quotes"));
   EXPECT_THAT(MessageOf([&] { t.Boolean("b", false); }), HasSubstr("expected true or false"));
   EXPECT_THAT(MessageOf([&] { t.Table("b"); }), HasSubstr("expected a table, [b]"));
   EXPECT_THAT(MessageOf([&] { t.Tables("c"); }), HasSubstr("expected an array of tables, [[c]]"));
@@ -101,7 +101,7 @@ TEST(StrictToml, MissingRequiredKeysNameTheTableTheyBelongTo) {
   auto t = Toml("\n[model]\nnme = \"x\"\n");
   auto model = t.Table("model");
   const std::string message = MessageOf([&] { model.RequiredText("name"); });
-  EXPECT_THAT(message, HasSubstr("f.toml:2: model.name is missing"));
+  EXPECT_THAT(message, HasSubstr("f.toml:2:1: model.name is missing"));
   EXPECT_THAT(message, HasSubstr("model.nme is set; is it a typo?"));
   EXPECT_THROW(t.RequiredNumber("a", 0, 1), ConfigError);
   EXPECT_THROW(t.RequiredInteger("a", 0, 1), ConfigError);
@@ -112,13 +112,13 @@ TEST(StrictToml, FinishNamesTheFirstUnknownKeyItsLineAndTheNearest) {
   auto t = Toml("[timing]\nperiod_ms = 5\nperiod_mss = 6\n[other]\nx = 1\n");
   auto timing = t.Table("timing");
   timing.Integer("period_ms", 0, 0, 10);
-  EXPECT_EQ(MessageOf([&] { t.Finish(); }), "f.toml:3: timing.period_mss: unknown key (did you mean period_ms?)");
+  EXPECT_EQ(MessageOf([&] { t.Finish(); }), "f.toml:3:14: timing.period_mss: unknown key (did you mean period_ms?)");
 }
 
 TEST(StrictToml, FinishListsTheKnownKeysWhenNoneIsNear) {
   auto t = Toml("zebra = 1\n");
   t.Number("threshold", 0, 0, 1);
-  EXPECT_EQ(MessageOf([&] { t.Finish(); }), "f.toml:1: zebra: unknown key; known at the top level: threshold");
+  EXPECT_EQ(MessageOf([&] { t.Finish(); }), "f.toml:1:9: zebra: unknown key; known at the top level: threshold");
 }
 
 TEST(StrictToml, FinishRejectsTablesThatWereNeverHandedOut) {
@@ -138,7 +138,7 @@ TEST(StrictToml, FinishSeesTablesHandedOutTwiceAsOne) {
 TEST(StrictToml, FinishLooksIntoArraysOfTables) {
   auto t = Toml("[[change]]\nat = 1\n[[change]]\nat = 2\natt = 3\n");
   for (StrictTable& change : t.Tables("change")) change.RequiredNumber("at", 0, 10);
-  EXPECT_THAT(MessageOf([&] { t.Finish(); }), HasSubstr("f.toml:5: change[1].att: unknown key (did you mean at?)"));
+  EXPECT_THAT(MessageOf([&] { t.Finish(); }), HasSubstr("f.toml:5:7: change[1].att: unknown key (did you mean at?)"));
 }
 
 TEST(StrictToml, HasDoesNotMakeAKeyKnown) {
@@ -174,7 +174,15 @@ TEST(StrictToml, UnreadableFilesAreNamed) {
 TEST(StrictToml, ErrorStandsAtThePlaceOfTheKey) {
   auto t = Toml("[a]\nlower = 5\n");
   EXPECT_STREQ(t.Table("a").Error("lower", "expected less than upper").what(),
-               "f.toml:2: a.lower = 5: expected less than upper");
+               "f.toml:2:9: a.lower = 5: expected less than upper");
+}
+
+TEST(StrictToml, ErrorInATextStandsAtItsCharacter) {
+  auto t = Toml("[a]\nlaw = \"K*xx\"\nlong = \"\"\"\nK*\nxx\"\"\"\n");
+  EXPECT_STREQ(t.Table("a").ErrorInText("law", 3, "unknown name").what(),
+               "f.toml:2:10: a.law = \"K*xx\": unknown name");
+  EXPECT_THAT(t.Table("a").ErrorInText("long", 4, "unknown name").what(), testing::StartsWith("f.toml:3:8: a.long"))
+      << "of a text over several lines its beginning";
 }
 
 TEST(StrictToml, TablesOutliveTheRoot) {

@@ -10,7 +10,11 @@
 namespace armcmc {
 
 /// Plant family of a pack: decides what its columns mean. Values equal data_pack_t.PLANT_*.
-enum class PlantKind : std::int32_t { kHuntCrossley = 1, kSoftActuator = 2 };
+enum class PlantKind : std::int32_t {
+  kHuntCrossley = 1,
+  kSoftActuator = 2,
+  kDescribed = 3,  ///< By a plant file; `fingerprint` says which.
+};
 
 /// D^t: the measurements of one algorithm step. Rows past num_samples are not read.
 struct DataPack {
@@ -20,10 +24,12 @@ struct DataPack {
   double t_last_s = 0.0;    ///< Plant time of the last sample, s.
   double dt = 0.0;          ///< Sample interval T, s, > 0.
   PlantKind plant = PlantKind::kHuntCrossley;
+  std::uint64_t fingerprint = 0;            ///< Of a described plant: Plant::fingerprint().
   int num_samples = 0;                      ///< [1, kMaxPackSamples].
   int num_inputs = 0;                       ///< [1, kMaxPackInputs].
   std::array<double, kMaxPackSamples> y{};  ///< Output: force N (Hunt-Crossley), angle rad (actuator).
-  std::array<std::array<double, kMaxPackInputs>, kMaxPackSamples> u{};  ///< x m, v m/s; or u_c, u_d, p Pa, pdot Pa/s.
+  std::array<std::array<double, kMaxPackInputs>, kMaxPackSamples>
+      u{};  ///< x m, v m/s; or u_c, u_d, p Pa, pdot Pa/s; or a described plant's signals without its output.
 
   /// kOk, or kBadPack when seq or a count is out of range, dt is not positive, or a used value is not finite.
   /// @rt No heap, no lock, no throw. O(n).

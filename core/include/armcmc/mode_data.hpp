@@ -7,6 +7,10 @@
 
 namespace armcmc {
 
+namespace expression {
+struct Tape;
+struct TapeScalars;
+}  // namespace expression
 struct ContactPack;
 struct FlowPack;
 
@@ -27,8 +31,12 @@ struct alignas(64) ModeData {
   // Of a model with effects one is not null: the prediction comes from there, features are not read.
   const ContactPack* contact = nullptr;
   const FlowPack* flow = nullptr;
-  int mode = 0;                                        ///< Of the flow.
-  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of the flow: where in the pack it stands.
+  int mode = 0;  ///< Of the flow.
+  // Of a described plant: its law, law - target, and what no parameter changes, a row a sample of the pack.
+  const expression::Tape* tape = nullptr;
+  const expression::Tape* error_tape = nullptr;
+  const expression::TapeScalars* scalars = nullptr;
+  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of flow and tape: where in the pack it stands.
 };
 
 /// Predictions of kTileLanes candidates: value[n][lane].

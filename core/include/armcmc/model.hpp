@@ -10,6 +10,8 @@
 
 namespace armcmc {
 
+class PlantProgram;
+
 /// One parameter of a model with its built-in prior.
 struct ParameterInfo {
   std::string_view name;
@@ -47,6 +49,7 @@ struct ModelInfo {
   int (*mode_of)(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING;
   /// Of the model's own parameters. Null: what is reported are the parameters themselves.
   void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept ARMCMC_NONBLOCKING;
+  const PlantProgram* described = nullptr;  ///< Of a plant file: reports, and has no mode_of.
   int num_added = 0;  ///< Amplitudes of effects: the last of the parameters, and reported as they are, last.
 
   /// Index among the reported quantities of parameter d, which the model reports as it is.
@@ -54,15 +57,11 @@ struct ModelInfo {
     return d < num_parameters - num_added ? d : d + num_reported - num_parameters;
   }
   /// Reported quantities at theta, kMaxReported at most. @rt No heap, no lock, no throw.
-  void Report(const double* theta, const PlantConstants& constants, double* values) const noexcept ARMCMC_NONBLOCKING {
-    int own = num_parameters - num_added;
-    if (report == nullptr) {
-      for (int d = 0; d < own; ++d) values[d] = theta[d];
-    } else {
-      report(theta, constants, values);
-    }
-    for (int r = num_reported - num_added; r < num_reported; ++r) values[r] = theta[own++];
-  }
+  void Report(const double* theta, const PlantConstants& constants, double* values) const noexcept ARMCMC_NONBLOCKING;
+  /// True where reported quantity r is the sampled parameter r.
+  [[nodiscard]] bool IsReportedAsSampled(int r) const noexcept ARMCMC_NONBLOCKING;
+  /// The sampled parameter d from its reported value. @rt No heap, no lock, no throw.
+  [[nodiscard]] double Sampled(int d, double reported_value) const noexcept ARMCMC_NONBLOCKING;
 };
 
 }  // namespace armcmc

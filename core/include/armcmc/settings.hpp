@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "armcmc/data_pack.hpp"
@@ -10,6 +11,8 @@
 #include "armcmc/types.hpp"
 
 namespace armcmc {
+
+class PlantProgram;
 
 /// Initial prior P_0 of one parameter, before truncation to its bounds.
 enum class PriorKind : std::uint8_t { kNormal, kUniform };
@@ -127,7 +130,8 @@ struct EffectSettings {
 /// Everything that decides what the estimator computes. Build it by hand, from a built-in model
 /// (BuiltinSettings), or from a configuration file.
 struct EstimatorSettings {
-  std::string model;  ///< "hunt_crossley", "soft_actuator" or "soft_actuator_excited".
+  std::string model;  ///< "hunt_crossley", "soft_actuator" or "soft_actuator_excited"; of a described plant its name.
+  std::shared_ptr<const PlantProgram> plant;             ///< Described by a file; null: built in.
   std::array<ParameterSettings, kMaxParams> parameters;  ///< Shared by all modes; the first num_parameters count.
   int num_parameters = 0;
   std::array<NoiseSettings, kMaxModes> noise;  ///< Per mode.
@@ -151,6 +155,9 @@ struct EstimatorSettings {
 /// Settings of a built-in model with its default priors, bounds and noise.
 /// @throws std::invalid_argument listing the known names.
 [[nodiscard]] EstimatorSettings BuiltinSettings(const std::string& model);
+
+/// Settings of a described plant with the priors and the noise of its file.
+[[nodiscard]] EstimatorSettings DescribedSettings(std::shared_ptr<const PlantProgram> plant);
 
 /// An effect with the priors and typical shapes of the plant's catalogue, for signals of these sizes, always on.
 /// @throws std::invalid_argument listing the known names.

@@ -10,7 +10,7 @@ inline constexpr int kMaxParams = 8;         ///< Sampled parameters of one mode
 inline constexpr int kMaxReported = 8;       ///< Reported quantities of one mode: parameters and derived ones.
 inline constexpr int kMaxModes = 4;          ///< Modes of a hybrid plant.
 inline constexpr int kMaxPackSamples = 256;  ///< Samples in one pack.
-inline constexpr int kMaxPackInputs = 4;     ///< Measured inputs in one pack.
+inline constexpr int kMaxPackInputs = 8;     ///< Measured inputs in one pack.
 inline constexpr int kMaxDraws = 150'000;    ///< Upper end of the configurable number of draws.
 inline constexpr int kHistogramBins = 64;    ///< Bins of a published marginal.
 

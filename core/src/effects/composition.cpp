@@ -24,14 +24,16 @@ double GateOf(EffectGate gate, double from_s, double until_s, const EffectInput&
 }  // namespace
 
 Composition::Composition(const EstimatorSettings& settings)
-    : info_(*AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]),
+    : info_(settings.plant != nullptr ? settings.plant->info()
+                                      : *AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]),
       sampled_(settings),
       num_terms_(settings.num_effects),
+      plant_(settings.plant),
       flow_(info_.plant == PlantKind::kSoftActuator && (settings.num_effects > 0 || settings.pressure_rate)
                 ? FlowPlan(settings, info_.num_parameters)
                 : FlowPlan()),
       flow_rows_(flow_) {
-  if (empty()) return;
+  if (empty() || plant_ != nullptr) return;
   if (flow_.empty) SetUpContact(settings);
   for (int e = 0; e < settings.num_effects; ++e) {
     const EffectSettings& effect = settings.effects[static_cast<std::size_t>(e)];
@@ -152,7 +154,23 @@ void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const 
   }
 }
 
+bool Composition::PrepareDescribed(const DataPack& pack, PlantPack* out) noexcept {
+  const DescribedMemory& before = described_[static_cast<std::size_t>(current_)];
+  DescribedMemory& after = described_[static_cast<std::size_t>(1 - current_)];
+  const bool continues =
+      before.seq >= 0 && pack.seq == before.seq + 1 && pack.run_id == before.run_id && pack.dt == before.dt;
+  after.seq = pack.seq;
+  after.run_id = pack.run_id;
+  after.dt = pack.dt;
+  if (plant_->has_memory()) after.features = before.features;
+  if (!continues) after.features.Clear();
+  if (!plant_->Prepare(pack, &after.features, out)) return false;
+  current_ = 1 - current_;
+  return true;
+}
+
 bool Composition::Prepare(const DataPack& pack, EffectPack* out) noexcept {
+  if (plant_ != nullptr) return PrepareDescribed(pack, &out->described);
   if (flow_.empty) return PrepareContact(pack, &out->contact);
   flow_rows_.Prepare(pack, &out->flow);
   return true;
@@ -206,6 +224,10 @@ bool Composition::PrepareContact(const DataPack& pack, ContactPack* out) noexcep
 }
 
 void Composition::Fill(const DataPack& pack, const EffectPack& effects, int mode, ModeData* data) const noexcept {
+  if (plant_ != nullptr) {
+    plant_->Fill(effects.described, pack.num_samples, mode, data);
+    return;
+  }
   if (!flow_.empty) {
     FlowRows::Fill(effects.flow, mode, data);
     return;

@@ -237,8 +237,8 @@ class Builder {
       }
     }
     if (!graph_.at(base).sampled) {
-      // As in the tape's own power: 0 is the smallest number there is, so that 0^0 is 1.
-      const int log2 = graph_.Make(Op::kMax, graph_.Make(Op::kLog2, base), graph_.Number(-1074.0));
+      // Of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1.
+      const int log2 = graph_.Make(Op::kMax, graph_.Make(Op::kLog2, base), graph_.Number(-1e300));
       const Linear p = Value(exponent);
       if (IsLone(p))
         return Emit(TapeOp::kExp2S, {p.terms[0].reg}, {Scalar(graph_.Make(Op::kMultiply, p.terms[0].factor, log2))});

@@ -70,7 +70,7 @@ FeatureProgram::FeatureProgram(const Graph& graph, const std::vector<int>& outpu
 void FeatureProgram::Evaluate(const FeatureInput& input, FeatureMemory* memory,
                               double* out) const noexcept ARMCMC_NONBLOCKING {
   std::array<double, kMaxFeatureNodes> value;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
-  const bool first = memory->empty;
+  const bool first = !has_memory() || memory->empty;
   const double dt = first ? 0.0 : input.dt;
   for (std::size_t n = 0; n < code_.size(); ++n) {
     const Instruction& i = code_[n];
@@ -114,10 +114,11 @@ void FeatureProgram::Evaluate(const FeatureInput& input, FeatureMemory* memory,
       }
     }
   }
+  for (std::size_t o = 0; o < outputs_.size(); ++o) out[o] = value[static_cast<std::size_t>(outputs_[o])];
+  if (!has_memory()) return;
   memory->empty = false;
   // Keeps counting without running over, and the place in the line what it is.
   memory->samples = memory->samples + 1 < 2 * kMaxDelaySamples ? memory->samples + 1 : kMaxDelaySamples;
-  for (std::size_t o = 0; o < outputs_.size(); ++o) out[o] = value[static_cast<std::size_t>(outputs_[o])];
 }
 
 }  // namespace armcmc::expression

@@ -151,11 +151,7 @@ constexpr GapChecks kBendChecks{
 }  // namespace
 
 const GapFamily& FamilyOf(PlantKind plant) noexcept {
-  switch (plant) {
-    case PlantKind::kHuntCrossley: return kContactFamily;
-    case PlantKind::kSoftActuator: return kActuatorFamily;
-  }
-  return kContactFamily;
+  return plant == PlantKind::kSoftActuator ? kActuatorFamily : kContactFamily;
 }
 
 const GapChecks& BendChecks() noexcept { return kBendChecks; }

@@ -3,7 +3,6 @@
 #include <string_view>
 
 #include "armcmc/density_block.hpp"
-#include "armcmc/expression/tape.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -26,8 +25,8 @@ struct PriorTerms {
 struct Kernels {
   std::string_view name;
 
-  /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes AllModels; effects come with
-  /// `data`.
+  /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes AllModels; effects, and
+  /// the law of a described plant, come with `data`.
   void (*predict)(int model, const ModeData& data, const ThetaTile& theta,
                   PredictionTile* tile) noexcept ARMCMC_NONBLOCKING;
 
@@ -40,15 +39,6 @@ struct Kernels {
   /// `scratch` holds nothing of use afterwards.
   void (*score)(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta,
                 const double* log_scale, PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING;
-
-  /// tile[n][lane] = first result of the tape at sample n, theta[., lane].
-  void (*predict_tape)(const expression::Tape& tape, const expression::TapeScalars& scalars, const ThetaTile& theta,
-                       expression::TapeRegisters* registers, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING;
-
-  /// out[lane] = sum_n (first result of the tape weight_n)^2; weight may be null, which is 1.
-  void (*tape_squares)(const expression::Tape& tape, const expression::TapeScalars& scalars, const double* weight,
-                       const ThetaTile& theta, expression::TapeRegisters* registers,
-                       double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] += factor * p(u[., first + lane]).
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,

@@ -6,6 +6,7 @@
 #include "simd/vector.hpp"
 #include "simd/effects.inl"
 #include "simd/flow.inl"
+#include "simd/tape.inl"
 // clang-format on
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
@@ -45,6 +46,10 @@ void Predict(int model, const ModeData& data, const ThetaTile& theta,
   }
   if (data.flow != nullptr) {
     PredictFlow(data, theta, tile);
+    return;
+  }
+  if (data.tape != nullptr) {
+    PredictTape(data, theta, tile);
     return;
   }
   PredictTable<AllModels>::kOf[model](data, theta, tile);
@@ -204,5 +209,4 @@ void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, i
 #include "simd/density.inl"
 #include "simd/moments.inl"
 #include "simd/score.inl"
-#include "simd/tape.inl"
 #include "simd/weights.inl"

@@ -31,19 +31,19 @@ struct Math {
   /// a - n b, exact where n b is.
   static V Less(V a, V n, double b) noexcept { return Simd::Fma(-n, Simd::Set(b), a); }
 
-  /// e^x, 0 below -690 and e^690 above 690 or so.
+  /// e^x.
   static V Exp(V x) noexcept {
-    const V bounded = Simd::Min(Simd::Set(690.0), Simd::Max(Simd::Set(-745.0), x));
+    const V bounded = Simd::Min(Simd::Set(1400.0), Simd::Max(Simd::Set(-1400.0), x));
     const V magic = Simd::Set(6755399441055744.0);  // 1.5 * 2^52: rounds to a whole number
     const V n = (bounded * Simd::Set(1.44269504088896340736) + magic) - magic;
     // ln 2 in two parts; n times the first is exact.
     const V rest = Less(Less(bounded, n, 6.93147180369123816490e-01), n, 1.90821492927058770002e-10);
     // The fraction by itself, so that its rounding does not grow with x.
-    const V fraction = Simd::Exp2(rest * Simd::Set(1.44269504088896340736));
+    const V fraction = Simd::Exp2OrNan(rest * Simd::Set(1.44269504088896340736));
     return fraction * Simd::Exp2(n);
   }
 
-  /// log2 x; -1074 at 0, which keeps 0^p what it is.
+  /// log2 x; of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1.
   static V Log2(V x) noexcept {
     const V tiny = Simd::Set(2.2250738585072014e-308);
     // Numbers below the smallest normal one are brought up to size.
@@ -51,14 +51,14 @@ struct Math {
     const V log2 = Simd::Log2(Simd::Select(small, x * Simd::Set(18014398509481984.0), x)) -
                    Simd::FromBits(small & Simd::Bits(Simd::Set(54.0)));
     const V infinity = Simd::Set(__builtin_inf());
-    const V of_zero = Simd::Select(x == V{}, Simd::Set(-1074.0), log2);
+    const V of_zero = Simd::Select(x == V{}, Simd::Set(-1e300), log2);
     return Simd::Select(x < V{}, Nan(), Simd::Select(IsNan(x) | (x == infinity), x, of_zero));
   }
   /// factor log2 x, -infinity at 0.
   static V Log(V x, double factor) noexcept {
     return Simd::Select(x == V{}, Simd::Set(-__builtin_inf()), Log2(x) * Simd::Set(factor));
   }
-  static V Power(V base, V exponent) noexcept { return Simd::Exp2(exponent * Log2(base)); }
+  static V Power(V base, V exponent) noexcept { return Simd::Exp2OrNan(exponent * Log2(base)); }
   /// By squaring; exponent in [0, 255].
   static V PowerInt(V base, unsigned exponent) noexcept {
     V power = Simd::Set(1.0);

@@ -155,13 +155,15 @@ void Score(int model, const NoiseModel& noise, const ModeData& data, const Theta
            PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
   const bool gaussian = noise.settings().kind == NoiseKind::kGaussian;
   if (!gaussian || (data.flow != nullptr && !ValvesAreFast(*data.flow)) ||
-      (data.contact != nullptr && !data.contact->additive_only())) {
+      (data.contact != nullptr && !data.contact->additive_only()) ||
+      (data.tape != nullptr && noise.settings().mean != 0.0)) {
     Predict(model, data, theta, scratch);
     LogLikelihood(noise, data, *scratch, log_scale, out);
     return;
   }
   const SumSquaresFn sum_squares = data.contact != nullptr ? kSumSquaresAdditive[data.contact->num_additive]
                                    : data.flow != nullptr  ? &SumSquaresFlow
+                                   : data.tape != nullptr  ? &SumSquaresTape
                                                            : SumSquaresTable<AllModels>::kOf[model];
   sum_squares(data, theta, noise.settings().mean, out);
   const V samples = Simd::Set(static_cast<double>(data.num_samples));

@@ -10,7 +10,8 @@ using expression::Tape;
 using expression::TapeInstruction;
 using expression::TapeOp;
 using expression::TapeRegisters;
-using expression::TapeScalars;
+
+constexpr int kTapeVectors = kTileLanes / Simd::kLanes;
 
 /// One sample of a tape for all candidates of a tile.
 class TapeRunner {
@@ -24,7 +25,7 @@ class TapeRunner {
 
  private:
   using Vec = Simd::V;
-  static constexpr int kCount = kTileLanes / Simd::kLanes;
+  static constexpr int kCount = kTapeVectors;
 
   [[nodiscard]] double* Register(std::uint8_t r) const noexcept { return register_[r].data(); }
   [[nodiscard]] Vec Scalar(std::uint8_t s) const noexcept { return Simd::Set(scalar_[s]); }
@@ -101,7 +102,7 @@ class TapeRunner {
       case TapeOp::kSign: Unary(i, [](Vec a) { return Math::Sign(a); }); break;
       case TapeOp::kSqrt: Unary(i, [](Vec a) { return Simd::Sqrt(a); }); break;
       case TapeOp::kExp: Unary(i, [](Vec a) { return Math::Exp(a); }); break;
-      case TapeOp::kExp2S: Unary(i, [s = Scalar(i.b)](Vec a) { return Simd::Exp2(a * s); }); break;
+      case TapeOp::kExp2S: Unary(i, [s = Scalar(i.b)](Vec a) { return Simd::Exp2OrNan(a * s); }); break;
       case TapeOp::kLog: Unary(i, [](Vec a) { return Math::Log(a, 0.69314718055994530942); }); break;
       case TapeOp::kLog2: Unary(i, [](Vec a) { return Math::Log(a, 1.0); }); break;
       case TapeOp::kLog10: Unary(i, [](Vec a) { return Math::Log(a, 0.30102999566398119521); }); break;
@@ -140,39 +141,42 @@ void StartTape(const Tape& tape, const ThetaTile& theta, const double* scalars,
   TapeRunner(registers, scalars).Run(tape.code.data(), tape.code.data() + tape.once);
 }
 
-void PredictTape(const Tape& tape, const TapeScalars& scalars, const ThetaTile& theta, TapeRegisters* registers,
-                 PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  StartTape(tape, theta, scalars.Row(0), registers);
-  for (int n = 0; n < scalars.num_samples; ++n) {
-    TapeRunner(registers, scalars.Row(n)).Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
-    tile->value[static_cast<std::size_t>(n)] = registers->value[tape.result[0]];
+void PredictTape(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+  const Tape& tape = *data.tape;
+  TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
+  StartTape(tape, theta, data.scalars->Row(0), &registers);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
+        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
+    tile->value[n] = registers.value[tape.result[0]];
   }
 }
 
-/// out[lane] = sum over the samples of the square of the tape's first result, times the square of the sample's weight.
+/// out[lane] = sum of the squares of law - target, weighted.
 template <bool kWeighted>
-void SumTapeSquares(const Tape& tape, const TapeScalars& scalars, const double* weight, const ThetaTile& theta,
-                    TapeRegisters* registers, double* out) noexcept {
-  StartTape(tape, theta, scalars.Row(0), registers);
-  V sum[kVectors] = {};
-  for (int n = 0; n < scalars.num_samples; ++n) {
-    TapeRunner(registers, scalars.Row(n)).Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
-    const double* error = registers->value[tape.result[0]].data();
-    for (int v = 0; v < kVectors; ++v) {
-      V e = Simd::Load(error + v * Simd::kLanes);
-      if constexpr (kWeighted) e = e * Simd::Set(weight[n]);
+void SumTapeSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  const Tape& tape = *data.error_tape;
+  TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
+  StartTape(tape, theta, data.scalars->Row(0), &registers);
+  Simd::V sum[kTapeVectors] = {};
+  for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
+        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
+    const double* error = registers.value[tape.result[0]].data();
+    for (int v = 0; v < kTapeVectors; ++v) {
+      Simd::V e = Simd::Load(error + v * Simd::kLanes);
+      if constexpr (kWeighted) e = e * Simd::Set(data.weight[n]);
       sum[v] = Simd::Fma(e, e, sum[v]);
     }
   }
-  for (int v = 0; v < kVectors; ++v) Simd::Store(out + v * Simd::kLanes, sum[v]);
+  for (int v = 0; v < kTapeVectors; ++v) Simd::Store(out + v * Simd::kLanes, sum[v]);
 }
 
-void TapeSquares(const Tape& tape, const TapeScalars& scalars, const double* weight, const ThetaTile& theta,
-                 TapeRegisters* registers, double* out) noexcept ARMCMC_NONBLOCKING {
-  if (weight != nullptr) {
-    SumTapeSquares<true>(tape, scalars, weight, theta, registers, out);
+void SumSquaresTape(const ModeData& data, const ThetaTile& theta, double, double* out) noexcept ARMCMC_NONBLOCKING {
+  if (data.weighted) {
+    SumTapeSquares<true>(data, theta, out);
   } else {
-    SumTapeSquares<false>(tape, scalars, weight, theta, registers, out);
+    SumTapeSquares<false>(data, theta, out);
   }
 }
 

@@ -102,12 +102,17 @@ struct Simd {
   }
   static V Abs(V a) noexcept { return FromBits(Bits(a) & (I{} + 0x7fffffffffffffffLL)); }
 
-  /// 2^x, relative error below 1 ulp for |x| <= 1000; clamped beyond; NaN stays NaN. Round to nearest by the
-  /// magic-number addition, polynomial of degree 11 through the Chebyshev nodes of [-1/2, 1/2] (error 3e-18), exponent
-  /// added as an integer.
-  static V Exp2(V x) noexcept {
-    // In this order of arguments what is not a number stays so.
-    x = Min(Set(1000.0), Max(Set(-1000.0), x));
+  /// 2^x, relative error below 1 ulp for |x| <= 1000; clamped beyond, and 2^-1000 where x is not a number. Round to
+  /// nearest by the magic-number addition, polynomial of degree 11 through the Chebyshev nodes of [-1/2, 1/2] (error
+  /// 3e-18), exponent added as an integer.
+  static V Exp2(V x) noexcept { return Exp2OfBounded(Min(Max(x, Set(-1000.0)), Set(1000.0))); }
+  /// 2^x as doubles have it: 0 and infinity beyond their range, NaN where x is not a number (the hardware's min and max
+  /// give their second argument then). Relative error below 3 ulp.
+  static V Exp2OrNan(V x) noexcept {
+    const V root = Exp2OfBounded(Min(Set(1000.0), Max(Set(-1000.0), x * Set(0.5))));
+    return root * root;
+  }
+  static V Exp2OfBounded(V x) noexcept {
     const V magic = Set(6755399441055744.0);  // 1.5 * 2^52
     const V shifted = x + magic;
     const V f = x - (shifted - magic);

@@ -22,10 +22,9 @@ using expression::FeatureProgram;
 using expression::Graph;
 using expression::Parse;
 using expression::Syntax;
-using expression::TapeRegisters;
 using expression::TapeScalars;
 
-constexpr int kSamples = 6;
+constexpr int kSamples = 4;
 constexpr int kParameters = 4;  // K, B, p, tau
 
 double SignalAt(int signal, int n) { return std::sin(1.3 * n + 2.1 * signal) * (1.0 + 0.5 * signal); }
@@ -54,19 +53,23 @@ struct Law {
     compiled = CompileTape(&graph, {node}, kParameters, 0);
     const FeatureProgram features(graph, compiled.scalars);
     FeatureMemory memory;
-    scalars->num_samples = kSamples;
     scalars->stride = static_cast<int>(compiled.scalars.size());
     for (int n = 0; n < kSamples; ++n) {
       const double signals[] = {SignalAt(0, n), SignalAt(1, n), SignalAt(2, n)};
       features.Evaluate({signals, 0.1 * n, 0.1}, &memory, scalars->Row(n));
     }
+    data->num_samples = kSamples;
+    data->tape = data->error_tape = &compiled.tape;
+    data->scalars = scalars.get();
+    data->weighted = false;
+    for (std::size_t n = 0; n < kSamples; ++n) data->sample[n] = static_cast<std::int16_t>(n);
     for (int d = 0; d < kParameters; ++d)
       for (int lane = 0; lane < kTileLanes; ++lane)
         theta.value[static_cast<std::size_t>(d)][static_cast<std::size_t>(lane)] = ParameterOf(d, lane);
   }
 
   const PredictionTile& Predict(const simd::Kernels& kernels) {
-    kernels.predict_tape(compiled.tape, *scalars, theta, registers.get(), tile.get());
+    kernels.predict(-1, *data, theta, tile.get());
     return *tile;
   }
 
@@ -75,7 +78,7 @@ struct Law {
   int node = -1;
   CompiledTape compiled;
   std::unique_ptr<TapeScalars> scalars = std::make_unique<TapeScalars>();
-  std::unique_ptr<TapeRegisters> registers = std::make_unique<TapeRegisters>();
+  std::unique_ptr<ModeData> data = std::make_unique<ModeData>();
   std::unique_ptr<PredictionTile> tile = std::make_unique<PredictionTile>();
   ThetaTile theta{};
 };
@@ -105,7 +108,7 @@ std::string DifferenceFromTree(const std::string& text, Without without_value) {
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
     const PredictionTile& tile = law.Predict(*kernels);
     for (int n = 0; n < kSamples; ++n) {
-      for (int lane = 0; lane < kTileLanes; lane += 5) {
+      for (int lane = 0; lane < kTileLanes; lane += 11) {
         const auto values = ValuesAt(n, lane);
         const test::TreeWalk<double> tree(law.syntax, values);
         const double expected = tree.Value();
@@ -237,29 +240,28 @@ TEST(Tape, SameBitsOnEveryFusedInstructionSet) {
   }
 }
 
-TEST(Tape, SquaresAreThoseOfThePredictions) {
+TEST(Tape, ScoresAreThoseOfThePredictions) {
   Law law("K*x + B*v - p*u");
-  const std::array<double, kMaxPackSamples> weight = [] {
-    std::array<double, kMaxPackSamples> w{};
-    for (std::size_t n = 0; n < kSamples; ++n) w[n] = 1.0 / (1.0 + static_cast<double>(n));
-    return w;
+  const NoiseModel noise(NoiseSettings{.std = 0.5});
+  const std::array<double, kTileLanes> log_scale = [] {
+    std::array<double, kTileLanes> scale{};
+    scale.fill(std::log(0.5));
+    return scale;
   }();
-  for (const simd::Kernels* kernels : test::RunnableKernels()) {
-    const PredictionTile& tile = law.Predict(*kernels);
-    alignas(64) std::array<double, kTileLanes> plain{};
-    alignas(64) std::array<double, kTileLanes> weighted{};
-    kernels->tape_squares(law.compiled.tape, *law.scalars, nullptr, law.theta, law.registers.get(), plain.data());
-    kernels->tape_squares(law.compiled.tape, *law.scalars, weight.data(), law.theta, law.registers.get(),
-                          weighted.data());
-    for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
-      double sum = 0.0;
-      double weighted_sum = 0.0;
-      for (std::size_t n = 0; n < kSamples; ++n) {
-        sum += std::pow(tile.value[n][lane], 2);
-        weighted_sum += std::pow(tile.value[n][lane] * weight[n], 2);
+  for (const bool weighted : {false, true}) {
+    law.data->weighted = weighted;
+    for (std::size_t n = 0; n < kSamples; ++n)
+      law.data->weight[n] = weighted ? 1.0 / (1.0 + static_cast<double>(n)) : 1.0;
+    for (const simd::Kernels* kernels : test::RunnableKernels()) {
+      const PredictionTile tile = law.Predict(*kernels);
+      alignas(64) std::array<double, kTileLanes> score{};
+      kernels->score(-1, noise, *law.data, law.theta, log_scale.data(), law.tile.get(), score.data());
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+        double expected = 0.0;  // here the tape is law - target: its target is 0
+        for (std::size_t n = 0; n < kSamples; ++n)
+          expected += noise.LogDensity(tile.value[n][lane] * law.data->weight[n], 0.5);
+        EXPECT_NEAR(score[lane], expected, 1e-12 * (1.0 + std::fabs(expected))) << kernels->name << " " << lane;
       }
-      EXPECT_NEAR(plain[lane], sum, 1e-13 * sum);
-      EXPECT_NEAR(weighted[lane], weighted_sum, 1e-13 * weighted_sum);
     }
   }
 }

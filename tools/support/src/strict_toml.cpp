@@ -78,7 +78,7 @@ struct StrictTable::Node {
   std::shared_ptr<const Document> document;
   const toml::table* table = nullptr;  ///< Null when the file does not have it.
   std::string path;                    ///< "timing", empty for the root.
-  std::uint32_t line = 0;              ///< Of the table itself; 0 when it is absent or the root.
+  toml::source_position at{1, 1};      ///< Of the table itself; of one that is absent, of that around it.
   std::vector<std::string> asked;      ///< Keys that a getter asked for, in order.
   std::vector<std::pair<std::string, std::shared_ptr<Node>>> children;
 
@@ -92,17 +92,17 @@ struct StrictTable::Node {
   [[nodiscard]] std::string PathOf(std::string_view key) const {
     return path.empty() ? KeyText(key) : path + "." + KeyText(key);
   }
-  [[nodiscard]] std::string Place(std::uint32_t at_line) const {
-    return document->name + ":" + (at_line == 0 ? "" : std::to_string(at_line) + ":") + " ";
+  [[nodiscard]] std::string Place(toml::source_position position) const {
+    return document->name + ":" + std::to_string(position.line) + ":" + std::to_string(position.column) + ": ";
   }
   [[nodiscard]] ConfigError Wrong(std::string_view key, const toml::node& node, const std::string& expected) const {
-    return ConfigError(Place(node.source().begin.line) + PathOf(key) + " = " + Shown(node) + ": expected " + expected);
+    return ConfigError(Place(node.source().begin) + PathOf(key) + " = " + Shown(node) + ": expected " + expected);
   }
   [[nodiscard]] ConfigError Missing(std::string_view key, const std::string& expected) const {
     std::string hint;
     for (const std::string& name : Unasked())
       if (Nearest(name, {std::string(key)}) == key) hint = " (" + PathOf(name) + " is set; is it a typo?)";
-    return ConfigError(Place(line) + PathOf(key) + " is missing: expected " + expected + hint);
+    return ConfigError(Place(at) + PathOf(key) + " is missing: expected " + expected + hint);
   }
   [[nodiscard]] std::vector<std::string> Unasked() const {
     std::vector<std::string> names;
@@ -118,19 +118,19 @@ struct StrictTable::Node {
     child->document = document;
     child->table = child_table;
     child->path = path.empty() ? key : path + "." + key;
-    child->line = child_table == nullptr ? line : child_table->source().begin.line;
+    child->at = child_table == nullptr ? at : child_table->source().begin;
     children.emplace_back(key, child);
     return child;
   }
-  /// First unknown key of this table and those below, by line.
-  void CollectUnknown(std::vector<std::pair<std::uint32_t, std::string>>* problems) const {
+  /// Unknown keys of this table and those below, with their places.
+  void CollectUnknown(std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, std::string>>* problems) const {
     for (const std::string& name : Unasked()) {
-      const std::uint32_t at = table->get(name)->source().begin.line;
-      std::string text = Place(at) + PathOf(name) + ": unknown key" + DidYouMean(name, asked);
+      const toml::source_position place = table->get(name)->source().begin;
+      std::string text = Place(place) + PathOf(name) + ": unknown key" + DidYouMean(name, asked);
       if (Nearest(name, asked).empty() && !asked.empty())
         text +=
             "; known " + (path.empty() ? std::string("at the top level") : "in [" + path + "]") + ": " + Listed(asked);
-      problems->emplace_back(at, std::move(text));
+      problems->emplace_back(std::make_pair(place.line, place.column), std::move(text));
     }
     for (const auto& [name, child] : children) child->CollectUnknown(problems);
   }
@@ -193,6 +193,11 @@ bool StrictTable::Has(std::string_view key) const { return node_->Peek(key) != n
 bool StrictTable::IsText(std::string_view key) const {
   const toml::node* node = node_->Peek(key);
   return node != nullptr && node->is_string();
+}
+
+bool StrictTable::IsTable(std::string_view key) const {
+  const toml::node* node = node_->Peek(key);
+  return node != nullptr && node->is_table();
 }
 
 void StrictTable::LeaveToOthers(std::string_view key) { static_cast<void>(node_->Ask(key)); }
@@ -303,17 +308,24 @@ std::vector<std::string> StrictTable::Keys() const {
 std::string StrictTable::Name() const { return node_->document->name; }
 
 void StrictTable::Finish() const {
-  std::vector<std::pair<std::uint32_t, std::string>> problems;
+  std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, std::string>> problems;
   node_->CollectUnknown(&problems);
   if (problems.empty()) return;
   throw ConfigError(std::min_element(problems.begin(), problems.end())->second);
 }
 
 ConfigError StrictTable::Error(std::string_view key, std::string_view problem) const {
+  return ErrorInText(key, 0, problem);
+}
+
+ConfigError StrictTable::ErrorInText(std::string_view key, int character, std::string_view problem) const {
   const toml::node* node = node_->Peek(key);
   const std::string shown = node == nullptr ? "" : " = " + Shown(*node);
-  return ConfigError(node_->Place(node == nullptr ? node_->line : node->source().begin.line) + node_->PathOf(key) +
-                     shown + ": " + std::string(problem));
+  toml::source_position place = node == nullptr ? node_->at : node->source().begin;
+  // Behind the quote; a text over several lines is found by its first.
+  if (node != nullptr && character > 0 && place.line == node->source().end.line)
+    place.column += static_cast<toml::source_index>(character);
+  return ConfigError(node_->Place(place) + node_->PathOf(key) + shown + ": " + std::string(problem));
 }
 
 }  // namespace armcmc::support

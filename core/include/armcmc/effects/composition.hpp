@@ -33,7 +33,7 @@ class Composition {
   Composition& operator=(const Composition&) = delete;
 
   /// The model predicts what it does by itself.
-  [[nodiscard]] bool empty() const noexcept { return num_terms_ == 0 && flow_.empty; }
+  [[nodiscard]] bool empty() const noexcept { return num_terms_ == 0 && flow_.empty && plant_ == nullptr; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
   /// The settings with the amplitudes appended to the parameters: what a ParameterSpace is made from.
   [[nodiscard]] const EstimatorSettings& sampled() const noexcept { return sampled_; }
@@ -52,9 +52,15 @@ class Composition {
   void Fill(const DataPack& pack, const EffectPack& effects, int mode,
             ModeData* data) const noexcept ARMCMC_NONBLOCKING;
 
+  /// Mode that acts at sample n of a pack that was prepared; info().num_modes if none does.
+  [[nodiscard]] int ModeOf(const DataPack& pack, const EffectPack& effects, int n) const noexcept ARMCMC_NONBLOCKING {
+    return plant_ != nullptr ? effects.described.mode[static_cast<std::size_t>(n)] : info_.mode_of(pack, n);
+  }
+
   /// Forgets the packs before.
   void Reset() noexcept {
     memory_[0].seq = memory_[1].seq = -1;
+    described_[0].seq = described_[1].seq = -1;
     flow_rows_.Reset();
   }
 
@@ -75,6 +81,14 @@ class Composition {
     ContactPack pack;
   };
 
+  /// What one pack of a described plant leaves to the next; two, as above.
+  struct DescribedMemory {
+    std::int64_t seq = -1, run_id = 0;
+    double dt = 0.0;
+    expression::FeatureMemory features;
+  };
+
+  [[nodiscard]] bool PrepareDescribed(const DataPack& pack, PlantPack* out) noexcept ARMCMC_NONBLOCKING;
   void SetUpContact(const EstimatorSettings& settings);
   [[nodiscard]] bool PrepareContact(const DataPack& pack, ContactPack* out) noexcept ARMCMC_NONBLOCKING;
   void Assign(ContactPack* pack) const noexcept ARMCMC_NONBLOCKING;
@@ -88,6 +102,8 @@ class Composition {
   EstimatorSettings sampled_;
   std::array<std::string, kMaxParams> names_;
   int num_terms_ = 0;
+  std::shared_ptr<const PlantProgram> plant_;  ///< Null: built in.
+  std::array<DescribedMemory, 2> described_;
   // Soft actuator.
   FlowPlan flow_;
   FlowRows flow_rows_;

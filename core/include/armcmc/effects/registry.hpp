@@ -103,6 +103,7 @@ using ActuatorEffects = EffectList<PressureBias, ValveLag, ValveDeadBand, Supply
   switch (plant) {
     case PlantKind::kHuntCrossley: return ContactEffects::kInfos;
     case PlantKind::kSoftActuator: return ActuatorEffects::kInfos;
+    case PlantKind::kDescribed: break;
   }
   return {};
 }

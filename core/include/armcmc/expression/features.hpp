@@ -52,7 +52,9 @@ class FeatureProgram {
   /// @throws std::length_error naming the limit that is passed.
   FeatureProgram(const Graph& graph, const std::vector<int>& outputs);
 
-  /// out[i] = output i at this sample. @rt No heap, no lock, no throw. O(nodes).
+  /// out[i] = output i at this sample.
+  /// @param memory  May be null without functions with memory.
+  /// @rt No heap, no lock, no throw. O(nodes).
   void Evaluate(const FeatureInput& input, FeatureMemory* memory, double* out) const noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] int num_outputs() const noexcept { return static_cast<int>(outputs_.size()); }

@@ -85,7 +85,6 @@ struct alignas(64) TapeRegisters {
 
 /// The scalars of the samples of one pack: row n holds those of sample n.
 struct TapeScalars {
-  int num_samples = 0;
   int stride = 0;  ///< Scalars of one sample.
   alignas(64) std::array<double, static_cast<std::size_t>(kMaxPackSamples) * kMaxTapeScalars> value;
 

@@ -11,7 +11,8 @@
 
 namespace armcmc::support {
 
-/// A configuration error a person can act on: "file.toml:12: timing.period_ms = -3: expected a number in [1, 10000]".
+/// A configuration error a person can act on: "file.toml:12:13: timing.period_ms = -3: expected a number in [1,
+/// 10000]".
 class ConfigError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,7 +20,7 @@ class ConfigError : public std::runtime_error {
 
 /// One table of a strictly read TOML file.
 ///
-/// Every getter names the key, its line and the allowed range when the type or value is wrong. Finish() then
+/// Every getter names the key, its line and column and the allowed range when the type or value is wrong. Finish() then
 /// rejects every key that no getter asked for and names the nearest known key, so that a typo never passes.
 class StrictTable {
  public:
@@ -31,6 +32,8 @@ class StrictTable {
   [[nodiscard]] bool Has(std::string_view key) const;
   /// True when the key holds a text: for keys that take either a word or a number.
   [[nodiscard]] bool IsText(std::string_view key) const;
+  /// True when the key holds a table: for keys that take either a number or a table.
+  [[nodiscard]] bool IsTable(std::string_view key) const;
   /// Leaves a key, with everything below it, to another program that reads the same file.
   void LeaveToOthers(std::string_view key);
 
@@ -65,6 +68,8 @@ class StrictTable {
 
   /// A ConfigError at the place of `key`, for checks that span several keys.
   [[nodiscard]] ConfigError Error(std::string_view key, std::string_view problem) const;
+  /// The same at a character of a text, from 1: for what is wrong inside it.
+  [[nodiscard]] ConfigError ErrorInText(std::string_view key, int character, std::string_view problem) const;
 
  private:
   struct Document;

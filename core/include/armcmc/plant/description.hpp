@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace armcmc {
+
+/// A measured quantity: a column of packs and recordings.
+struct SignalDescription {
+  std::string name;
+  std::string unit;
+  std::string role;           ///< "position", "velocity", "force", ...: what effects of the catalogue ask for.
+  std::string derivative_of;  ///< Signal that it is the rate of; empty: of none.
+};
+
+struct ConstantDescription {
+  std::string name;
+  double value = 0.0;
+  std::string unit;  ///< Empty: fits everywhere.
+};
+
+struct ParameterDescription {
+  std::string name;
+  std::string unit;
+  std::string prior = "normal";                ///< "normal", "uniform" or "lognormal".
+  double mean = 0.0;                           ///< Of the lognormal law: the median.
+  double sd = 0.0;                             ///< Of the lognormal law: of the logarithm.
+  std::optional<double> lower = std::nullopt;  ///< Left out: 8 sd below the mean.
+  std::optional<double> upper = std::nullopt;
+  bool per_mode = false;  ///< Each mode has a value of its own.
+};
+
+/// A named subexpression.
+struct LetDescription {
+  std::string name;
+  std::string text;
+};
+
+/// One way in which the plant acts. The first whose `when` holds does.
+struct ModeDescription {
+  std::string name;
+  std::string when;    ///< Empty: always.
+  std::string law;     ///< Of a passive mode empty: 0.
+  std::string target;  ///< What the law explains, of signals; empty: the output.
+  bool passive = false;
+};
+
+/// Integrated with the inputs by the classical Runge-Kutta method of order 4.
+struct StateDescription {
+  std::string name;
+  std::string unit;
+  std::string role;
+  std::string rate;
+  std::string start;        ///< Of signals at the first sample and parameters.
+  std::string measured_by;  ///< Signal that each pack starts from; empty: none.
+  int substeps = 1;         ///< Of one sample interval.
+};
+
+/// A further quantity to publish.
+struct ReportDescription {
+  std::string name;
+  std::string unit;
+  std::string value;
+};
+
+struct NoiseDescription {
+  std::string law = "gaussian";  ///< "gaussian", "student_t", "laplace" or "mixture".
+  double std = 1.0;              ///< Unit of what is explained.
+  bool estimate = false;
+};
+
+/// What a plant file says, before anything is understood. Lists are in the order of the file.
+struct PlantDescription {
+  std::string name;
+  std::string title;
+  std::string output;    ///< Signal that the law explains.
+  std::string law;       ///< Of the only mode; empty where `modes` has some.
+  std::string predicts;  ///< What is shown as prediction of the output where modes explain a target.
+  std::vector<SignalDescription> signals;
+  std::vector<ConstantDescription> constants;
+  std::vector<ParameterDescription> parameters;
+  std::vector<LetDescription> lets;
+  std::vector<ModeDescription> modes;
+  std::vector<StateDescription> states;
+  std::vector<ReportDescription> reports;
+  NoiseDescription noise;
+};
+
+}  // namespace armcmc

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/expression/features.hpp"
+#include "armcmc/expression/tape.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/model.hpp"
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/plant/plant.hpp"
+
+namespace armcmc {
+
+/// What no parameter changes of one pack of a described plant.
+struct PlantPack {
+  expression::TapeScalars scalars;                  ///< Of every sample, whatever its mode.
+  std::array<std::int8_t, kMaxPackSamples> mode{};  ///< That acts: of those that are sampled, their number for none.
+  std::array<double, kMaxPackSamples> target{};     ///< What the law of that mode explains.
+  std::array<double, kMaxPackSamples> passive{};    ///< What is shown where no sampled mode acts.
+};
+
+/// A described plant as the estimator runs it: tapes for its laws, one program for everything that no parameter
+/// changes.
+///
+/// Modes whose parameters are all their own are sampled apart. Where a parameter is shared, all modes are sampled as
+/// one, whose law is that of the mode that acts; parameters of a mode then carry its name.
+class PlantProgram {
+ public:
+  /// @throws PlantError where the plant is past a limit of the estimator.
+  explicit PlantProgram(std::shared_ptr<const Plant> plant);
+  PlantProgram(const PlantProgram&) = delete;  // info() points into it
+  PlantProgram& operator=(const PlantProgram&) = delete;
+
+  [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
+  [[nodiscard]] bool has_memory() const noexcept { return features_.has_memory(); }
+  [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
+  /// The parameter's prior as it is sampled: of a lognormal one that of the logarithm.
+  [[nodiscard]] const std::vector<ParameterDescription>& sampled() const noexcept { return sampled_; }
+
+  /// Goes through the samples of a pack, whose inputs are the plant's signals without the output.
+  /// @param memory  Of functions with memory: taken up, and left for the next pack.
+  /// @return false where something that is needed is not finite.
+  /// @pre pack.Validate() == kOk, pack.num_inputs >= info().num_inputs.
+  /// @rt No heap, no lock, no throw. O(samples).
+  [[nodiscard]] bool Prepare(const DataPack& pack, expression::FeatureMemory* memory,
+                             PlantPack* out) const noexcept ARMCMC_NONBLOCKING;
+
+  /// The samples of one sampled mode. `pack` must outlive `data`.
+  void Fill(const PlantPack& pack, int num_samples, int mode, ModeData* data) const noexcept ARMCMC_NONBLOCKING;
+
+  /// Reported quantity r for sampled parameters theta. @rt No heap, no lock, no throw.
+  [[nodiscard]] double Report(int r, const double* theta) const noexcept ARMCMC_NONBLOCKING;
+  /// True where it is the sampled parameter r.
+  [[nodiscard]] bool IsReportedAsSampled(int r) const noexcept ARMCMC_NONBLOCKING;
+  /// The sampled parameter d from its reported value.
+  [[nodiscard]] double Sampled(int d, double reported) const noexcept ARMCMC_NONBLOCKING;
+
+ private:
+  struct SampledMode {
+    std::string name;
+    expression::Tape law;
+    expression::Tape error;  ///< law - target.
+  };
+  /// Of every mode of the plant, in the order of its file: where its parts stand among the features.
+  struct Outputs {
+    int when = -1;  ///< -1: always.
+    int target = 0;
+    int passive = -1;
+    int sampled = -1;  ///< Sampled mode, -1: passive.
+  };
+
+  void ChooseParameters();
+  void CompileModes();
+  void FillInfo();
+  /// The node with the plant's parameters replaced by those that are sampled in one of its modes.
+  [[nodiscard]] int InMode(int node, std::size_t active);
+
+  std::shared_ptr<const Plant> plant_;
+  expression::Graph graph_;
+  std::vector<std::size_t> active_;  ///< Modes of the plant that are not passive.
+  bool merged_ = false;
+  std::vector<ParameterDescription> sampled_;
+  std::vector<std::vector<int>> index_;  ///< [active mode][parameter of the plant]: sampled parameter.
+  std::vector<SampledMode> modes_;
+  std::vector<Outputs> outputs_;
+  int num_scalars_ = 0;
+  expression::FeatureProgram features_;              ///< Scalars of the tapes, then what outputs_ refers to.
+  std::vector<expression::FeatureProgram> reports_;  ///< Each reads parameters as signals.
+  std::vector<std::string> names_, units_;
+  std::string target_unit_;
+  ModelInfo info_{};
+};
+
+}  // namespace armcmc

@@ -1,0 +1,398 @@
+#include "armcmc/plant/plant.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "armcmc/expression/syntax.hpp"
+
+namespace armcmc {
+namespace {
+
+using expression::Meaning;
+using expression::Op;
+using expression::Symbol;
+using expression::SymbolKind;
+using expression::Syntax;
+using expression::Unit;
+
+Unit Second() {
+  Unit second;
+  second.exponent[2] = 1.0;
+  return second;
+}
+
+std::string Listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+bool IsPlantName(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+/// FNV-1a, 64 bit.
+void Hash(std::string_view text, std::uint64_t* hash) {
+  for (const char c : text) *hash = (*hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  *hash = (*hash ^ 0xffU) * 0x100000001b3ULL;  // between texts
+}
+
+void CheckPrior(const std::string& key, const ParameterDescription& p) {
+  if (p.prior != "normal" && p.prior != "uniform" && p.prior != "lognormal")
+    throw PlantError(key + ".prior", 0, "expected normal, uniform or lognormal", p.prior,
+                     {"normal", "uniform", "lognormal"});
+  if (p.prior == "uniform") {
+    if (!p.lower || !p.upper) throw PlantError(key, 0, "a uniform prior needs lower and upper");
+  } else if (!(p.sd > 0.0) || !std::isfinite(p.sd)) {
+    throw PlantError(key + ".sd", 0, "expected a number above 0");
+  }
+  if (p.prior == "lognormal" && !(p.mean > 0.0))
+    throw PlantError(key + ".mean", 0, "the median of a lognormal prior is above 0");
+  if (p.prior == "lognormal" && p.lower && !(*p.lower >= 0.0))
+    throw PlantError(key + ".lower", 0, "a lognormal parameter is never negative");
+}
+
+/// Bounds of a parameter, filled in where the file has none.
+expression::Interval Bounds(const ParameterDescription& p) {
+  constexpr double kReach = 8.0;  // standard deviations
+  if (p.prior == "lognormal")
+    return {p.lower.value_or(p.mean * std::exp(-kReach * p.sd)), p.upper.value_or(p.mean * std::exp(kReach * p.sd))};
+  return {p.lower.value_or(p.mean - kReach * p.sd), p.upper.value_or(p.mean + kReach * p.sd)};
+}
+
+}  // namespace
+
+Plant::Plant(PlantDescription description) : description_(std::move(description)) {
+  if (!IsPlantName(description_.name))
+    throw PlantError("name", 0, "a plant's name has small letters, digits and _ only");
+  AddSignals();
+  AddConstants();
+  AddParameters();
+  AddStates();
+  AddLets();
+  AddModes();
+  AddRates();
+  AddReports();
+  CheckParametersAreFelt();
+  Identify();
+}
+
+void Plant::Identify() {
+  identity_ = fingerprint_;
+  const auto add = [&](const auto&... texts) { (Hash(texts, &identity_), ...); };
+  const auto number = [&](double value) { Hash(std::to_string(std::bit_cast<std::uint64_t>(value)), &identity_); };
+  add(description_.name, description_.law, description_.predicts);
+  for (const auto& c : description_.constants) add(c.name), number(c.value);
+  for (const auto& p : description_.parameters) add(p.name, p.unit, p.prior), number(p.per_mode ? 1.0 : 0.0);
+  for (const auto& l : description_.lets) add(l.name, l.text);
+  for (const auto& m : description_.modes) add(m.name, m.when, m.law, m.target), number(m.passive ? 1.0 : 0.0);
+  for (const auto& s : description_.states) add(s.name, s.rate, s.start, s.measured_by), number(s.substeps);
+  for (const auto& r : description_.reports) add(r.name, r.unit, r.value);
+}
+
+void Plant::AddSymbol(const std::string& key, Symbol symbol) {
+  if (symbol.name == "t") throw PlantError(key, 0, "t is the plant's time: choose another name");
+  if (!expression::IsFreeName(symbol.name))
+    throw PlantError(key, 0,
+                     '"' + symbol.name + "\" cannot be a name in an expression: letters, digits and _, no function");
+  if (scope_.Find(symbol.name) != nullptr)
+    throw PlantError(key, 0, '"' + symbol.name + "\" is the name of something else already");
+  // Signals, parameters and states are there whether a text uses them or not.
+  if (symbol.kind == SymbolKind::kSignal || symbol.kind == SymbolKind::kParameter || symbol.kind == SymbolKind::kState)
+    (void)graph_.Symbol(symbol.kind, symbol.index);
+  scope_.Add(std::move(symbol));
+}
+
+std::optional<Unit> Plant::UnitAt(const std::string& key, const std::string& text) const {
+  try {
+    return expression::ParseUnit(text);
+  } catch (const expression::Error& error) {
+    throw PlantError(key, error.column(), error.what());
+  }
+}
+
+int Plant::SignalAt(const std::string& key, const std::string& name) const {
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < description_.signals.size(); ++s) {
+    if (description_.signals[s].name == name) return static_cast<int>(s);
+    names.push_back(description_.signals[s].name);
+  }
+  throw PlantError(key, 0, "no signal is called \"" + name + "\"; there are " + Listed(names), name, names);
+}
+
+void Plant::AddSignals() {
+  const auto& signals = description_.signals;
+  if (signals.size() < 2) throw PlantError("signals", 0, "expected an output and at least one input");
+  if (signals.size() > static_cast<std::size_t>(kMaxInputs) + 1)
+    throw PlantError("signals", 0, "at most " + std::to_string(kMaxInputs) + " inputs and the output are possible");
+  for (std::size_t s = 0; s < signals.size(); ++s) {
+    Symbol symbol;
+    symbol.name = signals[s].name;
+    symbol.kind = SymbolKind::kSignal;
+    symbol.index = static_cast<int>(s);
+    symbol.unit = UnitAt("signals." + signals[s].name + ".unit", signals[s].unit);
+    AddSymbol("signals." + signals[s].name, std::move(symbol));
+  }
+  output_ = SignalAt("output", description_.output);
+  for (const SignalDescription& signal : signals) {
+    if (signal.derivative_of.empty()) continue;
+    const std::string key = "signals." + signal.name + ".derivative_of";
+    const SignalDescription* of = &signals[static_cast<std::size_t>(SignalAt(key, signal.derivative_of))];
+    for (std::size_t steps = 0; !of->derivative_of.empty() || of->name == signal.name; ++steps) {
+      if (of->name == signal.name || steps > signals.size())
+        throw PlantError(key, 0, signal.name + " would be a rate of itself");
+      of = &signals[static_cast<std::size_t>(SignalAt("signals." + of->name + ".derivative_of", of->derivative_of))];
+    }
+    const auto unit = scope_.Find(signal.name)->unit;
+    const auto unit_of = scope_.Find(signal.derivative_of)->unit;
+    if (unit && unit_of && !unit->Same(unit_of->Over(Second())))
+      throw PlantError(key, 0,
+                       signal.name + " is " + unit->Text() + ", the rate of " + signal.derivative_of + " would be " +
+                           unit_of->Over(Second()).Text());
+  }
+  Symbol time;
+  time.name = "t";
+  time.kind = SymbolKind::kTime;
+  time.unit = Second();
+  scope_.Add(std::move(time));
+
+  fingerprint_ = 0xcbf29ce484222325ULL;
+  for (const SignalDescription& signal : signals)
+    for (const std::string* text : {&signal.name, &signal.unit, &signal.role}) Hash(*text, &fingerprint_);
+  Hash(description_.output, &fingerprint_);
+}
+
+void Plant::AddConstants() {
+  for (std::size_t c = 0; c < description_.constants.size(); ++c) {
+    const ConstantDescription& constant = description_.constants[c];
+    const std::string key = "constants." + constant.name;
+    if (!std::isfinite(constant.value)) throw PlantError(key, 0, "expected a finite number");
+    Symbol symbol;
+    symbol.name = constant.name;
+    symbol.kind = SymbolKind::kConstant;
+    symbol.index = static_cast<int>(c);
+    symbol.value = constant.value;
+    symbol.range = {constant.value, constant.value};
+    if (!constant.unit.empty()) symbol.unit = UnitAt(key + ".unit", constant.unit);
+    AddSymbol(key, std::move(symbol));
+  }
+}
+
+void Plant::AddParameters() {
+  auto& parameters = description_.parameters;
+  if (parameters.empty()) throw PlantError("parameters", 0, "a plant has at least one parameter");
+  for (std::size_t d = 0; d < parameters.size(); ++d) {
+    ParameterDescription& p = parameters[d];
+    const std::string key = "parameters." + p.name;
+    CheckPrior(key, p);
+    const expression::Interval bounds = Bounds(p);
+    if (!(bounds.lower < bounds.upper)) throw PlantError(key, 0, "lower is not below upper");
+    constexpr double kReach = 5.0;
+    if (p.prior == "normal" && (bounds.lower > p.mean + kReach * p.sd || bounds.upper < p.mean - kReach * p.sd))
+      throw PlantError(key, 0, "the bounds hold none of the prior's mass: the mean is more than 5 sd outside");
+    p.lower = bounds.lower;
+    p.upper = bounds.upper;
+    Symbol symbol;
+    symbol.name = p.name;
+    symbol.kind = SymbolKind::kParameter;
+    symbol.index = static_cast<int>(d);
+    symbol.unit = UnitAt(key + ".unit", p.unit);
+    symbol.range = bounds;
+    AddSymbol(key, std::move(symbol));
+  }
+}
+
+void Plant::AddStates() {
+  const auto& states = description_.states;
+  if (states.size() > static_cast<std::size_t>(kMaxStates))
+    throw PlantError("states", 0, "at most " + std::to_string(kMaxStates) + " states are possible");
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    Symbol symbol;
+    symbol.name = states[s].name;
+    symbol.kind = SymbolKind::kState;
+    symbol.index = static_cast<int>(s);
+    symbol.unit = UnitAt("states." + states[s].name + ".unit", states[s].unit);
+    AddSymbol("states." + states[s].name, std::move(symbol));
+  }
+}
+
+Plant::Lowered Plant::Lower(const std::string& key, const std::string& text, const std::optional<Unit>& unit,
+                            std::string_view what, const std::string& given) {
+  try {
+    const Syntax syntax = expression::Parse(text);
+    for (const expression::SyntaxNode& node : syntax.nodes)
+      if (node.op == Op::kSymbol) ++mentions_[node.name];
+    const std::optional<Syntax> condition = given.empty() ? std::nullopt : std::optional(expression::Parse(given));
+    const Meaning meaning = Check(syntax, scope_, condition ? &*condition : nullptr);
+    Expect(meaning, unit, syntax, what);
+    return {graph_.Lower(syntax, scope_, lets_), meaning};
+  } catch (const expression::UnknownName& error) {
+    std::string message = error.what();
+    for (const LetDescription& let : description_.lets)
+      if (let.name == error.name())
+        message = '"' + let.name + "\" is defined further down in [let]: what is used stands above";
+    throw PlantError(key, error.column(), message, error.name(), scope_.Names());
+  } catch (const expression::Error& error) {
+    throw PlantError(key, error.column(), error.what());
+  }
+}
+
+void Plant::AddLets() {
+  // A lognormal parameter is sampled as its logarithm; everything that reads it reads exp of that.
+  for (const LetDescription& let : description_.lets) {
+    const std::string key = "let." + let.name;
+    const Lowered lowered = Lower(key, let.text);
+    Symbol symbol;
+    symbol.name = let.name;
+    symbol.kind = SymbolKind::kLet;
+    symbol.index = static_cast<int>(lets_.size());
+    symbol.unit = lowered.meaning.unit;
+    symbol.range = lowered.meaning.range;
+    symbol.condition = lowered.meaning.condition;
+    symbol.sampled = lowered.meaning.sampled;
+    symbol.fixed = lowered.meaning.fixed;
+    AddSymbol(key, std::move(symbol));
+    lets_.push_back(lowered.node);
+  }
+}
+
+void Plant::AddModes() {
+  auto& modes = description_.modes;
+  if (modes.empty()) {
+    if (description_.law.empty()) throw PlantError("law", 0, "expected a law, or modes that have one");
+    ModeDescription only;
+    only.name = "always";
+    only.law = description_.law;
+    modes.push_back(std::move(only));
+  } else if (!description_.law.empty()) {
+    throw PlantError("law", 0, "a plant has either a law or modes");
+  }
+  if (modes.size() > static_cast<std::size_t>(kMaxPlantModes))
+    throw PlantError("mode", 0, "at most " + std::to_string(kMaxPlantModes) + " modes are possible");
+  const bool one_law = !description_.law.empty();
+  const std::optional<Unit> output_unit = scope_.Find(description_.output)->unit;
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    const ModeDescription& mode = modes[m];
+    const std::string key = "mode[" + std::to_string(m) + "].";
+    PlantMode understood;
+    understood.name = mode.name;
+    understood.passive = mode.passive;
+    for (std::size_t other = 0; other < m; ++other)
+      if (modes[other].name == mode.name)
+        throw PlantError(key + "name", 0, "two modes are called \"" + mode.name + '"');
+    if (!mode.when.empty()) {
+      const Lowered when = Lower(key + "when", mode.when);
+      if (!when.meaning.condition)
+        throw PlantError(key + "when", 1, "expected a condition such as x >= 0, found a number");
+      if (when.meaning.sampled)
+        throw PlantError(key + "when", 1, "a mode is decided by signals alone, not by a parameter or a state");
+      understood.when = when.node;
+    }
+    understood.target = NodeOf(SymbolKind::kSignal, output_);
+    understood.target_unit = output_unit;
+    if (!mode.target.empty()) {
+      const Lowered target = Lower(key + "target", mode.target, {}, "", mode.when);
+      if (target.meaning.sampled)
+        throw PlantError(key + "target", 1,
+                         "a target is computed from signals alone: what depends on a parameter belongs into the law");
+      understood.target = target.node;
+      understood.target_unit = target.meaning.unit;
+    }
+    if (mode.law.empty() && !mode.passive)
+      throw PlantError(key + "law", 0, "expected a law; only a passive mode may be without");
+    const std::string law_key = one_law ? "law" : key + "law";
+    const auto expected = mode.passive ? output_unit : understood.target_unit;
+    understood.law =
+        mode.law.empty() ? graph_.Number(0.0) : Lower(law_key, mode.law, expected, "the law", mode.when).node;
+    modes_.push_back(std::move(understood));
+  }
+  if (std::all_of(modes_.begin(), modes_.end(), [](const PlantMode& mode) { return mode.passive; }))
+    throw PlantError("mode", 0, "every mode is passive: nothing could be learnt");
+}
+
+void Plant::AddRates() {
+  for (const StateDescription& state : description_.states) {
+    const std::string key = "states." + state.name + ".";
+    const std::optional<Unit> unit = scope_.Find(state.name)->unit;
+    PlantState understood;
+    if (state.rate.empty()) throw PlantError(key + "rate", 0, "a state needs a rate");
+    if (state.start.empty()) throw PlantError(key + "start", 0, "a state needs a start");
+    if (state.substeps < 1 || state.substeps > 100)
+      throw PlantError(key + "substeps", 0, "expected a number of substeps in [1, 100]");
+    const Lowered rate = Lower(key + "rate", state.rate, unit ? std::optional(unit->Over(Second())) : std::nullopt,
+                               "the rate of " + state.name);
+    if (rate.meaning.memory) throw PlantError(key + "rate", 1, "a rate has no memory but that of its states");
+    understood.rate = rate.node;
+    const Lowered start = Lower(key + "start", state.start, unit, "the start of " + state.name);
+    for (std::size_t s = 0; s < description_.states.size(); ++s)
+      if (graph_.DependsOn(start.node, NodeOf(SymbolKind::kState, static_cast<int>(s))))
+        throw PlantError(key + "start", 1, "a start depends on signals and parameters, not on states");
+    understood.start = start.node;
+    if (!state.measured_by.empty()) {
+      understood.measured_by = SignalAt(key + "measured_by", state.measured_by);
+      const auto measured = scope_.Find(state.measured_by)->unit;
+      if (unit && measured && !unit->Same(*measured))
+        throw PlantError(key + "measured_by", 0,
+                         state.measured_by + " is " + measured->Text() + ", " + state.name + " is " + unit->Text());
+    }
+    states_.push_back(understood);
+  }
+}
+
+void Plant::AddReports() {
+  if (!description_.predicts.empty())
+    predicts_ =
+        Lower("predicts", description_.predicts, scope_.Find(description_.output)->unit, "what is predicted").node;
+  for (const ReportDescription& report : description_.reports) {
+    const std::string key = "report." + report.name;
+    const Lowered lowered = Lower(key + ".value", report.value, UnitAt(key + ".unit", report.unit), report.name);
+    if (graph_.at(lowered.node).varies)
+      throw PlantError(key + ".value", 1, "a reported quantity is made of parameters and constants");
+    reports_.push_back(lowered.node);
+  }
+}
+
+void Plant::CheckParametersAreFelt() const {
+  for (std::size_t d = 0; d < description_.parameters.size(); ++d) {
+    const std::string& name = description_.parameters[d].name;
+    const std::string key = "parameters." + name;
+    if (mentions_.count(name) == 0)
+      throw PlantError(key, 0, name + " is used nowhere: remove it, or use it in the law");
+    const int node = NodeOf(SymbolKind::kParameter, static_cast<int>(d));
+    std::vector<int> felt;
+    for (const PlantMode& mode : modes_)
+      if (!mode.passive) felt.push_back(mode.law);
+    // Through the states that a law reads, and what those read.
+    for (std::size_t round = 0; round <= states_.size(); ++round)
+      for (std::size_t s = 0; s < states_.size(); ++s) {
+        const int state = NodeOf(SymbolKind::kState, static_cast<int>(s));
+        const bool read = std::any_of(felt.begin(), felt.end(), [&](int n) { return graph_.DependsOn(n, state); });
+        if (read && std::find(felt.begin(), felt.end(), states_[s].rate) == felt.end()) {
+          felt.push_back(states_[s].rate);
+          felt.push_back(states_[s].start);
+        }
+      }
+    if (std::none_of(felt.begin(), felt.end(), [&](int n) { return graph_.DependsOn(n, node); }))
+      throw PlantError(key, 0, "no law depends on " + name + ": data cannot tell it");
+  }
+}
+
+int Plant::NodeOf(SymbolKind kind, int index) const {
+  for (int n = 0; n < graph_.size(); ++n) {
+    const expression::GraphNode& node = graph_.at(n);
+    if (node.op == Op::kSymbol && node.kind == kind && node.index == index) return n;
+  }
+  return -1;
+}
+
+std::vector<int> Plant::SignalsWithRole(std::string_view role) const {
+  std::vector<int> found;
+  for (std::size_t s = 0; s < description_.signals.size(); ++s)
+    if (description_.signals[s].role == role) found.push_back(static_cast<int>(s));
+  return found;
+}
+
+}  // namespace armcmc

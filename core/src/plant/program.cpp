@@ -1,0 +1,241 @@
+#include "armcmc/plant/program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "armcmc/expression/compile.hpp"
+
+namespace armcmc {
+namespace {
+
+using expression::Op;
+using expression::SymbolKind;
+
+static_assert(Plant::kMaxInputs <= kMaxPackInputs && Plant::kMaxPlantModes <= kMaxModes);
+
+bool IsLognormal(const ParameterDescription& p) { return p.prior == "lognormal"; }
+
+}  // namespace
+
+PlantProgram::PlantProgram(std::shared_ptr<const Plant> plant) : plant_(std::move(plant)), graph_(plant_->graph()) {
+  if (!plant_->states().empty()) throw PlantError("states", 0, "the estimator runs no plants with states");
+  for (std::size_t m = 0; m < plant_->modes().size(); ++m)
+    if (!plant_->modes()[m].passive) active_.push_back(m);
+  const auto& parameters = plant_->description().parameters;
+  merged_ = active_.size() > 1 &&
+            std::any_of(parameters.begin(), parameters.end(), [](const auto& p) { return !p.per_mode; });
+  ChooseParameters();
+  CompileModes();
+  FillInfo();
+}
+
+void PlantProgram::ChooseParameters() {
+  const auto& description = plant_->description();
+  index_.assign(active_.size(), std::vector<int>(description.parameters.size()));
+  for (std::size_t d = 0; d < description.parameters.size(); ++d) {
+    const ParameterDescription& p = description.parameters[d];
+    const bool copies = merged_ && p.per_mode;
+    for (std::size_t a = 0; a < active_.size(); ++a) {
+      if (a == 0 || copies) {
+        sampled_.push_back(p);
+        if (copies) sampled_.back().name += '_' + plant_->modes()[active_[a]].name;
+      }
+      index_[a][d] = static_cast<int>(sampled_.size()) - 1;
+    }
+  }
+  const std::size_t coordinates = sampled_.size() + (description.noise.estimate ? 1 : 0);
+  if (coordinates > static_cast<std::size_t>(kMaxParams))
+    throw PlantError("parameters", 0,
+                     "there are " + std::to_string(coordinates) +
+                         " parameters to sample (noise scale included), at most " + std::to_string(kMaxParams) +
+                         " are possible");
+}
+
+int PlantProgram::InMode(int node, std::size_t active) {
+  std::map<int, int> by;
+  for (std::size_t d = 0; d < index_[active].size(); ++d) {
+    const int sampled = index_[active][d];
+    const int symbol = graph_.Symbol(SymbolKind::kParameter, sampled);
+    const bool log = IsLognormal(sampled_[static_cast<std::size_t>(sampled)]);
+    by.emplace(plant_->NodeOf(SymbolKind::kParameter, static_cast<int>(d)),
+               log ? graph_.Make(Op::kExp, symbol) : symbol);
+  }
+  return graph_.Substitute(node, by);
+}
+
+void PlantProgram::CompileModes() {
+  const auto& modes = plant_->modes();
+  const auto& described = plant_->description().modes;
+  std::vector<int> scalars;
+  // law - target: squares do not mind the sign, and a product is added to minus the target in one instruction.
+  const auto compile = [&](const std::string& name, int law, int target, const std::string& key) {
+    try {
+      SampledMode mode;
+      mode.name = name;
+      for (const bool error : {false, true}) {
+        const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
+        const expression::CompiledTape tape =
+            CompileTape(&graph_, {node}, static_cast<int>(sampled_.size()), 0, std::move(scalars));
+        scalars = tape.scalars;
+        (error ? mode.error : mode.law) = tape.tape;
+      }
+      modes_.push_back(std::move(mode));
+    } catch (const std::logic_error& error) {  // length_error, invalid_argument
+      throw PlantError(key, 0, std::string("the law ") + error.what());
+    }
+  };
+  const auto key_of = [&](std::size_t m) {
+    return plant_->description().law.empty() ? "mode[" + std::to_string(m) + "].law" : std::string("law");
+  };
+  if (merged_) {
+    int law = graph_.Number(0.0);
+    int target = graph_.Number(0.0);
+    for (std::size_t a = active_.size(); a-- > 0;) {
+      const PlantMode& mode = modes[active_[a]];
+      const int when = mode.when < 0 ? graph_.Number(1.0) : mode.when;
+      law = graph_.Make(Op::kIf, when, InMode(mode.law, a), law);
+      target = graph_.Make(Op::kIf, when, mode.target, target);
+    }
+    compile("active", law, target, key_of(active_[0]));
+  } else {
+    for (std::size_t a = 0; a < active_.size(); ++a)
+      compile(described[active_[a]].name, InMode(modes[active_[a]].law, a), modes[active_[a]].target,
+              key_of(active_[a]));
+  }
+  num_scalars_ = static_cast<int>(scalars.size());
+  std::vector<int> features = scalars;
+  const auto feature = [&](int node) {
+    features.push_back(node);
+    return static_cast<int>(features.size()) - 1;
+  };
+  std::size_t next = 0;
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    Outputs out;
+    if (modes[m].when >= 0) out.when = feature(modes[m].when);
+    if (modes[m].passive) {
+      if (graph_.at(modes[m].law).sampled)
+        throw PlantError(key_of(m), 1, "what a passive mode shows depends on no parameter");
+      out.passive = feature(modes[m].law);
+    } else {
+      out.sampled = merged_ ? 0 : static_cast<int>(next++);
+      out.target = feature(modes[m].target);
+    }
+    outputs_.push_back(out);
+  }
+  try {
+    features_ = expression::FeatureProgram(graph_, features);
+  } catch (const std::length_error& error) {
+    throw PlantError("name", 0, std::string("the plant ") + error.what());
+  }
+}
+
+void PlantProgram::FillInfo() {
+  const PlantDescription& description = plant_->description();
+  const auto& reports = description.reports;
+  if (sampled_.size() + reports.size() > static_cast<std::size_t>(kMaxReported))
+    throw PlantError("report", 0,
+                     "at most " + std::to_string(kMaxReported) + " quantities are reported, parameters included");
+  std::vector<int> nodes;
+  for (std::size_t d = 0; d < sampled_.size(); ++d) {
+    const int symbol = graph_.Symbol(SymbolKind::kParameter, static_cast<int>(d));
+    nodes.push_back(IsLognormal(sampled_[d]) ? graph_.Make(Op::kExp, symbol) : symbol);
+    names_.push_back(sampled_[d].name);
+    units_.push_back(sampled_[d].unit);
+  }
+  for (std::size_t r = 0; r < reports.size(); ++r) {
+    const int first = InMode(plant_->reports()[r], 0);
+    for (std::size_t a = 1; merged_ && a < active_.size(); ++a)
+      if (InMode(plant_->reports()[r], a) != first)
+        throw PlantError("report." + reports[r].name + ".value", 1,
+                         "differs from mode to mode, and there is one value to report");
+    nodes.push_back(first);
+    names_.push_back(reports[r].name);
+    units_.push_back(reports[r].unit);
+  }
+  for (const int node : nodes) reports_.emplace_back(graph_, std::vector<int>{node});
+
+  const auto& first_mode = plant_->modes()[active_[0]];
+  target_unit_ = first_mode.target_unit ? first_mode.target_unit->Text() : "?";
+  for (const SignalDescription& signal : description.signals)
+    if (signal.name == description.output && description.modes[active_[0]].target.empty()) target_unit_ = signal.unit;
+  info_.name = description.name;
+  info_.plant = PlantKind::kDescribed;
+  info_.described = this;
+  info_.target_unit = target_unit_;
+  info_.num_parameters = static_cast<int>(sampled_.size());
+  for (std::size_t d = 0; d < sampled_.size(); ++d) {
+    const ParameterDescription& p = sampled_[d];
+    info_.parameters[d] = {names_[d], units_[d], p.mean, p.sd, *p.lower, *p.upper};
+  }
+  info_.num_modes = static_cast<int>(modes_.size());
+  for (std::size_t m = 0; m < modes_.size(); ++m) info_.modes[m] = modes_[m].name;
+  info_.modes[modes_.size()] = "passive";
+  for (const ModeDescription& mode : description.modes)
+    if (mode.passive) info_.modes[modes_.size()] = mode.name;
+  info_.num_inputs = static_cast<int>(description.signals.size()) - 1;
+  info_.default_noise_std = description.noise.std;
+  info_.num_reported = static_cast<int>(nodes.size());
+  for (std::size_t r = 0; r < nodes.size(); ++r) info_.reported[r] = {names_[r], units_[r]};
+}
+
+bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memory, PlantPack* out) const noexcept {
+  std::array<double, Plant::kMaxInputs + 1> signals{};
+  std::array<double, expression::kMaxTapeScalars + 2 * Plant::kMaxPlantModes> value{};
+  out->scalars.stride = num_scalars_;
+  const auto output = static_cast<std::size_t>(plant_->output());
+  const auto num_signals = static_cast<std::size_t>(info_.num_inputs) + 1;
+  bool finite = true;
+  for (int n = 0; n < pack.num_samples; ++n) {
+    const auto in = static_cast<std::size_t>(n);
+    for (std::size_t s = 0, column = 0; s < num_signals; ++s)
+      signals[s] = s == output ? pack.y[in] : pack.u[in][column++];
+    features_.Evaluate({signals.data(), pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt, pack.dt}, memory,
+                       value.data());
+    out->mode[in] = static_cast<std::int8_t>(info_.num_modes);
+    out->target[in] = out->passive[in] = 0.0;
+    for (const Outputs& mode : outputs_) {
+      if (mode.when >= 0 && value[static_cast<std::size_t>(mode.when)] == 0.0) continue;
+      if (mode.sampled >= 0) {
+        out->mode[in] = static_cast<std::int8_t>(mode.sampled);
+        out->target[in] = value[static_cast<std::size_t>(mode.target)];
+        finite = finite && std::isfinite(out->target[in]);
+      } else {
+        out->passive[in] = value[static_cast<std::size_t>(mode.passive)];
+      }
+      break;
+    }
+    std::copy_n(value.begin(), num_scalars_, out->scalars.Row(n));
+  }
+  return finite;
+}
+
+void PlantProgram::Fill(const PlantPack& pack, int num_samples, int mode, ModeData* data) const noexcept {
+  int m = 0;
+  for (int n = 0; n < num_samples; ++n) {
+    if (pack.mode[static_cast<std::size_t>(n)] != mode) continue;
+    const auto im = static_cast<std::size_t>(m++);
+    data->sample[im] = static_cast<std::int16_t>(n);
+    data->target[im] = pack.target[static_cast<std::size_t>(n)];
+  }
+  data->num_samples = m;
+  data->tape = &modes_[static_cast<std::size_t>(mode)].law;
+  data->error_tape = &modes_[static_cast<std::size_t>(mode)].error;
+  data->scalars = &pack.scalars;
+}
+
+double PlantProgram::Report(int r, const double* theta) const noexcept {
+  double value = 0.0;
+  reports_[static_cast<std::size_t>(r)].Evaluate({theta, 0.0, 0.0}, nullptr, &value);
+  return value;
+}
+
+bool PlantProgram::IsReportedAsSampled(int r) const noexcept {
+  return static_cast<std::size_t>(r) < sampled_.size() && !IsLognormal(sampled_[static_cast<std::size_t>(r)]);
+}
+
+double PlantProgram::Sampled(int d, double reported) const noexcept {
+  return IsLognormal(sampled_[static_cast<std::size_t>(d)]) ? std::log(reported) : reported;
+}
+
+}  // namespace armcmc

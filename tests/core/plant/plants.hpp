@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+
+#include "armcmc/plant/program.hpp"
+#include "armcmc/settings.hpp"
+
+namespace armcmc::test {
+
+/// The contact of the paper as a plant file says it.
+inline PlantDescription DescribedContact() {
+  PlantDescription plant;
+  plant.name = "contact";
+  plant.output = "f";
+  plant.signals = {{"x", "m", "position", ""}, {"v", "m/s", "velocity", "x"}, {"f", "N", "force", ""}};
+  plant.parameters = {{"K", "N/m^p", "normal", 2.5, 2.0, 0.0, 8.0},
+                      {"B", "N s/m^(p+1)", "normal", 2.5, 2.0, 0.0, 8.0},
+                      {"p", "1", "normal", 1.5, 0.35, 1.0, 2.5}};
+  plant.modes = {{"contact", "x >= 0", "x^p * (K + B*v)", "", false}, {"free", "", "", "", true}};
+  plant.noise.std = 0.1;
+  return plant;
+}
+
+/// A mass with viscous friction and an offset: linear in its parameters.
+inline PlantDescription DescribedAxis() {
+  PlantDescription plant;
+  plant.name = "axis";
+  plant.output = "F";
+  plant.law = "M*a + Fv*v + off";
+  plant.signals = {{"v", "m/s", "velocity", ""}, {"a", "m/s^2", "acceleration", "v"}, {"F", "N", "force", ""}};
+  plant.parameters = {{"M", "kg", "normal", 90.0, 30.0, 1.0, 500.0},
+                      {"Fv", "N s/m", "normal", 200.0, 100.0, 0.0, 2000.0},
+                      {"off", "N", "normal", 0.0, 10.0}};
+  plant.noise.std = 1.0;
+  return plant;
+}
+
+inline std::shared_ptr<const PlantProgram> Program(PlantDescription plant) {
+  return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(std::move(plant)));
+}
+
+}  // namespace armcmc::test

@@ -1,0 +1,152 @@
+#include "armcmc/support/plant_file.hpp"
+
+#include <cctype>
+#include <limits>
+
+#include "nearest.hpp"
+
+namespace armcmc::support {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+std::optional<double> OptionalNumber(StrictTable* table, std::string_view key) {
+  if (!table->Has(key)) return std::nullopt;
+  return table->RequiredNumber(key, -kInf, kInf);
+}
+
+void ReadSignals(StrictTable root, PlantDescription* plant) {
+  StrictTable signals = root.Table("signals");
+  for (const std::string& name : signals.Keys()) {
+    StrictTable at = signals.Table(name);
+    plant->signals.push_back({name, at.RequiredText("unit"), at.Text("role", ""), at.Text("derivative_of", "")});
+  }
+}
+
+void ReadConstants(StrictTable root, PlantDescription* plant) {
+  StrictTable constants = root.Table("constants");
+  for (const std::string& name : constants.Keys()) {
+    if (constants.IsTable(name)) {
+      StrictTable at = constants.Table(name);
+      plant->constants.push_back({name, at.RequiredNumber("value", -kInf, kInf), at.Text("unit", "")});
+    } else {
+      plant->constants.push_back({name, constants.RequiredNumber(name, -kInf, kInf), ""});
+    }
+  }
+}
+
+void ReadParameters(StrictTable root, PlantDescription* plant) {
+  StrictTable parameters = root.Table("parameters");
+  for (const std::string& name : parameters.Keys()) {
+    StrictTable at = parameters.Table(name);
+    ParameterDescription p;
+    p.name = name;
+    p.unit = at.RequiredText("unit");
+    p.prior = at.Choice("prior", "normal", {"normal", "uniform", "lognormal"});
+    if (p.prior == "uniform") {
+      p.lower = at.RequiredNumber("lower", -kInf, kInf);
+      p.upper = at.RequiredNumber("upper", -kInf, kInf);
+    } else {
+      p.mean = at.RequiredNumber("mean", -kInf, kInf);
+      p.sd = at.RequiredNumber("sd", -kInf, kInf);
+      p.lower = OptionalNumber(&at, "lower");
+      p.upper = OptionalNumber(&at, "upper");
+    }
+    p.per_mode = at.Boolean("per_mode", false);
+    plant->parameters.push_back(std::move(p));
+  }
+}
+
+void ReadModes(StrictTable root, PlantDescription* plant) {
+  for (StrictTable& at : root.Tables("mode")) {
+    ModeDescription mode;
+    mode.name = at.RequiredText("name");
+    mode.when = at.Text("when", "");
+    mode.passive = at.Boolean("passive", false);
+    mode.law = at.Text("law", "");
+    mode.target = at.Text("target", "");
+    plant->modes.push_back(std::move(mode));
+  }
+}
+
+void ReadStates(StrictTable root, PlantDescription* plant) {
+  StrictTable states = root.Table("states");
+  for (const std::string& name : states.Keys()) {
+    StrictTable at = states.Table(name);
+    StateDescription state;
+    state.name = name;
+    state.unit = at.RequiredText("unit");
+    state.role = at.Text("role", "");
+    state.rate = at.RequiredText("rate");
+    state.start = at.RequiredText("start");
+    state.measured_by = at.Text("measured_by", "");
+    state.substeps = static_cast<int>(at.Integer("substeps", 1, 1, 100));
+    plant->states.push_back(std::move(state));
+  }
+}
+
+PlantDescription Describe(StrictTable root) {
+  PlantDescription plant;
+  (void)root.RequiredInteger("schema", 1, 1);
+  plant.name = root.RequiredText("name");
+  plant.title = root.Text("title", plant.name);
+  plant.output = root.RequiredText("output");
+  plant.law = root.Text("law", "");
+  plant.predicts = root.Text("predicts", "");
+  ReadSignals(root, &plant);
+  ReadConstants(root, &plant);
+  ReadParameters(root, &plant);
+  StrictTable lets = root.Table("let");
+  for (const std::string& name : lets.Keys()) plant.lets.push_back({name, lets.RequiredText(name)});
+  ReadModes(root, &plant);
+  ReadStates(root, &plant);
+  StrictTable reports = root.Table("report");
+  for (const std::string& name : reports.Keys()) {
+    StrictTable at = reports.Table(name);
+    plant.reports.push_back({name, at.RequiredText("unit"), at.RequiredText("value")});
+  }
+  StrictTable noise = root.Table("noise");
+  plant.noise.law = noise.Choice("law", "gaussian", {"gaussian", "student_t", "laplace", "mixture"});
+  plant.noise.std = noise.RequiredNumber("std", std::numeric_limits<double>::min(), kInf);
+  plant.noise.estimate = noise.Boolean("estimate", false);
+  root.Finish();
+  return plant;
+}
+
+/// What the plant says of a key, at the place of the key in its file.
+ConfigError Placed(StrictTable table, const PlantError& error) {
+  std::string what = error.what();
+  if (!error.unknown().empty()) what += DidYouMean(error.unknown(), error.known());
+  std::string path = error.key();
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.')) {
+    const std::string part = path.substr(0, dot);
+    path.erase(0, dot + 1);
+    if (const std::size_t bracket = part.find('['); bracket != std::string::npos) {
+      table = table.Tables(part.substr(0, bracket)).at(std::stoul(part.substr(bracket + 1)));
+    } else {
+      // What is wrong with a key of a value that is written without a table is wrong with the value.
+      if (!table.IsTable(part)) return table.Error(part, what);
+      table = table.Table(part);
+    }
+  }
+  return table.ErrorInText(path, error.column(), what);
+}
+
+Plant Understood(const StrictTable& root) {
+  PlantDescription description = Describe(root);
+  try {
+    return Plant(std::move(description));
+  } catch (const PlantError& error) {
+    throw Placed(root, error);
+  }
+}
+
+}  // namespace
+
+Plant ReadPlant(const std::filesystem::path& path) { return Understood(StrictTable::FromFile(path)); }
+
+Plant PlantFromText(std::string_view text, std::string_view name) {
+  return Understood(StrictTable::FromText(text, name));
+}
+
+}  // namespace armcmc::support
