@@ -37,6 +37,7 @@ bool HeapCallsAreCounted() noexcept { return ARMCMC_COUNT_HEAP_CALLS != 0; }
 }  // namespace armcmc::rt
 
 #if ARMCMC_COUNT_HEAP_CALLS
+// NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming): glibc's names
 // glibc's own entry points; its headers do not declare them.
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -96,4 +97,5 @@ void* pvalloc(std::size_t size) {
   return __libc_pvalloc(size);
 }
 }  // extern "C"
+// NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)
 #endif

@@ -20,7 +20,7 @@ void ExecuteStage::CountSampling(const Estimate& estimate) noexcept {
   for (const ModeEstimate& mode : estimate.modes) {
     if (!mode.updated || mode.draws <= 0) continue;
     draws_.Add(mode.draws);
-    if (std::isfinite(mode.ess)) ess_.Add(static_cast<std::int64_t>(mode.ess + 0.5));
+    if (std::isfinite(mode.ess)) ess_.Add(static_cast<std::int64_t>(std::floor(mode.ess + 0.5)));
   }
 }
 

@@ -37,7 +37,7 @@ class SamplerWorkspace {
   std::array<std::vector<double>, PosteriorMemory::kMaxBlocks> memory;  ///< Density of each block of the memory.
   std::vector<double> weight, group_weight;
   std::vector<double> first_share;       ///< Posterior share of the memory's first block at a candidate.
-  std::vector<double> noise_coordinate;  ///< The noise scale\'s coordinate, spread out for the memory.
+  std::vector<double> noise_coordinate;  ///< The noise scale's coordinate, spread out for the memory.
   std::vector<std::int8_t> component;    ///< Component that a candidate was drawn from.
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;

@@ -80,6 +80,11 @@ void PlantProgram::CompileModes() {
         scalars = tape.scalars;
         (error ? mode.error : mode.law) = tape.tape;
       }
+      for (expression::Tape* tape : {&mode.law, &mode.error}) {
+        const ParameterDescription& exponent = sampled_[tape->exponent];
+        if (tape->shape == expression::TapeShape::kPower && !IsLognormal(exponent))
+          tape->largest_exponent = std::fmax(std::fabs(*exponent.lower), std::fabs(*exponent.upper));
+      }
       modes_.push_back(std::move(mode));
     } catch (const std::logic_error& error) {  // length_error, invalid_argument
       throw PlantError(key, 0, std::string("the law ") + error.what());

@@ -155,5 +155,28 @@ struct Math {
   static V Flip(V a, V sign) noexcept { return Simd::FromBits(Simd::Bits(a) ^ Simd::Bits(sign)); }
 };
 
+/// The vector arithmetic with a power for scoring: relative error below 4.1e-11, which moves the log-likelihood of a
+/// hundred samples by less than 1e-6 where the signal is a hundred times the noise.
+struct ScoreSimd : Simd {
+  static constexpr double kReach = 60.0;  ///< Largest |log2_x|, for exponents within 16.
+
+  /// 2^(exponent log2_x), without clamps. Minimax polynomial of degree 7.
+  static V Power(V exponent, double log2_x) noexcept {
+    const V magic = Set(6755399441055744.0);  // 1.5 * 2^52: rounds to an integer, which it leaves in the lowest bits
+    const V x = Set(log2_x);
+    const V shifted = Fma(exponent, x, magic);
+    const V f = Fma(exponent, x, magic - shifted);
+    V p = Set(1.52019226419755621e-05);
+    p = Fma(p, f, Set(1.54692911308010610e-04));
+    p = Fma(p, f, Set(1.33339225590775254e-03));
+    p = Fma(p, f, Set(9.61802725371136910e-03));
+    p = Fma(p, f, Set(5.55041035345320843e-02));
+    p = Fma(p, f, Set(2.40226511981572077e-01));
+    p = Fma(p, f, Set(6.93147180728445611e-01));
+    p = Fma(p, f, Set(9.99999999961681985e-01));
+    return FromBits(Bits(p) + (Bits(shifted) << 52));
+  }
+};
+
 }  // namespace
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE

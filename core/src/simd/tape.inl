@@ -172,11 +172,69 @@ void SumTapeSquares(const ModeData& data, const ThetaTile& theta, double* out) n
   for (int v = 0; v < kTapeVectors; ++v) Simd::Store(out + v * Simd::kLanes, sum[v]);
 }
 
+/// sum[v] += constant + sum of scalars x parameters, for the vectors of a group whose first lane is `lane`.
+template <int kGroup>
+[[gnu::always_inline]] inline void AddTapeSum(const expression::TapeSum& terms, const double* row,
+                                              const ThetaTile& theta, int lane, Simd::V* sum) noexcept {
+  const Simd::V constant = terms.constant == expression::TapeSum::kNone ? Simd::V{} : Simd::Set(row[terms.constant]);
+  for (int g = 0; g < kGroup; ++g) sum[g] = constant;
+  for (std::size_t t = 0; t < terms.count; ++t) {
+    const double* parameter = theta.value[terms.parameter[t]].data() + lane;
+    const Simd::V scalar = Simd::Set(terms.scalar[t] == expression::TapeSum::kNone ? 1.0 : row[terms.scalar[t]]);
+    for (int g = 0; g < kGroup; ++g) sum[g] = Simd::Fma(Simd::Load(parameter + g * Simd::kLanes), scalar, sum[g]);
+  }
+}
+
+/// The same for a tape with a shape: as many vectors side by side as keep the arithmetic units busy, nothing in memory.
+/// Powers carry a relative error of 4e-11, as those of the compiled laws do.
+template <bool kWeighted, bool kPower>
+void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  constexpr int kGroup = Simd::kLanes == 8 ? 4 : 2;
+  constexpr double kReach = 960.0;  // |exponent log2 x| that needs no clamp
+  const Tape& tape = *data.error_tape;
+  for (int lane = 0; lane < kTileLanes; lane += kGroup * Simd::kLanes) {
+    Simd::V sum[kGroup] = {};
+    for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+      const double* row = data.scalars->Row(data.sample[n]);
+      Simd::V e[kGroup];
+      AddTapeSum<kGroup>(tape.rest, row, theta, lane, e);
+      if constexpr (kPower) {
+        Simd::V factor[kGroup];
+        AddTapeSum<kGroup>(tape.factor, row, theta, lane, factor);
+        const double* exponent = theta.value[tape.exponent].data() + lane;
+        const double log2 = row[tape.log2];
+        if (std::fabs(log2) * tape.largest_exponent <= kReach) {
+          for (int g = 0; g < kGroup; ++g)
+            e[g] = Simd::Fma(ScoreSimd::Power(Simd::Load(exponent + g * Simd::kLanes), log2), factor[g], e[g]);
+        } else {
+          for (int g = 0; g < kGroup; ++g)
+            e[g] =
+                Simd::Fma(Simd::Exp2OrNan(Simd::Load(exponent + g * Simd::kLanes) * Simd::Set(log2)), factor[g], e[g]);
+        }
+      }
+      for (int g = 0; g < kGroup; ++g) {
+        if constexpr (kWeighted) e[g] = e[g] * Simd::Set(data.weight[n]);
+        sum[g] = Simd::Fma(e[g], e[g], sum[g]);
+      }
+    }
+    for (int g = 0; g < kGroup; ++g) Simd::Store(out + lane + g * Simd::kLanes, sum[g]);
+  }
+}
+
+template <bool kWeighted>
+void SumSquaresOfTape(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  switch (data.error_tape->shape) {
+    case expression::TapeShape::kLinear: SumShapeSquares<kWeighted, false>(data, theta, out); break;
+    case expression::TapeShape::kPower: SumShapeSquares<kWeighted, true>(data, theta, out); break;
+    case expression::TapeShape::kGeneral: SumTapeSquares<kWeighted>(data, theta, out); break;
+  }
+}
+
 void SumSquaresTape(const ModeData& data, const ThetaTile& theta, double, double* out) noexcept ARMCMC_NONBLOCKING {
   if (data.weighted) {
-    SumTapeSquares<true>(data, theta, out);
+    SumSquaresOfTape<true>(data, theta, out);
   } else {
-    SumTapeSquares<false>(data, theta, out);
+    SumSquaresOfTape<false>(data, theta, out);
   }
 }
 

@@ -240,31 +240,53 @@ TEST(Tape, SameBitsOnEveryFusedInstructionSet) {
   }
 }
 
-TEST(Tape, ScoresAreThoseOfThePredictions) {
-  Law law("K*x + B*v - p*u");
+struct Scored {
+  const char* text;
+  expression::TapeShape shape;
+};
+
+class Score : public testing::TestWithParam<Scored> {};
+
+TEST_P(Score, IsThatOfThePredictions) {
+  Law law(GetParam().text);
+  EXPECT_EQ(law.compiled.tape.shape, GetParam().shape);
   const NoiseModel noise(NoiseSettings{.std = 0.5});
-  const std::array<double, kTileLanes> log_scale = [] {
-    std::array<double, kTileLanes> scale{};
-    scale.fill(std::log(0.5));
-    return scale;
-  }();
-  for (const bool weighted : {false, true}) {
-    law.data->weighted = weighted;
-    for (std::size_t n = 0; n < kSamples; ++n)
-      law.data->weight[n] = weighted ? 1.0 / (1.0 + static_cast<double>(n)) : 1.0;
-    for (const simd::Kernels* kernels : test::RunnableKernels()) {
-      const PredictionTile tile = law.Predict(*kernels);
-      alignas(64) std::array<double, kTileLanes> score{};
-      kernels->score(-1, noise, *law.data, law.theta, log_scale.data(), law.tile.get(), score.data());
-      for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
-        double expected = 0.0;  // here the tape is law - target: its target is 0
-        for (std::size_t n = 0; n < kSamples; ++n)
-          expected += noise.LogDensity(tile.value[n][lane] * law.data->weight[n], 0.5);
-        EXPECT_NEAR(score[lane], expected, 1e-12 * (1.0 + std::fabs(expected))) << kernels->name << " " << lane;
+  alignas(64) std::array<double, kTileLanes> log_scale{};
+  log_scale.fill(std::log(0.5));
+  // With a bound on the exponent powers are shorter, and a little less exact.
+  for (const double largest_exponent : {1e300, 20.0}) {
+    law.compiled.tape.largest_exponent = largest_exponent;
+    for (const bool weighted : {false, true}) {
+      law.data->weighted = weighted;
+      for (std::size_t n = 0; n < kSamples; ++n)
+        law.data->weight[n] = weighted ? 1.0 / (1.0 + static_cast<double>(n)) : 1.0;
+      for (const simd::Kernels* kernels : test::RunnableKernels()) {
+        const PredictionTile tile = law.Predict(*kernels);
+        alignas(64) std::array<double, kTileLanes> score{};
+        kernels->score(-1, noise, *law.data, law.theta, log_scale.data(), law.tile.get(), score.data());
+        for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+          double expected = 0.0;  // here the tape is law - target: its target is 0
+          for (std::size_t n = 0; n < kSamples; ++n)
+            expected += noise.LogDensity(tile.value[n][lane] * law.data->weight[n], 0.5);
+          const double tolerance = largest_exponent > 100.0 ? 1e-12 : 1e-9;
+          EXPECT_NEAR(score[lane], expected, tolerance * (1.0 + std::fabs(expected))) << kernels->name << " " << lane;
+        }
       }
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Tape, Score,
+                         testing::Values(Scored{"K*x + B*v - p*u", expression::TapeShape::kLinear},
+                                         Scored{"K*x + B*v - p*u + tau*x*v - sin(x)", expression::TapeShape::kLinear},
+                                         Scored{"max(x, 0)^p * (K + B*v) - u", expression::TapeShape::kPower},
+                                         Scored{"max(x, 0)^p * K - u", expression::TapeShape::kPower},
+                                         Scored{"abs(v)^p * (K*u + B*v) + tau*x - u", expression::TapeShape::kPower},
+                                         Scored{"abs(v)^(2*p) * (K*u + x) - tau*x", expression::TapeShape::kPower},
+                                         Scored{"K*x*sin(B) - u", expression::TapeShape::kGeneral},
+                                         Scored{"abs(v)^p * abs(x)^tau + K", expression::TapeShape::kGeneral},
+                                         Scored{"abs(v)^p * (K*sin(B) + x) - u", expression::TapeShape::kGeneral}),
+                         [](const auto& info) { return "n" + std::to_string(info.index); });
 
 TEST(Tape, IsAsShortAsTheLawAllows) {
   EXPECT_EQ(Law("K*x + B*v + p").compiled.tape.size, 2 + 0) << "one sum of two terms";

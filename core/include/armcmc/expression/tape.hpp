@@ -64,6 +64,23 @@ struct TapeInstruction {
   std::uint8_t to = 0, a = 0, b = 0, c = 0;
 };
 
+/// Code of a form that has a loop of its own, in which nothing goes through memory.
+enum class TapeShape : std::uint8_t {
+  kGeneral,
+  kLinear,  ///< scalar + sum of scalars x parameters.
+  kPower,   ///< 2^(parameter x scalar) x (scalar + sum) + scalar + sum.
+};
+inline constexpr int kMaxShapeTerms = 8;  ///< Of all sums of a shape.
+
+/// scalar `constant` + sum of scalars x parameters.
+struct TapeSum {
+  static constexpr std::uint8_t kNone = 255;  ///< As a constant 0, as a scalar 1.
+  std::uint8_t constant = kNone;
+  std::uint8_t count = 0;
+  std::array<std::uint8_t, kMaxShapeTerms> parameter{};
+  std::array<std::uint8_t, kMaxShapeTerms> scalar{};  ///< kNone: 1.
+};
+
 /// Straight-line code for all candidates of a tile at one sample. Registers 0 to num_parameters - 1 hold the
 /// parameters, the next num_states the states; both may be read only.
 struct Tape {
@@ -76,6 +93,11 @@ struct Tape {
   int num_scalars = 0;
   int num_results = 0;
   std::array<std::uint8_t, kMaxTapeResults> result{};  ///< Registers.
+
+  TapeShape shape = TapeShape::kGeneral;  ///< Of the first result.
+  TapeSum factor, rest;                   ///< kLinear: `rest` alone.
+  std::uint8_t exponent = 0, log2 = 0;    ///< kPower: parameter and scalar.
+  double largest_exponent = 1e300;        ///< Its magnitude, as far as whoever made the tape knows it.
 };
 
 /// Registers of one tile of candidates.
