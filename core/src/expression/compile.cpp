@@ -315,7 +315,7 @@ class Builder {
 /// Gives values that are alive at the same time registers of their own, and writes the code down.
 class Assembler {
  public:
-  Assembler(const Builder& builder, const std::vector<int>& results, Tape* tape) : builder_(builder), tape_(*tape) {
+  Assembler(const Builder& builder, const std::vector<int>& results, Tape* tape) : tape_(*tape) {
     for (const bool once : {true, false})
       for (const Virtual& v : builder.code())
         if (v.once == once) order_.push_back(&v);
@@ -427,7 +427,6 @@ class Assembler {
     if (std::find(free_.begin(), free_.end(), place) == free_.end()) free_.push_back(place);
   }
 
-  const Builder& builder_;
   Tape& tape_;
   std::vector<const Virtual*> order_;
   std::vector<int> last_use_;  ///< Of a value: the instruction that reads it last.
@@ -531,6 +530,7 @@ CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, int num_
   Builder builder(graph, num_parameters, num_states, std::move(scalars));
   builder.CountUses(results);
   std::vector<int> values;
+  values.reserve(results.size());
   for (const int result : results) values.push_back(builder.Register(result));
   CompiledTape compiled;
   compiled.scalars = builder.scalars();

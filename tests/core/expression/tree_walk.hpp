@@ -29,7 +29,7 @@ class TreeWalk {
       return x;
     }
   }
-  static bool IsNan(const Number& x) { return Real(x) != Real(x); }
+  static bool IsNan(const Number& x) { return std::isnan(Real(x)); }
   static Number Truth(bool yes) { return yes ? Number(1) : Number(0); }
 
   Number Node(int node) const {
