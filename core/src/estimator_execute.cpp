@@ -62,7 +62,8 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
     }
     if (m == e->mode || contact_effects()) PredictLastSample(pack, m, e);
   }
-  if (info.described != nullptr && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
+  if (info.described != nullptr && (!e->active || !info.described->LawIsOutput(e->mode)))
+    e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
   e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
   if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
 }
@@ -94,7 +95,7 @@ void Estimator::Impl::PredictDescribed(const AdjustResult& result, Estimate* e) 
     kernels.predict(model, execute_data, shown_theta, &band_prediction);
     for (std::size_t k = 0; k < static_cast<std::size_t>(execute_data.num_samples); ++k)
       e->y_shown[static_cast<std::size_t>(execute_data.sample[k])] =
-          shown[1].known[i] ? band_prediction.value[k][0] : kUnknown;
+          shown[1].known[i] && info.described->LawIsOutput(m) ? band_prediction.value[k][0] : kUnknown;
   }
   std::copy_n(e->y_shown.begin(), samples, e->y_shown_free_run.begin());
 }

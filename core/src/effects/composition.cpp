@@ -157,11 +157,8 @@ void Composition::FillRow(const EffectInput& in, int row, Memory* memory) const 
 bool Composition::PrepareDescribed(const DataPack& pack, PlantPack* out) noexcept {
   const DescribedMemory& before = described_[static_cast<std::size_t>(current_)];
   DescribedMemory& after = described_[static_cast<std::size_t>(1 - current_)];
-  const bool continues =
-      before.seq >= 0 && pack.seq == before.seq + 1 && pack.run_id == before.run_id && pack.dt == before.dt;
-  after.seq = pack.seq;
-  after.run_id = pack.run_id;
-  after.dt = pack.dt;
+  const bool continues = before.last.ContinuesWith(pack);
+  after.last = LastPack::Of(pack);
   if (plant_->has_memory()) after.features = before.features;
   if (!continues) after.features.Clear();
   if (!plant_->Prepare(pack, &after.features, out)) return false;
@@ -179,11 +176,8 @@ bool Composition::Prepare(const DataPack& pack, EffectPack* out) noexcept {
 bool Composition::PrepareContact(const DataPack& pack, ContactPack* out) noexcept {
   const Memory& before = memory_[static_cast<std::size_t>(current_)];
   Memory& after = memory_[static_cast<std::size_t>(1 - current_)];
-  const bool continues =
-      before.seq >= 0 && pack.seq == before.seq + 1 && pack.run_id == before.run_id && pack.dt == before.dt;
-  after.seq = pack.seq;
-  after.run_id = pack.run_id;
-  after.dt = pack.dt;
+  const bool continues = before.last.ContinuesWith(pack);
+  after.last = LastPack::Of(pack);
   after.filter = before.filter;
   ContactPack& rows = after.pack;
   rows.dt = pack.dt;

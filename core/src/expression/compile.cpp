@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <string>
+
+#include "expression/virtual_code.hpp"
 
 namespace armcmc::expression {
 namespace {
@@ -23,18 +24,8 @@ struct Linear {
   std::vector<Term> terms;
 };
 
-/// An instruction on registers of which there are as many as values.
-struct Virtual {
-  TapeOp op = TapeOp::kCopy;
-  int to = -1;
-  std::vector<int> registers;  ///< That it reads, in order.
-  std::vector<int> scalars;    ///< Likewise.
-  int number = 0;              ///< A small number that belongs to it: an exponent.
-  bool once = false;
-};
-
 constexpr int kMaxTermsToScale = 4;
-constexpr int kMaxWholeExponent = 64;
+constexpr int kMaxWholeExponent = 255;  // what an instruction holds
 
 TapeOp TapeOpOf(Op op) {
   switch (op) {
@@ -99,13 +90,14 @@ class Builder {
   }
 
   int Register(int node) { return Materialise(Value(node)); }
-  [[nodiscard]] const std::vector<Virtual>& code() const noexcept { return code_; }
+  [[nodiscard]] VirtualCode Code(std::vector<int> results) const {
+    return {code_, once_, num_fixed_, std::move(results)};
+  }
   [[nodiscard]] const std::vector<int>& scalars() const noexcept { return scalars_; }
-  [[nodiscard]] int num_values() const noexcept { return static_cast<int>(once_.size()); }
-  [[nodiscard]] int num_fixed() const noexcept { return num_fixed_; }
-  [[nodiscard]] bool once(int value) const { return once_[static_cast<std::size_t>(value)]; }
 
  private:
+  [[nodiscard]] bool once(int value) const { return once_[static_cast<std::size_t>(value)]; }
+
   int Scalar(int node) {
     const auto [at, is_new] = scalar_of_.try_emplace(node, static_cast<int>(scalars_.size()));
     if (is_new) scalars_.push_back(node);
@@ -113,7 +105,7 @@ class Builder {
   }
 
   int Emit(Virtual v) {
-    v.to = num_values();
+    v.to = static_cast<int>(once_.size());
     v.once = std::all_of(v.registers.begin(), v.registers.end(), [&](int r) { return once(r); });
     for (const int s : v.scalars) v.once = v.once && !graph_.at(scalars_[static_cast<std::size_t>(s)]).varies;
     once_.push_back(v.once);
@@ -312,215 +304,6 @@ class Builder {
   std::vector<Virtual> code_;
 };
 
-/// Gives values that are alive at the same time registers of their own, and writes the code down.
-class Assembler {
- public:
-  Assembler(const Builder& builder, const std::vector<int>& results, Tape* tape) : tape_(*tape) {
-    for (const bool once : {true, false})
-      for (const Virtual& v : builder.code())
-        if (v.once == once) order_.push_back(&v);
-    last_use_.assign(static_cast<std::size_t>(builder.num_values()), -1);
-    for (std::size_t i = 0; i < order_.size(); ++i)
-      for (const int r : order_[i]->registers) last_use_[static_cast<std::size_t>(r)] = static_cast<int>(i);
-    const int never = static_cast<int>(order_.size());
-    for (const int result : results) last_use_[static_cast<std::size_t>(result)] = never;
-    for (int value = 0; value < builder.num_values(); ++value) {
-      // What is computed once, or handed in, is there for every sample.
-      const bool stays = value < builder.num_fixed() ||
-                         (builder.once(value) && last_use_[static_cast<std::size_t>(value)] >= NumOnce());
-      if (stays) last_use_[static_cast<std::size_t>(value)] = never;
-    }
-    place_.assign(static_cast<std::size_t>(builder.num_values()), -1);
-    for (int value = 0; value < builder.num_fixed(); ++value) place_[static_cast<std::size_t>(value)] = value;
-    used_ = builder.num_fixed();
-  }
-
-  void Write() {
-    for (std::size_t i = 0; i < order_.size(); ++i) {
-      One(*order_[i], static_cast<int>(i));
-      if (order_[i]->once) tape_.once = tape_.size;
-    }
-    tape_.num_registers = used_;
-  }
-  [[nodiscard]] int Place(int value) const { return place_[static_cast<std::size_t>(value)]; }
-
- private:
-  [[nodiscard]] int NumOnce() const {
-    return static_cast<int>(std::count_if(order_.begin(), order_.end(), [](const Virtual* v) { return v->once; }));
-  }
-
-  void One(const Virtual& v, int at) {
-    std::vector<int> from;
-    for (const int r : v.registers) from.push_back(Place(r));
-    for (const int r : v.registers)
-      if (last_use_[static_cast<std::size_t>(r)] == at) Free(Place(r));
-    const int to = Take();
-    place_[static_cast<std::size_t>(v.to)] = to;
-    if (last_use_[static_cast<std::size_t>(v.to)] < 0) Free(to);
-
-    TapeInstruction i;
-    i.op = v.op;
-    i.to = Byte(to);
-    const auto scalar = [&](std::size_t s) { return Byte(v.scalars.at(s)); };
-    switch (v.op) {
-      case TapeOp::kLinear:
-      case TapeOp::kAddLinear: {
-        const std::size_t head = v.op == TapeOp::kLinear ? 0 : 1;
-        i.a = head == 0 ? scalar(0) : Byte(from[0]);
-        const std::size_t count = from.size() - head;
-        i.b = Byte(static_cast<int>(count));
-        Append(i);
-        for (std::size_t t = 0; t < count; t += 2) {
-          TapeInstruction pair;
-          const std::size_t s = 1 - head;
-          pair.to = Byte(from[head + t]);
-          pair.a = scalar(s + t);
-          if (t + 1 < count) {
-            pair.b = Byte(from[head + t + 1]);
-            pair.c = scalar(s + t + 1);
-          }
-          Append(pair);
-        }
-        return;
-      }
-      case TapeOp::kSplat: i.a = scalar(0); break;
-      case TapeOp::kExp2S:
-        i.a = Byte(from[0]);
-        i.b = scalar(0);
-        break;
-      case TapeOp::kPowerInt:
-        i.a = Byte(from[0]);
-        i.b = Byte(v.number);
-        break;
-      case TapeOp::kMultiplyAddS:
-        i.a = Byte(from[0]);
-        i.b = Byte(from[1]);
-        i.c = scalar(0);
-        break;
-      default:
-        if (!from.empty()) i.a = Byte(from[0]);
-        if (from.size() > 1) i.b = Byte(from[1]);
-        if (from.size() > 2) i.c = Byte(from[2]);
-    }
-    Append(i);
-  }
-
-  static std::uint8_t Byte(int value) { return static_cast<std::uint8_t>(value); }
-
-  void Append(const TapeInstruction& i) {
-    if (tape_.size == kMaxTapeInstructions)
-      throw std::length_error("needs more than " + std::to_string(kMaxTapeInstructions) + " instructions a sample");
-    tape_.code[static_cast<std::size_t>(tape_.size++)] = i;
-  }
-  int Take() {
-    if (!free_.empty()) {
-      const int r = free_.back();
-      free_.pop_back();
-      return r;
-    }
-    if (used_ == kMaxTapeRegisters)
-      throw std::length_error("needs more than " + std::to_string(kMaxTapeRegisters) +
-                              " intermediate values at a time");
-    return used_++;
-  }
-  void Free(int place) {
-    if (std::find(free_.begin(), free_.end(), place) == free_.end()) free_.push_back(place);
-  }
-
-  Tape& tape_;
-  std::vector<const Virtual*> order_;
-  std::vector<int> last_use_;  ///< Of a value: the instruction that reads it last.
-  std::vector<int> place_;     ///< Of a value: its register.
-  std::vector<int> free_;
-  int used_ = 0;
-};
-
-/// The sum that the instruction at `at` computes from parameters; none where it is something else.
-std::optional<TapeSum> SumAt(const Tape& tape, int at) {
-  const TapeInstruction& i = tape.code[static_cast<std::size_t>(at)];
-  const bool from_register = i.op == TapeOp::kAddLinear;
-  if ((i.op != TapeOp::kLinear && !from_register) || i.b + (from_register ? 1 : 0) > kMaxShapeTerms)
-    return std::nullopt;
-  TapeSum sum;
-  if (from_register) {
-    sum.parameter[sum.count] = i.a;
-    sum.scalar[sum.count++] = TapeSum::kNone;
-  } else {
-    sum.constant = i.a;
-  }
-  for (std::size_t t = 0; t < i.b; ++t) {
-    const TapeInstruction& pair = tape.code[static_cast<std::size_t>(at) + 1 + t / 2];
-    sum.parameter[sum.count] = t % 2 == 0 ? pair.to : pair.b;
-    sum.scalar[sum.count++] = t % 2 == 0 ? pair.a : pair.c;
-  }
-  for (std::size_t t = 0; t < sum.count; ++t)
-    if (sum.parameter[t] >= tape.num_parameters) return std::nullopt;
-  return sum;
-}
-
-int LengthAt(const Tape& tape, int at) {
-  const TapeInstruction& i = tape.code[static_cast<std::size_t>(at)];
-  return i.op == TapeOp::kLinear || i.op == TapeOp::kAddLinear ? 1 + (i.b + 1) / 2 : 1;
-}
-
-/// Finds out whether the tape has a form with a loop of its own.
-void RecogniseShape(Tape* tape) {
-  if (tape->once != 0 || tape->num_results != 1 || tape->num_states != 0) return;
-  std::array<int, 4> start{};
-  int count = 0;
-  for (int at = 0; at < tape->size; at += LengthAt(*tape, at)) {
-    if (count == static_cast<int>(start.size())) return;
-    start[static_cast<std::size_t>(count++)] = at;
-  }
-  const auto code = [&](int n) -> const TapeInstruction& {
-    return tape->code[static_cast<std::size_t>(start[static_cast<std::size_t>(n)])];
-  };
-  if (count == 1) {
-    const std::optional<TapeSum> sum = SumAt(*tape, 0);
-    if (!sum) return;
-    tape->rest = *sum;
-    tape->shape = TapeShape::kLinear;
-    return;
-  }
-  // A power, its factor (a sum or a parameter), and their product, added to a scalar or a sum; in any order.
-  if (count < 2) return;
-  const TapeInstruction& last = code(count - 1);
-  const bool adds_scalar = last.op == TapeOp::kMultiplyAddS;
-  if (!adds_scalar && last.op != TapeOp::kMultiplyAdd) return;
-  const TapeInstruction* power = nullptr;
-  for (int n = 0; n + 1 < count; ++n)
-    if (code(n).op == TapeOp::kExp2S && power == nullptr) power = &code(n);
-  if (power == nullptr || power->a >= tape->num_parameters || (last.a != power->to && last.b != power->to)) return;
-  const std::uint8_t other = last.a == power->to ? last.b : last.a;
-  std::optional<TapeSum> factor;
-  std::optional<TapeSum> rest;
-  if (other < tape->num_parameters) {
-    factor.emplace();
-    factor->count = 1;
-    factor->parameter[0] = other;
-    factor->scalar[0] = TapeSum::kNone;
-  }
-  if (adds_scalar) rest.emplace().constant = last.c;
-  for (int n = 0; n + 1 < count; ++n) {
-    if (&code(n) == power) continue;
-    const std::optional<TapeSum> sum = SumAt(*tape, start[static_cast<std::size_t>(n)]);
-    if (!sum) return;
-    if (code(n).to == other && !factor) {
-      factor = sum;
-    } else if (!adds_scalar && code(n).to == last.c && !rest) {
-      rest = sum;
-    } else {
-      return;
-    }
-  }
-  if (!factor || !rest) return;
-  tape->factor = *factor;
-  tape->rest = *rest;
-  tape->exponent = power->a;
-  tape->log2 = power->b;
-  tape->shape = TapeShape::kPower;
-}
-
 }  // namespace
 
 CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, int num_parameters, int num_states,
@@ -540,11 +323,7 @@ CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, int num_
   Tape& tape = compiled.tape;
   tape.num_parameters = num_parameters;
   tape.num_states = num_states;
-  Assembler assembler(builder, values, &tape);
-  assembler.Write();
-  for (std::size_t r = 0; r < values.size(); ++r)
-    tape.result[r] = static_cast<std::uint8_t>(assembler.Place(values[r]));
-  tape.num_results = static_cast<int>(results.size());
+  Assemble(builder.Code(std::move(values)), &tape);
   tape.num_scalars = static_cast<int>(compiled.scalars.size());
   RecogniseShape(&tape);
   return compiled;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -20,11 +21,13 @@ double Lowpass(FeatureMemory::Slot* slot, double e, double tau, double dt) noexc
   return slot->state;
 }
 
-/// The value `tau` before the newest, which stands at `newest` of the line.
+/// The value `tau` before the newest of `samples`; not a number where the line does not reach back so far.
 double Delayed(const std::array<double, kMaxDelaySamples>& line, int samples, double tau,
                double dt) noexcept ARMCMC_NONBLOCKING {
   const int kept = std::min(samples, kMaxDelaySamples);
-  const double back = std::clamp(tau / dt, 0.0, static_cast<double>(kept - 1));
+  const double asked = tau / dt;
+  if (asked > kept - 1 && samples >= kMaxDelaySamples) return std::numeric_limits<double>::quiet_NaN();
+  const double back = std::clamp(asked, 0.0, static_cast<double>(kept - 1));
   const int whole = std::min(static_cast<int>(back), kept - 1);
   const double part = back - whole;
   const auto at = [&](int k) { return line[static_cast<std::size_t>((samples - 1 - k) % kMaxDelaySamples)]; };

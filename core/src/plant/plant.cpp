@@ -241,7 +241,6 @@ Plant::Lowered Plant::Lower(const std::string& key, const std::string& text, con
 }
 
 void Plant::AddLets() {
-  // A lognormal parameter is sampled as its logarithm; everything that reads it reads exp of that.
   for (const LetDescription& let : description_.lets) {
     const std::string key = "let." + let.name;
     const Lowered lowered = Lower(key, let.text);

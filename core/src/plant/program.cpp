@@ -20,6 +20,8 @@ bool IsLognormal(const ParameterDescription& p) { return p.prior == "lognormal";
 
 PlantProgram::PlantProgram(std::shared_ptr<const Plant> plant) : plant_(std::move(plant)), graph_(plant_->graph()) {
   if (!plant_->states().empty()) throw PlantError("states", 0, "the estimator runs no plants with states");
+  if (plant_->predicts() >= 0)
+    throw PlantError("predicts", 0, "the estimator shows what a law explains, and nothing else");
   for (std::size_t m = 0; m < plant_->modes().size(); ++m)
     if (!plant_->modes()[m].passive) active_.push_back(m);
   const auto& parameters = plant_->description().parameters;
@@ -69,10 +71,12 @@ void PlantProgram::CompileModes() {
   const auto& described = plant_->description().modes;
   std::vector<int> scalars;
   // law - target: squares do not mind the sign, and a product is added to minus the target in one instruction.
-  const auto compile = [&](const std::string& name, int law, int target, const std::string& key) {
+  const int output = plant_->NodeOf(SymbolKind::kSignal, plant_->output());
+  const auto compile = [&](const std::string& name, int law, int target, bool law_is_output, const std::string& key) {
     try {
       SampledMode mode;
       mode.name = name;
+      mode.law_is_output = law_is_output;
       for (const bool error : {false, true}) {
         const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
         const expression::CompiledTape tape =
@@ -96,17 +100,20 @@ void PlantProgram::CompileModes() {
   if (merged_) {
     int law = graph_.Number(0.0);
     int target = graph_.Number(0.0);
+    bool law_is_output = true;
     for (std::size_t a = active_.size(); a-- > 0;) {
       const PlantMode& mode = modes[active_[a]];
       const int when = mode.when < 0 ? graph_.Number(1.0) : mode.when;
       law = graph_.Make(Op::kIf, when, InMode(mode.law, a), law);
       target = graph_.Make(Op::kIf, when, mode.target, target);
+      law_is_output = law_is_output && mode.target == output;
     }
-    compile("active", law, target, key_of(active_[0]));
+    compile("active", law, target, law_is_output, key_of(active_[0]));
   } else {
-    for (std::size_t a = 0; a < active_.size(); ++a)
-      compile(described[active_[a]].name, InMode(modes[active_[a]].law, a), modes[active_[a]].target,
-              key_of(active_[a]));
+    for (std::size_t a = 0; a < active_.size(); ++a) {
+      const PlantMode& mode = modes[active_[a]];
+      compile(described[active_[a]].name, InMode(mode.law, a), mode.target, mode.target == output, key_of(active_[a]));
+    }
   }
   num_scalars_ = static_cast<int>(scalars.size());
   std::vector<int> features = scalars;

@@ -68,6 +68,12 @@ TEST(Features, DelayReachesBackOverTheWholeLine) {
   for (std::size_t n = 1000; n < y.size(); ++n) ASSERT_NEAR(y[n], static_cast<double>(n) * 0.01 - 10.0, 1e-9);
 }
 
+TEST(Features, DelayThatIsLongerThanTheLineHasNoValue) {
+  const auto y = Filtered("delay(x, 12)", Ramp(1200, 0.01), 0.01);
+  EXPECT_EQ(y[1000], 0.0) << "the first sample, as long as it is remembered";
+  EXPECT_TRUE(std::isnan(y[1199])) << "never a shorter delay in its place";
+}
+
 TEST(Features, IntegralPreviousAndElapsed) {
   const std::vector<double> x{1.0, 2.0, 4.0};
   const auto integral = Filtered("integral(x)", x, 0.5);

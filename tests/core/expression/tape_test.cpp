@@ -191,7 +191,8 @@ TEST(Tape, LawsAreWhatTheTreeSays) {
     EXPECT_EQ(DifferenceFromTree(text, Without::kChecked), "");
 }
 
-/// A random expression, small ones first.
+/// A random expression, small ones first. Every choice is a statement of its own: the order of what is chosen is the
+/// same for all compilers.
 rc::Gen<std::string> AnyExpression(int depth) {
   return rc::gen::exec([depth]() -> std::string {
     const int kind = depth == 0 ? *rc::gen::inRange(0, 3) : *rc::gen::inRange(0, 12);
@@ -200,13 +201,22 @@ rc::Gen<std::string> AnyExpression(int depth) {
     if (kind == 0) return one_of({"0", "1", "2", "0.5", "3.75", "1e-2", "g", "L"});
     if (kind == 1) return one_of({"x", "v", "u", "t"});
     if (kind == 2) return one_of({"K", "B", "p", "tau"});
-    if (kind < 7) return '(' + inner() + one_of({" + ", " - ", "*", "*", "/"}) + inner() + ')';
-    if (kind == 7)
-      return one_of({"sin", "cos", "tanh", "atan", "exp", "abs", "sign", "step", "-"}) + '(' + inner() + ')';
-    if (kind == 8) return one_of({"sqrt", "log", "log2", "asin", "acos", "tan", "log10"}) + '(' + inner() + ')';
-    if (kind == 9) return one_of({"min(", "max("}) + inner() + ", " + inner() + ')';
-    if (kind == 10) return '(' + inner() + ")^" + one_of({"2", "3", "-1", "0.5", "p", "(K/2)"});
-    return "if(" + inner() + one_of({" < ", " <= ", " != "}) + inner() + ", " + inner() + ", " + inner() + ')';
+    const std::string first = inner();
+    if (kind == 7) {
+      const std::string f = one_of({"sin", "cos", "tanh", "atan", "exp", "abs", "sign", "step", "-"});
+      return f + '(' + first + ')';
+    }
+    if (kind == 8) {
+      const std::string f = one_of({"sqrt", "log", "log2", "asin", "acos", "tan", "log10"});
+      return f + '(' + first + ')';
+    }
+    if (kind == 10) return '(' + first + ")^" + one_of({"2", "3", "-1", "0.5", "p", "(K/2)", "100"});
+    const std::string second = inner();
+    if (kind < 7) return '(' + first + one_of({" + ", " - ", "*", "*", "/"}) + second + ')';
+    if (kind == 9) return one_of({"min(", "max("}) + first + ", " + second + ')';
+    const std::string relation = one_of({" < ", " <= ", " != "});
+    const std::string third = inner();
+    return "if(" + first + relation + second + ", " + third + ", " + inner() + ')';
   });
 }
 

@@ -203,6 +203,31 @@ TEST(DescribedEstimator, ModesOfTheirOwnAreSampledApart) {
   for (std::size_t n = 0; n < 100; ++n) EXPECT_EQ(estimate.y_shown[n], 7.0);
 }
 
+TEST(DescribedEstimator, ALawThatExplainsSomethingElsePredictsNoOutput) {
+  PlantDescription description;
+  description.name = "flow";
+  description.output = "F";
+  description.signals = {{"u", "m", "", ""}, {"F", "N", "force", ""}};
+  description.parameters = {{"g", "1", "normal", 0.0, 10.0}};
+  description.modes = {{"only", "", "g*u", "2*u", false}};
+  description.noise.std = 0.1;
+  const auto plant = test::Program(description);
+  EXPECT_EQ(plant->info().target_unit, "m");
+  test::Rig rig(DescribedSettings(plant));
+  for (std::int64_t seq = 1; seq <= 3; ++seq)
+    (void)rig.Step(FillPack(*plant, seq, [](double t) {
+      Sample s;
+      s.u[0] = 1.0 + t;
+      s.y = 50.0;
+      return s;
+    }));
+  EXPECT_NEAR(rig.estimate().modes[0].marginal[0].ar_ap, 2.0, 0.05);
+  EXPECT_TRUE(std::isnan(rig.estimate().y_pred)) << "metres are no newtons";
+  EXPECT_TRUE(std::isnan(rig.estimate().y_shown[0]));
+  description.predicts = "g*F";
+  EXPECT_THROW((void)test::Program(description), PlantError);
+}
+
 TEST(DescribedEstimator, MemoryGoesOnFromPackToPack) {
   PlantDescription description = test::DescribedAxis();
   description.law = "M*lowpass(a, 0.05) + Fv*previous(v) + off";

@@ -59,8 +59,8 @@ class Composition {
 
   /// Forgets the packs before.
   void Reset() noexcept {
-    memory_[0].seq = memory_[1].seq = -1;
-    described_[0].seq = described_[1].seq = -1;
+    memory_[0].last = memory_[1].last = {};
+    described_[0].last = described_[1].last = {};
     flow_rows_.Reset();
   }
 
@@ -73,18 +73,26 @@ class Composition {
     double from_s = 0.0, until_s = 0.0;
     int parameter = 0;  ///< Row of its first amplitude among the parameters.
   };
-  /// What one pack leaves to the next. Two of them, so that a pack that fails changes nothing.
-  struct Memory {
+  /// Which pack was the last.
+  struct LastPack {
     std::int64_t seq = -1, run_id = 0;
     double dt = 0.0;
+    [[nodiscard]] static LastPack Of(const DataPack& pack) noexcept { return {pack.seq, pack.run_id, pack.dt}; }
+    /// The next of the same run, sampled alike: what is remembered holds.
+    [[nodiscard]] bool ContinuesWith(const DataPack& pack) const noexcept {
+      return seq >= 0 && pack.seq == seq + 1 && pack.run_id == run_id && pack.dt == dt;
+    }
+  };
+  /// What one pack leaves to the next. Two of them, so that a pack that fails changes nothing.
+  struct Memory {
+    LastPack last;
     std::array<std::array<double, kEffectMemory>, kMaxEffects> filter{};
     ContactPack pack;
   };
 
   /// What one pack of a described plant leaves to the next; two, as above.
   struct DescribedMemory {
-    std::int64_t seq = -1, run_id = 0;
-    double dt = 0.0;
+    LastPack last;
     expression::FeatureMemory features;
   };
 

@@ -45,7 +45,8 @@ struct FeatureInput {
 /// Functions with memory are exact for arguments that are linear between samples:
 ///   low pass  y <- y E + a (G - E) + b (1 - G),  E = exp(-dt / tau), G = (1 - E) tau / dt, from a to b
 ///   integral  y <- y + dt (a + b) / 2
-///   delay     linear between the samples at t - tau; a time constant below 0 counts as 0
+///   delay     linear between the samples at t - tau; a time constant below 0 counts as 0, and one that is longer than
+///             kMaxDelaySamples has no value
 class FeatureProgram {
  public:
   FeatureProgram() = default;

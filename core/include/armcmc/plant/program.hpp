@@ -53,6 +53,11 @@ class PlantProgram {
   /// The samples of one sampled mode. `pack` must outlive `data`.
   void Fill(const PlantPack& pack, int num_samples, int mode, ModeData* data) const noexcept ARMCMC_NONBLOCKING;
 
+  /// The law of a sampled mode is the plant's output, not something else that it explains.
+  [[nodiscard]] bool LawIsOutput(int mode) const noexcept ARMCMC_NONBLOCKING {
+    return modes_[static_cast<std::size_t>(mode)].law_is_output;
+  }
+
   /// Reported quantity r for sampled parameters theta. @rt No heap, no lock, no throw.
   [[nodiscard]] double Report(int r, const double* theta) const noexcept ARMCMC_NONBLOCKING;
   /// True where it is the sampled parameter r.
@@ -65,6 +70,7 @@ class PlantProgram {
     std::string name;
     expression::Tape law;
     expression::Tape error;  ///< law - target.
+    bool law_is_output = true;
   };
   /// Of every mode of the plant, in the order of its file: where its parts stand among the features.
   struct Outputs {
