@@ -68,6 +68,7 @@ inline void ExpectSameBits(const Estimate& a, const Estimate& b) {
     EXPECT_TRUE(SameBits(p.log_evidence, q.log_evidence) && SameBits(p.acceptance, q.acceptance));
     EXPECT_TRUE(SameBits(p.p_changed, q.p_changed) && SameBits(p.noise_std, q.noise_std));
     static_assert(sizeof(MarginalSummary) == (12 + kHistogramBins) * sizeof(double), "no padding to compare");
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c): the bits are meant
     EXPECT_EQ(std::memcmp(&p.marginal, &q.marginal, sizeof p.marginal), 0) << "mode " << m;
   }
 }

@@ -33,6 +33,7 @@ std::vector<double> Filtered(const std::string& text, const std::vector<double>&
 
 std::vector<double> Ramp(int samples, double dt) {
   std::vector<double> x;
+  x.reserve(static_cast<std::size_t>(samples));
   for (int n = 0; n < samples; ++n) x.push_back(n * dt);
   return x;
 }
