@@ -11,6 +11,7 @@ namespace armcmc {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr GapState kNotWatched{};
 
 }  // namespace
 
@@ -151,7 +152,6 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
 }
 
 const GapState& Estimator::Impl::Gap() const noexcept {
-  static constexpr GapState kNotWatched{};
   if (!gap_watch) return kNotWatched;
   const GapState& fitted = gap_watch->state();
   if (!bend_watch) return fitted;

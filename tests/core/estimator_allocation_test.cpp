@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/estimator_rig.hpp"
+#include "core/plant/plants.hpp"
 #include "support/alloc_counter.hpp"
 
 namespace armcmc::estimator_allocation_test {
@@ -81,6 +82,28 @@ TEST(Allocation, ConstructionDoes) {
   const AllocCounter guard;
   const Rig rig;
   EXPECT_GT(guard.count(), 10) << "the counter sees this library";
+}
+
+TEST(Allocation, StepsOfADescribedPlantDoNotTouchTheHeap) {
+  if (!AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  // Functions with memory, a lognormal parameter, a quantity that is computed from them, a law without a loop of its
+  // own.
+  PlantDescription description = test::DescribedContact();
+  description.parameters[0] = {"K", "N/m^p", "lognormal", 2.5, 1.0};
+  description.modes[0].law = "x^p * (K + B*lowpass(v, 0.01)) + K*x*tanh(delay(v, 0.02)/g)";
+  description.constants = {{"g", 1.0, ""}};
+  description.reports = {{"KB", "1", "K*B"}};
+  const auto plant = test::Program(description);
+  for (const NoiseKind kind : kKinds) {
+    EstimatorSettings settings = DescribedSettings(plant);
+    for (NoiseSettings& noise : settings.noise) noise.kind = kind;
+    std::vector<DataPack> packs = ContactPacks();
+    for (DataPack& pack : packs) {
+      pack.plant = PlantKind::kDescribed;
+      pack.fingerprint = plant->plant().fingerprint();
+    }
+    EXPECT_EQ(CountHeapCalls(settings, packs), 0) << static_cast<int>(kind);
+  }
 }
 
 }  // namespace
