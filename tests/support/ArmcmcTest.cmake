@@ -18,8 +18,9 @@
 #   NATIVE          what runs is not ours, or runs under AddressSanitizer in other tests
 #   LONG            shows what only chance or a long load can show: run by `tools/test --long` alone
 #
-# A build with a sanitizer compiles only what it runs, and runs each executable as a whole, as one test of ctest: starting
-# an instrumented program a thousand times takes longer than what most tests do.
+# A build with a sanitizer compiles only what it runs, and runs each executable as a whole, as one test of ctest (two for
+# a room that armcmc_split_room names): starting an instrumented program a thousand times takes longer than what most
+# tests do.
 add_custom_target(all_tests)
 
 # What the sources of all tests include. One for all: it takes longer to make than any test takes to compile.
@@ -76,6 +77,30 @@ function(armcmc_add_room room)
         ENVIRONMENT "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${room}.profraw")
     endif()
   endif()
+endfunction()
+
+# armcmc_split_room(ROOM): under a sanitizer, two tests of ctest with every other TEST of the room each. For a room that
+# takes longer than all others together, so that it does not keep one processor busy while the other has nothing to do.
+function(armcmc_split_room room)
+  if(NOT ARMCMC_SANITIZER OR NOT TARGET ${room}_test)
+    return()
+  endif()
+  add_test(NAME ${room}_2 COMMAND ${room}_test)
+  foreach(property IN ITEMS LABELS TIMEOUT COST RESOURCE_LOCK)
+    get_test_property(${room} ${property} value)
+    if(value)
+      set_tests_properties(${room}_2 PROPERTIES ${property} "${value}")
+    endif()
+  endforeach()
+  set(index 0)
+  foreach(test IN ITEMS ${room} ${room}_2)
+    set(environment "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${index}")
+    if(ARMCMC_COVERAGE)
+      list(APPEND environment "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${test}.profraw")
+    endif()
+    set_tests_properties(${test} PROPERTIES ENVIRONMENT "${environment}")
+    math(EXPR index "${index} + 1")
+  endforeach()
 endfunction()
 
 # The filter of GoogleTest for all suites of some files.
