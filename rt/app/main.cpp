@@ -78,6 +78,8 @@ Configuration Load(const Options& options) {
   auto root = support::StrictTable::FromFile(support::FindSharedFile("config", file));
   Configuration configuration;
   configuration.estimator = support::ReadEstimatorSettings(root, decides ? options.model : "");
+  if (configuration.estimator.plant != nullptr)
+    throw root.Table("model").Error("name", "is a plant that a file describes, which armcmc-replay runs");
   configuration.rt = ReadRtSettings(root);
   configuration.gap_log = ReadGapLogSettings(root);
   configuration.inject = ReadInjections(root);

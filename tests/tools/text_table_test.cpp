@@ -19,6 +19,12 @@ TEST(TextTable, AlignsNamesLeftAndNumbersRight) {
             "adjust     3\n");
 }
 
+TEST(TextTable, AlignsWordsLeft) {
+  TextTable table({"plant", "what it is"}, TextTable::Content::kWords);
+  table.AddRow({"axis", "an axis"});
+  EXPECT_EQ(table.ToString(), "plant  what it is\n-----------------\naxis   an axis\n");
+}
+
 TEST(TextTable, RefusesMoreCellsThanColumns) {
   TextTable table({"a"});
   EXPECT_THROW(table.AddRow({"1", "2"}), std::invalid_argument);

@@ -22,7 +22,7 @@ install(FILES "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" "${PROJECT_BINARY_DIR}/
   "${CMAKE_CURRENT_LIST_DIR}/FindLCM.cmake" DESTINATION "${armcmc_cmake_dir}")
 
 # What a program says about itself with --help is its manual page.
-foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-gap armcmc-plant armcmc-replay armcmc-rtcheck
+foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-gap armcmc-model armcmc-plant armcmc-replay armcmc-rtcheck
     armcmc-stress armcmc-tables)
   if(TARGET ${program} AND NOT program STREQUAL "armcmc-bench")
     set(page "${PROJECT_BINARY_DIR}/man/${program}.1")

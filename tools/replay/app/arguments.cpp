@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "armcmc/replay/lcm_source.hpp"
+#include "armcmc/support/model_file.hpp"
 #include "armcmc/support/program.hpp"
 
 namespace armcmc::replay {
@@ -15,10 +16,12 @@ void Declare(CLI::App* app, Arguments* a) {
                   "Configuration, by path or by name (hunt_crossley); for an LCM log, left out: that of its plant");
   app->add_option(
       "--data", a->data,
-      "Recording: a CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha) or an LCM log");
+      "Recording: a CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha; a plant file: t and "
+      "its signals) or an LCM log");
   app->add_option("--out", a->out, "CSV of estimates to write, one row a pack; with --compare: the report, HTML");
   app->add_option("--model", a->model,
-                  "Built-in model or model file (.toml) instead of the model of the configuration");
+                  "Built-in model, model file or plant file (armcmc-model) instead of the model of the configuration; "
+                  "a plant needs no configuration");
   app->add_option("--seed", a->seed, "Seed instead of that of the configuration");
   app->add_option(
       "--draws-from", a->draws_from,
@@ -49,6 +52,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "Example:\n"
       "  armcmc-plant --scenario hunt_crossley_paper --duration 20 --csv contact.csv\n"
       "  armcmc-replay --config hunt_crossley --data contact.csv --out estimates.csv\n"
+      "  armcmc-replay --model axis.toml --data axis.csv --out estimates.csv\n"
       "  armcmc-replay --data run.lcm --verify\n"
       "  armcmc-replay --data run.lcm --config hunt_crossley --compare other.toml --out report.html\n"
       "  armcmc-replay --data normal.lcm --config hunt_crossley --calibrate calibrated.toml\n"
@@ -58,11 +62,15 @@ void Declare(CLI::App* app, Arguments* a) {
 void Complete(Arguments* a) {
   if (a->data.empty()) throw InputError(a->config.empty() ? "--config and --data are required" : "--data is required");
   const bool is_log = IsLcmLog(a->data);
-  if (a->config.empty()) {
+  const bool described = !a->model.empty() && support::DescribedPlant(a->model) != nullptr;
+  if (described && is_log) throw InputError("--model " + a->model + ": a log holds no packs of such a plant");
+  if (a->config.empty() && !described) {
     if (!is_log) throw InputError("--config is required for a CSV: which plant is it?");
     a->config = PlantOfLog(a->data, a->prefix) == PlantKind::kHuntCrossley ? "hunt_crossley" : "soft_actuator";
     std::cout << "configuration: " << a->config << ", by the plant of the log\n";
   }
+  if (!a->calibrate.empty() && a->config.empty())
+    throw InputError("--calibrate needs --config: what it writes is that with other numbers");
   if (a->verify && !is_log) throw InputError("--verify needs an LCM log as --data: a CSV holds no estimates");
   if (a->verify && !a->draws_from.empty()) throw InputError("--verify takes the draws from --data; drop --draws-from");
   const int jobs = (a->verify ? 1 : 0) + (a->compares() ? 1 : 0) + (a->calibrate.empty() ? 0 : 1);

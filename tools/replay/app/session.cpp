@@ -11,11 +11,13 @@ namespace armcmc::replay {
 
 Session ReadSession(const std::string& config, const std::string& model, const std::optional<std::uint64_t>& seed) {
   Session session;
-  session.config = support::FindSharedFile("config", config);
-  auto root = support::StrictTable::FromFile(session.config);
+  if (!config.empty()) session.config = support::FindSharedFile("config", config);
+  auto root = config.empty() ? support::StrictTable::FromText("schema = 1\n", "the configuration")
+                             : support::StrictTable::FromFile(session.config);
   session.settings = support::ReadEstimatorSettings(root, model);
   support::StrictTable timing = root.Table("timing");
-  session.period = 1e-3 * timing.Number("period_ms", 100.0, 1.0, 10'000.0);
+  // Without a configuration the recording decides.
+  session.period = config.empty() ? 0.0 : 1e-3 * timing.Number("period_ms", 100.0, 1.0, 10'000.0);
   // When a live run computes is not the matter of a replay.
   for (const char* key : {"deadline_ms", "adjust_budget_ms"}) timing.LeaveToOthers(key);
   for (const char* key : {"rt", "lcm", "gap_log"}) root.LeaveToOthers(key);
@@ -29,6 +31,7 @@ SourceRequest RequestFor(const Arguments& a, const Session& session, const Estim
   request.data = a.data;
   request.plant = estimator.plant();
   request.num_inputs = estimator.num_inputs();
+  request.described = session.settings.plant;
   request.period = session.period;
   request.skip_bad = a.skip_bad;
   request.prefix = a.prefix;

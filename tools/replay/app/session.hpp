@@ -12,9 +12,9 @@ namespace armcmc::replay {
 
 /// What a configuration says to a replay.
 struct Session {
-  std::string config;  ///< Path of the file.
+  std::string config;  ///< Path of the file; empty: none.
   EstimatorSettings settings;
-  double period = 0.1;  ///< s, of a pack.
+  double period = 0.1;  ///< s, of a pack; 0: the recording decides.
 };
 
 /// @param model  Replaces that of the configuration; empty: does not.

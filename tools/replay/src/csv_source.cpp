@@ -16,6 +16,16 @@ constexpr std::int64_t kRunId = 1;
 
 /// Column order of the result: t, inputs in the order of DataPack::u, output.
 support::CsvRequest Columns(const SourceRequest& request) {
+  if (request.described != nullptr) {
+    const PlantDescription& plant = request.described->plant().description();
+    support::CsvRequest columns{{"t"}, {}, request.skip_bad};
+    for (const SignalDescription& signal : plant.signals) {
+      if (signal.name != plant.output) columns.columns.push_back(signal.name);
+      if (!signal.derivative_of.empty()) columns.derived.push_back({signal.name, signal.derivative_of});
+    }
+    columns.columns.push_back(plant.output);
+    return columns;
+  }
   if (request.plant == PlantKind::kHuntCrossley) return {{"t", "x", "v", "f"}, {{"v", "x"}}, request.skip_bad};
   return {{"t", "u_c", "u_d", "p", "pdot", "alpha"}, {{"pdot", "p"}}, request.skip_bad};
 }
@@ -25,6 +35,14 @@ double Snapped(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.9g", value);
   return std::strtod(text.data(), nullptr);
+}
+
+/// Samples a pack where nothing else decides.
+std::int64_t SuitableSamples(double dt) {
+  constexpr double kPeriod = 0.1;  // s
+  constexpr std::int64_t kFew = 20, kUsual = 100;
+  const std::int64_t samples = std::llround(std::min(kPeriod / dt, 1e6));
+  return samples < kFew ? kUsual : std::min<std::int64_t>(samples, kMaxPackSamples);
 }
 
 double MedianStep(const std::vector<double>& t) {
@@ -38,9 +56,15 @@ double MedianStep(const std::vector<double>& t) {
 }  // namespace
 
 CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> record)
-    : plant_(request.plant), samples_(support::ReadCsv(request.data, Columns(request))), record_(std::move(record)) {
+    : plant_(request.plant),
+      // The angle of the actuator is integrated over time; the contact force is not.
+      takes_gaps_(request.described != nullptr ? !request.described->has_memory()
+                                               : request.plant == PlantKind::kHuntCrossley),
+      samples_(support::ReadCsv(request.data, Columns(request))),
+      record_(std::move(record)) {
   if (samples_.num_rows() < 2)
     throw support::InputError(request.data.string() + ": one row is too few, the sample interval is unknown");
+  if (request.described != nullptr) fingerprint_ = request.described->plant().fingerprint();
   NumberSamples(request);
   last_pack_ = number_.back() / samples_per_pack_;
   if (last_pack_ == 0)
@@ -59,6 +83,10 @@ void CsvSource::NumberSamples(const SourceRequest& request) {
     number_[i] = number_[i - 1] + static_cast<std::int64_t>(std::clamp(steps, 1.0, 1e12));
   }
   dt_ = Snapped((t.back() - t.front()) / static_cast<double>(number_.back()));
+  if (request.period == 0.0) {
+    samples_per_pack_ = SuitableSamples(dt_);
+    return;
+  }
   const double ratio = request.period / dt_;
   samples_per_pack_ = std::llround(std::min(ratio, 1e6));
   if (samples_per_pack_ < 1 || samples_per_pack_ > kMaxPackSamples ||
@@ -77,6 +105,7 @@ void CsvSource::Fill(std::size_t end_row, DataPack* pack, std::array<double, kMa
   pack->t_last_ns = static_cast<Nanos>(std::llround(pack->t_last_s * 1e9));
   pack->dt = dt_;
   pack->plant = plant_;
+  pack->fingerprint = fingerprint_;
   pack->num_samples = static_cast<int>(end_row - row_);
   pack->num_inputs = static_cast<int>(num_inputs);
   for (std::size_t row = row_; row < end_row; ++row) {
@@ -103,8 +132,7 @@ bool CsvSource::Next(RecordedPack* next) {
     std::size_t end_row = row_;
     while (end_row < number_.size() && number_[end_row] <= pack_ * samples_per_pack_) ++end_row;
     const auto missing = samples_per_pack_ - static_cast<std::int64_t>(end_row - row_);
-    // The angle of the actuator is integrated over time; the contact force is not.
-    const bool usable = missing == 0 || (missing < samples_per_pack_ && plant_ == PlantKind::kHuntCrossley);
+    const bool usable = missing == 0 || (missing < samples_per_pack_ && takes_gaps_);
     if (usable) Fill(end_row, &next->pack, &next->t);
     row_ = end_row;
     if (!usable) {

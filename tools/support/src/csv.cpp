@@ -99,7 +99,7 @@ class Reader {
       throw InputError(path_.string() + ": " + std::to_string(result_.bad.total()) + " rows are bad and only " +
                        std::to_string(result_.num_rows()) + " good; this is not skipping but guessing");
     NoteBadRows();
-    Derive();
+    DeriveAll();
     return std::move(result_);
   }
 
@@ -181,14 +181,20 @@ class Reader {
                             std::to_string(bad.not_increasing) + " with a time that does not increase");
   }
 
-  void Derive() {
+  void DeriveAll() {
+    // One may be derived from another that is derived itself: as many rounds as there are at most.
+    for (std::size_t round = 0; round < request_.derived.size(); ++round) DeriveFromKnown();
+  }
+
+  void DeriveFromKnown() {
     const std::vector<double>& t = result_.columns.front();
     for (std::size_t i = 0; i < source_.size(); ++i) {
-      if (source_[i] != kAbsent) continue;
+      if (source_[i] != kAbsent || !result_.columns[i].empty()) continue;
       const auto rule = std::find_if(request_.derived.begin(), request_.derived.end(),
                                      [&](const DerivedColumn& d) { return d.name == request_.columns[i]; });
       const auto from = std::find(request_.columns.begin(), request_.columns.end(), rule->from);
       const std::vector<double>& x = result_.columns[static_cast<std::size_t>(from - request_.columns.begin())];
+      if (x.empty()) continue;
       if (t.size() < 2) throw InputError(path_.string() + ": one row is too few to derive " + rule->name);
       std::vector<double>& v = result_.columns[i];
       v.resize(t.size());

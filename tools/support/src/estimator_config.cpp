@@ -82,23 +82,39 @@ void ReadGapWatch(StrictTable table, GapWatchSettings* watch) {
   watch->tolerance = table.Number("tolerance", watch->tolerance, 0.0, 1.0);
 }
 
+/// What a configuration may say of a plant that a file describes: the file has the priors, constants and effects.
+void ReadDescribed(StrictTable& root, StrictTable& model, const ModelFacts& facts, EstimatorSettings* settings) {
+  for (const char* key : {"parameters", "constants", "pressure_rate"})
+    if (model.Has(key)) throw model.Error(key, "stands in the plant's file, " + settings->model);
+  if (root.Has("effect")) throw root.Error("effect", "the plant " + settings->model + " takes none");
+  ReadNoise(root.Table("noise"), facts.modes, settings);
+}
+
+void ReadBuiltin(StrictTable& root, StrictTable& model, const ModelFacts& facts, EstimatorSettings* settings) {
+  ReadParameters(model.Table("parameters"), settings);
+  ReadConstants(model, facts.plant, settings);
+  ReadPressureRate(model, facts.plant, settings);
+  ReadNoise(root.Table("noise"), facts.modes, settings);
+  ReadEffects(root, facts.plant, settings);
+}
+
 }  // namespace
 
 EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& model_override) {
   root.RequiredInteger("schema", 1, 1);
   StrictTable model = root.Table("model");
-  EstimatorSettings settings = Builtin(model, model_override.empty() ? "" : BaseModel(model_override));
+  const std::string of_file = model.Text("name", "");
+  const std::shared_ptr<const PlantProgram> plant = DescribedPlant(model_override.empty() ? of_file : model_override);
+  EstimatorSettings settings = plant != nullptr
+                                   ? DescribedSettings(plant)
+                                   : Builtin(model, model_override.empty() ? "" : BaseModel(model_override));
   const ModelFacts facts = FactsOf(settings);
-  ReadParameters(model.Table("parameters"), &settings);
-  ReadConstants(model, facts.plant, &settings);
-  ReadPressureRate(model, facts.plant, &settings);
-  ReadNoise(root.Table("noise"), facts.modes, &settings);
-  ReadEffects(root, facts.plant, &settings);
+  (plant != nullptr ? ReadDescribed : ReadBuiltin)(root, model, facts, &settings);
   ReadMethod(root, &settings);
   ReadForgetting(root.Table("forgetting"), &settings.forgetting);
   ReadSampler(root.Table("sampler"), &settings.sampler);
   ReadGapWatch(root.Table("gap_watch"), &settings.gap_watch);
-  if (IsModelFile(model_override)) ApplyModelFile(model_override, &settings);
+  if (plant == nullptr && IsModelFile(model_override)) ApplyModelFile(model_override, &settings);
   try {
     settings.Validate();
   } catch (const std::invalid_argument& error) {

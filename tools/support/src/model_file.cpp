@@ -1,11 +1,15 @@
 #include "armcmc/support/model_file.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include "armcmc/effects/registry.hpp"
+#include "armcmc/support/plant_file.hpp"
+#include "armcmc/support/plant_library.hpp"
 #include "model_tables.hpp"
 
 namespace armcmc::support {
@@ -75,14 +79,33 @@ bool IsModelFile(const std::string& model) {
   return model.ends_with(".toml") || std::filesystem::is_regular_file(model, ignored);
 }
 
+std::shared_ptr<const PlantProgram> DescribedPlant(const std::string& model) {
+  if (!IsModelFile(model)) {
+    try {
+      (void)BuiltinSettings(model);
+      return nullptr;
+    } catch (const std::invalid_argument&) {
+      const std::vector<std::string> names = PlantNames();
+      if (std::find(names.begin(), names.end(), model) == names.end()) return nullptr;
+      return ReadPlantProgram(FindPlantFile(model));
+    }
+  }
+  const StrictTable root = StrictTable::FromFile(model);
+  return root.Has("signals") || root.Has("law") || root.Has("mode") ? ReadPlantProgram(model) : nullptr;
+}
+
 std::string BaseModel(const std::string& model) {
+  if (DescribedPlant(model) != nullptr)
+    throw ConfigError("--model " + model +
+                      ": is a plant file, which armcmc-replay runs; expected a built-in model or a " +
+                      "model file (base = \"hunt_crossley\")");
   if (!IsModelFile(model)) {
     (void)Builtin(model, "--model " + model);
     return model;
   }
   StrictTable root = StrictTable::FromFile(model);
   root.RequiredInteger("schema", 1, 1);
-  const std::string base = root.RequiredText("base");
+  std::string base = root.RequiredText("base");
   try {
     (void)BuiltinSettings(base);
   } catch (const std::invalid_argument& error) {

@@ -4,6 +4,7 @@
 
 #include "armcmc/effects/registry.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/plant/program.hpp"
 #include "read_word.hpp"
 
 namespace armcmc::support {
@@ -70,6 +71,13 @@ void ReadEffect(StrictTable& table, PlantKind plant, EffectSettings* effect) {
 }  // namespace
 
 ModelFacts FactsOf(const EstimatorSettings& settings) {
+  if (settings.plant != nullptr) {
+    const ModelInfo& info = settings.plant->info();
+    ModelFacts facts{.plant = info.plant, .modes = {}};
+    for (int mode = 0; mode < info.num_modes; ++mode)
+      facts.modes.emplace_back(info.modes[static_cast<std::size_t>(mode)]);
+    return facts;
+  }
   // They belong to the model; an estimator with few draws is the way to ask for them.
   EstimatorSettings small = BuiltinSettings(settings.model);
   small.sampler.rule = DrawRule::kFixed;

@@ -145,6 +145,15 @@ Plant Understood(const StrictTable& root) {
 
 Plant ReadPlant(const std::filesystem::path& path) { return Understood(StrictTable::FromFile(path)); }
 
+std::shared_ptr<const PlantProgram> ReadPlantProgram(const std::filesystem::path& path) {
+  const StrictTable root = StrictTable::FromFile(path);
+  try {
+    return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(Understood(root)));
+  } catch (const PlantError& error) {
+    throw Placed(root, error);
+  }
+}
+
 Plant PlantFromText(std::string_view text, std::string_view name) {
   return Understood(StrictTable::FromText(text, name));
 }

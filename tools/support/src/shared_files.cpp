@@ -9,19 +9,15 @@
 namespace armcmc::support {
 namespace fs = std::filesystem;
 
-namespace {
-
-fs::path SharedDir(const std::string& kind) {
+fs::path SharedFolder(const std::string& kind) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   return program.parent_path().parent_path() / "share" / "armcmc" / kind;
 }
 
-}  // namespace
-
 fs::path FindSharedFile(const std::string& kind, const std::string& name) {
   std::error_code error;
-  const fs::path shared = SharedDir(kind);
+  const fs::path shared = SharedFolder(kind);
   for (const fs::path& candidate : {fs::path(name), fs::path(name + ".toml"), shared / name, shared / (name + ".toml")})
     if (fs::is_regular_file(candidate, error)) return candidate;
   std::string known;
@@ -34,7 +30,7 @@ fs::path FindSharedFile(const std::string& kind, const std::string& name) {
 std::vector<std::string> SharedFileNames(const std::string& kind) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(SharedDir(kind), error))
+  for (const fs::directory_entry& entry : fs::directory_iterator(SharedFolder(kind), error))
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;

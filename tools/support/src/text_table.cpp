@@ -9,7 +9,9 @@
 
 namespace armcmc::support {
 
-TextTable::TextTable(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
+TextTable::TextTable(std::vector<std::string> header, Content content) : content_(content) {
+  rows_.push_back(std::move(header));
+}
 
 void TextTable::AddRow(std::vector<std::string> cells) {
   if (cells.size() > rows_.front().size()) throw std::invalid_argument("more cells than the table has columns");
@@ -26,7 +28,8 @@ std::string TextTable::ToString() const {
     std::string line;
     for (std::size_t i = 0; i < width.size(); ++i) {
       const std::string pad(width[i] - rows_[n][i].size(), ' ');
-      line += (i == 0 ? rows_[n][i] + pad : "  " + pad + rows_[n][i]);
+      if (i > 0) line += "  ";
+      line += i == 0 || content_ == Content::kWords ? rows_[n][i] + pad : pad + rows_[n][i];
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";

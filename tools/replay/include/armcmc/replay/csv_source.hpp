@@ -12,10 +12,11 @@ namespace armcmc::replay {
 /// dt.
 ///
 /// A sample's number follows from its time, so that a row that is missing or was skipped leaves a gap. Such a pack is
-/// used with the samples that it has when the model does not mind (Hunt-Crossley), else it counts as lost, as does one
+/// used with the samples that it has when the model has no memory of those before, else it counts as lost, as does one
 /// without samples. Samples behind the last full pack are left out.
 class CsvSource final : public PackSource {
  public:
+  /// Without a period packs are of 0.1 s where that is 20 samples at least, and of 100 samples where it is fewer.
   /// @throws support::InputError when the file is bad, or the period is not a whole number of samples in
   /// [1, kMaxPackSamples].
   CsvSource(const SourceRequest& request, std::optional<DrawRecord> record);
@@ -32,6 +33,8 @@ class CsvSource final : public PackSource {
   void Fill(std::size_t end_row, DataPack* pack, std::array<double, kMaxPackSamples>* t) const;
 
   PlantKind plant_;
+  std::uint64_t fingerprint_ = 0;
+  bool takes_gaps_ = false;  // no sample needs those before it
   support::CsvSamples samples_;
   std::optional<DrawRecord> record_;
   double dt_ = 0.0;

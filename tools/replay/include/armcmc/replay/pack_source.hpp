@@ -9,6 +9,7 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/plant/program.hpp"
 #include "armcmc/support/lcm_log.hpp"
 
 namespace armcmc::replay {
@@ -49,7 +50,8 @@ struct SourceRequest {
   std::filesystem::path data;  ///< CSV of samples, or LCM log: told apart by content.
   PlantKind plant = PlantKind::kHuntCrossley;
   int num_inputs = 2;
-  double period = 0.1;               ///< s, T_s: a CSV is cut into packs of this length.
+  std::shared_ptr<const PlantProgram> described;  ///< Of a plant that a file describes.
+  double period = 0.1;               ///< s, T_s: a CSV is cut into packs of this length; 0: of one that suits it.
   bool skip_bad = false;             ///< CSV: count and skip bad rows.
   std::string prefix;                ///< LCM: of the channel names.
   std::filesystem::path draws_from;  ///< Estimates of the run to repeat, CSV or LCM log; empty: those in the data.

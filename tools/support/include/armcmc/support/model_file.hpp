@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "armcmc/plant/program.hpp"
 #include "armcmc/settings.hpp"
 #include "armcmc/support/strict_toml.hpp"
 
@@ -22,6 +24,11 @@ namespace armcmc::support {
 //
 // What a file leaves out keeps the value that it had; an effect starts from the catalogue's priors for forces of 1 N,
 // depths of 1 m and speeds of 1 m/s.
+
+/// The plant that `model` is, a plant file or the name of a plant that came along; null where it is a built-in model or
+/// a model file, which stands on one.
+/// @throws ConfigError where the plant file is wrong.
+[[nodiscard]] std::shared_ptr<const PlantProgram> DescribedPlant(const std::string& model);
 
 /// Whether --model means a file: it ends in .toml, or there is such a file.
 [[nodiscard]] bool IsModelFile(const std::string& model);

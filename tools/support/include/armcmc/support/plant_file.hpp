@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 #include "armcmc/plant/plant.hpp"
+#include "armcmc/plant/program.hpp"
 #include "armcmc/support/strict_toml.hpp"
 
 namespace armcmc::support {
@@ -11,7 +13,9 @@ namespace armcmc::support {
 /// Reads a plant file and understands it.
 /// @throws ConfigError with file, line, column, key, and what was expected.
 [[nodiscard]] Plant ReadPlant(const std::filesystem::path& path);
-/// The same from text; `name` stands for the file in messages.
+/// The same, made ready for the estimator. @throws ConfigError also where the plant is more than it runs.
+[[nodiscard]] std::shared_ptr<const PlantProgram> ReadPlantProgram(const std::filesystem::path& path);
+/// ReadPlant from text; `name` stands for the file in messages.
 [[nodiscard]] Plant PlantFromText(std::string_view text, std::string_view name);
 
 }  // namespace armcmc::support

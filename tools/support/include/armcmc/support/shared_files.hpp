@@ -6,11 +6,13 @@
 
 namespace armcmc::support {
 
+/// <folder of the program>/../share/armcmc/<kind>, in an installed tree as in a build tree, so that programs find their
+/// files from any folder and after being moved.
+[[nodiscard]] std::filesystem::path SharedFolder(const std::string& kind);
+
 /// Finds a file that came with the product: a configuration or a scenario.
 ///
-/// In this order: `name` as a path; `name` with ".toml"; the same in the shared folder. The shared folder is
-/// <folder of the program>/../share/armcmc/<kind>, in an installed tree as in a build tree, so that programs
-/// find their files from any folder and after being moved.
+/// In this order: `name` as a path; `name` with ".toml"; the same in the shared folder.
 /// @param kind  "config" or "scenarios".
 /// @throws ConfigError naming the places and the names that there are.
 [[nodiscard]] std::filesystem::path FindSharedFile(const std::string& kind, const std::string& name);

@@ -1,0 +1,133 @@
+// armcmc-model as a user runs it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+
+#include "support/paths.hpp"
+#include "support/process.hpp"
+
+namespace armcmc::model::model_program_test {
+namespace {
+
+using testing::HasSubstr;
+
+class ModelProgram : public ::testing::Test {
+ protected:
+  test::Outcome Run(const std::vector<std::string>& arguments) const {
+    return test::RunProgram(test::Program("armcmc-model"), arguments, std::chrono::minutes(1), dir_.path());
+  }
+  std::string Write(const std::string& name, const std::string& text) const {
+    std::ofstream(dir_.path() / name) << text;
+    return name;
+  }
+  test::ScratchDir dir_;
+};
+
+constexpr char kAxis[] = R"(schema = 1
+name = "my_axis"
+title = "An axis that nobody compiled"
+output = "F"
+law = "M*a + Fv*v + off"
+
+[signals]
+q = { unit = "m", role = "position" }
+v = { unit = "m/s", role = "velocity", derivative_of = "q" }
+a = { unit = "m/s^2", role = "acceleration", derivative_of = "v" }
+F = { unit = "N", role = "force" }
+
+[parameters]
+M = { unit = "kg", mean = 90.0, sd = 30.0, lower = 1.0, upper = 500.0 }
+Fv = { unit = "N s/m", mean = 200.0, sd = 100.0, lower = 0.0, upper = 2000.0 }
+off = { unit = "N", mean = 0.0, sd = 10.0 }
+
+[noise]
+law = "gaussian"
+std = 5.0
+estimate = true
+)";
+
+TEST_F(ModelProgram, SaysWhatItUnderstoodOfEveryPlantThatComesAlong) {
+  const test::Outcome list = Run({"list"});
+  EXPECT_EQ(list.code, 0) << list.err;
+  for (const auto& entry : std::filesystem::directory_iterator(test::SourceDir() / "core/plants")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_THAT(list.out, HasSubstr(name));
+    const test::Outcome check = Run({"check", name});
+    EXPECT_EQ(check.code, 0) << check.err;
+    EXPECT_THAT(check.out, HasSubstr(name + ": "));
+    EXPECT_THAT(check.out, HasSubstr("noise: "));
+  }
+}
+
+TEST_F(ModelProgram, ShowsSignalsPriorsAndTheLawOfAFile) {
+  const test::Outcome check = Run({"check", Write("axis.toml", kAxis)});
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_TRUE(std::regex_search(check.out, std::regex("F  \\(output\\) +N +force")));
+  EXPECT_TRUE(std::regex_search(check.out, std::regex("v +m/s +velocity +rate of q")));
+  EXPECT_TRUE(std::regex_search(check.out, std::regex("off +N +0 \\+- 10 +-80 +80"))) << check.out;
+  EXPECT_TRUE(std::regex_search(check.out, std::regex("always +F +N +M\\*a \\+ Fv\\*v \\+ off"))) << check.out;
+  EXPECT_THAT(check.out, HasSubstr("the estimator samples M, Fv, off\n"));
+}
+
+struct Wrong {
+  const char* name;
+  const char* from;
+  const char* to;
+  const char* expected;  ///< What the one line holds.
+};
+
+class WrongFile : public ModelProgram, public ::testing::WithParamInterface<Wrong> {};
+
+TEST_P(WrongFile, EndsWithOneLineThatSaysWhere) {
+  std::string text = kAxis;
+  const std::string from = GetParam().from;
+  ASSERT_NE(text.find(from), std::string::npos);
+  text.replace(text.find(from), from.size(), GetParam().to);
+  const test::Outcome check = Run({"check", Write("wrong.toml", text)});
+  EXPECT_EQ(check.code, 2);
+  EXPECT_EQ(std::count(check.err.begin(), check.err.end(), '\n'), 1) << check.err;
+  EXPECT_THAT(check.err, HasSubstr(GetParam().expected));
+  EXPECT_EQ(check.out, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Axis, WrongFile,
+    ::testing::Values(Wrong{"UnknownName", "M*a", "M*aa", "wrong.toml:5:10"},
+                      Wrong{"OpenParenthesis", "Fv*v", "Fv*(v", "wrong.toml:5:"},
+                      Wrong{"OutputThatIsNoSignal", "output = \"F\"", "output = \"G\"", "wrong.toml:4:"},
+                      Wrong{"NegativeSpread", "sd = 30.0", "sd = -1.0", "wrong.toml:14:"},
+                      Wrong{"CycleOfDerivatives", "derivative_of = \"q\"", "derivative_of = \"v\"", "wrong.toml:9:"},
+                      Wrong{"UnitThatDoesNotFit", "Fv*v", "Fv*q", "wrong.toml:5:"},
+                      Wrong{"UnitThatIsNone", "\"N s/m\"", "\"N sec/m\"", "wrong.toml:15:"},
+                      Wrong{"UnusedParameter", " + off", "", "wrong.toml:16:"},
+                      Wrong{"Arity", "Fv*v", "Fv*clamp(v, 0)", "wrong.toml:5:"},
+                      Wrong{"KeyThatIsMistyped", "estimate = true", "estimat = true",
+                            "wrong.toml:21:11: noise.estimat: unknown key (did you mean estimate?)"}),
+    [](const auto& at) { return std::string(at.param.name); });
+
+TEST_F(ModelProgram, WritesAStartThatIsUnderstoodAndOverwritesNothing) {
+  const test::Outcome made = Run({"new", "my_pendulum", "--from", "pendulum"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const test::Outcome check = Run({"check", "my_pendulum.toml"});
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("my_pendulum: Driven pendulum"));
+  const test::Outcome again = Run({"new", "my_pendulum"});
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.err, HasSubstr("is there already"));
+  EXPECT_EQ(Run({"new", "My plant"}).code, 2);
+}
+
+TEST_F(ModelProgram, NamesTheNearestPlantOfANameThatIsNone) {
+  const test::Outcome check = Run({"check", "servo_axes"});
+  EXPECT_EQ(check.code, 2);
+  EXPECT_THAT(check.err, HasSubstr("servo_axis"));
+}
+
+}  // namespace
+}  // namespace armcmc::model::model_program_test

@@ -1,0 +1,144 @@
+// A plant that nobody compiled, replayed from its file and a CSV.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/paths.hpp"
+#include "support/process.hpp"
+
+namespace armcmc::replay::replay_plant_file_test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kMass = 95.0, kViscous = 203.0, kOffset = -3.0;
+
+class ReplayOfAPlantFile : public ::testing::Test {
+ protected:
+  /// A sum of sines, its force with noise of 1 N. @param position  Name of its column.
+  void WriteMotion(const std::string& name, const std::string& position, double dt, int rows) const {
+    std::ofstream file(dir_ / name);
+    file << "t," << position << ",F\n";
+    file.precision(15);
+    std::mt19937_64 generator(11);
+    std::normal_distribution<double> noise(0.0, 1.0);
+    for (int n = 0; n < rows; ++n) {
+      const double t = n * dt;
+      double q = 0.0, v = 0.0, a = 0.0;
+      for (const double w : {0.01 / dt, 0.023 / dt}) {
+        const double size = 0.1 * std::pow(0.01 / dt / w, 2);
+        q += size * std::sin(w * t), v += size * w * std::cos(w * t), a -= size * w * w * std::sin(w * t);
+      }
+      file << t << ',' << q << ',' << kMass * a + kViscous * v + kOffset + noise(generator) << '\n';
+    }
+  }
+
+  test::Outcome Replay(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--out", (dir_ / "estimates.csv").string()});
+    return test::RunProgram(test::Program("armcmc-replay"), arguments, std::chrono::minutes(2), dir_.path());
+  }
+
+  /// Last row of the estimates, by column.
+  [[nodiscard]] std::map<std::string, double> Last() const {
+    std::ifstream file(dir_ / "estimates.csv");
+    std::string line, header, last;
+    while (std::getline(file, line)) {
+      if (line.empty() || line[0] == '#') continue;
+      (header.empty() ? header : last) = line;
+    }
+    std::map<std::string, double> row;
+    std::istringstream names(header), values(last);
+    for (std::string name, value; std::getline(names, name, ',') && std::getline(values, value, ',');)
+      row[name] = std::strtod(value.c_str(), nullptr);
+    return row;
+  }
+
+  void ExpectTheTruth() const {
+    const auto last = Last();
+    for (const auto& [name, truth] : {std::pair{"M", kMass}, {"Fv", kViscous}, {"off", kOffset}}) {
+      const double half = 0.5 * (last.at(std::string(name) + "_q975") - last.at(std::string(name) + "_q025"));
+      EXPECT_GT(half, 0.0) << name;
+      // Central differences make accelerations smaller by (w dt)^2 / 3, here 2e-4.
+      EXPECT_NEAR(last.at(name), truth, 2.5 * half + 4e-4 * std::fabs(truth)) << name;
+    }
+  }
+
+  test::ScratchDir dir_;
+};
+
+TEST_F(ReplayOfAPlantFile, FindsTheParametersWithVelocityAndAccelerationMadeFromThePosition) {
+  std::ofstream(dir_ / "my_axis.toml") << R"(schema = 1
+name = "my_axis"
+output = "F"
+law = "M*acc + Fv*vel + off"
+
+[signals]
+acc = { unit = "m/s^2", role = "acceleration", derivative_of = "vel" }
+vel = { unit = "m/s", role = "velocity", derivative_of = "pos" }
+pos = { unit = "m", role = "position" }
+F = { unit = "N", role = "force" }
+
+[parameters]
+M = { unit = "kg", mean = 50.0, sd = 50.0, lower = 1.0, upper = 500.0 }
+Fv = { unit = "N s/m", mean = 100.0, sd = 200.0, lower = 0.0, upper = 2000.0 }
+off = { unit = "N", mean = 0.0, sd = 10.0 }
+
+[noise]
+std = 1.0
+estimate = true
+)";
+  WriteMotion("motion.csv", "pos", 1e-3, 3001);
+  const test::Outcome run = Replay({"--model", "my_axis.toml", "--data", "motion.csv"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("30 packs (3 s)"));
+  EXPECT_THAT(run.out, HasSubstr("column acc is missing: derived from vel"));
+  ExpectTheTruth();
+}
+
+TEST_F(ReplayOfAPlantFile, TakesAPlantThatCameAlongByItsName) {
+  WriteMotion("motion.csv", "q", 1e-3, 2001);
+  const test::Outcome run = Replay({"--model", "servo_axis", "--data", "motion.csv"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  ExpectTheTruth();
+}
+
+TEST_F(ReplayOfAPlantFile, MakesPacksOfAHundredSamplesOfASlowRecording) {
+  WriteMotion("slow.csv", "q", 0.05, 1001);
+  const test::Outcome run = Replay({"--model", "servo_axis", "--data", "slow.csv"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("10 packs (50 s)"));
+}
+
+TEST_F(ReplayOfAPlantFile, SaysWhatIsWrong) {
+  WriteMotion("motion.csv", "position", 1e-3, 201);
+  const test::Outcome column = Replay({"--model", "servo_axis", "--data", "motion.csv"});
+  EXPECT_EQ(column.code, 2);
+  EXPECT_THAT(column.err, HasSubstr("column q is missing"));
+  const test::Outcome calibrate =
+      Replay({"--model", "servo_axis", "--data", "motion.csv", "--calibrate", "calibrated.toml"});
+  EXPECT_EQ(calibrate.code, 2);
+  EXPECT_THAT(calibrate.err, HasSubstr("--calibrate needs --config"));
+  std::ofstream(dir_ / "config.toml") << "schema = 1\n[model]\nname = \"servo_axis\"\n[model.parameters.M]\nsd = 3.0\n";
+  const test::Outcome prior = Replay({"--config", "config.toml", "--data", "motion.csv"});
+  EXPECT_EQ(prior.code, 2);
+  EXPECT_THAT(prior.err, HasSubstr("config.toml:4:1: model.parameters"));
+  EXPECT_THAT(prior.err, HasSubstr("stands in the plant's file"));
+}
+
+TEST_F(ReplayOfAPlantFile, IsRefusedByWhoRunsBuiltInModelsOnly) {
+  const test::Outcome live =
+      test::RunProgram(test::Program("armcmc-estimator"), {"--model", "servo_axis"}, std::chrono::minutes(1));
+  EXPECT_EQ(live.code, 2);
+  EXPECT_THAT(live.err, HasSubstr("is a plant file, which armcmc-replay runs"));
+}
+
+}  // namespace
+}  // namespace armcmc::replay::replay_plant_file_test
