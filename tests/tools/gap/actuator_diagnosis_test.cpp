@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "armcmc/gap/plant_diagnosis.hpp"
 #include "armcmc/gap/workflow.hpp"
@@ -29,6 +30,38 @@ TEST(PlantDiagnosis, EstimatesALagThatIsShorterThanASample) {
   ASSERT_TRUE(SetHolds(finding, "valve_lag"));
   const Fitted& fit = finding.best->fit;
   EXPECT_NEAR(fit.coordinates.back().Value(fit.theta[fit.theta.size() - 1]), 0.26e-3, 0.03e-3);
+}
+
+TEST(PlantDiagnosis, FindsAnEffectInEachEquation) {
+  const Recording recording = RecordPlant(kModel, {{"leak", 1.0, {}}, {"joint_friction", 1.0, {}}}, 62, kSeconds);
+  const PlantDiagnosis plant = DiagnosePlant(kModel, recording);
+  ASSERT_EQ(plant.Others().size(), 1u);
+  const std::vector<std::vector<std::string>> both = {*NamesOf(plant.carrying().diagnosis.finding).begin(),
+                                                      *NamesOf(plant.Others().front()->diagnosis.finding).begin()};
+  EXPECT_TRUE(std::find(both.begin(), both.end(), std::vector<std::string>{"leak"}) != both.end());
+  EXPECT_TRUE(std::find(both.begin(), both.end(), std::vector<std::string>{"joint_friction"}) != both.end());
+}
+
+TEST(PlantDiagnosis, HoldsTwoBiasesThatNothingTellsApartForEquallyProbable) {
+  // It begins with the recording: what the state at the start hides must not favour one of them.
+  const PlantDiagnosis plant = DiagnosePlant(kModel, RecordPlant(kModel, {{"pressure_bias", 2.0, {}}}, 69, kSeconds));
+  const Finding& finding = plant.carrying().diagnosis.finding;
+  for (const CandidatePtr& candidate : finding.set)
+    if (candidate->families().front() == "sensor zero") {
+      EXPECT_NEAR(candidate->probability, 0.5, 0.1) << candidate->names().front();
+    }
+  EXPECT_TRUE(SetHolds(finding, "pressure_bias"));
+}
+
+TEST(PlantDiagnosis, GivesProbabilitiesThatAreNumbersWhereARivalWouldRunAway) {
+  // A load that triples the inertia: constants that explain its beginning have no stiffness left.
+  const PlantDiagnosis plant =
+      DiagnosePlant(kModel, RecordPlant(kModel, {{"payload_step", 1.0, {2.18, 0.35 * kSeconds}}}, 1, kSeconds));
+  for (const EquationDiagnosis& one : plant.equations)
+    for (const CandidatePtr& candidate : one.diagnosis.finding.tried) {
+      EXPECT_TRUE(std::isfinite(candidate->probability)) << candidate->names().front();
+      EXPECT_TRUE(std::isfinite(candidate->fit.score())) << candidate->names().front();
+    }
 }
 
 TEST(PlantDiagnosis, SaysThatTheConstantsAreWrongRatherThanToNameAnEffect) {

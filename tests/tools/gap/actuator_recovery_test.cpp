@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -39,23 +37,13 @@ TEST_P(Recovery, NamesWhatIsHiddenInItsOwnEquation) {
   EXPECT_TRUE(plant.Others().empty());
 }
 
-// The other effects of the catalogue are named in the tests below.
+// The other effects of the catalogue are named in actuator_diagnosis_test.cpp.
 INSTANTIATE_TEST_SUITE_P(
     Actuator, Recovery,
     ::testing::Values(Case{"valve_dead_band", "flow law", true}, Case{"supply_droop", "flow law", true},
                       Case{"hysteresis", "bend equation", true}, Case{"gravity_load", "bend equation", false},
                       Case{"sensor_delay", "bend equation", true}, Case{"periodic_disturbance", "bend equation", true}),
     [](const auto& at) { return std::string(at.param.effect); });
-
-TEST(ActuatorRecovery, FindsAnEffectInEachEquation) {
-  const Recording recording = RecordPlant(kModel, {{"leak", 1.0, {}}, {"joint_friction", 1.0, {}}}, 62, kSeconds);
-  const PlantDiagnosis plant = DiagnosePlant(kModel, recording);
-  ASSERT_EQ(plant.Others().size(), 1u);
-  const std::vector<std::vector<std::string>> both = {*NamesOf(plant.carrying().diagnosis.finding).begin(),
-                                                      *NamesOf(plant.Others().front()->diagnosis.finding).begin()};
-  EXPECT_TRUE(std::find(both.begin(), both.end(), std::vector<std::string>{"leak"}) != both.end());
-  EXPECT_TRUE(std::find(both.begin(), both.end(), std::vector<std::string>{"joint_friction"}) != both.end());
-}
 
 TEST(ActuatorRecovery, LetsTheFlowLawDecideBetweenTheTwoBiases) {
   // A constant bias of either sensor bends the actuator alike: only the vent flow tells them apart. 1500 Pa change it
@@ -69,28 +57,6 @@ TEST(ActuatorRecovery, LetsTheFlowLawDecideBetweenTheTwoBiases) {
   EXPECT_TRUE(SetHolds(other.carrying().diagnosis.finding, "angle_bias"));
   EXPECT_FALSE(SetHolds(other.carrying().diagnosis.finding, "pressure_bias"));
   EXPECT_GT(other.carrying().diagnosis.finding.best->probability, 0.95);
-}
-
-TEST(ActuatorRecovery, HoldsTwoBiasesThatNothingTellsApartForEquallyProbable) {
-  // It begins with the recording: what the state at the start hides must not favour one of them.
-  const PlantDiagnosis plant = DiagnosePlant(kModel, RecordPlant(kModel, {{"pressure_bias", 2.0, {}}}, 69, kSeconds));
-  const Finding& finding = plant.carrying().diagnosis.finding;
-  for (const CandidatePtr& candidate : finding.set)
-    if (candidate->families().front() == "sensor zero") {
-      EXPECT_NEAR(candidate->probability, 0.5, 0.1) << candidate->names().front();
-    }
-  EXPECT_TRUE(SetHolds(finding, "pressure_bias"));
-}
-
-TEST(ActuatorRecovery, GivesProbabilitiesThatAreNumbersWhereARivalWouldRunAway) {
-  // A load that triples the inertia: constants that explain its beginning have no stiffness left.
-  const PlantDiagnosis plant =
-      DiagnosePlant(kModel, RecordPlant(kModel, {{"payload_step", 1.0, {2.18, 0.35 * kSeconds}}}, 1, kSeconds));
-  for (const EquationDiagnosis& one : plant.equations)
-    for (const CandidatePtr& candidate : one.diagnosis.finding.tried) {
-      EXPECT_TRUE(std::isfinite(candidate->probability)) << candidate->names().front();
-      EXPECT_TRUE(std::isfinite(candidate->fit.score())) << candidate->names().front();
-    }
 }
 
 }  // namespace
