@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <regex>
 #include <string>
 
@@ -29,28 +30,11 @@ class ModelProgram : public ::testing::Test {
   test::ScratchDir dir_;
 };
 
-constexpr char kAxis[] = R"(schema = 1
-name = "my_axis"
-title = "An axis that nobody compiled"
-output = "F"
-law = "M*a + Fv*v + off"
-
-[signals]
-q = { unit = "m", role = "position" }
-v = { unit = "m/s", role = "velocity", derivative_of = "q" }
-a = { unit = "m/s^2", role = "acceleration", derivative_of = "v" }
-F = { unit = "N", role = "force" }
-
-[parameters]
-M = { unit = "kg", mean = 90.0, sd = 30.0, lower = 1.0, upper = 500.0 }
-Fv = { unit = "N s/m", mean = 200.0, sd = 100.0, lower = 0.0, upper = 2000.0 }
-off = { unit = "N", mean = 0.0, sd = 10.0 }
-
-[noise]
-law = "gaussian"
-std = 5.0
-estimate = true
-)";
+/// A right plant file, to be spoilt.
+std::string AxisText() {
+  std::ifstream file(test::SourceDir() / "core/plants/servo_axis/plant.toml");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 TEST_F(ModelProgram, SaysWhatItUnderstoodOfEveryPlantThatComesAlong) {
   const test::Outcome list = Run({"list"});
@@ -66,7 +50,7 @@ TEST_F(ModelProgram, SaysWhatItUnderstoodOfEveryPlantThatComesAlong) {
 }
 
 TEST_F(ModelProgram, ShowsSignalsPriorsAndTheLawOfAFile) {
-  const test::Outcome check = Run({"check", Write("axis.toml", kAxis)});
+  const test::Outcome check = Run({"check", Write("axis.toml", AxisText())});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_TRUE(std::regex_search(check.out, std::regex("F  \\(output\\) +N +force")));
   EXPECT_TRUE(std::regex_search(check.out, std::regex("v +m/s +velocity +rate of q")));
@@ -85,7 +69,7 @@ struct Wrong {
 class WrongFile : public ModelProgram, public ::testing::WithParamInterface<Wrong> {};
 
 TEST_P(WrongFile, EndsWithOneLineThatSaysWhere) {
-  std::string text = kAxis;
+  std::string text = AxisText();
   const std::string from = GetParam().from;
   ASSERT_NE(text.find(from), std::string::npos);
   text.replace(text.find(from), from.size(), GetParam().to);
@@ -121,6 +105,22 @@ TEST_F(ModelProgram, WritesAStartThatIsUnderstoodAndOverwritesNothing) {
   EXPECT_EQ(again.code, 2);
   EXPECT_THAT(again.err, HasSubstr("is there already"));
   EXPECT_EQ(Run({"new", "My plant"}).code, 2);
+}
+
+TEST_F(ModelProgram, TakesALimitThatIsPassedForAnErrorOfTheFile) {
+  // Eight parameters and the noise scale.
+  std::string text = AxisText();
+  std::string law = "M*a + Fv*v + off", parameters;
+  for (const char* name : {"c1", "c2", "c3", "c4", "c5"}) {
+    law += " + " + std::string(name);
+    parameters += std::string(name) + " = { unit = \"N\", mean = 0.0, sd = 1.0 }\n";
+  }
+  text.replace(text.find("M*a + Fv*v + off"), std::string("M*a + Fv*v + off").size(), law);
+  text.insert(text.find("[noise]"), parameters);
+  const test::Outcome check = Run({"check", Write("large.toml", text)});
+  EXPECT_EQ(check.code, 2);
+  EXPECT_THAT(check.err, HasSubstr("large.toml:13:"));
+  EXPECT_THAT(check.err, HasSubstr("at most 8 are possible"));
 }
 
 TEST_F(ModelProgram, NamesTheNearestPlantOfANameThatIsNone) {

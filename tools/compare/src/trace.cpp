@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "armcmc/plant/program.hpp"
+
 namespace armcmc::compare {
 namespace {
 
@@ -15,8 +17,15 @@ QuantityTrace& TraceOf(RunTrace* trace, const Estimator& estimator, int mode, in
   return trace->quantities[static_cast<std::size_t>(mode * estimator.num_reported() + quantity)];
 }
 
-void NamePlant(PlantKind plant, RunTrace* trace) {
-  const bool contact = plant == PlantKind::kHuntCrossley;
+void NameOutput(const Estimator& estimator, RunTrace* trace) {
+  if (const auto& described = estimator.settings().plant; described != nullptr) {
+    const Plant& plant = described->plant();
+    const SignalDescription& output = plant.description().signals[static_cast<std::size_t>(plant.output())];
+    trace->output_name = "output " + output.name;
+    trace->output_unit = output.unit;
+    return;
+  }
+  const bool contact = estimator.plant() == PlantKind::kHuntCrossley;
   trace->output_name = contact ? "force" : "angle";
   trace->output_unit = contact ? "N" : "rad";
 }
@@ -129,7 +138,7 @@ RunTrace TraceRun(const EstimatorSettings& settings, replay::PackSource* source,
   RunTrace trace;
   trace.label = std::move(label);
   trace.settings = settings;
-  NamePlant(estimator.plant(), &trace);
+  NameOutput(estimator, &trace);
   for (int m = 0; m < estimator.num_modes(); ++m)
     for (int i = 0; i < estimator.num_reported(); ++i) {
       QuantityTrace quantity;

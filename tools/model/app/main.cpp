@@ -16,7 +16,11 @@ namespace armcmc::model {
 namespace {
 
 int Check(const std::string& plant) {
-  std::cout << PlantText(support::ReadPlant(support::FindPlantFile(plant)));
+  const std::filesystem::path path = support::FindPlantFile(plant);
+  const Plant understood = support::ReadPlant(path);
+  // What is more than the estimator can hold is an error of the file, with its place.
+  if (MayRun(understood)) (void)support::ReadPlantProgram(path);
+  std::cout << PlantText(understood);
   return support::kExitOk;
 }
 

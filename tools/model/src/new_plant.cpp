@@ -41,9 +41,12 @@ std::string NewPlantText(const std::string& name, const std::filesystem::path& f
   std::ifstream file(from, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
-  return kGuide + std::string("\n") +
-         std::regex_replace(text.str(), std::regex("(^|\n)name( *)= *\"[^\"]*\""), "$1name$2= \"" + name + "\"",
-                            std::regex_constants::format_first_only);
+  std::string made = kGuide + std::string("\n") +
+                     std::regex_replace(text.str(), std::regex("(^|\n)name( *)= *\"[^\"]*\""),
+                                        "$1name$2= \"" + name + "\"", std::regex_constants::format_first_only);
+  if (support::PlantFromText(made, from.string()).description().name != name)
+    throw support::InputError(from.string() + ": expected its name as  name = \"...\"  on a line of its own");
+  return made;
 }
 
 }  // namespace armcmc::model

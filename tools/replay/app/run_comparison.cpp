@@ -11,7 +11,8 @@ namespace armcmc::replay {
 namespace {
 
 std::string Label(const std::string& config, const std::string& model) {
-  return model.empty() ? config : config + ", model " + model;
+  if (model.empty()) return config;
+  return (config.empty() ? "" : config + ", ") + "model " + model;
 }
 
 /// Both runs read all packs of the recording; numbers of draws that a live run left belong to that run alone.
