@@ -38,6 +38,7 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       composition(Regressed(s)),
       info(composition.info()),
       kernels(simd::Best()),
+      state_filter(info.described != nullptr ? &info.described->states() : nullptr),
       predictor(info, s.constants, composition.flow()),
       summary(s.sampler.max_draws),
       gap_watch(info.described == nullptr
@@ -60,6 +61,17 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
   }
   workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws);
   ShowPrior();
+  ForgetStates();
+}
+
+void Estimator::Impl::ForgetStates() noexcept {
+  states_due = nullptr;
+  const ParameterSpace& space = samplers[0]->space();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d) {
+    state_mean[d] = space.offset[d];
+    state_sd[d] = space.scale[d];
+  }
+  state_noise = std::exp(space.log_noise_scale);
 }
 
 void Estimator::Impl::ShowPrior() noexcept {
@@ -134,6 +146,10 @@ Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, 
     active[i] = s.adjust_data[i].num_samples >= s.settings.forgetting.min_samples;
     pending += active[i] ? 1 : 0;
   }
+  if (!s.state_filter.empty()) {
+    s.states_due = result;
+    s.state_filter.Predict(s.kernels, s.state_mean, s.state_noise, s.adjust_data.data());
+  }
   const int pending_modes = pending;
   Status status = Status::kHeld;
   for (int m = 0; m < s.info.num_modes; ++m) {
@@ -181,11 +197,36 @@ Status Estimator::Impl::DrawMode(std::size_t m, std::uint64_t pack, Nanos deadli
 }
 
 void Estimator::Impl::Remember(ClockRef clock) noexcept {
-  if (not_remembered == nullptr) return;
-  ModeMemory& memory = *memories[not_remembered_mode];
-  memory.current = 1 - memory.current;
-  samplers[not_remembered_mode]->Remember(clock, workspace.get(), &memory.slot[memory.current], not_remembered);
-  not_remembered = nullptr;
+  if (not_remembered != nullptr) {
+    ModeMemory& memory = *memories[not_remembered_mode];
+    memory.current = 1 - memory.current;
+    samplers[not_remembered_mode]->Remember(clock, workspace.get(), &memory.slot[memory.current], not_remembered);
+    not_remembered = nullptr;
+  }
+  CarryStates();
+}
+
+void Estimator::Impl::CarryStates() noexcept {
+  if (states_due == nullptr) return;
+  const ModeDraws& draws = states_due->modes[0];  // states make the modes one
+  const ParameterSpace& space = samplers[0]->space();
+  for (int d = 0; draws.updated && d < space.dim; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    double mean = 0.0;
+    double square = 0.0;
+    for (int k = 0; k < draws.draws; ++k) mean += draws.weight[k] * draws.u[i][k];
+    for (int k = 0; k < draws.draws; ++k) square += draws.weight[k] * (draws.u[i][k] - mean) * (draws.u[i][k] - mean);
+    if (d >= info.num_parameters) {
+      state_noise = std::exp(space.Theta(d, mean));
+    } else {
+      state_mean[i] = space.Theta(d, mean);
+      state_sd[i] = space.scale[i] * std::sqrt(square);
+    }
+  }
+  std::array<double, kMaxStates> end{};
+  state_filter.Update(kernels, state_mean, state_sd, state_noise, adjust_data[0], &end);
+  composition.CarryStates(end);
+  states_due = nullptr;
 }
 
 void Estimator::Reset() noexcept {
@@ -199,6 +240,7 @@ void Estimator::Reset() noexcept {
   s.known_draws.fill(false);
   s.predictor.Reset();
   s.composition.Reset();
+  s.ForgetStates();
   if (s.gap_watch) s.gap_watch->Reset();
   if (s.bend_watch) s.bend_watch->Reset();
   s.report_mode = 0;

@@ -13,6 +13,7 @@
 #include "armcmc/gap_watch/gap_watch.hpp"
 #include "armcmc/mode_sampler.hpp"
 #include "armcmc/output_predictor.hpp"
+#include "armcmc/plant/state_filter.hpp"
 #include "armcmc/summary.hpp"
 
 namespace armcmc {
@@ -46,6 +47,9 @@ struct Estimator::Impl {
                   AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
   /// What the newest DrawMode() left to be done, if anything.
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
+  /// Integrates the states of a described plant to the end of the pack, for the mean of the posterior after it.
+  void CarryStates() noexcept ARMCMC_NONBLOCKING;
+  void ForgetStates() noexcept ARMCMC_NONBLOCKING;
   /// A baseline with one vector of parameters shows it for every mode.
   void ShareVector(Estimate* e) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool one_vector() const noexcept {
@@ -61,6 +65,10 @@ struct Estimator::Impl {
   ModeDraws* not_remembered = nullptr;  ///< Draws that no memory has been made of.
   std::size_t not_remembered_mode = 0;
   std::array<ModeData, kMaxModes> adjust_data;
+  AdjustResult* states_due = nullptr;  ///< Pack whose states at the end nobody has computed.
+  StateFilter state_filter;
+  std::array<double, kMaxParams> state_mean{}, state_sd{};  ///< Of the newest posterior of a plant with states.
+  double state_noise = 1.0;                                 ///< Standard deviation of its noise.
 
   // Execute stage.
   OutputPredictor predictor;

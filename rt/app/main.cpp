@@ -44,11 +44,14 @@ constexpr char kDescription[] =
     "of\n"
     "the parameters within a deadline, and publishes the estimate, its marginals and the state of health.";
 constexpr char kFooter[] =
-    "Channels: listens to PLANT_PACK; publishes EST_ESTIMATE, EST_POSTERIOR, EST_STATUS (all behind the prefix).\n"
+    "Channels: listens to PLANT_PACK, or PLANT_PACK_V2 for a plant that a file describes; publishes EST_ESTIMATE,\n"
+    "EST_POSTERIOR, EST_STATUS (all behind the prefix).\n"
     "Ctrl-C stops within one step, prints the summary and writes the report.\n\n"
     "Example: two terminals on one computer\n"
     "  armcmc-estimator --model hunt_crossley --report estimator.json\n"
-    "  armcmc-plant --scenario hunt_crossley_paper --duration 20\n";
+    "  armcmc-plant --scenario hunt_crossley_paper --duration 20\n"
+    "A plant of your own, from a file of 25 lines (armcmc-model new):\n"
+    "  armcmc-estimator --model my_axis.toml --report estimator.json\n";
 
 struct Options {
   std::string config;
@@ -69,17 +72,23 @@ struct Configuration {
   std::vector<rt::InjectionItem> inject;
 };
 
-Configuration Load(const Options& options) {
-  // Without --config the model has a file of its own; with both, --model replaces the model of the file.
+/// Without --config a built-in model has a file of its own, a plant that a file describes the defaults; with --config,
+/// --model replaces the model of the file.
+support::StrictTable OpenConfiguration(const Options& options, bool described) {
   // A wrong name or model file is told first: it is the model's fault, not the configuration's.
-  const std::string base = options.model.empty() ? "hunt_crossley" : support::BaseModel(options.model);
-  const std::string file = options.config.empty() ? base : options.config;
-  const bool decides = !options.config.empty() || support::IsModelFile(options.model);
-  auto root = support::StrictTable::FromFile(support::FindSharedFile("config", file));
+  const std::string base = options.model.empty() || described ? "hunt_crossley" : support::BaseModel(options.model);
+  if (described && options.config.empty())
+    return support::StrictTable::FromText("schema = 1\n", "the default configuration");
+  return support::StrictTable::FromFile(
+      support::FindSharedFile("config", options.config.empty() ? base : options.config));
+}
+
+Configuration Load(const Options& options) {
+  const bool described = support::DescribedPlant(options.model) != nullptr;
+  support::StrictTable root = OpenConfiguration(options, described);
+  const bool decides = described || !options.config.empty() || support::IsModelFile(options.model);
   Configuration configuration;
   configuration.estimator = support::ReadEstimatorSettings(root, decides ? options.model : "");
-  if (configuration.estimator.plant != nullptr)
-    throw root.Table("model").Error("name", "is a plant that a file describes, which armcmc-replay runs");
   configuration.rt = ReadRtSettings(root);
   configuration.gap_log = ReadGapLogSettings(root);
   configuration.inject = ReadInjections(root);
@@ -183,7 +192,8 @@ int Run(const Options& options) {
   rt::PipelineOptions pipeline_options;
   pipeline_options.max_steps = options.steps;
   if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
-  pipeline_options.record_packs = configuration.estimator.gap_watch.enabled;
+  // A described plant has no gap watch yet, and the watch's window is all that the packs are kept for.
+  pipeline_options.record_packs = configuration.estimator.gap_watch.enabled && configuration.estimator.plant == nullptr;
   if (injects) pipeline_options.injection = &injection;
   rt::StepEngine* computes = &engine;
   if (injects) computes = &disturbed;
@@ -238,8 +248,10 @@ int main(int argc, char** argv) {
   cli.add_option("--config", options.config,
                  "Configuration: a file, or the name of one that came with the product. Default: that of the model")
       ->type_name("FILE");
-  cli.add_option("--model", options.model,
-                 "Model: hunt_crossley, soft_actuator, soft_actuator_excited or a model file (.toml)")
+  cli.add_option(
+         "--model", options.model,
+         "Model: hunt_crossley, soft_actuator, soft_actuator_excited, a plant that came along (armcmc-model list),\n"
+         "a plant file or a model file (.toml)")
       ->type_name("NAME");
   cli.add_option("--lcm-url", options.lcm_url,
                  "LCM bus, for example udpm://239.255.76.67:7667?ttl=0. Default: the configuration's")

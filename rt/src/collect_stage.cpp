@@ -18,11 +18,11 @@ constexpr Nanos SilenceMargin(Nanos period_ns) noexcept { return 3 * period_ns /
 
 }  // namespace
 
-CollectStage::CollectStage(const RtSettings& settings, PlantKind plant, int num_inputs, PackRing* ring,
-                           Counters* counters, EventLog* events) noexcept
+CollectStage::CollectStage(const RtSettings& settings, const PackFormat& format, PackRing* ring, Counters* counters,
+                           EventLog* events) noexcept
     : period_ns_(settings.period_ns),
       deadline_ns_(settings.deadline_ns),
-      codec_(plant, num_inputs),
+      codec_(format),
       grid_(settings.period_ns),
       ring_(ring),
       counters_(counters),

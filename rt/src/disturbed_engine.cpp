@@ -19,7 +19,7 @@ Status DisturbedEngine::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef
   Status status = Status::kOk;
   if (injection_->Collapses(pack.seq)) {
     for (int i = 0; i < kRepeats; ++i) {
-      wrong_ = SyntheticPack(plant(), num_inputs(), i);
+      wrong_ = SyntheticPack(pack_format(), i);
       wrong_.seq = pack.seq;
       wrong_.run_id = pack.run_id;
       wrong_.t_last_ns = pack.t_last_ns;

@@ -1,7 +1,17 @@
 #include "armcmc/adjust_result.hpp"
+#include "armcmc/plant/program.hpp"
 #include "armcmc/rt/step_engine.hpp"
 
 namespace armcmc::rt {
+
+PackFormat PackFormatOf(const Estimator& estimator) noexcept {
+  PackFormat format{.plant = estimator.plant(), .num_inputs = estimator.num_inputs()};
+  if (const PlantProgram* plant = estimator.settings().plant.get(); plant != nullptr) {
+    format.name = plant->plant().description().name;
+    format.fingerprint = plant->plant().fingerprint();
+  }
+  return format;
+}
 
 EstimatorEngine::EstimatorEngine(const EstimatorSettings& settings) : estimator_(settings) {
   for (auto& result : results_) result = estimator_.MakeResult();
@@ -9,8 +19,7 @@ EstimatorEngine::EstimatorEngine(const EstimatorSettings& settings) : estimator_
 
 EstimatorEngine::~EstimatorEngine() = default;
 
-PlantKind EstimatorEngine::plant() const noexcept { return estimator_.plant(); }
-int EstimatorEngine::num_inputs() const noexcept { return estimator_.num_inputs(); }
+PackFormat EstimatorEngine::pack_format() const noexcept { return PackFormatOf(estimator_); }
 int EstimatorEngine::num_modes() const noexcept { return estimator_.num_modes(); }
 int EstimatorEngine::num_reported() const noexcept { return estimator_.num_reported(); }
 ReportedQuantity EstimatorEngine::reported(int index) const noexcept { return estimator_.reported(index); }

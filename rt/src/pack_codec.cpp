@@ -1,5 +1,6 @@
 #include "armcmc/rt/pack_codec.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -11,6 +12,10 @@ static_assert(std::extent_v<decltype(data_pack_t::y)> == kMaxPackSamples);
 static_assert(std::extent_v<decltype(data_pack_t::u)> == kMaxPackSamples);
 static_assert(std::extent_v<decltype(data_pack_t::u), 1> == data_pack_t::MAX_INPUTS);
 static_assert(data_pack_t::MAX_SAMPLES == kMaxPackSamples && data_pack_t::MAX_INPUTS <= kMaxPackInputs);
+static_assert(std::extent_v<decltype(data_pack_v2_t::y)> == kMaxPackSamples);
+static_assert(std::extent_v<decltype(data_pack_v2_t::u)> == kMaxPackSamples);
+static_assert(std::extent_v<decltype(data_pack_v2_t::u), 1> == kMaxPackInputs);
+static_assert(data_pack_v2_t::MAX_SAMPLES == kMaxPackSamples && data_pack_v2_t::MAX_INPUTS == kMaxPackInputs);
 static_assert(data_pack_t::PLANT_HUNT_CROSSLEY == static_cast<std::int32_t>(PlantKind::kHuntCrossley));
 static_assert(data_pack_t::PLANT_SOFT_ACTUATOR == static_cast<std::int32_t>(PlantKind::kSoftActuator));
 
@@ -20,6 +25,46 @@ std::int64_t ReadFingerprint(std::span<const std::uint8_t> payload) noexcept {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < 8; ++i) value = (value << 8U) | payload[i];
   return static_cast<std::int64_t>(value);
+}
+
+/// Checks the numbers of a pack of the right type and plant.
+template <typename Message>
+RejectCause Check(const Message& m, int num_inputs) noexcept ARMCMC_NONBLOCKING {
+  if (m.n_samples < 1 || m.n_samples > kMaxPackSamples) return RejectCause::kSampleCount;
+  if (m.n_inputs != num_inputs) return RejectCause::kInputCount;
+  if (!(m.dt > 0.0 && m.dt <= PackCodec::kMaxSampleInterval)) return RejectCause::kSampleInterval;
+  if (!std::isfinite(m.t_last_s)) return RejectCause::kNotFinite;
+  const std::int64_t seq = m.seq;
+  if (seq < 1 || seq > (std::int64_t{1} << 62) || m.t_last_s < 0.0) return RejectCause::kOutOfRange;
+
+  bool finite = true, in_range = true, all_zero = m.n_samples > 1;
+  const auto look = [&](double value) {
+    finite = finite && std::isfinite(value);
+    in_range = in_range && std::fabs(value) <= PackCodec::kMaxMagnitude;
+    all_zero = all_zero && value == 0.0;
+  };
+  for (int n = 0; n < m.n_samples; ++n) {
+    look(m.y[n]);
+    for (int i = 0; i < num_inputs; ++i) look(m.u[n][i]);
+  }
+  if (!finite) return RejectCause::kNotFinite;
+  if (!in_range) return RejectCause::kOutOfRange;
+  return all_zero ? RejectCause::kAllZero : RejectCause::kNone;
+}
+
+template <typename Message>
+void Copy(const Message& m, DataPack* pack) noexcept ARMCMC_NONBLOCKING {
+  pack->seq = m.seq;
+  pack->run_id = m.run_id;
+  pack->t_last_ns = m.t_last_ns;
+  pack->t_last_s = m.t_last_s;
+  pack->dt = m.dt;
+  pack->num_samples = m.n_samples;
+  pack->num_inputs = m.n_inputs;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(m.n_samples); ++n) {
+    pack->y[n] = m.y[n];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(m.n_inputs); ++i) pack->u[n][i] = m.u[n][i];
+  }
 }
 
 }  // namespace
@@ -51,18 +96,30 @@ RejectGroup GroupOf(RejectCause cause) noexcept {
   }
 }
 
-PackCodec::PackCodec(PlantKind plant, int num_inputs) noexcept
-    : plant_(plant),
-      num_inputs_(num_inputs),
-      fingerprint_(data_pack_t::getHash()),  // here, since its first call takes a lock
-      encoded_size_(static_cast<std::size_t>(message_.getEncodedSize())) {}
+// getHash() here, since its first call takes a lock.
+PackCodec::PackCodec(const PackFormat& format) noexcept
+    : format_(format),
+      fingerprint_(format.plant == PlantKind::kDescribed ? data_pack_v2_t::getHash() : data_pack_t::getHash()),
+      encoded_size_(static_cast<std::size_t>(format.plant == PlantKind::kDescribed ? described_.getEncodedSize()
+                                                                                   : message_.getEncodedSize())) {
+  std::transform(format.name.begin(),
+                 format.name.begin() + static_cast<std::ptrdiff_t>(std::min(format.name.size(), name_.size())),
+                 name_.begin(), [](char c) { return static_cast<std::uint8_t>(c); });
+}
 
 ARMCMC_TRUST_NONBLOCKING_BEGIN  // decode() looks up the fingerprint in a static variable that the constructor filled
     bool
     PackCodec::DecodeMessage(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING {
-  return message_.decode(payload.data(), 0, static_cast<int>(payload.size())) >= 0;
+  const int size = static_cast<int>(payload.size());
+  return described() ? described_.decode(payload.data(), 0, size) >= 0 : message_.decode(payload.data(), 0, size) >= 0;
 }
 ARMCMC_TRUST_NONBLOCKING_END
+
+bool PackCodec::IsOfThePlant() const noexcept ARMCMC_NONBLOCKING {
+  if (!described()) return message_.plant_kind == static_cast<std::int32_t>(format_.plant);
+  return described_.fingerprint == static_cast<std::int64_t>(format_.fingerprint) &&
+         std::equal(name_.begin(), name_.end(), described_.plant);
+}
 
 RejectCause PackCodec::Decode(std::span<const std::uint8_t> payload) noexcept {
   decoded_ = false;
@@ -71,46 +128,17 @@ RejectCause PackCodec::Decode(std::span<const std::uint8_t> payload) noexcept {
   if (payload.size() != encoded_size_) return RejectCause::kLength;
   if (!DecodeMessage(payload)) return RejectCause::kLength;
   decoded_ = true;
-  return Check();
-}
-
-RejectCause PackCodec::Check() const noexcept ARMCMC_NONBLOCKING {
-  const data_pack_t& m = message_;
-  if (m.plant_kind != static_cast<std::int32_t>(plant_)) return RejectCause::kPlantKind;
-  if (m.n_samples < 1 || m.n_samples > kMaxPackSamples) return RejectCause::kSampleCount;
-  if (m.n_inputs != num_inputs_) return RejectCause::kInputCount;
-  if (!(m.dt > 0.0 && m.dt <= kMaxSampleInterval)) return RejectCause::kSampleInterval;
-  if (!std::isfinite(m.t_last_s)) return RejectCause::kNotFinite;
-  if (m.seq < 1 || m.seq > (std::int64_t{1} << 62) || m.t_last_s < 0.0) return RejectCause::kOutOfRange;
-
-  bool finite = true, in_range = true, all_zero = m.n_samples > 1;
-  const auto look = [&](double value) {
-    finite = finite && std::isfinite(value);
-    in_range = in_range && std::fabs(value) <= kMaxMagnitude;
-    all_zero = all_zero && value == 0.0;
-  };
-  for (int n = 0; n < m.n_samples; ++n) {
-    look(m.y[n]);
-    for (int i = 0; i < num_inputs_; ++i) look(m.u[n][i]);
-  }
-  if (!finite) return RejectCause::kNotFinite;
-  if (!in_range) return RejectCause::kOutOfRange;
-  return all_zero ? RejectCause::kAllZero : RejectCause::kNone;
+  if (!IsOfThePlant()) return RejectCause::kPlantKind;
+  return described() ? Check(described_, format_.num_inputs) : Check(message_, format_.num_inputs);
 }
 
 void PackCodec::CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING {
-  const data_pack_t& m = message_;
-  pack->seq = m.seq;
-  pack->run_id = m.run_id;
-  pack->t_last_ns = m.t_last_ns;
-  pack->t_last_s = m.t_last_s;
-  pack->dt = m.dt;
-  pack->plant = plant_;
-  pack->num_samples = m.n_samples;
-  pack->num_inputs = m.n_inputs;
-  for (std::size_t n = 0; n < static_cast<std::size_t>(m.n_samples); ++n) {
-    pack->y[n] = m.y[n];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(m.n_inputs); ++i) pack->u[n][i] = m.u[n][i];
+  pack->plant = format_.plant;
+  pack->fingerprint = format_.fingerprint;
+  if (described()) {
+    Copy(described_, pack);
+  } else {
+    Copy(message_, pack);
   }
 }
 

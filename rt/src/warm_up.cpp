@@ -37,22 +37,30 @@ void FillSoftActuator(double t, std::size_t n, DataPack* pack) noexcept {
   pack->y[n] = 0.42 * (p - kAtmosphere);
 }
 
+void FillDescribed(double t, std::size_t n, DataPack* pack) noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(pack->num_inputs); ++i)
+    pack->u[n][i] = 1.0 + 0.5 * std::sin((5.0 + static_cast<double>(i)) * t);
+  pack->y[n] = 1.0 + 0.5 * std::cos(5.0 * t);
+}
+
 }  // namespace
 
-DataPack SyntheticPack(PlantKind plant, int num_inputs, int index) noexcept {
+DataPack SyntheticPack(const PackFormat& format, int index) noexcept {
   DataPack pack;
   pack.seq = index + 1;
   pack.run_id = 1;
   pack.dt = kDt;
-  pack.plant = plant;
+  pack.plant = format.plant;
+  pack.fingerprint = format.fingerprint;
   pack.num_samples = kSamples;
-  pack.num_inputs = num_inputs;
+  pack.num_inputs = format.num_inputs;
   for (int n = 0; n < kSamples; ++n) {
     const double t = kDt * (index * kSamples + n);
-    if (plant == PlantKind::kHuntCrossley) {
-      FillHuntCrossley(t, static_cast<std::size_t>(n), &pack);
-    } else {
-      FillSoftActuator(t, static_cast<std::size_t>(n), &pack);
+    const auto row = static_cast<std::size_t>(n);
+    switch (format.plant) {
+      case PlantKind::kHuntCrossley: FillHuntCrossley(t, row, &pack); break;
+      case PlantKind::kSoftActuator: FillSoftActuator(t, row, &pack); break;
+      case PlantKind::kDescribed: FillDescribed(t, row, &pack); break;
     }
     pack.t_last_s = t;
   }
@@ -64,7 +72,7 @@ void WarmUp(StepEngine* engine) noexcept {
   static Estimate estimate;
   static DataPack pack;
   for (int i = 0; i < kPacks; ++i) {
-    pack = SyntheticPack(engine->plant(), engine->num_inputs(), i);
+    pack = SyntheticPack(engine->pack_format(), i);
     for (int slot = 0; slot < LatestValue::kSlots; ++slot) {
       // No deadline: the draws run to their full number, so that every page of the slot is touched. With the clock, so
       // that the first pack already knows how long the work after its draws takes.

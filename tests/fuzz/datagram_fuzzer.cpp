@@ -10,7 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace armcmc;
   static const std::string channel = "PLANT_PACK";
-  static rt::PackCodec codec(PlantKind::kHuntCrossley, 2);
+  static rt::PackCodec codec({PlantKind::kHuntCrossley, 2});
   static rt::SequenceTracker tracker;
   std::span<const std::uint8_t> payload;
   if (rt::ParseDatagram({data, size}, channel, &payload) != rt::DatagramKind::kOurs) return 0;

@@ -87,7 +87,7 @@ void Snapshot(const std::filesystem::path& dir) {
   const auto result = estimator.MakeResult();
   const auto estimate = std::make_unique<armcmc::Estimate>();
   for (int i = 0; i < 3; ++i) {
-    const auto pack = armcmc::rt::SyntheticPack(estimator.plant(), 2, i);
+    const auto pack = armcmc::rt::SyntheticPack(armcmc::rt::PackFormatOf(estimator), i);
     (void)estimator.Adjust(pack, 0, armcmc::ClockRef{}, result.get());
     estimator.Execute(*result, estimate.get());
   }

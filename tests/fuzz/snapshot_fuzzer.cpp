@@ -22,7 +22,7 @@ struct Bench {
   armcmc::Estimator estimator{Settings()};
   std::unique_ptr<armcmc::AdjustResult> result = estimator.MakeResult();
   armcmc::Estimate estimate;
-  armcmc::DataPack pack = armcmc::rt::SyntheticPack(armcmc::PlantKind::kHuntCrossley, 2, 100);
+  armcmc::DataPack pack = armcmc::rt::SyntheticPack({armcmc::PlantKind::kHuntCrossley, 2}, 100);
 };
 
 }  // namespace

@@ -114,10 +114,10 @@ TEST_F(Spy, ShowsAHundredPacksASecondAndTheEstimatorMissesNothing) {
   auto spy = screen_->StartSpy({"--lcm-url", bus_->url()});
   const auto list = screen_->Window("LCM Spy");
   ASSERT_TRUE(list) << spy->err();
-  // All five channels are in the list before anybody clicks.
+  // All five channels of this plant are in the list before anybody clicks.
   const std::size_t before = recorder_->estimates().size();
   ASSERT_TRUE(recorder_->WaitForEstimates(before + static_cast<std::size_t>(3 * kRate)));
-  EXPECT_THAT(spy->out(), HasSubstr("Found 5 LCM types"));
+  EXPECT_THAT(spy->out(), HasSubstr("Found 6 LCM types"));
   EXPECT_THAT(spy->out(), HasSubstr("Found 3 plugins"));
 
   const std::string estimate = OpenPanel("EST_ESTIMATE", 0, 1450, 0);
@@ -139,10 +139,9 @@ TEST_F(Spy, ShowsAHundredPacksASecondAndTheEstimatorMissesNothing) {
   EXPECT_EQ(report["period_ms"], 1000 / kRate);
   EXPECT_GT(report["steps"], 14 * kRate);
   EXPECT_EQ(report["packs"]["lost"], 0);
-  // Without real-time scheduling other programs of the machine may take the processor, which nobody witnesses.
-  if (report["rt"]["policy"] == "SCHED_FIFO") {
-    EXPECT_EQ(report["misses"]["own"], 0) << report["misses"];
-  }
+  // Not through looking on. Which of 1400 steps with a deadline of 10 ms the machine itself spoils, and whether a
+  // witness with its own few wake-ups sees it, is the machine's matter: who looks on would spoil one in ten.
+  EXPECT_LE(report["misses"]["own"].get<int>(), report["steps"].get<int>() / 100) << report["misses"];
   // They did look on.
   EXPECT_GT(std::filesystem::file_size(dir_ / "logger.lcm"), 1'000'000u);
   const std::string steps = watch.out();

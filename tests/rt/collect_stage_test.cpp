@@ -31,8 +31,8 @@ class CollectStageTest : public ::testing::Test {
   std::unique_ptr<PackRing> ring_ = std::make_unique<PackRing>();
   std::unique_ptr<Counters> counters_ = std::make_unique<Counters>();
   EventLog events_;
-  std::unique_ptr<CollectStage> stage_ =
-      std::make_unique<CollectStage>(RtSettings{}, PlantKind::kHuntCrossley, 2, ring_.get(), counters_.get(), &events_);
+  std::unique_ptr<CollectStage> stage_ = std::make_unique<CollectStage>(
+      RtSettings{}, PackFormat{PlantKind::kHuntCrossley, 2}, ring_.get(), counters_.get(), &events_);
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -38,8 +38,9 @@ ARMCMC_TRUST_NONBLOCKING_END
 /// An engine whose result is the pack number, and whose time is set by the test.
 class FakeEngine : public StepEngine {
  public:
-  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override { return PlantKind::kHuntCrossley; }
-  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override { return 2; }
+  [[nodiscard]] PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING override {
+    return {PlantKind::kHuntCrossley, 2};
+  }
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override { return 1; }
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override { return 2; }
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {

@@ -80,7 +80,7 @@ TEST(DisturbedEngine, TellsAWrongPlantAgainAndAgainToCollapseThePosterior) {
   EXPECT_GT(engine.adjusted.load(), 4);
   Estimate estimate;
   disturbed.Execute(0, &estimate);
-  const DataPack right = SyntheticPack(PlantKind::kHuntCrossley, 2, 7);
+  const DataPack right = SyntheticPack({PlantKind::kHuntCrossley, 2}, 7);
   EXPECT_DOUBLE_EQ(estimate.y_pred, 0.5 * right.y[static_cast<std::size_t>(right.num_samples - 1)]);
 }
 

@@ -89,7 +89,7 @@ TEST_F(LcmReceiverTest, HearsAPackThatLiblcmPublished) {
   Publish("PLANT_PACK", test::Encode(test::ValidPack(7)));
   Datagram datagram;
   ASSERT_TRUE(Receive(&datagram));
-  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  PackCodec codec({PlantKind::kHuntCrossley, 2});
   EXPECT_EQ(codec.Decode(datagram.payload), RejectCause::kNone);
   EXPECT_EQ(codec.seq(), 7);
   EXPECT_LE(datagram.arrival_ns, MonotonicNow());

@@ -18,12 +18,12 @@ using test::ValidPack;
 RejectCause DecodeWith(const std::function<void(data_pack_t*)>& change) {
   data_pack_t pack = ValidPack(7);
   change(&pack);
-  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  PackCodec codec({PlantKind::kHuntCrossley, 2});
   return codec.Decode(Encode(pack));
 }
 
 TEST(PackCodec, CopiesEveryFieldOfAValidPack) {
-  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  PackCodec codec({PlantKind::kHuntCrossley, 2});
   ASSERT_EQ(codec.Decode(Encode(ValidPack(7, 42))), RejectCause::kNone);
   EXPECT_EQ(codec.seq(), 7);
   EXPECT_EQ(codec.run_id(), 42);
@@ -43,12 +43,12 @@ TEST(PackCodec, CopiesEveryFieldOfAValidPack) {
 }
 
 TEST(PackCodec, RejectsAnotherTypeByItsFingerprint) {
-  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  PackCodec codec({PlantKind::kHuntCrossley, 2});
   EXPECT_EQ(codec.Decode(Encode(plant_truth_t{})), RejectCause::kFingerprint);
 }
 
 TEST(PackCodec, RejectsAWrongLength) {
-  PackCodec codec(PlantKind::kHuntCrossley, 2);
+  PackCodec codec({PlantKind::kHuntCrossley, 2});
   auto bytes = Encode(ValidPack(1));
   bytes.push_back(0);
   EXPECT_EQ(codec.Decode(bytes), RejectCause::kLength) << "trailing byte";
@@ -95,6 +95,52 @@ TEST(PackCodec, IgnoresValuesThatAreNotUsed) {
               p->u[0][2] = std::nan("");
             }),
             RejectCause::kNone);
+}
+
+// Packs of plants that files describe.
+
+constexpr PackFormat kAxis{PlantKind::kDescribed, 3, "axis", static_cast<std::uint64_t>(-7)};
+
+RejectCause DecodeDescribed(const std::function<void(data_pack_v2_t*)>& change) {
+  data_pack_v2_t pack = test::ValidDescribedPack(7);
+  change(&pack);
+  PackCodec codec(kAxis);
+  return codec.Decode(Encode(pack));
+}
+
+TEST(PackCodec, CopiesEveryFieldOfADescribedPack) {
+  PackCodec codec(kAxis);
+  ASSERT_EQ(codec.Decode(Encode(test::ValidDescribedPack(7, 42))), RejectCause::kNone);
+  EXPECT_EQ(codec.seq(), 7);
+  EXPECT_EQ(codec.run_id(), 42);
+  EXPECT_EQ(codec.t_last_ns(), 700'000'000);
+  EXPECT_DOUBLE_EQ(codec.t_last_s(), 0.699);
+  DataPack pack;
+  codec.CopyTo(&pack);
+  EXPECT_EQ(pack.plant, PlantKind::kDescribed);
+  EXPECT_EQ(pack.fingerprint, kAxis.fingerprint);
+  EXPECT_EQ(pack.seq, 7);
+  EXPECT_EQ(pack.run_id, 42);
+  EXPECT_EQ(pack.num_samples, 100);
+  EXPECT_EQ(pack.num_inputs, 3);
+  EXPECT_DOUBLE_EQ(pack.y[99], 9.9);
+  EXPECT_DOUBLE_EQ(pack.u[99][2], 2.99);
+  EXPECT_EQ(pack.Validate(), Status::kOk);
+}
+
+TEST(PackCodec, APackOfAnotherDescribedPlantIsRejectedByItsNameOrItsSignals) {
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->plant[4] = 's'; }), RejectCause::kPlantKind) << "axiss";
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->plant[3] = 0; }), RejectCause::kPlantKind) << "axi";
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->fingerprint = 7; }), RejectCause::kPlantKind);
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->n_inputs = 2; }), RejectCause::kInputCount);
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->u[5][2] = std::nan(""); }), RejectCause::kNotFinite);
+}
+
+TEST(PackCodec, PacksOfBuiltInAndDescribedPlantsAreNotTakenForEachOther) {
+  PackCodec described(kAxis), contact({PlantKind::kHuntCrossley, 2});
+  EXPECT_EQ(described.Decode(Encode(ValidPack(1))), RejectCause::kFingerprint);
+  EXPECT_EQ(contact.Decode(Encode(test::ValidDescribedPack(1))), RejectCause::kFingerprint);
+  EXPECT_FALSE(described.decoded());
 }
 
 }  // namespace

@@ -221,7 +221,7 @@ TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
 
   const auto estimate = std::make_unique<Estimate>();
   for (int i = 0; i < 4; ++i) {
-    ASSERT_EQ(engine.Adjust(rt::SyntheticPack(engine.plant(), 2, 10 + i), 0, ClockRef{}, 0), Status::kOk);
+    ASSERT_EQ(engine.Adjust(rt::SyntheticPack(engine.pack_format(), 10 + i), 0, ClockRef{}, 0), Status::kOk);
     engine.Execute(0, estimate.get());
     engine.Remember(ClockRef{});
   }
@@ -234,9 +234,9 @@ TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
   ASSERT_TRUE(second.Resume(adjusted->used(), executed->used()));
   rt::WarmUp(&second);
   const auto resumed = std::make_unique<Estimate>();
-  ASSERT_EQ(second.Adjust(rt::SyntheticPack(second.plant(), 2, 14), 0, ClockRef{}, 0), Status::kOk);
+  ASSERT_EQ(second.Adjust(rt::SyntheticPack(second.pack_format(), 14), 0, ClockRef{}, 0), Status::kOk);
   second.Execute(0, resumed.get());
-  ASSERT_EQ(engine.Adjust(rt::SyntheticPack(engine.plant(), 2, 14), 0, ClockRef{}, 0), Status::kOk);
+  ASSERT_EQ(engine.Adjust(rt::SyntheticPack(engine.pack_format(), 14), 0, ClockRef{}, 0), Status::kOk);
   engine.Execute(0, estimate.get());
   EXPECT_EQ(resumed->modes[0].decision, Decision::kReinforcement);
   EXPECT_EQ(resumed->modes[0].log_evidence, estimate->modes[0].log_evidence);

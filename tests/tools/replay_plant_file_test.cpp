@@ -143,12 +143,5 @@ TEST_F(ReplayOfAPlantFile, SaysWhatIsWrong) {
   EXPECT_THAT(prior.err, HasSubstr("stands in the plant's file"));
 }
 
-TEST_F(ReplayOfAPlantFile, IsRefusedByWhoRunsBuiltInModelsOnly) {
-  const test::Outcome live =
-      test::RunProgram(test::Program("armcmc-estimator"), {"--model", "servo_axis"}, std::chrono::minutes(1));
-  EXPECT_EQ(live.code, 2);
-  EXPECT_THAT(live.err, HasSubstr("is a plant file, which armcmc-replay runs"));
-}
-
 }  // namespace
 }  // namespace armcmc::replay::replay_plant_file_test

@@ -13,6 +13,8 @@ struct TapeScalars;
 }  // namespace expression
 struct ContactPack;
 struct FlowPack;
+struct StateRun;
+struct StartFit;
 
 inline constexpr int kMaxFeatures = 6;  ///< Precomputed inputs a model may keep for each sample.
 inline constexpr int kTileLanes = 32;   ///< Candidates scored side by side.
@@ -36,6 +38,9 @@ struct alignas(64) ModeData {
   const expression::Tape* tape = nullptr;
   const expression::Tape* error_tape = nullptr;
   const expression::TapeScalars* scalars = nullptr;
+  const StateRun* states = nullptr;  ///< Of a plant that has some: what they do over the pack.
+  const StartFit* start_fit =
+      nullptr;  ///< Errors are those that remain beside an uncertain start; null: it is certain.
   std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of flow and tape: where in the pack it stands.
 };
 

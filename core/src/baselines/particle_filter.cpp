@@ -213,6 +213,11 @@ Status ParticleFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64
     std::copy(data.weight.begin() + from, data.weight.begin() + to, chunk_.weight.begin());
     chunk_.flow = data.flow;
     chunk_.mode = data.mode;
+    chunk_.tape = data.tape;
+    chunk_.error_tape = data.error_tape;
+    chunk_.scalars = data.scalars;
+    chunk_.states = data.states;
+    chunk_.start_fit = nullptr;  // its directions are those of the whole pack
     std::copy(data.sample.begin() + from, data.sample.begin() + to, chunk_.sample.begin());
     for (std::size_t f = 0; f < data.feature.size(); ++f)
       std::copy(data.feature[f].begin() + from, data.feature[f].begin() + to, chunk_.feature[f].begin());

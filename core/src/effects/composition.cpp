@@ -161,9 +161,20 @@ bool Composition::PrepareDescribed(const DataPack& pack, PlantPack* out) noexcep
   after.last = LastPack::Of(pack);
   if (plant_->has_memory()) after.features = before.features;
   if (!continues) after.features.Clear();
-  if (!plant_->Prepare(pack, &after.features, out)) return false;
+  if (!plant_->Prepare(pack, &after.features, continues ? &before.states : nullptr, out)) return false;
+  after.states.known = false;
+  SignalsAt(pack, pack.num_samples - 1, plant_->plant().output(), &after.states.signals);
   current_ = 1 - current_;
   return true;
+}
+
+void Composition::CarryStates(const std::array<double, kMaxStates>& end) noexcept {
+  StateMemory& memory = described_[static_cast<std::size_t>(current_)].states;
+  memory.known = true;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(plant_->states().size()); ++s) {
+    memory.state[s] = end[s];
+    memory.known = memory.known && std::isfinite(memory.state[s]);
+  }
 }
 
 bool Composition::Prepare(const DataPack& pack, EffectPack* out) noexcept {

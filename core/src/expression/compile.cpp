@@ -199,7 +199,10 @@ class Builder {
         const Linear above = Value(a);
         if (above.terms.empty())
           return Scaled(OfRegister(Emit(TapeOp::kReciprocal, {Materialise(below)})), above.constant);
-        return OfRegister(Emit(TapeOp::kDivide, {Materialise(above), Materialise(below)}));
+        const int divisor = Materialise(below);
+        // What no sample changes is inverted once: a division takes as long as ten products.
+        if (once(divisor)) return Product(above, OfRegister(Emit(TapeOp::kReciprocal, {divisor})));
+        return OfRegister(Emit(TapeOp::kDivide, {Materialise(above), divisor}));
       }
       case Op::kPower: return OfRegister(Power(a, b));
       case Op::kClamp: {

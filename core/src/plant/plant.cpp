@@ -35,7 +35,7 @@ bool IsPlantName(const std::string& name) {
 }
 
 /// FNV-1a, 64 bit.
-void Hash(std::string_view text, std::uint64_t* hash) {
+void AddToHash(std::string_view text, std::uint64_t* hash) {
   for (const char c : text) *hash = (*hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   *hash = (*hash ^ 0xffU) * 0x100000001b3ULL;  // between texts
 }
@@ -68,6 +68,8 @@ expression::Interval Bounds(const ParameterDescription& p) {
 Plant::Plant(PlantDescription description) : description_(std::move(description)) {
   if (!IsPlantName(description_.name))
     throw PlantError("name", 0, "a plant's name has small letters, digits and _ only");
+  if (description_.name.size() > kMaxNameLength)
+    throw PlantError("name", 0, "a plant's name has at most " + std::to_string(kMaxNameLength) + " characters");
   AddSignals();
   AddConstants();
   AddParameters();
@@ -82,8 +84,8 @@ Plant::Plant(PlantDescription description) : description_(std::move(description)
 
 void Plant::Identify() {
   identity_ = fingerprint_;
-  const auto add = [&](const auto&... texts) { (Hash(texts, &identity_), ...); };
-  const auto number = [&](double value) { Hash(std::to_string(std::bit_cast<std::uint64_t>(value)), &identity_); };
+  const auto add = [&](const auto&... texts) { (AddToHash(texts, &identity_), ...); };
+  const auto number = [&](double value) { AddToHash(std::to_string(std::bit_cast<std::uint64_t>(value)), &identity_); };
   add(description_.name, description_.law, description_.predicts);
   for (const auto& c : description_.constants) add(c.name), number(c.value);
   for (const auto& p : description_.parameters) add(p.name, p.unit, p.prior), number(p.per_mode ? 1.0 : 0.0);
@@ -161,8 +163,8 @@ void Plant::AddSignals() {
 
   fingerprint_ = 0xcbf29ce484222325ULL;
   for (const SignalDescription& signal : signals)
-    for (const std::string* text : {&signal.name, &signal.unit, &signal.role}) Hash(*text, &fingerprint_);
-  Hash(description_.output, &fingerprint_);
+    for (const std::string* text : {&signal.name, &signal.unit, &signal.role}) AddToHash(*text, &fingerprint_);
+  AddToHash(description_.output, &fingerprint_);
 }
 
 void Plant::AddConstants() {
@@ -260,6 +262,8 @@ void Plant::AddLets() {
 
 void Plant::AddModes() {
   auto& modes = description_.modes;
+  // As a plant that was understood before describes itself.
+  if (modes.size() == 1 && modes[0].name == "always" && modes[0].law == description_.law) modes.clear();
   if (modes.empty()) {
     if (description_.law.empty()) throw PlantError("law", 0, "expected a law, or modes that have one");
     ModeDescription only;
@@ -364,6 +368,8 @@ void Plant::CheckParametersAreFelt() const {
     std::vector<int> felt;
     for (const PlantMode& mode : modes_)
       if (!mode.passive) felt.push_back(mode.law);
+    // What is predicted is compared with the output, too.
+    if (predicts_ >= 0) felt.push_back(predicts_);
     // Through the states that a law reads, and what those read.
     for (std::size_t round = 0; round <= states_.size(); ++round)
       for (std::size_t s = 0; s < states_.size(); ++s) {

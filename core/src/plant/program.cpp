@@ -19,14 +19,13 @@ bool IsLognormal(const ParameterDescription& p) { return p.prior == "lognormal";
 }  // namespace
 
 PlantProgram::PlantProgram(std::shared_ptr<const Plant> plant) : plant_(std::move(plant)), graph_(plant_->graph()) {
-  if (!plant_->states().empty()) throw PlantError("states", 0, "the estimator runs no plants with states");
   if (plant_->predicts() >= 0)
     throw PlantError("predicts", 0, "the estimator shows what a law explains, and nothing else");
   for (std::size_t m = 0; m < plant_->modes().size(); ++m)
     if (!plant_->modes()[m].passive) active_.push_back(m);
   const auto& parameters = plant_->description().parameters;
-  merged_ = active_.size() > 1 &&
-            std::any_of(parameters.begin(), parameters.end(), [](const auto& p) { return !p.per_mode; });
+  merged_ = active_.size() > 1 && (!plant_->states().empty() || std::any_of(parameters.begin(), parameters.end(),
+                                                                            [](const auto& p) { return !p.per_mode; }));
   ChooseParameters();
   CompileModes();
   FillInfo();
@@ -80,7 +79,8 @@ void PlantProgram::CompileModes() {
       for (const bool error : {false, true}) {
         const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
         const expression::CompiledTape tape =
-            CompileTape(&graph_, {node}, static_cast<int>(sampled_.size()), 0, std::move(scalars));
+            CompileTape(&graph_, {node}, static_cast<int>(sampled_.size()), static_cast<int>(plant_->states().size()),
+                        std::move(scalars));
         scalars = tape.scalars;
         (error ? mode.error : mode.law) = tape.tape;
       }
@@ -115,6 +115,7 @@ void PlantProgram::CompileModes() {
       compile(described[active_[a]].name, InMode(mode.law, a), mode.target, mode.target == output, key_of(active_[a]));
     }
   }
+  CompileStates(&scalars);
   num_scalars_ = static_cast<int>(scalars.size());
   std::vector<int> features = scalars;
   const auto feature = [&](int node) {
@@ -140,6 +141,24 @@ void PlantProgram::CompileModes() {
   } catch (const std::length_error& error) {
     throw PlantError("name", 0, std::string("the plant ") + error.what());
   }
+}
+
+void PlantProgram::CompileStates(std::vector<int>* scalars) {
+  if (plant_->states().empty()) return;
+  std::vector<int> rates, starts;
+  for (const PlantState& state : plant_->states()) {
+    // In a mode a parameter means that mode's value; in a passive one that of the last mode that is none.
+    int rate = InMode(state.rate, active_.size() - 1);
+    int start = InMode(state.start, active_.size() - 1);
+    for (std::size_t a = active_.size() - 1; a-- > 0;) {
+      const int when = plant_->modes()[active_[a]].when;
+      rate = graph_.Make(Op::kIf, when, InMode(state.rate, a), rate);
+      start = graph_.Make(Op::kIf, when, InMode(state.start, a), start);
+    }
+    rates.push_back(rate);
+    starts.push_back(start);
+  }
+  states_ = PlantStates(*plant_, &graph_, rates, starts, static_cast<int>(sampled_.size()), scalars);
 }
 
 void PlantProgram::FillInfo() {
@@ -191,17 +210,15 @@ void PlantProgram::FillInfo() {
   for (std::size_t r = 0; r < nodes.size(); ++r) info_.reported[r] = {names_[r], units_[r]};
 }
 
-bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memory, PlantPack* out) const noexcept {
-  std::array<double, Plant::kMaxInputs + 1> signals{};
+bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memory, const StateMemory* before,
+                           PlantPack* out) const noexcept {
+  PlantSignals signals{};
   std::array<double, expression::kMaxTapeScalars + 2 * Plant::kMaxPlantModes> value{};
   out->scalars.stride = num_scalars_;
-  const auto output = static_cast<std::size_t>(plant_->output());
-  const auto num_signals = static_cast<std::size_t>(info_.num_inputs) + 1;
-  bool finite = true;
+  bool finite = states_.Prepare(pack, before, &out->states);
   for (int n = 0; n < pack.num_samples; ++n) {
     const auto in = static_cast<std::size_t>(n);
-    for (std::size_t s = 0, column = 0; s < num_signals; ++s)
-      signals[s] = s == output ? pack.y[in] : pack.u[in][column++];
+    SignalsAt(pack, n, plant_->output(), &signals);
     features_.Evaluate({signals.data(), pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt, pack.dt}, memory,
                        value.data());
     out->mode[in] = static_cast<std::int8_t>(info_.num_modes);
@@ -234,6 +251,8 @@ void PlantProgram::Fill(const PlantPack& pack, int num_samples, int mode, ModeDa
   data->tape = &modes_[static_cast<std::size_t>(mode)].law;
   data->error_tape = &modes_[static_cast<std::size_t>(mode)].error;
   data->scalars = &pack.scalars;
+  data->states = pack.states.rate != nullptr ? &pack.states : nullptr;
+  data->start_fit = nullptr;
 }
 
 double PlantProgram::Report(int r, const double* theta) const noexcept {

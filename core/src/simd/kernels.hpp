@@ -7,6 +7,7 @@
 #include "armcmc/noise_model.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
+#include "armcmc/plant/state_run.hpp"
 
 namespace armcmc::simd {
 
@@ -29,6 +30,11 @@ struct Kernels {
   /// the law of a described plant, come with `data`.
   void (*predict)(int model, const ModeData& data, const ThetaTile& theta,
                   PredictionTile* tile) noexcept ARMCMC_NONBLOCKING;
+
+  /// The states of a described plant at the last sample of the pack of `data`, and its law as predict() has it but for
+  /// data.start_fit, with starts that are `offset` from those of data.states.
+  void (*run_states)(const ModeData& data, const ThetaTile& theta, const StateTile& offset, StateTile* end,
+                     PredictionTile* law) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] = sum_n log p((target_n - tile[n][lane] - noise mean) weight_n), in nats, at scale exp(log_scale[lane]).
   void (*log_likelihood)(const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,

@@ -6,7 +6,7 @@
 #include "simd/vector.hpp"
 #include "simd/effects.inl"
 #include "simd/flow.inl"
-#include "simd/tape.inl"
+#include "simd/described.inl"
 // clang-format on
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {

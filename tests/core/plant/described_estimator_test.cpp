@@ -5,42 +5,15 @@
 
 #include "armcmc/expression/tape.hpp"
 #include "core/estimator_rig.hpp"
+#include "core/plant/described_packs.hpp"
 #include "core/plant/plants.hpp"
 
 namespace armcmc::described_estimator_test {
 namespace {
 
-/// Samples of any plant: inputs, output.
-struct Sample {
-  std::array<double, kMaxPackInputs> u{};
-  double y = 0.0;
-};
-
-template <class SampleAt>
-DataPack FillPack(const PlantProgram& plant, std::int64_t seq, const SampleAt& sample_at, int num_samples = 100,
-                  double dt = 1e-3) {
-  DataPack pack = test::BlankPack(PlantKind::kDescribed, seq, num_samples, dt);
-  pack.num_inputs = plant.info().num_inputs;
-  pack.fingerprint = plant.plant().fingerprint();
-  pack.t_last_s = static_cast<double>(seq * num_samples) * dt;
-  for (int n = 0; n < num_samples; ++n) {
-    const double t = pack.t_last_s - (num_samples - 1 - n) * dt;
-    const Sample sample = sample_at(t);
-    pack.u[static_cast<std::size_t>(n)] = sample.u;
-    pack.y[static_cast<std::size_t>(n)] = sample.y;
-  }
-  return pack;
-}
-
-class Noise {
- public:
-  explicit Noise(double sd) : law_(0.0, sd) {}
-  double operator()() { return law_(random_); }
-
- private:
-  std::mt19937_64 random_{11};
-  std::normal_distribution<double> law_;
-};
+using Sample = test::PlantSample;
+using Noise = test::GaussianNoise;
+using test::DescribedPack;
 
 TEST(DescribedEstimator, ContactIsThatOfTheBuiltInModel) {
   const auto plant = test::Program(test::DescribedContact());
@@ -49,7 +22,7 @@ TEST(DescribedEstimator, ContactIsThatOfTheBuiltInModel) {
   test::Rig compiled(built_in);
   Noise noise(0.1);
   for (std::int64_t seq = 1; seq <= 12; ++seq) {
-    DataPack pack = FillPack(*plant, seq, [&](double t) {
+    DataPack pack = DescribedPack(*plant, seq, [&](double t) {
       Sample s;
       s.u[0] = 0.6 * std::sin(2.0 * t) + 0.2;
       s.u[1] = 1.2 * std::cos(2.0 * t);
@@ -85,7 +58,7 @@ TEST(DescribedEstimator, LinearLawAgreesWithBatchLeastSquares) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (std::int64_t seq = 1; seq <= 8; ++seq) {
-    const DataPack pack = FillPack(*plant, seq, [&](double t) {
+    const DataPack pack = DescribedPack(*plant, seq, [&](double t) {
       Sample s;
       s.u[0] = 0.1 * std::sin(7.0 * t) + 0.05 * std::sin(31.0 * t);
       s.u[1] = 0.7 * std::cos(7.0 * t) + 1.55 * std::cos(31.0 * t);
@@ -124,7 +97,7 @@ TEST(DescribedEstimator, LognormalParametersAreReportedAsTheyAre) {
   test::Rig rig(DescribedSettings(plant));
   Noise noise(0.01);
   for (std::int64_t seq = 1; seq <= 15; ++seq)
-    (void)rig.Step(FillPack(*plant, seq, [&](double t) {
+    (void)rig.Step(DescribedPack(*plant, seq, [&](double t) {
       Sample s;
       s.u[0] = 0.3 + 0.35 * std::sin(9.0 * t);
       s.y = 20.0 * std::pow(std::fmax(s.u[0] - 0.02, 0.0), 1.5) + 0.1 + noise();
@@ -159,7 +132,7 @@ TEST(DescribedEstimator, ModesThatShareAParameterAreSampledTogether) {
   test::Rig rig(DescribedSettings(plant));
   Noise noise(0.1);
   for (std::int64_t seq = 1; seq <= 10; ++seq)
-    (void)rig.Step(FillPack(*plant, seq, [&](double t) {
+    (void)rig.Step(DescribedPack(*plant, seq, [&](double t) {
       Sample s;
       s.u[0] = std::sin(40.0 * t);
       s.u[1] = 40.0 * std::cos(40.0 * t);
@@ -187,7 +160,7 @@ TEST(DescribedEstimator, ModesOfTheirOwnAreSampledApart) {
   test::Rig rig(DescribedSettings(plant));
   Noise noise(0.1);
   for (std::int64_t seq = 1; seq <= 9; ++seq)
-    (void)rig.Step(FillPack(*plant, seq, [&](double t) {
+    (void)rig.Step(DescribedPack(*plant, seq, [&](double t) {
       Sample s;
       s.u[0] = seq % 3 == 1 ? 1.0 + std::sin(50.0 * t) * 0.5 : seq % 3 == 2 ? -1.0 : 0.0;
       s.y = (s.u[0] > 0.0 ? 3.0 : 5.0) * s.u[0] + noise();
@@ -215,7 +188,7 @@ TEST(DescribedEstimator, ALawThatExplainsSomethingElsePredictsNoOutput) {
   EXPECT_EQ(plant->info().target_unit, "m");
   test::Rig rig(DescribedSettings(plant));
   for (std::int64_t seq = 1; seq <= 3; ++seq)
-    (void)rig.Step(FillPack(*plant, seq, [](double t) {
+    (void)rig.Step(DescribedPack(*plant, seq, [](double t) {
       Sample s;
       s.u[0] = 1.0 + t;
       s.y = 50.0;
@@ -239,7 +212,7 @@ TEST(DescribedEstimator, MemoryGoesOnFromPackToPack) {
   double a_before = 0.0;
   bool first = true;
   for (std::int64_t seq = 1; seq <= 12; ++seq)
-    (void)rig.Step(FillPack(*plant, seq, [&](double t) {
+    (void)rig.Step(DescribedPack(*plant, seq, [&](double t) {
       Sample s;
       s.u[0] = 0.4 * std::sin(25.0 * t);
       s.u[1] = 10.0 * std::cos(25.0 * t);
@@ -261,7 +234,7 @@ TEST(DescribedEstimator, MemoryGoesOnFromPackToPack) {
 TEST(DescribedEstimator, PacksOfAnotherPlantAreRejected) {
   const auto plant = test::Program(test::DescribedAxis());
   test::Rig rig(DescribedSettings(plant));
-  const auto blank = [&] { return FillPack(*plant, 1, [](double) { return Sample{}; }); };
+  const auto blank = [&] { return DescribedPack(*plant, 1, [](double) { return Sample{}; }); };
   DataPack pack = blank();
   pack.fingerprint ^= 1;
   (void)rig.Step(pack);
@@ -283,7 +256,7 @@ TEST(DescribedEstimator, SnapshotGoesOnToTheBit) {
   const EstimatorSettings settings = DescribedSettings(plant);
   Noise noise(1.0);
   const auto pack = [&](std::int64_t seq) {
-    return FillPack(*plant, seq, [&](double t) {
+    return DescribedPack(*plant, seq, [&](double t) {
       Sample s;
       s.u = {std::sin(20.0 * t), 20.0 * std::cos(20.0 * t)};
       s.y = 90.0 * s.u[1] + 200.0 * s.u[0] + noise();
@@ -332,13 +305,20 @@ TEST(PlantProgram, LimitsAreErrorsThatNameTheirKey) {
     many.law += " + c" + std::to_string(k) + "*step(v - " + std::to_string(k + 1) + ")";
   }
   EXPECT_EQ(key_of(many), "parameters");
+  PlantDescription named = test::DescribedAxis();
+  named.name = std::string(31, 'a');
+  EXPECT_EQ(key_of(named), "");
+  named.name += 'a';
+  EXPECT_EQ(key_of(named), "name");
   PlantDescription memory = test::DescribedAxis();
   memory.law = "lowpass(M*a, 0.1) + Fv*v + off";
   EXPECT_EQ(key_of(memory), "law");
   PlantDescription states = test::DescribedAxis();
-  states.states = {{"s", "m/s", "", "a", "v", "", 1}};
+  states.states = {{"s", "m/s", "", "a", "v", "", 100}};
   states.law = "M*a + Fv*s + off";
-  EXPECT_EQ(key_of(states), "states");
+  EXPECT_EQ(key_of(states), "");
+  states.states[0].rate = "M/(M + M)*a + M/(M + M + M)*abs(a) + M/(M + M + M + M)*max(a, 0)";
+  EXPECT_EQ(key_of(states), "states") << "too many substeps";
 }
 
 }  // namespace

@@ -257,9 +257,9 @@ TEST_F(CsvExport, BadInputIsOneLine) {
   EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
 }
 
-/// The log of golden_log.txt.
-void WriteGoldenLog(const std::filesystem::path& path) {
-  std::ifstream text(test::SourceDir() / "tests/tools/export/golden_log.txt");
+/// The log of a text beside this file.
+void WriteGoldenLog(const std::string& name, const std::filesystem::path& path) {
+  std::ifstream text(test::SourceDir() / "tests/tools/export" / name);
   std::string line, bytes;
   std::getline(text, line);  // a comment
   for (std::string word; text >> word;) {
@@ -275,7 +275,7 @@ void WriteGoldenLog(const std::filesystem::path& path) {
 
 // Logs outlive versions: these bytes were written by the first one.
 TEST_F(CsvExport, ALogOfTheFirstReleasedTypesStaysReadable) {
-  WriteGoldenLog(request_.log);
+  WriteGoldenLog("golden_log.txt", request_.log);
   const ExportSummary summary = Export();
   EXPECT_EQ(summary.tables.size(), 5u);
   EXPECT_TRUE(summary.foreign.empty());
@@ -294,6 +294,19 @@ TEST_F(CsvExport, ALogOfTheFirstReleasedTypesStaysReadable) {
   EXPECT_EQ(statuses[0].at("rejected_type"), "7");
   EXPECT_EQ(statuses[0].at("gap_where"), "v < 0");
   EXPECT_NEAR(Number(statuses[0].at("t [s]")), 0.0501, 1e-9);
+}
+
+TEST_F(CsvExport, PacksOfADescribedPlantNameTheirColumnsAndStayReadable) {
+  WriteGoldenLog("golden_described_log.txt", request_.log);
+  const ExportSummary summary = Export();
+  EXPECT_EQ(summary.tables.size(), 1u);
+  EXPECT_TRUE(summary.foreign.empty());
+  const Rows packs = Table("PLANT_PACK_V2");
+  ASSERT_EQ(packs.size(), 3u);
+  EXPECT_EQ(packs[2].at("F [N]"), "3.5");
+  EXPECT_EQ(packs[2].at("q [m]"), "1");
+  EXPECT_EQ(packs[2].at("v [m s^-1]"), "0.25");
+  EXPECT_EQ(packs[2].at("seq"), "1");
 }
 
 }  // namespace

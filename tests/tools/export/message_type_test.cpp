@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "armcmc/data_pack_t.hpp"
+#include "armcmc/data_pack_v2_t.hpp"
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/plant_truth_t.hpp"
@@ -33,6 +34,7 @@ const MessageType* Described() {
 
 TEST(MessageType, HasTheFingerprintAndLengthOfTheGeneratedCode) {
   ASSERT_NE(Described<data_pack_t>(), nullptr);
+  ASSERT_NE(Described<data_pack_v2_t>(), nullptr);
   ASSERT_NE(Described<plant_truth_t>(), nullptr);
   ASSERT_NE(Described<estimate_t>(), nullptr);
   ASSERT_NE(Described<posterior_t>(), nullptr);
@@ -44,9 +46,9 @@ TEST(MessageType, HasTheFingerprintAndLengthOfTheGeneratedCode) {
 // channel, and stands here beside the old one (lcm_types/EVOLUTION.md).
 TEST(MessageType, ReleasedFingerprintsAreFrozen) {
   const std::vector<std::pair<std::string, std::uint64_t>> frozen = {
-      {"data_pack_t", 0x6715710721d2cf1f},        {"plant_truth_t", 0x7391ea7e8be666ff},
-      {"estimate_t", 0x2d3f65e4c6443a48},         {"posterior_t", 0x75343c9a3bfc7fd5},
-      {"estimator_status_t", 0xa10c28116c506211},
+      {"data_pack_t", 0x6715710721d2cf1f},   {"data_pack_v2_t", 0x342b43e393235195},
+      {"plant_truth_t", 0x7391ea7e8be666ff}, {"estimate_t", 0x2d3f65e4c6443a48},
+      {"posterior_t", 0x75343c9a3bfc7fd5},   {"estimator_status_t", 0xa10c28116c506211},
   };
   for (const auto& [name, fingerprint] : frozen) {
     bool found = false;

@@ -19,11 +19,22 @@ std::string Inverse(const std::string& unit) {
   return unit.empty() ? std::string() : std::string("(").append(unit).append(")^-1");
 }
 
+/// What the plant's numbers are called: by its packs where they say so.
+PlantWords WordsFor(const PlantScan& plant) {
+  PlantWords words = WordsOf(plant.plant_kind);
+  if (plant.output.empty()) return words;
+  words.output = plant.output;
+  words.output_unit = words.target_unit = plant.output_unit;
+  words.inputs = plant.inputs;
+  words.input_units = plant.input_units;
+  return words;
+}
+
 /// Builds the columns of one type, field by field.
 class Builder {
  public:
   Builder(const ChannelScan& channel, const PlantScan& plant, const TypeMeaning& meaning)
-      : channel_(channel), plant_(plant), words_(WordsOf(plant.plant_kind)), meaning_(meaning) {}
+      : channel_(channel), plant_(plant), words_(WordsFor(plant)), meaning_(meaning) {}
 
   void Add(const MessageField& field, std::vector<Column>* columns) const {
     const auto found = meaning_.fields.find(field.name);
@@ -108,7 +119,7 @@ class Builder {
 
   const ChannelScan& channel_;
   const PlantScan& plant_;
-  const PlantWords& words_;
+  PlantWords words_;
   const TypeMeaning& meaning_;
 };
 

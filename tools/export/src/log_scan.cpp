@@ -40,6 +40,20 @@ void NoteNames(Bytes data, const MessageType& type, PlantScan* plant) {
   }
 }
 
+/// Packs of a described plant name their columns.
+void NoteSignals(Bytes data, const MessageType& type, PlantScan* plant) {
+  const MessageField *y = type.Find("y_name"), *y_unit = type.Find("y_unit"), *u = type.Find("u_name"),
+                     *u_unit = type.Find("u_unit");
+  if (y == nullptr || y_unit == nullptr || u == nullptr || u_unit == nullptr || !plant->output.empty()) return;
+  plant->output = TextAt(data, *y, 0);
+  plant->output_unit = TextAt(data, *y_unit, 0);
+  const std::int64_t count = std::clamp<std::int64_t>(Integer(data, type, "n_inputs", 0), 0, u->dims[0]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    plant->inputs.push_back(TextAt(data, *u, i));
+    plant->input_units.push_back(TextAt(data, *u_unit, i));
+  }
+}
+
 void NotePack(Bytes data, const MessageType& type, double t, PlantScan* plant) {
   const MessageField *t_last = type.Find("t_last_s"), *dt = type.Find("dt");
   if (t_last == nullptr || dt == nullptr) return;
@@ -60,6 +74,7 @@ void Note(const support::LcmLogEvent& event, const MessageType& type, double t, 
   largest("n_modes", &plant->num_modes);
   largest("n_inputs", &plant->num_inputs);
   NoteNames(event.data, type, plant);
+  NoteSignals(event.data, type, plant);
   NotePack(event.data, type, t, plant);
 }
 

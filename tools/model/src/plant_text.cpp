@@ -84,18 +84,23 @@ std::string NoiseText(const Plant& plant) {
 }
 
 std::string EstimatorText(const Plant& plant) {
-  if (!MayRun(plant)) return "the estimator runs no plants with [states] or `predicts`\n";
-  const PlantProgram program(std::make_shared<const Plant>(plant));
+  if (!MayRun(plant)) return "the estimator runs no plants with `predicts`\n";
   std::string text = "the estimator samples";
-  for (std::size_t d = 0; d < program.sampled().size(); ++d) text += (d == 0 ? " " : ", ") + program.sampled()[d].name;
-  const int modes = program.info().num_modes;
-  text += modes > 1 ? ", in each of " + std::to_string(modes) + " modes apart\n" : "\n";
+  try {
+    const PlantProgram program(std::make_shared<const Plant>(plant));
+    for (std::size_t d = 0; d < program.sampled().size(); ++d)
+      text += (d == 0 ? " " : ", ") + program.sampled()[d].name;
+    const int modes = program.info().num_modes;
+    text += modes > 1 ? ", in each of " + std::to_string(modes) + " modes apart\n" : "\n";
+  } catch (const PlantError& error) {
+    return std::string("the estimator does not run it: ") + error.what() + '\n';
+  }
   return text;
 }
 
 }  // namespace
 
-bool MayRun(const Plant& plant) { return plant.states().empty() && plant.predicts() < 0; }
+bool MayRun(const Plant& plant) { return plant.predicts() < 0; }
 
 std::string PlantText(const Plant& plant) {
   const PlantDescription& description = plant.description();

@@ -11,6 +11,15 @@
 namespace armcmc::replay {
 namespace {
 
+rt::PackFormat FormatOf(const SourceRequest& request) {
+  rt::PackFormat format{.plant = request.plant, .num_inputs = request.num_inputs};
+  if (request.described != nullptr) {
+    format.name = request.described->plant().description().name;
+    format.fingerprint = request.described->plant().fingerprint();
+  }
+  return format;
+}
+
 void RequireChannel(const std::filesystem::path& path, const std::string& channel) {
   support::LcmLogReader log(path);
   support::LcmLogEvent event;
@@ -47,10 +56,10 @@ struct LcmSource::Checks {
 };
 
 LcmSource::LcmSource(const SourceRequest& request, std::optional<DrawRecord> record)
-    : channel_(request.prefix + "PLANT_PACK"),
+    : channel_(request.prefix + FormatOf(request).channel()),
       log_(request.data),
       record_(std::move(record)),
-      checks_(std::make_unique<Checks>(Checks{rt::PackCodec(request.plant, request.num_inputs), {}})) {
+      checks_(std::make_unique<Checks>(Checks{rt::PackCodec(FormatOf(request)), {}})) {
   RequireChannel(request.data, channel_);
 }
 

@@ -57,6 +57,9 @@ class Composition {
     return plant_ != nullptr ? effects.described.mode[static_cast<std::size_t>(n)] : info_.mode_of(pack, n);
   }
 
+  /// The states at the end of the pack that was prepared last: where the next one starts. @rt O(states).
+  void CarryStates(const std::array<double, kMaxStates>& end) noexcept ARMCMC_NONBLOCKING;
+
   /// Forgets the packs before.
   void Reset() noexcept {
     memory_[0].last = memory_[1].last = {};
@@ -94,6 +97,7 @@ class Composition {
   struct DescribedMemory {
     LastPack last;
     expression::FeatureMemory features;
+    StateMemory states;
   };
 
   [[nodiscard]] bool PrepareDescribed(const DataPack& pack, PlantPack* out) noexcept ARMCMC_NONBLOCKING;

@@ -39,6 +39,7 @@ class Plant {
   static constexpr int kMaxSampled = 8;
   static constexpr int kMaxStates = 8;
   static constexpr int kMaxPlantModes = 4;
+  static constexpr std::size_t kMaxNameLength = 31;  ///< What a message has room for.
 
   /// @throws PlantError.
   explicit Plant(PlantDescription description);

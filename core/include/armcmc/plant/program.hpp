@@ -13,6 +13,7 @@
 #include "armcmc/model.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/plant/plant.hpp"
+#include "armcmc/plant/states.hpp"
 
 namespace armcmc {
 
@@ -22,13 +23,15 @@ struct PlantPack {
   std::array<std::int8_t, kMaxPackSamples> mode{};  ///< That acts: of those that are sampled, their number for none.
   std::array<double, kMaxPackSamples> target{};     ///< What the law of that mode explains.
   std::array<double, kMaxPackSamples> passive{};    ///< What is shown where no sampled mode acts.
+  StateRun states;
 };
 
 /// A described plant as the estimator runs it: tapes for its laws, one program for everything that no parameter
 /// changes.
 ///
 /// Modes whose parameters are all their own are sampled apart. Where a parameter is shared, all modes are sampled as
-/// one, whose law is that of the mode that acts; parameters of a mode then carry its name.
+/// one, whose law is that of the mode that acts; parameters of a mode then carry its name. So they are where the plant
+/// has states, which go on from mode to mode.
 class PlantProgram {
  public:
   /// @throws PlantError where the plant is past a limit of the estimator.
@@ -38,16 +41,18 @@ class PlantProgram {
 
   [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
   [[nodiscard]] bool has_memory() const noexcept { return features_.has_memory(); }
+  [[nodiscard]] const PlantStates& states() const noexcept { return states_; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
   /// The parameter's prior as it is sampled: of a lognormal one that of the logarithm.
   [[nodiscard]] const std::vector<ParameterDescription>& sampled() const noexcept { return sampled_; }
 
   /// Goes through the samples of a pack, whose inputs are the plant's signals without the output.
   /// @param memory  Of functions with memory: taken up, and left for the next pack.
+  /// @param before  States that the pack before has left, if this one continues it; else null.
   /// @return false where something that is needed is not finite.
   /// @pre pack.Validate() == kOk, pack.num_inputs >= info().num_inputs.
   /// @rt No heap, no lock, no throw. O(samples).
-  [[nodiscard]] bool Prepare(const DataPack& pack, expression::FeatureMemory* memory,
+  [[nodiscard]] bool Prepare(const DataPack& pack, expression::FeatureMemory* memory, const StateMemory* before,
                              PlantPack* out) const noexcept ARMCMC_NONBLOCKING;
 
   /// The samples of one sampled mode. `pack` must outlive `data`.
@@ -82,6 +87,7 @@ class PlantProgram {
 
   void ChooseParameters();
   void CompileModes();
+  void CompileStates(std::vector<int>* scalars);
   void FillInfo();
   /// The node with the plant's parameters replaced by those that are sampled in one of its modes.
   [[nodiscard]] int InMode(int node, std::size_t active);
@@ -94,6 +100,7 @@ class PlantProgram {
   std::vector<std::vector<int>> index_;  ///< [active mode][parameter of the plant]: sampled parameter.
   std::vector<SampledMode> modes_;
   std::vector<Outputs> outputs_;
+  PlantStates states_;
   int num_scalars_ = 0;
   expression::FeatureProgram features_;              ///< Scalars of the tapes, then what outputs_ refers to.
   std::vector<expression::FeatureProgram> reports_;  ///< Each reads parameters as signals.

@@ -19,7 +19,7 @@ namespace armcmc::rt {
 /// First stage: checks a pack, watches its number and its time, and copies it into the ring.
 class CollectStage {
  public:
-  CollectStage(const RtSettings& settings, PlantKind plant, int num_inputs, PackRing* ring, Counters* counters,
+  CollectStage(const RtSettings& settings, const PackFormat& format, PackRing* ring, Counters* counters,
                EventLog* events) noexcept;
 
   /// Every usable pack goes there, too, also one that adjust will not come to. Set before the thread starts.

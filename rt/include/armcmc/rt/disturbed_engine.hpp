@@ -13,8 +13,7 @@ class DisturbedEngine final : public StepEngine {
   /// @param engine, injection  Outlive it.
   DisturbedEngine(StepEngine* engine, Injection* injection) noexcept : engine_(engine), injection_(injection) {}
 
-  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override { return engine_->plant(); }
-  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override { return engine_->num_inputs(); }
+  [[nodiscard]] PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING override { return engine_->pack_format(); }
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override { return engine_->num_modes(); }
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override { return engine_->num_reported(); }
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {

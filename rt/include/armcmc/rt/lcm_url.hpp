@@ -12,7 +12,6 @@ namespace armcmc::rt {
 inline constexpr std::size_t kMaxChannelLength = 63;
 inline constexpr std::size_t kMaxPrefixLength = 48;
 
-inline constexpr char kPackChannel[] = "PLANT_PACK";
 inline constexpr char kEstimateChannel[] = "EST_ESTIMATE";
 inline constexpr char kPosteriorChannel[] = "EST_POSTERIOR";
 inline constexpr char kStatusChannel[] = "EST_STATUS";

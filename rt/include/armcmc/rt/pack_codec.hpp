@@ -8,7 +8,9 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/data_pack_t.hpp"
+#include "armcmc/data_pack_v2_t.hpp"
 #include "armcmc/nonblocking.hpp"
+#include "armcmc/rt/pack_format.hpp"
 
 namespace armcmc::rt {
 
@@ -17,7 +19,7 @@ enum class RejectCause : std::uint8_t {
   kNone = 0,
   kFingerprint,     ///< Another type, or another version of ours.
   kLength,          ///< Truncated, or with trailing bytes.
-  kPlantKind,       ///< Pack of another plant family.
+  kPlantKind,       ///< Pack of another plant.
   kSampleCount,     ///< n_samples outside [1, kMaxPackSamples].
   kInputCount,      ///< n_inputs is not that of the model.
   kSampleInterval,  ///< dt outside (0, kMaxSampleInterval] or not finite.
@@ -39,8 +41,8 @@ class PackCodec {
   static constexpr double kMaxSampleInterval = 10.0;  ///< s
   static constexpr double kMaxMagnitude = 1e9;        ///< Above any force, angle, position or pressure of a plant.
 
-  /// @param plant, num_inputs  What the model expects.
-  PackCodec(PlantKind plant, int num_inputs) noexcept;
+  /// @param format  What the model expects.
+  explicit PackCodec(const PackFormat& format) noexcept;
 
   /// Decodes and checks one message; the pack stays inside until the next call.
   /// @param payload  Starts with the 8-byte fingerprint.
@@ -50,22 +52,25 @@ class PackCodec {
 
   /// true when the last message was a pack of ours, whatever was wrong with its values: its number may be looked at.
   [[nodiscard]] bool decoded() const noexcept { return decoded_; }
-  [[nodiscard]] std::int64_t seq() const noexcept { return message_.seq; }
-  [[nodiscard]] std::int64_t run_id() const noexcept { return message_.run_id; }
-  [[nodiscard]] std::int64_t t_last_ns() const noexcept { return message_.t_last_ns; }
-  [[nodiscard]] double t_last_s() const noexcept { return message_.t_last_s; }
+  [[nodiscard]] std::int64_t seq() const noexcept { return described() ? described_.seq : message_.seq; }
+  [[nodiscard]] std::int64_t run_id() const noexcept { return described() ? described_.run_id : message_.run_id; }
+  [[nodiscard]] std::int64_t t_last_ns() const noexcept {
+    return described() ? described_.t_last_ns : message_.t_last_ns;
+  }
+  [[nodiscard]] double t_last_s() const noexcept { return described() ? described_.t_last_s : message_.t_last_s; }
   /// Copies the used rows and columns. @pre the last Decode() returned kNone.
   void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
 
  private:
+  [[nodiscard]] bool described() const noexcept { return format_.plant == PlantKind::kDescribed; }
   [[nodiscard]] bool DecodeMessage(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool IsOfThePlant() const noexcept ARMCMC_NONBLOCKING;
 
-  [[nodiscard]] RejectCause Check() const noexcept ARMCMC_NONBLOCKING;
-
+  PackFormat format_;
   data_pack_t message_{};
-  PlantKind plant_;
-  int num_inputs_;
-  std::int64_t fingerprint_;
+  data_pack_v2_t described_{};
+  std::array<std::uint8_t, sizeof(data_pack_v2_t::plant)> name_{};  ///< As packs of the plant carry it.
+  std::int64_t fingerprint_;                                        ///< Of the message type.
   std::size_t encoded_size_;
   bool decoded_ = false;
 };

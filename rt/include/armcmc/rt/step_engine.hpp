@@ -11,6 +11,7 @@
 #include "armcmc/estimator.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/latest_value.hpp"
+#include "armcmc/rt/pack_format.hpp"
 #include "armcmc/rt/snapshot_hand_over.hpp"
 #include "armcmc/status.hpp"
 #include "armcmc/types.hpp"
@@ -25,8 +26,9 @@ class StepEngine {
  public:
   virtual ~StepEngine() = default;
 
-  [[nodiscard]] virtual PlantKind plant() const noexcept ARMCMC_NONBLOCKING = 0;
-  [[nodiscard]] virtual int num_inputs() const noexcept ARMCMC_NONBLOCKING = 0;
+  /// What it computes from. Its name lives as long as the engine.
+  [[nodiscard]] virtual PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING { return pack_format().plant; }
   [[nodiscard]] virtual int num_modes() const noexcept ARMCMC_NONBLOCKING = 0;
   [[nodiscard]] virtual int num_reported() const noexcept ARMCMC_NONBLOCKING = 0;
   [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING = 0;
@@ -43,6 +45,9 @@ class StepEngine {
   virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
+/// The packs that an estimator takes. Its name lives as long as the estimator.
+[[nodiscard]] PackFormat PackFormatOf(const Estimator& estimator) noexcept ARMCMC_NONBLOCKING;
+
 /// The estimator of core as a StepEngine.
 class EstimatorEngine final : public StepEngine {
  public:
@@ -50,8 +55,7 @@ class EstimatorEngine final : public StepEngine {
   explicit EstimatorEngine(const EstimatorSettings& settings);
   ~EstimatorEngine() override;
 
-  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING override;
-  [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override;

@@ -29,6 +29,8 @@ struct PlantScan {
   int plant_kind = 0;
   int num_modes = 0, num_inputs = 0;
   std::vector<std::string> parameters, units;  ///< As the estimates name them.
+  std::string output, output_unit;             ///< As the packs name them; empty: they do not.
+  std::vector<std::string> inputs, input_units;
   struct PackTime {
     double t_last = 0.0, dt = 0.0;  ///< s, plant time of the last sample, and sample interval.
   };

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+
+#include "armcmc/plant/state_run.hpp"
+#include "armcmc/types.hpp"
+
+namespace armcmc {
+
+/// What the uncertain start of a pack's states does to its errors, as the scoring kernels take it into account.
+///
+/// With the start x ~ N(x0, s^2 P) and the law's linear answer S to it, the errors of a candidate have the covariance
+/// s^2 (I + S P S') instead of s^2 I. `direction` are the orthonormal u_j of S P S' = sum_j l_j u_j u_j', and
+///
+///   e <- e - sum_j (1 - 1 / sqrt(1 + l_j)) u_j (u_j' e)
+///
+/// makes them independent again, of variance s^2.
+struct StartFit {
+  int count = 0;
+  std::array<double, kMaxStates> shrink{};                                ///< 1 - 1 / sqrt(1 + l_j), in [0, 1).
+  std::array<std::array<double, kMaxPackSamples>, kMaxStates> direction;  ///< [j][sample of the mode].
+};
+
+}  // namespace armcmc

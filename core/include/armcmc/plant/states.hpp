@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "armcmc/data_pack.hpp"
+#include "armcmc/expression/features.hpp"
+#include "armcmc/expression/graph.hpp"
+#include "armcmc/expression/tape.hpp"
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/plant/plant.hpp"
+#include "armcmc/plant/state_run.hpp"
+
+namespace armcmc {
+
+/// All signals of a plant at one sample, in the order of its file.
+using PlantSignals = std::array<double, Plant::kMaxInputs + 1>;
+
+/// Sample n of a pack: the output comes from y, the others in their order from u.
+/// @rt No heap, no lock, no throw. O(signals).
+inline void SignalsAt(const DataPack& pack, int n, int output, PlantSignals* signals) noexcept ARMCMC_NONBLOCKING {
+  const auto in = static_cast<std::size_t>(n);
+  for (std::size_t s = 0, column = 0; s <= static_cast<std::size_t>(pack.num_inputs) && s < signals->size(); ++s)
+    (*signals)[s] = s == static_cast<std::size_t>(output) ? pack.y[in] : pack.u[in][column++];
+}
+
+/// What one pack of a plant with states leaves to the next.
+struct StateMemory {
+  bool known = false;                      ///< There is one.
+  std::array<double, kMaxStates> state{};  ///< At its last sample, for the mean of the posterior after it.
+  PlantSignals signals{};                  ///< Of its last sample.
+};
+
+/// The states of a described plant, compiled: their rates and starts as tapes, and everything in the rates that no
+/// parameter and no state changes as a program of signals.
+///
+/// A pack that continues another starts from the end of that one's trajectory for the posterior's mean, one interval
+/// before its first sample; a state that is measured, from its signal there. Any other pack starts at its first sample
+/// from the file's `start` or the signal.
+class PlantStates {
+ public:
+  /// None.
+  PlantStates() = default;
+  /// @param rates, starts   A node of the graph a state, parameters replaced by those that are sampled.
+  /// @param num_parameters  That are sampled.
+  /// @param scalars         Of a sample, shared with the laws; those of the starts are added.
+  /// @throws PlantError where the plant is past a limit.
+  PlantStates(const Plant& plant, expression::Graph* graph, const std::vector<int>& rates,
+              const std::vector<int>& starts, int num_parameters, std::vector<int>* scalars);
+
+  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] int substeps() const noexcept { return substeps_; }
+  /// The state begins with a signal, whatever the pack before left.
+  [[nodiscard]] bool is_measured(int state) const noexcept {
+    return measured_by_[static_cast<std::size_t>(state)] >= 0;
+  }
+  /// d start / d output: how much of the output's noise the start has.
+  [[nodiscard]] double output_in_start(int state) const noexcept {
+    return output_in_start_[static_cast<std::size_t>(state)];
+  }
+  [[nodiscard]] const expression::Tape& rate() const noexcept { return rate_; }
+
+  /// Lays the pack out for integration.
+  /// @param before  What the pack before left, of one that this one continues; else null.
+  /// @return false where the pack has more samples than fit, or a start that is not finite.
+  /// @rt No heap, no lock, no throw. O(samples x substeps x operations of the rates).
+  [[nodiscard]] bool Prepare(const DataPack& pack, const StateMemory* before,
+                             StateRun* out) const noexcept ARMCMC_NONBLOCKING;
+
+ private:
+  int size_ = 0;
+  int output_ = 0;
+  int substeps_ = 1;
+  bool all_measured_ = false;
+  std::array<int, kMaxStates> measured_by_{};  ///< Signal, -1: none.
+  std::array<double, kMaxStates> output_in_start_{};
+  expression::Tape rate_, start_;
+  expression::FeatureProgram features_;  ///< The scalars of the rates.
+};
+
+}  // namespace armcmc

@@ -1,0 +1,169 @@
+// Predicts and scores described plants by their tapes; included by kernels.inl, once per instruction set.
+
+#include "armcmc/plant/start_fit.hpp"
+#include "simd/states.inl"
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+namespace {
+
+/// Runs a tape at the samples of `data`, in their order: take(n, result), result[lane].
+template <class Take>
+[[gnu::always_inline]] inline void RunTape(const Tape& tape, const ModeData& data, const ThetaTile& theta,
+                                           Take take) noexcept {
+  TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
+  StartTape(tape, theta, data.scalars->Row(0), &registers);
+  const auto one = [&](std::size_t n) {
+    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
+        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
+    take(n, registers.value[tape.result[0]].data());
+  };
+  const auto samples = static_cast<std::size_t>(data.num_samples);
+  if (data.states == nullptr) {
+    for (std::size_t n = 0; n < samples; ++n) one(n);
+    return;
+  }
+  StateIntegrator states(*data.states, theta, data.scalars->Row(0));
+  for (std::size_t n = 0; n < samples; ++n) {
+    states.AdvanceTo(data.sample[n]);
+    states.CopyTo(tape, &registers);
+    one(n);
+  }
+}
+
+/// Adds to the law what makes its errors independent beside an uncertain start.
+void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) noexcept {
+  Simd::V along[kMaxStates][kTapeVectors] = {};
+  const auto count = static_cast<std::size_t>(fit.count);
+  const auto samples = static_cast<std::size_t>(data.num_samples);
+  for (std::size_t n = 0; n < samples; ++n)
+    for (int v = 0; v < kTapeVectors; ++v) {
+      const Simd::V law = Simd::Load(tile->value[n].data() + v * Simd::kLanes);
+      const Simd::V error = (Simd::Set(data.target[n]) - law) * Simd::Set(data.weight[n]);
+      for (std::size_t j = 0; j < count; ++j)
+        along[j][v] = Simd::Fma(error, Simd::Set(fit.direction[j][n]), along[j][v]);
+    }
+  for (std::size_t n = 0; n < samples; ++n)
+    for (std::size_t j = 0; j < count; ++j) {
+      const Simd::V part = Simd::Set(fit.shrink[j] * fit.direction[j][n] / data.weight[n]);
+      for (int v = 0; v < kTapeVectors; ++v) {
+        double* law = tile->value[n].data() + v * Simd::kLanes;
+        Simd::Store(law, Simd::Fma(along[j][v], part, Simd::Load(law)));
+      }
+    }
+}
+
+void PredictTape(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+  RunTape(*data.tape, data, theta,
+          [&](std::size_t n, const double* law) { std::copy_n(law, kTileLanes, tile->value[n].data()); });
+  if (data.start_fit != nullptr) FitStart(*data.start_fit, data, tile);
+}
+
+void RunStates(const ModeData& data, const ThetaTile& theta, const StateTile& offset, StateTile* end,
+               PredictionTile* law) noexcept ARMCMC_NONBLOCKING {
+  const Tape& tape = *data.tape;
+  TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
+  StartTape(tape, theta, data.scalars->Row(0), &registers);
+  StateIntegrator states(*data.states, theta, data.scalars->Row(0), &offset);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+    states.AdvanceTo(data.sample[n]);
+    states.CopyTo(tape, &registers);
+    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
+        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
+    law->value[n] = registers.value[tape.result[0]];
+  }
+  states.AdvanceTo(data.states->num_samples - 1);
+  *end = states.state();
+}
+
+/// out[lane] = sum of the squares of law - target, weighted.
+template <bool kWeighted>
+void SumTapeSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  Simd::V sum[kTapeVectors] = {};
+  Simd::V along[kMaxStates][kTapeVectors] = {};
+  const StartFit* fit = data.start_fit;
+  const std::size_t count = fit != nullptr ? static_cast<std::size_t>(fit->count) : 0;
+  RunTape(*data.error_tape, data, theta, [&](std::size_t n, const double* error) {
+    for (int v = 0; v < kTapeVectors; ++v) {
+      Simd::V e = Simd::Load(error + v * Simd::kLanes);
+      if constexpr (kWeighted) e = e * Simd::Set(data.weight[n]);
+      sum[v] = Simd::Fma(e, e, sum[v]);
+      for (std::size_t j = 0; j < count; ++j) along[j][v] = Simd::Fma(e, Simd::Set(fit->direction[j][n]), along[j][v]);
+    }
+  });
+  // |e - sum_j shrink_j u_j (u_j' e)|^2
+  for (std::size_t j = 0; j < count; ++j) {
+    const double kept = 1.0 - fit->shrink[j];
+    for (int v = 0; v < kTapeVectors; ++v)
+      sum[v] = Simd::Fma(along[j][v] * along[j][v], Simd::Set(kept * kept - 1.0), sum[v]);
+  }
+  for (int v = 0; v < kTapeVectors; ++v) Simd::Store(out + v * Simd::kLanes, sum[v]);
+}
+
+/// sum[v] += constant + sum of scalars x parameters, for the vectors of a group whose first lane is `lane`.
+template <int kGroup>
+[[gnu::always_inline]] inline void AddTapeSum(const expression::TapeSum& terms, const double* row,
+                                              const ThetaTile& theta, int lane, Simd::V* sum) noexcept {
+  const Simd::V constant = terms.constant == expression::TapeSum::kNone ? Simd::V{} : Simd::Set(row[terms.constant]);
+  for (int g = 0; g < kGroup; ++g) sum[g] = constant;
+  for (std::size_t t = 0; t < terms.count; ++t) {
+    const double* parameter = theta.value[terms.parameter[t]].data() + lane;
+    const Simd::V scalar = Simd::Set(terms.scalar[t] == expression::TapeSum::kNone ? 1.0 : row[terms.scalar[t]]);
+    for (int g = 0; g < kGroup; ++g) sum[g] = Simd::Fma(Simd::Load(parameter + g * Simd::kLanes), scalar, sum[g]);
+  }
+}
+
+/// The same for a tape with a shape: as many vectors side by side as keep the arithmetic units busy, nothing in memory.
+/// Powers carry a relative error of 4e-11, as those of the compiled laws do.
+template <bool kWeighted, bool kPower>
+void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  constexpr int kGroup = Simd::kLanes == 8 ? 4 : 2;
+  constexpr double kReach = 960.0;  // |exponent log2 x| that needs no clamp
+  const Tape& tape = *data.error_tape;
+  for (int lane = 0; lane < kTileLanes; lane += kGroup * Simd::kLanes) {
+    Simd::V sum[kGroup] = {};
+    for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+      const double* row = data.scalars->Row(data.sample[n]);
+      Simd::V e[kGroup];
+      AddTapeSum<kGroup>(tape.rest, row, theta, lane, e);
+      if constexpr (kPower) {
+        Simd::V factor[kGroup];
+        AddTapeSum<kGroup>(tape.factor, row, theta, lane, factor);
+        const double* exponent = theta.value[tape.exponent].data() + lane;
+        const double log2 = row[tape.log2];
+        if (std::fabs(log2) * tape.largest_exponent <= kReach) {
+          for (int g = 0; g < kGroup; ++g)
+            e[g] = Simd::Fma(ScoreSimd::Power(Simd::Load(exponent + g * Simd::kLanes), log2), factor[g], e[g]);
+        } else {
+          for (int g = 0; g < kGroup; ++g)
+            e[g] =
+                Simd::Fma(Simd::Exp2OrNan(Simd::Load(exponent + g * Simd::kLanes) * Simd::Set(log2)), factor[g], e[g]);
+        }
+      }
+      for (int g = 0; g < kGroup; ++g) {
+        if constexpr (kWeighted) e[g] = e[g] * Simd::Set(data.weight[n]);
+        sum[g] = Simd::Fma(e[g], e[g], sum[g]);
+      }
+    }
+    for (int g = 0; g < kGroup; ++g) Simd::Store(out + lane + g * Simd::kLanes, sum[g]);
+  }
+}
+
+template <bool kWeighted>
+void SumSquaresOfTape(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  switch (data.error_tape->shape) {
+    case expression::TapeShape::kLinear: SumShapeSquares<kWeighted, false>(data, theta, out); break;
+    case expression::TapeShape::kPower: SumShapeSquares<kWeighted, true>(data, theta, out); break;
+    case expression::TapeShape::kGeneral: SumTapeSquares<kWeighted>(data, theta, out); break;
+  }
+}
+
+void SumSquaresTape(const ModeData& data, const ThetaTile& theta, double, double* out) noexcept ARMCMC_NONBLOCKING {
+  if (data.weighted) {
+    SumSquaresOfTape<true>(data, theta, out);
+  } else {
+    SumSquaresOfTape<false>(data, theta, out);
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE

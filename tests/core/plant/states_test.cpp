@@ -1,0 +1,282 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "armcmc/plant/states.hpp"
+#include "core/kernel_sets.hpp"
+#include "core/plant/described_packs.hpp"
+#include "core/plant/plants.hpp"
+
+namespace armcmc::states_test {
+namespace {
+
+using test::DescribedPack;
+using test::PlantSample;
+
+constexpr double kDt = 0.01;
+
+/// A mass on a spring, moved by a drive; the output is the place of the mass.
+PlantDescription Oscillator() {
+  PlantDescription plant;
+  plant.name = "oscillator";
+  plant.output = "y";
+  plant.law = "pos";
+  plant.signals = {{"u", "N", "drive", ""}, {"y", "m", "position", ""}};
+  plant.parameters = {{"m", "kg", "normal", 1.0, 0.5, 0.1, 5.0},
+                      {"d", "N s/m", "normal", 0.5, 0.5, 0.0, 5.0},
+                      {"k", "N/m", "normal", 20.0, 10.0, 1.0, 100.0}};
+  plant.states = {{"pos", "m", "position", "speed", "y", "", 1},
+                  {"speed", "m/s", "velocity", "(u - d*speed - k*pos)/m", "0", "", 2}};
+  plant.noise.std = 0.002;
+  return plant;
+}
+
+double Drive(double t) { return 3.0 * std::sin(2.1 * t) + 2.0 * std::sin(5.3 * t + 1.0); }
+
+/// Place and speed of the oscillator, by the same method with inputs linear between samples.
+struct Reference {
+  std::array<double, 2> x{};
+  std::array<double, 3> theta{1.3, 0.8, 31.0};
+  int substeps = 2;
+
+  [[nodiscard]] std::array<double, 2> Rate(const std::array<double, 2>& s, double u) const {
+    return {s[1], (u - theta[1] * s[1] - theta[2] * s[0]) / theta[0]};
+  }
+  void Step(double u0, double u1) {
+    const double h = kDt / substeps;
+    for (int i = 0; i < substeps; ++i) {
+      const auto at = [&](double part) { return u0 + (i + part) / substeps * (u1 - u0); };
+      const auto moved = [&](const std::array<double, 2>& k, double by) {
+        return std::array<double, 2>{x[0] + by * k[0], x[1] + by * k[1]};
+      };
+      const auto k1 = Rate(x, at(0.0));
+      const auto k2 = Rate(moved(k1, 0.5 * h), at(0.5));
+      const auto k3 = Rate(moved(k2, 0.5 * h), at(0.5));
+      const auto k4 = Rate(moved(k3, h), at(1.0));
+      for (std::size_t s = 0; s < 2; ++s) x[s] += h / 6.0 * (k1[s] + 2.0 * k2[s] + 2.0 * k3[s] + k4[s]);
+    }
+  }
+};
+
+/// A pack of the plant prepared for the kernels, all candidates alike.
+struct Laid {
+  Laid(const PlantProgram& plant, const DataPack& pack, const StateMemory* before, const std::vector<double>& theta) {
+    EXPECT_TRUE(plant.Prepare(pack, &memory, before, plant_pack.get()));
+    plant.Fill(*plant_pack, pack.num_samples, 0, data.get());
+    data->weighted = false;
+    for (std::size_t d = 0; d < theta.size(); ++d) tile.value[d].fill(theta[d]);
+  }
+  expression::FeatureMemory memory;
+  std::unique_ptr<PlantPack> plant_pack = std::make_unique<PlantPack>();
+  std::unique_ptr<ModeData> data = std::make_unique<ModeData>();
+  ThetaTile tile{};
+};
+
+TEST(States, AreIntegratedAsTheMethodSays) {
+  const auto plant = test::Program(Oscillator());
+  EXPECT_EQ(plant->states().substeps(), 2) << "the finest of all";
+  Reference reference;
+  reference.x = {0.2, 0.0};
+  std::vector<double> expected = {0.2};
+  const DataPack pack = DescribedPack(
+      *plant, 1,
+      [](double t) {
+        return PlantSample{{Drive(t)}, 0.2};
+      },
+      40, kDt);
+  for (int n = 1; n < 40; ++n) {
+    reference.Step(Drive(n * kDt), Drive((n + 1) * kDt));
+    expected.push_back(reference.x[0]);
+  }
+  const Laid laid(*plant, pack, nullptr, {1.3, 0.8, 31.0});
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const auto prediction = std::make_unique<PredictionTile>();
+    kernels->predict(-1, *laid.data, laid.tile, prediction.get());
+    for (std::size_t n = 0; n < 40; ++n)
+      for (const std::size_t lane : {std::size_t{0}, std::size_t{31}})
+        EXPECT_NEAR(prediction->value[n][lane], expected[n], 1e-13) << kernels->name << ", sample " << n;
+    StateTile end, offset{};
+    kernels->run_states(*laid.data, laid.tile, offset, &end, prediction.get());
+    EXPECT_NEAR(end.value[0][7], reference.x[0], 1e-13);
+    EXPECT_NEAR(end.value[1][7], reference.x[1], 1e-12);
+    EXPECT_NEAR(prediction->value[39][7], expected[39], 1e-13);
+  }
+}
+
+TEST(States, APackThatGoesOnStartsOneIntervalBeforeItsFirstSample) {
+  const auto plant = test::Program(Oscillator());
+  const auto at = [](double t) { return PlantSample{{Drive(t)}, 0.7}; };
+  const DataPack first = DescribedPack(*plant, 1, at, 30, kDt), second = DescribedPack(*plant, 2, at, 30, kDt);
+  StateMemory memory;
+  memory.known = true;
+  memory.state = {0.1, -0.4};
+  SignalsAt(first, 29, plant->plant().output(), &memory.signals);
+  Reference reference;
+  reference.x = {0.1, -0.4};
+  const Laid laid(*plant, second, &memory, {1.3, 0.8, 31.0});
+  const auto prediction = std::make_unique<PredictionTile>();
+  simd::Best().predict(-1, *laid.data, laid.tile, prediction.get());
+  for (int n = 0; n < 30; ++n) {
+    reference.Step(Drive((30 + n) * kDt), Drive((31 + n) * kDt));
+    EXPECT_NEAR(prediction->value[static_cast<std::size_t>(n)][3], reference.x[0], 1e-13) << n;
+  }
+}
+
+TEST(States, AMeasuredOneStartsFromItsSignal) {
+  PlantDescription description = Oscillator();
+  description.states[0].measured_by = "y";
+  const auto plant = test::Program(description);
+  const DataPack pack = DescribedPack(
+      *plant, 2,
+      [](double t) {
+        return PlantSample{{0.0}, t};
+      },
+      30, kDt);
+  StateMemory memory;
+  memory.known = true;
+  memory.state = {100.0, 0.5};
+  memory.signals = {0.0, 0.25};  // u, y
+  const Laid laid(*plant, pack, &memory, {1.3, 0.8, 31.0});
+  const StateRun& run = laid.plant_pack->states;
+  EXPECT_TRUE(run.carried) << "the speed goes on";
+  EXPECT_EQ(run.value[0], 0.25) << "where the sample before measured it";
+  EXPECT_EQ(run.value[1], 0.5);
+  // Where all are measured nothing has to go on.
+  description.signals.push_back({"v", "m/s", "velocity", ""});
+  description.states[1].measured_by = "v";
+  const auto measured = test::Program(description);
+  const DataPack other = DescribedPack(
+      *measured, 2,
+      [](double t) {
+        return PlantSample{{0.0, 3.0}, t};
+      },
+      30, kDt);
+  const Laid laid_measured(*measured, other, &memory, {1.3, 0.8, 31.0});
+  EXPECT_FALSE(laid_measured.plant_pack->states.carried);
+  EXPECT_EQ(laid_measured.plant_pack->states.value[0], other.y[0]);
+  EXPECT_EQ(laid_measured.plant_pack->states.value[1], 3.0);
+}
+
+TEST(States, EstimatorLearnsWhatMovesThemAndGoesOnFromPackToPack) {
+  const auto plant = test::Program(Oscillator());
+  test::Rig rig(DescribedSettings(plant));
+  test::GaussianNoise noise(0.002);
+  Reference reference;
+  std::vector<double> errors;
+  double t_before = kDt;
+  for (std::int64_t seq = 1; seq <= 12; ++seq) {
+    (void)rig.Step(DescribedPack(
+        *plant, seq,
+        [&](double t) {
+          if (t > t_before + 0.5 * kDt) reference.Step(Drive(t_before), Drive(t));
+          t_before = t;
+          return PlantSample{{Drive(t)}, reference.x[0] + noise()};
+        },
+        50, kDt));
+    ASSERT_EQ(rig.status, Status::kOk) << seq;
+    if (seq < 6) continue;
+    for (std::size_t n = 0; n < 50; ++n) errors.push_back(rig.estimate().y_shown[n] - rig.result->pack.y[n]);
+  }
+  const ModeEstimate& mode = rig.estimate().modes[0];
+  for (std::size_t d = 0; d < 3; ++d) {
+    EXPECT_NEAR(mode.marginal[d].ar_ap, reference.theta[d], 5.0 * mode.marginal[d].sd) << d;
+    EXPECT_LT(mode.marginal[d].sd, 0.02 * reference.theta[d]) << d;
+  }
+  double square = 0.0;
+  for (const double e : errors) square += e * e;
+  EXPECT_LT(std::sqrt(square / static_cast<double>(errors.size())), 0.004) << "of what is shown, noise included";
+}
+
+TEST(States, AStartMayBeAParameter) {
+  PlantDescription description = Oscillator();
+  description.parameters.push_back({"x0", "m", "normal", 0.0, 1.0, -3.0, 3.0});
+  description.states[0].start = "x0";
+  const auto plant = test::Program(description);
+  test::Rig rig(DescribedSettings(plant));
+  test::GaussianNoise noise(0.002);
+  Reference reference;
+  reference.x = {0.6, 0.0};
+  double t_before = kDt;
+  for (std::int64_t seq = 1; seq <= 4; ++seq) {
+    (void)rig.Step(DescribedPack(
+        *plant, seq,
+        [&](double t) {
+          if (t > t_before + 0.5 * kDt) reference.Step(Drive(t_before), Drive(t));
+          t_before = t;
+          return PlantSample{{Drive(t)}, reference.x[0] + noise()};
+        },
+        50, kDt));
+    if (seq > 1) continue;  // the packs after it say nothing on how the first one began
+    const MarginalSummary& x0 = rig.estimate().modes[0].marginal[3];
+    EXPECT_NEAR(x0.ar_ap, 0.6, 5.0 * x0.sd);
+    EXPECT_LT(x0.sd, 0.02);
+  }
+  const ModeEstimate& mode = rig.estimate().modes[0];
+  for (std::size_t d = 0; d < 3; ++d)
+    EXPECT_NEAR(mode.marginal[d].ar_ap, reference.theta[d], 5.0 * mode.marginal[d].sd);
+}
+
+TEST(States, ParametersOfAModeAreThatModesInRatesToo) {
+  PlantDescription description;
+  description.name = "tank";
+  description.output = "y";
+  description.signals = {{"u", "V", "drive", ""}, {"y", "V", "level", ""}};
+  description.parameters = {{"c", "1/s", "normal", 1.0, 1.0, 0.0, 10.0}};
+  description.parameters[0].per_mode = true;
+  description.states = {{"level", "V", "level", "c*(u - level)", "y", "", 4}};
+  description.modes = {{"filling", "u > 0", "level", "", false}, {"draining", "", "level", "", false}};
+  description.noise.std = 0.01;
+  const auto plant = test::Program(description);
+  ASSERT_EQ(plant->info().num_modes, 1) << "one trajectory, whatever the mode";
+  ASSERT_EQ(plant->info().num_parameters, 2);
+  test::Rig rig(DescribedSettings(plant));
+  test::GaussianNoise noise(0.01);
+  double level = 0.5;
+  for (std::int64_t seq = 1; seq <= 10; ++seq)
+    (void)rig.Step(DescribedPack(
+        *plant, seq,
+        [&](double t) {
+          const double y = level + noise();
+          constexpr int kFine = 100;
+          for (int i = 0; i < kFine; ++i) {
+            const double u = 2.0 * std::sin(3.0 * (t + (i + 0.5) / kFine * kDt));
+            level = u + (level - u) * std::exp(-kDt / kFine * (u > 0.0 ? 3.0 : 0.7));
+          }
+          return PlantSample{{2.0 * std::sin(3.0 * t)}, y};
+        },
+        50, kDt));
+  const ModeEstimate& mode = rig.estimate().modes[0];
+  EXPECT_NEAR(mode.marginal[0].ar_ap, 3.0, 5.0 * mode.marginal[0].sd);
+  EXPECT_NEAR(mode.marginal[1].ar_ap, 0.7, 5.0 * mode.marginal[1].sd);
+  EXPECT_LT(mode.marginal[0].sd, 0.05);
+  EXPECT_LT(mode.marginal[1].sd, 0.05);
+}
+
+TEST(States, AGapInThePacksStartsAnew) {
+  const auto plant = test::Program(Oscillator());
+  test::Rig rig(DescribedSettings(plant));
+  const auto pack = [&](std::int64_t seq) {
+    return DescribedPack(
+        *plant, seq,
+        [](double) {
+          return PlantSample{{0.0}, 0.3};
+        },
+        50, kDt);
+  };
+  (void)rig.Step(pack(1));
+  EXPECT_FALSE(rig.result->effects.described.states.carried);
+  (void)rig.Step(pack(2));
+  EXPECT_TRUE(rig.result->effects.described.states.carried);
+  (void)rig.Step(pack(4));
+  EXPECT_FALSE(rig.result->effects.described.states.carried);
+  EXPECT_FALSE(rig.result->effects.described.states.given[0]) << "the start of the file";
+  rig.estimator.Reset();
+  (void)rig.Step(pack(5));
+  EXPECT_FALSE(rig.result->effects.described.states.carried);
+}
+
+}  // namespace
+}  // namespace armcmc::states_test
