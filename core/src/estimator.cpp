@@ -146,10 +146,7 @@ Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, 
     active[i] = s.adjust_data[i].num_samples >= s.settings.forgetting.min_samples;
     pending += active[i] ? 1 : 0;
   }
-  if (!s.state_filter.empty()) {
-    s.states_due = result;
-    s.state_filter.Predict(s.kernels, s.state_mean, s.state_noise, s.adjust_data.data());
-  }
+  s.ExpectStates(result);
   const int pending_modes = pending;
   Status status = Status::kHeld;
   for (int m = 0; m < s.info.num_modes; ++m) {
@@ -204,6 +201,24 @@ void Estimator::Impl::Remember(ClockRef clock) noexcept {
     not_remembered = nullptr;
   }
   CarryStates();
+}
+
+void Estimator::Impl::ExpectStates(AdjustResult* result) noexcept {
+  if (state_filter.empty()) return;
+  states_due = result;
+  ModeData* data = adjust_data.data();
+  state_filter.Predict(kernels, state_mean, state_noise, data);
+  const ModeMemory& memory = *memories[0];
+  if (memory.slot[memory.current].valid || data->num_samples == 0) return;
+  // Far from the prior's mean a start that is off has another effect: about where the parameters are, then.
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    const ParamVector u = samplers[0]->ModeFromPrior(*data, workspace.get());
+    std::array<double, kMaxParams> mode{};
+    for (int d = 0; d < info.num_parameters; ++d)
+      mode[static_cast<std::size_t>(d)] = samplers[0]->space().Theta(d, u[d]);
+    state_filter.Predict(kernels, mode, state_noise, data);
+  }
 }
 
 void Estimator::Impl::CarryStates() noexcept {

@@ -47,6 +47,8 @@ struct Estimator::Impl {
                   AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
   /// What the newest DrawMode() left to be done, if anything.
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
+  /// Where the states of a described plant begin, and how well that is known, before a pack is drawn.
+  void ExpectStates(AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
   /// Integrates the states of a described plant to the end of the pack, for the mean of the posterior after it.
   void CarryStates() noexcept ARMCMC_NONBLOCKING;
   void ForgetStates() noexcept ARMCMC_NONBLOCKING;

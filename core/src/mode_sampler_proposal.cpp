@@ -54,6 +54,14 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
   add(fit_persisted_);
 }
 
+ParamVector ModeSampler::ModeFromPrior(const ModeData& data, SamplerWorkspace* ws) const noexcept {
+  const int dim = space_.dim;
+  const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
+  Gaussian fit;
+  (void)LaplaceFit(kernels_, model_, data, noise_, space_, initial, initial.mean, &ws->laplace, &fit);
+  return fit.mean;
+}
+
 void ModeSampler::AddPersisted(double share, Proposal* proposal) const noexcept {
   for (int b = 0; b < num_persisted_; ++b)
     proposal->Add(&laplace_persisted_[static_cast<std::size_t>(b)], share / num_persisted_);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <armcmc/support/progress.hpp>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -21,27 +20,15 @@
 #include "armcmc/plant_sim/publisher.hpp"
 #include "armcmc/plant_sim/scorer.hpp"
 #include "estimate_reader.hpp"
+#include "interruption.hpp"
 #include "report.hpp"
+#include "run_id.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
 
-constexpr std::int64_t kStartDelay = kNanosPerSecond / 10;
 // Two messages a pack and a drain every 10 ms: at 1 kHz a disk may stall for 0.1 s before a message is lost.
 constexpr int kLogSlots = 256;
-
-volatile std::sig_atomic_t g_signal = 0;
-void OnSignal(int signal) { g_signal = signal; }
-
-void CatchSignals() {
-  struct sigaction action {};
-  action.sa_handler = OnSignal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-/// Differs between runs: the wall clock in ns, and the process id for two that start together.
-std::int64_t MakeRunId() { return ReadClock(CLOCK_REALTIME) ^ (static_cast<std::int64_t>(getpid()) << 40); }
 
 /// A line on stderr, with a progress line wiped first.
 void Say(const std::string& text) {
@@ -167,13 +154,13 @@ int RunLive(const Scenario& scenario, const PlantOptions& options) {
   publisher.Start(start_ns);
   {
     support::Progress progress(scenario.name);
-    while (!publisher.finished() && g_signal == 0) {
+    while (!publisher.finished() && !Interrupted()) {
       const std::int64_t drained_ns = MonotonicNow();
       listener.Poll(10);
       observer.Work(drained_ns, publisher.packs_sent(), true);
       progress.Update(static_cast<double>(publisher.packs_sent()) / static_cast<double>(scenario.num_packs()));
     }
-    observer.result().interrupted = g_signal != 0;
+    observer.result().interrupted = Interrupted();
     publisher.RequestStop();
     publisher.Join();
     // The estimates of the last packs are still on their way through the estimator's stages.

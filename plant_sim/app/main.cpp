@@ -5,13 +5,17 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "armcmc/plant_sim/effects/hide.hpp"
+#include "described_run.hpp"
 #include "live_run.hpp"
 #include "model_file.hpp"
 #include "offline_run.hpp"
+#include "recording_run.hpp"
 #include "scenario_file.hpp"
 #include "sealed_file.hpp"
 
@@ -50,6 +54,17 @@ constexpr const char* kFooter =
     "effects,\n"
     "at their means, the truth of the plant; motion and noise stay the scenario's.\n"
     "  armcmc-plant --scenario contact_rich --model found.toml --csv predicted.csv\n"
+    "Plant files: --model FILE, or the name of a plant that came along, simulates any plant that a file describes, by\n"
+    "equations of its own. Its scenario has schema, rate_hz, duration_s, seed, [truth] (values of parameters; a list: "
+    "one\n"
+    "a mode), [inputs] (NAME = { kind, amplitude, offset, frequency_hz, bandwidth_hz } with kind multisine, sine, "
+    "chirp "
+    "or\n"
+    "steps, or { expression }, or { state }), [start], [noise] (law, std) and [[hidden]] (slot, value): what the file "
+    "does\n"
+    "not know. Without a scenario the means of the priors are the truth, and multisines move the inputs.\n"
+    "  armcmc-plant --model servo_axis --csv axis.csv\n"
+    "  armcmc-plant --model valve.toml --scenario valve_steps.toml --csv data.csv --log data.lcm\n"
     "Scenarios contact_* move another plant in another way for every seed; experiment_* are motions made to tell "
     "effects\n"
     "apart. [motion] of a contact: tracking = \"prescribed\" with program (rich, sine, slow_triangle, fast_taps, "
@@ -61,6 +76,10 @@ constexpr const char* kFooter =
     "std or std_share (of the rms in contact), correlation (of a sample with the next; with correlation_to drawn from "
     "a\n"
     "range), growth (with the size of the signal).\n"
+    "Recordings: --recording FILE plays measured data of a plant that a file describes as packs in real time, each "
+    "run\n"
+    "as a restart of the plant; NaN and infinite values are sent as they are.\n"
+    "  armcmc-plant --recording emps_estimation.toml --data-dir measured --speed 2\n"
     "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.";
 
 /// The options about hidden effects, as given.
@@ -112,6 +131,40 @@ void CheckPrefix(const std::string& prefix) {
     throw InputError("--prefix \"" + prefix + "\": expected at most 32 letters, digits, _ - or /");
 }
 
+/// What --recording needs beyond PlantOptions.
+struct RecordingOptions {
+  std::string path, data_dir;
+  double speed = 1.0;
+};
+
+/// Refuses options that are given in vain.
+void Refuse(const CLI::App& app, const std::vector<const char*>& options, const std::string& why) {
+  for (const char* option : options)
+    if (app.count(option) > 0) throw InputError(option + why);
+}
+
+int Play(const CLI::App& app, const RecordingOptions& recording, const PlantOptions& options) {
+  Refuse(app,
+         {"--scenario", "--model", "--seed", "--duration", "--csv", "--report", "--inject", "--hide-effect",
+          "--effect-strength", "--effect-gate", "--sealed"},
+         " contradicts --recording, whose data are measured, not simulated");
+  return armcmc::plant_sim::RunRecording(recording.path, recording.data_dir, recording.speed, options);
+}
+
+int Simulate(const CLI::App& app, const std::filesystem::path& plant_file, const std::optional<double>& duration_s,
+             double speed, const PlantOptions& options) {
+  Refuse(app, {"--report", "--inject", "--effect-strength", "--effect-gate"}, " is for the built-in plants alone");
+  armcmc::plant_sim::DescribedRequest request;
+  if (app.count("--scenario") > 0)
+    request.scenario =
+        armcmc::support::FindSharedFile("scenarios", app.get_option("--scenario")->as<std::string>()).string();
+  request.duration_s = duration_s;
+  if (app.count("--seed") > 0) request.seed = options.seed;
+  request.speed = speed;
+  request.live = options.csv_path.empty() || app.count("--lcm-url") > 0;
+  return armcmc::plant_sim::RunDescribed(plant_file, request, options);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -121,10 +174,16 @@ int main(int argc, char** argv) {
   double duration_s = 0.0;
   PlantOptions options;
   HideOptions hide;
+  RecordingOptions recording;
   app.add_option("--scenario", scenario_name, "Scenario file, or the name of one that came with the program")
       ->capture_default_str();
-  app.add_option("--model", model_path,
-                 "Model file whose parameters and effects, at their means, become the truth of the scenario's plant");
+  app.add_option(
+      "--model", model_path,
+      "Plant file, or name of one that came with the program, to simulate; or model file whose parameters and\n"
+      "effects, at their means, become the truth of the scenario's plant");
+  app.add_option("--recording", recording.path, "Recording file, which is played instead of simulating a plant");
+  app.add_option("--data-dir", recording.data_dir, "Where the recording's CSV is if not beside its file");
+  app.add_option("--speed", recording.speed, "Play this many times as fast as it was recorded")->capture_default_str();
   app.add_option("--seed", options.seed,
                  "Seed of the sensor noise, and of what a scenario leaves to it (motion, ranges): the same\n"
                  "seed gives the same data")
@@ -153,19 +212,26 @@ int main(int argc, char** argv) {
       }
     }
     CheckPrefix(options.prefix);
+    if (!(recording.speed >= 1e-3 && recording.speed <= 1e6))
+      throw InputError("--speed " + std::to_string(recording.speed) + ": expected a factor in [0.001, 1000000]");
+    if (!recording.path.empty()) return Play(app, recording, options);
+    Refuse(app, {"--data-dir"}, " needs --recording");
     std::optional<double> duration;
     if (app.count("--duration") > 0) {
       if (!std::isfinite(duration_s) || duration_s <= 0.0 || duration_s > 1e6)
         throw InputError("--duration " + std::to_string(duration_s) + ": expected seconds in (0, 1000000]");
       duration = duration_s;
     }
+    if (!model_path.empty()) {
+      Refuse(app, {"--hide-effect", "--sealed"},
+             " contradicts --model: what a plant file does not know is [[hidden]] in its scenario");
+      const auto plant_file = armcmc::plant_sim::PlantFileOf(model_path);
+      if (plant_file) return Simulate(app, *plant_file, duration, recording.speed, options);
+    }
+    Refuse(app, {"--speed"}, " needs --recording, or a plant file as --model");
     Scenario scenario = armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name),
                                                         duration, options.seed);
-    if (!model_path.empty()) {
-      for (const char* option : {"--hide-effect", "--sealed"})
-        if (app.count(option) > 0) throw InputError(std::string(option) + " contradicts --model, which hides nothing");
-      armcmc::plant_sim::ApplyModelFile(model_path, &scenario);
-    }
+    if (!model_path.empty()) armcmc::plant_sim::ApplyModelFile(model_path, &scenario);
     if (scenario.num_packs() < 1)
       throw InputError("the duration of " + std::to_string(scenario.duration_s) + " s does not hold one pack of " +
                        std::to_string(scenario.pack_period_s()) + " s");

@@ -9,11 +9,6 @@
 #include "armcmc/plant_sim/monotonic_clock.hpp"
 
 namespace armcmc::plant_sim {
-namespace {
-
-constexpr std::int64_t kLongestNap = kNanosPerSecond / 10;
-
-}  // namespace
 
 bool Publisher::Tee::Send(const char* channel, const void* data, int size, std::int64_t utime) noexcept {
   const bool sent = bus_->Send(channel, data, size, utime);

@@ -106,5 +106,24 @@ TEST(Allocation, StepsOfADescribedPlantDoNotTouchTheHeap) {
   }
 }
 
+TEST(Allocation, StepsOfAPlantWithStatesDoNotTouchTheHeap) {
+  if (!AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  PlantDescription description = test::DescribedContact();
+  description.constants = {{"c", 0.01, "1/s"}};
+  description.modes[0].law = "place^p * (K + B*v)";
+  description.states = {{"place", "m", "position", "v + c*(x - place)", "x", "", 2}};
+  const auto plant = test::Program(description);
+  for (const NoiseKind kind : kKinds) {
+    EstimatorSettings settings = DescribedSettings(plant);
+    for (NoiseSettings& noise : settings.noise) noise.kind = kind;
+    std::vector<DataPack> packs = ContactPacks();
+    for (DataPack& pack : packs) {
+      pack.plant = PlantKind::kDescribed;
+      pack.fingerprint = plant->plant().fingerprint();
+    }
+    EXPECT_EQ(CountHeapCalls(settings, packs), 0) << static_cast<int>(kind);
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::estimator_allocation_test

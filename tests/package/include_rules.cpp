@@ -23,6 +23,12 @@ const Names kNotInCore = {"chrono",  "ctime",  "thread",     "mutex",      "shar
                           "future",  "latch",  "barrier",    "semaphore",  "stop_token",   "iostream",
                           "fstream", "cstdio", "filesystem", "syncstream", "random"};
 
+// Headers of support that know the estimator.
+const Names kCoreInSupport = {"armcmc/support/effect_file.hpp",      "armcmc/support/effect_library.hpp",
+                              "armcmc/support/effect_request.hpp",   "armcmc/support/model_file.hpp",
+                              "armcmc/support/estimator_config.hpp", "armcmc/support/plant_effects.hpp",
+                              "armcmc/support/plant_file.hpp",       "armcmc/support/plant_writer.hpp"};
+
 std::string PartOf(const std::filesystem::path& file) {
   auto it = file.begin();
   if (it == file.end()) return "";
@@ -53,7 +59,7 @@ Rule RuleOf(const std::string& part) {
 /// The part that a header <armcmc/...> belongs to.
 std::string OwnerOf(const std::string& header) {
   std::smatch match;
-  if (std::regex_match(header, std::regex("armcmc/[a-z_]+_t\\.hpp"))) return "lcm_types";
+  if (std::regex_match(header, std::regex("armcmc/[a-z0-9_]+_t\\.hpp"))) return "lcm_types";
   if (!std::regex_match(header, match, std::regex("armcmc/([a-z_]+)/.*"))) return "core";
   const std::string folder = match[1];
   for (const std::string_view room : {"models", "effects", "expression", "gap_watch", "baselines", "plant"})
@@ -79,8 +85,7 @@ std::string Complaint(const std::string& part, const Rule& rule, const std::stri
   if (header.starts_with("armcmc/")) {
     const std::string owner = OwnerOf(header);
     if (!rule.parts.contains(owner)) return "belongs to " + owner + ", which " + part + " may not use";
-    // This one header of support knows the estimator.
-    if (part == "plant_sim/app" && header == "armcmc/support/estimator_config.hpp") return "brings core to the plant";
+    if (part == "plant_sim/app" && kCoreInSupport.contains(header)) return "brings core to the plant";
     return "";
   }
   if (quoted) return "";  // private to its folder

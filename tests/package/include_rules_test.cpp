@@ -51,7 +51,10 @@ TEST(IncludeRules, ThePlantNeverSeesTheCore) {
          {"\"armcmc/types.hpp\"", "\"armcmc/models/hunt_crossley.hpp\"", "\"armcmc/rt/clock.hpp\""})
       EXPECT_THAT(Check(file, header), SizeIs(1)) << file << " " << header;
   EXPECT_THAT(Check("plant_sim/app/main.cpp", "\"armcmc/support/estimator_config.hpp\""), SizeIs(1));
+  EXPECT_THAT(Check("plant_sim/app/main.cpp", "\"armcmc/support/plant_file.hpp\""), SizeIs(1));
+  EXPECT_THAT(Check("plant_sim/app/main.cpp", "\"armcmc/support/recording.hpp\""), IsEmpty());
   EXPECT_THAT(Check("plant_sim/src/x.cpp", "\"armcmc/data_pack_t.hpp\""), IsEmpty());
+  EXPECT_THAT(Check("plant_sim/src/x.cpp", "\"armcmc/data_pack_v2_t.hpp\""), IsEmpty());
 }
 
 TEST(IncludeRules, NothingUsesTheTests) {

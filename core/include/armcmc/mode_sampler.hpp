@@ -70,6 +70,10 @@ class ModeSampler {
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
               const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise);
 
+  /// Mode of likelihood x initial prior, standardised coordinates, by Gauss-Newton steps.
+  /// @rt No heap, no lock, no throw. Some tiles of candidates.
+  [[nodiscard]] ParamVector ModeFromPrior(const ModeData& data, SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
+
   /// Draws from the posterior after a pack. Remember() has to follow before the next call, unless kNonFinite is
   /// returned.
   /// @param previous   Posterior before this pack; !valid before the first. Stays as it is until Remember().

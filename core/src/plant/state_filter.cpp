@@ -8,6 +8,9 @@
 namespace armcmc {
 namespace {
 
+/// Variance of a start that comes from the output, in that of its noise. That sample is among the data, too, which
+/// alone shall say where the start is: a prior of five standard deviations about it counts it 1.04 times.
+constexpr double kFromOutput = 25.0;
 constexpr double kNothing = 1e-9;  ///< Of the noise's variance: a direction that the data do not feel.
 
 static_assert(kMaxStates <= kMaxParams && 1 + kMaxStates + kMaxParams <= kTileLanes);
@@ -60,7 +63,7 @@ void StateFilter::Predict(const simd::Kernels& kernels, const std::array<double,
     start_.row(s).setZero();
     start_.col(s).setZero();
     const double slope = plant_->output_in_start(state);
-    start_(s, s) = slope * slope;
+    start_(s, s) = kFromOutput * slope * slope;
   }
   Linearise(kernels, mean, {}, noise_std, *data);
 

@@ -11,10 +11,21 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-model list\n"
       "  armcmc-model new my_axis --from servo_axis\n"
       "  armcmc-model check my_axis.toml\n"
+      "  armcmc-model check my_axis.toml --with coulomb_friction,sensor_delay\n"
+      "  armcmc-model add my_axis.toml coulomb_friction --data run.csv --out my_axis_friction.toml\n"
       "Exit status: 0 ok, 2 the file is wrong, with one line that says where and what was expected.");
   CLI::App* check = app->add_subcommand("check", "Says what was understood of a plant file, in tables");
   check->add_option("PLANT", a->plant, "Plant file, or name of a plant that came along")->required();
-  app->add_subcommand("list", "Lists the plants that came along");
+  check->add_option("--with", a->with, "Effects to add first: NAME, NAME:VARIANT or NAME:x=SYMBOL, with commas between")
+      ->delimiter(',');
+  check->add_flag("--effects", a->effects, "Also says which effects of the catalogue fit, and why others do not");
+  app->add_subcommand("list", "Lists the plants and the effects that came along");
+  CLI::App* add = app->add_subcommand("add", "Writes a plant file that has an effect of the catalogue in it");
+  add->add_option("PLANT", a->plant, "Plant file, or name of a plant that came along")->required();
+  add->add_option("EFFECT", a->effect, "NAME, NAME:VARIANT or NAME:x=SYMBOL")->required();
+  add->add_option("--data", a->data, "CSV whose columns are t and the plant's signals: gives the priors their size")
+      ->check(CLI::ExistingFile);
+  add->add_option("--out", a->out, "Plant file to write")->required();
   CLI::App* create = app->add_subcommand("new", "Writes NAME.toml, a commented plant file to start from");
   create->add_option("NAME", a->name, "Name of the plant: small letters, digits and _")->required();
   create->add_option("--from", a->from, "Plant to start from, by name or by file")->capture_default_str();

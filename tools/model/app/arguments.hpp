@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -8,9 +9,12 @@ class App;
 
 namespace armcmc::model {
 
-/// The command line: one of the subcommands check, list, new.
+/// The command line: one of the subcommands check, list, new, add.
 struct Arguments {
-  std::string plant;                      ///< check
+  std::string plant;                      ///< check, add
+  std::vector<std::string> with;          ///< check
+  bool effects = false;                   ///< check
+  std::string effect, data, out;          ///< add
   std::string name, from = "servo_axis";  ///< new
 };
 

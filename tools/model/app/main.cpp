@@ -2,13 +2,17 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include "arguments.hpp"
+#include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/plant_file.hpp"
 #include "armcmc/support/plant_library.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/text_table.hpp"
+#include "compose.hpp"
+#include "effect_tables.hpp"
 #include "new_plant.hpp"
 #include "plant_text.hpp"
 
@@ -24,6 +28,15 @@ int Check(const std::string& plant) {
   return support::kExitOk;
 }
 
+/// The same with effects of the catalogue in it, or with what the catalogue has for it.
+int CheckEffects(const Arguments& arguments) {
+  const support::PlantFile file = support::ReadPlantFile(support::FindPlantFile(arguments.plant));
+  const PlantDescription composed = Composed(file, arguments.with, std::nullopt);
+  std::cout << PlantText(Plant(composed));
+  if (arguments.effects) std::cout << '\n' << FittingText(composed, support::EffectsFor(file.effects));
+  return support::kExitOk;
+}
+
 int List() {
   support::TextTable table({"plant", "signals", "parameters", "what it is"}, support::TextTable::Content::kWords);
   for (const std::string& name : support::PlantNames()) {
@@ -34,7 +47,13 @@ int List() {
       parameters += (parameters.empty() ? "" : " ") + parameter.name;
     table.AddRow({name, signals, parameters, plant.description().title});
   }
-  std::cout << table.ToString();
+  std::cout << table.ToString() << '\n' << EffectsText(support::ReadEffectLibrary());
+  return support::kExitOk;
+}
+
+int Add(const Arguments& a) {
+  std::cout << AddToFile(a.plant, a.effect,
+                         a.data.empty() ? std::nullopt : std::optional<std::filesystem::path>(a.data), a.out);
   return support::kExitOk;
 }
 
@@ -58,6 +77,9 @@ int main(int argc, char** argv) {
   model::Arguments arguments;
   model::Declare(&app, &arguments);
   return support::RunProgram(app, "armcmc-model", argc, argv, [&] {
+    if (app.got_subcommand("add")) return model::Add(arguments);
+    if (app.got_subcommand("check") && (arguments.effects || !arguments.with.empty()))
+      return model::CheckEffects(arguments);
     if (app.got_subcommand("check")) return model::Check(arguments.plant);
     return app.got_subcommand("list") ? model::List() : model::New(arguments.name, arguments.from);
   });

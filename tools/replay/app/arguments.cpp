@@ -6,6 +6,7 @@
 #include "armcmc/replay/lcm_source.hpp"
 #include "armcmc/support/model_file.hpp"
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/recording.hpp"
 
 namespace armcmc::replay {
 
@@ -18,6 +19,10 @@ void Declare(CLI::App* app, Arguments* a) {
       "--data", a->data,
       "Recording: a CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha; a plant file: t and "
       "its signals) or an LCM log");
+  app->add_option("--recording", a->recording,
+                  "Instead of --data: a recording file, which says what the columns of a CSV are and which plant they "
+                  "belong to (--model: another one)");
+  app->add_option("--data-dir", a->data_dir, "Where the CSV of --recording is, if it is not beside it");
   app->add_option("--out", a->out, "CSV of estimates to write, one row a pack; with --compare: the report, HTML");
   app->add_option("--model", a->model,
                   "Built-in model, model file or plant file (armcmc-model) instead of the model of the configuration; "
@@ -53,15 +58,30 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-plant --scenario hunt_crossley_paper --duration 20 --csv contact.csv\n"
       "  armcmc-replay --config hunt_crossley --data contact.csv --out estimates.csv\n"
       "  armcmc-replay --model axis.toml --data axis.csv --out estimates.csv\n"
+      "  armcmc-replay --recording axis_recording.toml --out estimates.csv\n"
       "  armcmc-replay --data run.lcm --verify\n"
       "  armcmc-replay --data run.lcm --config hunt_crossley --compare other.toml --out report.html\n"
       "  armcmc-replay --data normal.lcm --config hunt_crossley --calibrate calibrated.toml\n"
       "Exit status: 0 ok, 1 the runs differ (--verify) or another failure, 2 bad usage or input.");
 }
 
+namespace {
+
+/// What is named by a recording is what is estimated from.
+void CompleteRecording(Arguments* a) {
+  if (!a->data.empty()) throw InputError("--recording and --data exclude each other: each says what the data are");
+  if (a->skip_bad) throw InputError("--skip-bad: a recording file says which rows count, [rows] drop");
+  a->data = a->recording;
+  if (a->model.empty()) a->model = support::RecordingModel(a->recording);
+}
+
+}  // namespace
+
 void Complete(Arguments* a) {
+  if (!a->recording.empty()) CompleteRecording(a);
+  if (!a->data_dir.empty() && a->recording.empty()) throw InputError("--data-dir goes with --recording");
   if (a->data.empty()) throw InputError(a->config.empty() ? "--config and --data are required" : "--data is required");
-  const bool is_log = IsLcmLog(a->data);
+  const bool is_log = a->recording.empty() && IsLcmLog(a->data);
   const bool described = !a->model.empty() && support::DescribedPlant(a->model) != nullptr;
   if (described && is_log) throw InputError("--model " + a->model + ": a log holds no packs of such a plant");
   if (a->config.empty() && !described) {

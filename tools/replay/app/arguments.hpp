@@ -12,7 +12,7 @@ namespace armcmc::replay {
 
 /// The command line.
 struct Arguments {
-  std::string config, data, out, model, draws_from, predictions, report, prefix;
+  std::string config, data, recording, data_dir, out, model, draws_from, predictions, report, prefix;
   std::string compare, compare_model;  ///< A second configuration or model to compare with.
   std::string calibrate;               ///< Configuration to write.
   double false_modifications = 1e-3;   ///< Share of packs that may be taken for a change.

@@ -32,6 +32,14 @@ SourceRequest RequestFor(const Arguments& a, const Session& session, const Estim
   request.plant = estimator.plant();
   request.num_inputs = estimator.num_inputs();
   request.described = session.settings.plant;
+  if (!a.recording.empty()) {
+    if (request.described == nullptr) throw support::InputError("--recording: the model is no plant of a file");
+    auto recording = std::make_shared<support::Recording>(support::ReadRecording(a.recording, a.data_dir));
+    if (recording->fingerprint != request.described->plant().fingerprint())
+      throw support::InputError(a.recording + ": has other signals than the model, " +
+                                request.described->plant().description().name);
+    request.recording = std::move(recording);
+  }
   request.period = session.period;
   request.skip_bad = a.skip_bad;
   request.prefix = a.prefix;

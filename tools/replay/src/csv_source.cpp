@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "armcmc/support/pack_length.hpp"
 #include "armcmc/support/program.hpp"
 
 namespace armcmc::replay {
@@ -35,14 +36,6 @@ double Snapped(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.9g", value);
   return std::strtod(text.data(), nullptr);
-}
-
-/// Samples a pack where nothing else decides.
-std::int64_t SuitableSamples(double dt) {
-  constexpr double kPeriod = 0.1;  // s
-  constexpr std::int64_t kFew = 20, kUsual = 100;
-  const std::int64_t samples = std::llround(std::min(kPeriod / dt, 1e6));
-  return samples < kFew ? kUsual : std::min<std::int64_t>(samples, kMaxPackSamples);
 }
 
 double MedianStep(const std::vector<double>& t) {
@@ -84,7 +77,7 @@ void CsvSource::NumberSamples(const SourceRequest& request) {
   }
   dt_ = Snapped((t.back() - t.front()) / static_cast<double>(number_.back()));
   if (request.period == 0.0) {
-    samples_per_pack_ = SuitableSamples(dt_);
+    samples_per_pack_ = support::SuitablePackLength(dt_, kMaxPackSamples);
     return;
   }
   const double ratio = request.period / dt_;

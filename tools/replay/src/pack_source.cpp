@@ -8,6 +8,7 @@
 #include "armcmc/replay/csv_source.hpp"
 #include "armcmc/replay/draw_record.hpp"
 #include "armcmc/replay/lcm_source.hpp"
+#include "armcmc/replay/recording_source.hpp"
 #include "armcmc/support/program.hpp"
 
 namespace armcmc::replay {
@@ -21,7 +22,7 @@ bool IsLcmLog(const std::filesystem::path& path) {
 }
 
 std::unique_ptr<PackSource> OpenSource(const SourceRequest& request) {
-  const bool is_log = IsLcmLog(request.data);
+  const bool is_log = request.recording == nullptr && IsLcmLog(request.data);
   std::optional<DrawRecord> record;
   if (!request.draws_from.empty()) {
     record = IsLcmLog(request.draws_from) ? DrawRecord::FromLog(request.draws_from, request.prefix)
@@ -33,6 +34,7 @@ std::unique_ptr<PackSource> OpenSource(const SourceRequest& request) {
     if (record->empty()) record.reset();
   }
   if (is_log) return std::make_unique<LcmSource>(request, std::move(record));
+  if (request.recording != nullptr) return std::make_unique<RecordingSource>(request, std::move(record));
   if (record) record->ForgetRuns(request.draws_from);
   return std::make_unique<CsvSource>(request, std::move(record));
 }

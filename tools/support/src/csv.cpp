@@ -12,72 +12,13 @@
 #include <system_error>
 
 #include "armcmc/support/program.hpp"
+#include "csv_text.hpp"
 #include "nearest.hpp"
 
 namespace armcmc::support {
 namespace {
 
 constexpr std::size_t kAbsent = std::numeric_limits<std::size_t>::max();
-
-std::string_view Trim(std::string_view text) {
-  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-void Split(std::string_view line, std::vector<std::string_view>* fields) {
-  fields->clear();
-  for (std::size_t from = 0;;) {
-    const std::size_t comma = line.find(',', from);
-    fields->push_back(Trim(line.substr(from, comma == std::string_view::npos ? comma : comma - from)));
-    if (comma == std::string_view::npos) return;
-    from = comma + 1;
-  }
-}
-
-std::optional<double> ParseDouble(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size()) return std::nullopt;
-  // Beyond the range of a double the nearest value is zero or infinite; from_chars leaves that to the caller.
-  if (error == std::errc::result_out_of_range) return std::strtod(std::string(text).c_str(), nullptr);
-  if (error != std::errc()) return std::nullopt;
-  return value;
-}
-
-/// Reads lines and remembers whether the last one had a line end.
-class LineReader {
- public:
-  explicit LineReader(const std::filesystem::path& path) : file_(path, std::ios::binary) {}
-  [[nodiscard]] bool is_open() const { return file_.is_open(); }
-  bool Next(std::string* line) {
-    if (!std::getline(file_, *line)) return false;
-    complete_ = !file_.eof();
-    ++number_;
-    if (number_ == 1 && line->starts_with("\xEF\xBB\xBF")) line->erase(0, 3);  // byte order mark
-    return true;
-  }
-  [[nodiscard]] std::size_t number() const { return number_; }
-  [[nodiscard]] bool complete() const { return complete_; }
-
- private:
-  std::ifstream file_;
-  std::size_t number_ = 0;
-  bool complete_ = true;
-};
-
-bool IsBlankOrComment(std::string_view line) {
-  const std::string_view text = Trim(line);
-  return text.empty() || text.front() == '#';
-}
-
-std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
-  return text;
-}
 
 class Reader {
  public:
@@ -112,15 +53,9 @@ class Reader {
     std::string line;
     do {
       if (!lines_.Next(&line))
-        throw InputError(path_.string() + ": is empty, expected a header line " + Joined(request_.columns));
+        throw InputError(path_.string() + ": is empty, expected a header line " + JoinedNames(request_.columns));
     } while (IsBlankOrComment(line));
-    std::vector<std::string_view> fields;
-    Split(line, &fields);
-    std::vector<std::string> header;
-    for (std::string_view field : fields) {
-      if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
-      header.emplace_back(field);
-    }
+    const std::vector<std::string> header = HeaderNames(line);
     num_fields_ = header.size();
     for (const std::string& name : request_.columns) source_.push_back(Find(header, name));
   }
@@ -131,8 +66,8 @@ class Reader {
       const auto derived = std::find_if(request_.derived.begin(), request_.derived.end(),
                                         [&](const DerivedColumn& d) { return d.name == name; });
       if (derived != request_.derived.end()) return kAbsent;
-      throw Error("column " + name + " is missing" + DidYouMean(name, header) + "; the header has " + Joined(header) +
-                  ", expected " + Joined(request_.columns));
+      throw Error("column " + name + " is missing" + DidYouMean(name, header) + "; the header has " +
+                  JoinedNames(header) + ", expected " + JoinedNames(request_.columns));
     }
     if (std::find(found + 1, header.end(), name) != header.end())
       throw Error("column " + name + " appears twice in the header");
@@ -146,7 +81,7 @@ class Reader {
   }
 
   void ReadRow(const std::string& line) {
-    Split(line, &fields_);
+    SplitFields(line, &fields_);
     if (!lines_.complete())
       return Reject(&BadRows::malformed, "the last line has no line end: the file is cut off here");
     if (fields_.size() != num_fields_)
@@ -157,7 +92,7 @@ class Reader {
       if (source_[i] == kAbsent) continue;
       const std::string_view text = fields_[source_[i]];
       const std::string what = request_.columns[i] + " = " + (text.empty() ? "(empty)" : std::string(text));
-      const std::optional<double> value = text.empty() ? std::numeric_limits<double>::quiet_NaN() : ParseDouble(text);
+      const std::optional<double> value = text.empty() ? std::numeric_limits<double>::quiet_NaN() : ParseNumber(text);
       if (!value) return Reject(&BadRows::malformed, what + ": expected a number");
       if (!std::isfinite(*value)) return Reject(&BadRows::non_finite, what + ": expected a finite number");
       row_.push_back(*value);

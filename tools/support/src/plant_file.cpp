@@ -3,7 +3,8 @@
 #include <cctype>
 #include <limits>
 
-#include "nearest.hpp"
+#include "armcmc/support/effect_request.hpp"
+#include "placed_error.hpp"
 
 namespace armcmc::support {
 namespace {
@@ -113,49 +114,46 @@ PlantDescription Describe(StrictTable root) {
   return plant;
 }
 
-/// What the plant says of a key, at the place of the key in its file.
-ConfigError Placed(StrictTable table, const PlantError& error) {
-  std::string what = error.what();
-  if (!error.unknown().empty()) what += DidYouMean(error.unknown(), error.known());
-  std::string path = error.key();
-  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.')) {
-    const std::string part = path.substr(0, dot);
-    path.erase(0, dot + 1);
-    if (const std::size_t bracket = part.find('['); bracket != std::string::npos) {
-      table = table.Tables(part.substr(0, bracket)).at(std::stoul(part.substr(bracket + 1)));
-    } else {
-      // What is wrong with a key of a value that is written without a table is wrong with the value.
-      if (!table.IsTable(part)) return table.Error(part, what);
-      table = table.Table(part);
-    }
-  }
-  return table.ErrorInText(path, error.column(), what);
-}
-
-Plant Understood(const StrictTable& root) {
+/// The plant as it stands in the file, and with the effects that the file uses.
+PlantFile Understood(StrictTable root) {
+  PlantEffects effects = ReadPlantEffects(root);
   PlantDescription description = Describe(root);
+  PlantDescription used;
   try {
-    return Plant(std::move(description));
+    Plant plant(std::move(description));
+    if (effects.use.empty()) return {plant.description(), std::move(plant), std::move(effects)};
+    used = plant.description();
   } catch (const PlantError& error) {
-    throw Placed(root, error);
+    throw PlacedError(root, error);
+  }
+  PlantDescription base = used;
+  try {
+    used = WithEffects(std::move(used), EffectsFor(effects), effects.use, nullptr, "");
+    return {std::move(base), Plant(std::move(used)), std::move(effects)};
+  } catch (const ConfigError& error) {
+    throw root.Table("effects").Error("use", error.what());
+  } catch (const PlantError& error) {
+    throw root.Table("effects").Error("use", error.key() + ": " + error.what());
   }
 }
 
 }  // namespace
 
-Plant ReadPlant(const std::filesystem::path& path) { return Understood(StrictTable::FromFile(path)); }
+Plant ReadPlant(const std::filesystem::path& path) { return Understood(StrictTable::FromFile(path)).plant; }
+
+PlantFile ReadPlantFile(const std::filesystem::path& path) { return Understood(StrictTable::FromFile(path)); }
 
 std::shared_ptr<const PlantProgram> ReadPlantProgram(const std::filesystem::path& path) {
   const StrictTable root = StrictTable::FromFile(path);
   try {
-    return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(Understood(root)));
+    return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(Understood(root).plant));
   } catch (const PlantError& error) {
-    throw Placed(root, error);
+    throw PlacedError(root, error);
   }
 }
 
 Plant PlantFromText(std::string_view text, std::string_view name) {
-  return Understood(StrictTable::FromText(text, name));
+  return Understood(StrictTable::FromText(text, name)).plant;
 }
 
 }  // namespace armcmc::support

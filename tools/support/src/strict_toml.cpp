@@ -246,6 +246,23 @@ std::vector<double> StrictTable::Numbers(std::string_view key, const std::vector
   return values;
 }
 
+std::vector<std::vector<double>> StrictTable::NumberLists(std::string_view key, std::size_t size, double lo,
+                                                          double hi) {
+  const toml::node* node = node_->Ask(key);
+  if (node == nullptr) return {};
+  const std::string expected = "lists of " + std::to_string(size) + " numbers, as in [[0, 15]]";
+  const toml::array* array = node->as_array();
+  if (array == nullptr) throw node_->Wrong(key, *node, expected);
+  std::vector<std::vector<double>> lists;
+  for (const toml::node& element : *array) {
+    const toml::array* numbers = element.as_array();
+    if (numbers == nullptr || numbers->size() != size) throw node_->Wrong(key, element, expected);
+    std::vector<double>& list = lists.emplace_back();
+    for (const toml::node& number : *numbers) list.push_back(node_->CheckedNumber(key, number, lo, hi));
+  }
+  return lists;
+}
+
 double StrictTable::RequiredNumber(std::string_view key, double lo, double hi) {
   const toml::node* node = node_->Ask(key);
   if (node == nullptr) throw node_->Missing(key, ANumber(lo, hi));
@@ -288,6 +305,33 @@ std::vector<StrictTable> StrictTable::Tables(std::string_view key) {
     tables.push_back(StrictTable(node_->Child(name, element.as_table())));
   }
   return tables;
+}
+
+std::vector<std::string> StrictTable::Texts(std::string_view key) {
+  const toml::node* node = node_->Ask(key);
+  if (node == nullptr) return {};
+  if (node->is_string()) return {*node->value<std::string>()};
+  const toml::array* array = node->as_array();
+  if (array == nullptr) throw node_->Wrong(key, *node, "texts in quotes, in [ ]");
+  std::vector<std::string> texts;
+  for (const toml::node& element : *array) texts.push_back(node_->CheckedText(key, element));
+  return texts;
+}
+
+std::vector<StrictTable::TextOrTable> StrictTable::TextsOrTables(std::string_view key) {
+  const toml::node* node = node_->Ask(key);
+  if (node == nullptr) return {};
+  const toml::array* array = node->as_array();
+  if (array == nullptr) throw node_->Wrong(key, *node, "names in quotes, or tables, in [ ]");
+  std::vector<TextOrTable> items;
+  for (const toml::node& element : *array) {
+    const std::string name = KeyText(key) + "[" + std::to_string(items.size()) + "]";
+    const StrictTable table(node_->Child(name, element.as_table()));
+    if (!element.is_table() && !element.is_string())
+      throw node_->Wrong(key, element, "a name in quotes, or a table { name = \"..\", .. }");
+    items.push_back({element.is_string() ? *element.value<std::string>() : "", table});
+  }
+  return items;
 }
 
 std::vector<std::string> StrictTable::Keys() const {

@@ -11,6 +11,7 @@
 #include "armcmc/estimator.hpp"
 #include "armcmc/plant/program.hpp"
 #include "armcmc/support/lcm_log.hpp"
+#include "armcmc/support/recording.hpp"
 
 namespace armcmc::replay {
 
@@ -50,7 +51,8 @@ struct SourceRequest {
   std::filesystem::path data;  ///< CSV of samples, or LCM log: told apart by content.
   PlantKind plant = PlantKind::kHuntCrossley;
   int num_inputs = 2;
-  std::shared_ptr<const PlantProgram> described;  ///< Of a plant that a file describes.
+  std::shared_ptr<const PlantProgram> described;        ///< Of a plant that a file describes.
+  std::shared_ptr<const support::Recording> recording;  ///< Of such a plant, instead of `data`; null: none.
   double period = 0.1;               ///< s, T_s: a CSV is cut into packs of this length; 0: of one that suits it.
   bool skip_bad = false;             ///< CSV: count and skip bad rows.
   std::string prefix;                ///< LCM: of the channel names.

@@ -47,6 +47,9 @@ class StrictTable {
   std::vector<double> Numbers(std::string_view key, const std::vector<double>& fallback, std::size_t min_size,
                               std::size_t max_size, double lo, double hi);
 
+  /// Array of arrays of `size` numbers each, in [lo, hi]; absent reads as none.
+  std::vector<std::vector<double>> NumberLists(std::string_view key, std::size_t size, double lo, double hi);
+
   // Required keys.
   double RequiredNumber(std::string_view key, double lo, double hi);
   std::int64_t RequiredInteger(std::string_view key, std::int64_t lo, std::int64_t hi);
@@ -57,6 +60,11 @@ class StrictTable {
   StrictTable Table(std::string_view key);
   /// Array of tables ([[key]]); absent reads as none.
   std::vector<StrictTable> Tables(std::string_view key);
+  /// Array of texts; a text alone counts as one. Absent reads as none.
+  std::vector<std::string> Texts(std::string_view key);
+  struct TextOrTable;
+  /// Array whose elements are texts or tables; absent reads as none.
+  std::vector<TextOrTable> TextsOrTables(std::string_view key);
   /// Names of the keys of this table, in file order.
   [[nodiscard]] std::vector<std::string> Keys() const;
 
@@ -76,6 +84,12 @@ class StrictTable {
   struct Node;
   explicit StrictTable(std::shared_ptr<Node> node);
   std::shared_ptr<Node> node_;
+};
+
+/// An element of an array that holds words, and tables where there is more to say.
+struct StrictTable::TextOrTable {
+  std::string text;   ///< Empty: a table.
+  StrictTable table;  ///< Empty: a text.
 };
 
 }  // namespace armcmc::support

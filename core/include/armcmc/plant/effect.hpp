@@ -1,0 +1,124 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "armcmc/plant/description.hpp"
+#include "armcmc/plant/effect_scales.hpp"
+#include "armcmc/plant/error.hpp"
+
+namespace armcmc {
+
+/// Something of a plant that an effect acts on or is computed from. In the effect's texts it has a name of its own.
+struct EffectNeed {
+  std::string name;
+  std::string kind = "signal";     ///< "signal" (never the output), "state" or "parameter".
+  std::vector<std::string> roles;  ///< One of these; none: whatever it is.
+  std::string unit;                ///< That it must have; empty: any.
+  std::string per;                 ///< Its unit is the output's over a power above 0 of what this need is bound to.
+  std::string reads;               ///< Of a state: its rate reads what this need is bound to.
+  bool used = false;               ///< The law reads it.
+};
+
+/// A parameter of an effect. Sizes are texts over the scales of data (see ScaleValue), so that they fit any plant.
+struct EffectParameter {
+  std::string name;
+  std::string unit;  ///< Of units and names: "output/v^2" is the unit of the output over that of what v is bound to.
+  std::string prior = "normal";
+  std::string mean = "0";
+  std::string sd;
+  std::string lower;  ///< Empty: 8 sd below the mean.
+  std::string upper;
+  std::string none;  ///< Value at which the effect is not there; empty: a shape, which says nothing of that.
+};
+
+/// A number that the scales decide once, when the effect is added.
+struct EffectConstant {
+  std::string name;
+  std::string unit;
+  std::string value;
+};
+
+/// Where a formula goes.
+///   output     added to what explains the output
+///   law        takes the place of what explains the output
+///   rate       added to the rate of the state `of`; where it says `rate`, it takes that one's place
+///   input      takes the place of the input `of` wherever the plant reads it
+///   parameter  takes the place of the parameter `of` likewise
+struct EffectTerm {
+  std::string slot = "output";
+  std::string of;
+  std::string formula;
+};
+
+/// One way in which an effect enters a plant.
+///
+/// Its texts are in the language of plant files. Names in them: needs, parameters, constants, lets and states of the
+/// form; t; `law` (what explains the output so far), `rate` (in a rate: that so far), `rate_NAME` (the rate of the
+/// state that NAME is bound to), `output` (in a start: the measured output).
+struct EffectForm {
+  std::string name;                   ///< Of a variant; empty: the usual one.
+  std::string title;                  ///< Of a variant.
+  bool variant = false;               ///< Another formula of the same physics.
+  std::vector<std::string> explains;  ///< Roles of the output that it fits; none: all.
+  std::vector<EffectNeed> needs;
+  std::vector<EffectTerm> terms;
+  std::vector<EffectConstant> constants;
+  std::vector<EffectParameter> parameters;
+  std::vector<LetDescription> lets;
+  std::vector<StateDescription> states;
+  bool online = true;
+  std::string reason;  ///< Why it is not for the estimator.
+};
+
+/// What the catalogue says of an effect.
+struct EffectEntry {
+  std::string name;
+  std::vector<std::string> aliases;  ///< Names that it has for plants of some kind.
+  std::string title;                 ///< For people.
+  std::string family;
+  std::vector<std::string> kin;  ///< Effects that act alike.
+  std::string experiment;        ///< That would show it.
+  std::vector<EffectForm> forms;
+};
+
+/// What the names of a form stand for in a plant.
+struct EffectBinding {
+  std::size_t form = 0;                        ///< In EffectEntry::forms.
+  std::map<std::string, std::string> symbols;  ///< Need -> signal, state or parameter of the plant.
+};
+
+/// Finds what is wrong with an entry before any plant is at hand: names, texts, slots, sizes.
+/// @throws PlantError; its key is "form[1].formula", or "formula" of the first form.
+void CheckEffect(const EffectEntry& entry);
+
+/// All ways in which the entry fits the plant: every binding of the first form that has one, then every binding of its
+/// variants. Empty where the plant lacks what it needs.
+/// @pre Plant(plant) and CheckEffect(entry) pass.
+[[nodiscard]] std::vector<EffectBinding> Bindings(const PlantDescription& plant, const EffectEntry& entry);
+
+/// Why Bindings has none, in words: "needs a velocity state"; empty where it has some.
+[[nodiscard]] std::string WhyNot(const PlantDescription& plant, const EffectEntry& entry);
+
+/// The plant with the effect in it: an ordinary plant description.
+///
+/// New names are EFFECT_NAME (coulomb_friction_Fc), with a number where that is taken. Where the effect acts in every
+/// mode, passive ones become active: they show it. Modes become one law where memory or a moved condition goes through
+/// them.
+///
+/// @param scales  Sizes of the data; DefaultScales(plant) where there are none.
+/// @return A description that Plant() takes.
+/// @throws PlantError where a binding does not fit, or the plant would be past a limit.
+[[nodiscard]] PlantDescription AddEffect(const PlantDescription& plant, const EffectEntry& entry,
+                                         const EffectBinding& binding, const DataScales& scales);
+
+/// Name that a parameter of the effect gets in AddEffect.
+[[nodiscard]] std::string AddedName(const PlantDescription& plant, const EffectEntry& entry, std::string_view name);
+
+/// Value of `none` of the form's parameters in that plant; those without one are left out.
+[[nodiscard]] std::map<std::string, double> NoEffect(const PlantDescription& plant, const EffectEntry& entry,
+                                                     const EffectBinding& binding, const DataScales& scales);
+
+}  // namespace armcmc

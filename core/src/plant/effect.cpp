@@ -1,0 +1,278 @@
+#include "armcmc/plant/effect.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "armcmc/plant/plant.hpp"
+#include "effect_reading.hpp"
+#include "effect_text.hpp"
+#include "effect_units.hpp"
+
+namespace armcmc {
+namespace {
+
+using NameMap = std::map<std::string, std::string>;
+
+/// To as many digits as a prior deserves.
+double ShortPrior(double value) {
+  if (value == 0.0) return value;
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 3).ptr;
+  double rounded = value;
+  std::from_chars(text.data(), end, rounded);
+  return rounded;
+}
+
+bool IsTaken(const PlantDescription& plant, const std::string& prefix) {
+  const auto begins = [&](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& item) { return item.name.starts_with(prefix); });
+  };
+  return begins(plant.signals) || begins(plant.constants) || begins(plant.parameters) || begins(plant.lets) ||
+         begins(plant.states) || begins(plant.reports);
+}
+
+/// "coulomb_friction_", or "coulomb_friction_2_" where the plant has names that begin so.
+std::string PrefixOf(const PlantDescription& plant, const EffectEntry& entry) {
+  std::string prefix = entry.name + '_';
+  for (int n = 2; IsTaken(plant, prefix); ++n) prefix = entry.name + '_' + std::to_string(n) + '_';
+  return prefix;
+}
+
+std::string UnitOfSymbol(const PlantDescription& plant, const std::string& name) {
+  for (const auto& s : plant.signals)
+    if (s.name == name) return s.unit;
+  for (const auto& s : plant.states)
+    if (s.name == name) return s.unit;
+  for (const auto& p : plant.parameters)
+    if (p.name == name) return p.unit;
+  return "1";
+}
+
+class Composer {
+ public:
+  Composer(const PlantDescription& plant, const EffectEntry& entry, const EffectBinding& binding,
+           const DataScales& scales)
+      : plant_(AsWritten(plant)),
+        given_(plant_),
+        form_(entry.forms[binding.form]),
+        binding_(binding),
+        scales_(scales),
+        prefix_(PrefixOf(plant_, entry)) {}
+
+  PlantDescription Composed() {
+    MakeNames();
+    AddParameters();
+    for (const EffectTerm& term : form_.terms)
+      if (term.slot == "input" || term.slot == "parameter") Replace(term);
+    MakeLawVisible();
+    AddLetsAndStates();
+    for (const EffectTerm& term : form_.terms) {
+      if (term.slot == "rate") ChangeRate(term);
+      if (term.slot == "output" || term.slot == "law") ChangeOutput(term);
+    }
+    return std::move(plant_);
+  }
+
+ private:
+  [[nodiscard]] StateDescription& State(const std::string& name) {
+    return *std::find_if(plant_.states.begin(), plant_.states.end(), [&](const auto& s) { return s.name == name; });
+  }
+
+  void MakeNames() {
+    units_["output"] = UnitOfSymbol(plant_, plant_.output);
+    for (const auto& [need, symbol] : binding_.symbols) {
+      names_[need] = symbol;
+      units_[need] = UnitOfSymbol(plant_, symbol);
+    }
+    for (const EffectNeed& need : form_.needs)
+      if (need.kind == "state") names_["rate_" + need.name] = State(binding_.symbols.at(need.name)).rate;
+    for (const auto& c : form_.constants) names_[c.name] = prefix_ + c.name;
+    for (const auto& p : form_.parameters) names_[p.name] = prefix_ + p.name;
+    for (const auto& l : form_.lets) names_[l.name] = prefix_ + l.name;
+    for (const auto& s : form_.states) names_[s.name] = prefix_ + s.name;
+    names_["output"] = plant_.output;
+  }
+
+  [[nodiscard]] double Size(const std::string& text) const {
+    try {
+      return ScaleValue(text, given_, scales_, binding_.symbols);
+    } catch (const expression::Error& error) {
+      throw PlantError("effects", error.column(), "the size \"" + text + "\" of this effect: " + error.what());
+    }
+  }
+
+  void AddParameters() {
+    for (const EffectConstant& c : form_.constants)
+      plant_.constants.push_back({prefix_ + c.name, Size(c.value), UnitIn(c.unit, units_)});
+    for (const EffectParameter& p : form_.parameters) {
+      ParameterDescription added;
+      added.name = prefix_ + p.name;
+      added.unit = UnitIn(p.unit, units_);
+      added.prior = p.prior;
+      if (p.prior != "uniform") {
+        added.mean = ShortPrior(Size(p.mean));
+        added.sd = ShortPrior(Size(p.sd));
+      }
+      if (!p.lower.empty()) added.lower = ShortPrior(Size(p.lower));
+      if (!p.upper.empty()) added.upper = ShortPrior(Size(p.upper));
+      plant_.parameters.push_back(std::move(added));
+    }
+  }
+
+  /// Texts that decide what the plant does: laws, rates, lets, and conditions where they may move.
+  template <class Change>
+  void ForEachText(const Change& change) {
+    for (std::string* text : {&plant_.law, &plant_.predicts}) change(text);
+    for (ModeDescription& mode : plant_.modes) change(&mode.law);
+    for (LetDescription& let : plant_.lets) change(&let.text);
+    for (StateDescription& state : plant_.states) change(&state.rate);
+  }
+
+  void Replace(const EffectTerm& term) {
+    const std::string& symbol = binding_.symbols.at(term.of);
+    const bool decides = std::any_of(plant_.modes.begin(), plant_.modes.end(),
+                                     [&](const auto& mode) { return Mentions(mode.when, symbol); });
+    if (decides) Merge();
+    const std::string name = prefix_ + symbol;
+    ForEachText([&](std::string* text) { *text = WithNames(*text, {{symbol, name}}); });
+    plant_.lets.insert(plant_.lets.begin(), {name, Inserted(term.formula, names_)});
+  }
+
+  void Merge() {
+    plant_.law = MergedLaw(plant_);
+    plant_.modes.clear();
+  }
+
+  /// What explains the output gets a name where other texts, or one text more than once, speak of it.
+  void MakeLawVisible() {
+    std::size_t mentions = 0;
+    for (const EffectTerm& term : form_.terms)
+      if (term.slot == "output" || term.slot == "law")
+        for (const std::string& name : NamesIn(term.formula)) mentions += name == "law" ? 1U : 0U;
+    const bool one_law = NeedsOneLaw(form_);
+    if (one_law && plant_.predicts.empty() && !plant_.modes.empty()) Merge();
+    std::string* law = !plant_.predicts.empty() ? &plant_.predicts : plant_.modes.empty() ? &plant_.law : nullptr;
+    const bool spoken_of =
+        std::any_of(form_.states.begin(), form_.states.end(), [](const auto& s) { return Mentions(s.rate, "law"); }) ||
+        std::any_of(form_.lets.begin(), form_.lets.end(), [](const auto& l) { return Mentions(l.text, "law"); });
+    if (law == nullptr || (!spoken_of && mentions < 2) || Bracketed(*law) == *law) {
+      if (law != nullptr && spoken_of) names_["law"] = *law;
+      return;
+    }
+    plant_.lets.push_back({prefix_ + "law", *law});
+    *law = prefix_ + "law";
+    names_["law"] = *law;
+  }
+
+  void AddLetsAndStates() {
+    const bool in_front = std::any_of(form_.terms.begin(), form_.terms.end(), [](const auto& term) {
+      return term.slot == "input" || term.slot == "parameter";
+    });
+    std::vector<LetDescription> lets;
+    for (const LetDescription& let : form_.lets) lets.push_back({prefix_ + let.name, Inserted(let.text, names_)});
+    plant_.lets.insert(in_front ? plant_.lets.begin() : plant_.lets.end(), lets.begin(), lets.end());
+    for (const StateDescription& state : form_.states) {
+      StateDescription added = state;
+      added.name = prefix_ + state.name;
+      added.unit = UnitIn(state.unit, units_);
+      added.rate = Inserted(state.rate, names_);
+      added.start = Inserted(state.start, names_);
+      plant_.states.push_back(std::move(added));
+    }
+  }
+
+  void ChangeRate(const EffectTerm& term) {
+    std::string& rate = State(binding_.symbols.at(term.of)).rate;
+    NameMap names = names_;
+    names["rate"] = rate;
+    const std::string text = Inserted(term.formula, names);
+    rate = Mentions(term.formula, "rate") ? text : SumText(rate, text);
+  }
+
+  void ChangeOutput(const EffectTerm& term) {
+    const auto changed = [&](const std::string& law) {
+      NameMap names = names_;
+      names["law"] = law;
+      const std::string text = Inserted(term.formula, names);
+      return term.slot == "law" ? text : SumText(law, text);
+    };
+    if (!plant_.predicts.empty()) {
+      plant_.predicts = changed(plant_.predicts);
+    } else if (plant_.modes.empty()) {
+      plant_.law = changed(plant_.law);
+    } else {
+      for (ModeDescription& mode : plant_.modes) {
+        const bool shows_nothing =
+            mode.passive && Mentions(term.formula, "law") && (mode.law.empty() || mode.law == "0");
+        if (shows_nothing) continue;
+        mode.law = changed(mode.law.empty() ? "0" : mode.law);
+        mode.passive = false;
+      }
+    }
+  }
+
+  PlantDescription plant_;
+  const PlantDescription given_;
+  const EffectForm& form_;
+  const EffectBinding& binding_;
+  const DataScales& scales_;
+  const std::string prefix_;
+  NameMap names_, units_;
+};
+
+void CheckBinding(const PlantDescription& plant, const EffectEntry& entry, const EffectBinding& binding) {
+  const std::vector<EffectBinding> all = Bindings(plant, entry);
+  const bool fits = std::any_of(all.begin(), all.end(), [&](const EffectBinding& b) {
+    return b.form == binding.form && b.symbols == binding.symbols;
+  });
+  if (fits) return;
+  const std::string why = WhyNot(plant, entry);
+  throw PlantError("effects", 0,
+                   entry.name + " does not fit " + plant.name + (why.empty() ? " in this way" : ": " + why));
+}
+
+std::string ComposedText(const PlantDescription& plant, const std::string& key) {
+  if (key == "law") return plant.law;
+  if (key == "predicts") return plant.predicts;
+  for (const LetDescription& let : plant.lets)
+    if (key == "let." + let.name) return let.text;
+  for (const StateDescription& state : plant.states)
+    if (key == "states." + state.name + ".rate") return state.rate;
+  for (std::size_t m = 0; m < plant.modes.size(); ++m)
+    if (key == "mode[" + std::to_string(m) + "].law") return plant.modes[m].law;
+  return "";
+}
+
+}  // namespace
+
+PlantDescription AddEffect(const PlantDescription& plant, const EffectEntry& entry, const EffectBinding& binding,
+                           const DataScales& scales) {
+  CheckBinding(plant, entry, binding);
+  PlantDescription composed = Composer(plant, entry, binding, scales).Composed();
+  try {
+    (void)Plant(composed);
+  } catch (const PlantError& error) {
+    const std::string text = ComposedText(composed, error.key());
+    throw PlantError(
+        "effects", 0,
+        entry.name + " in " + plant.name + " gives " + error.key() + (text.empty() ? "" : " = \"" + text + '"') +
+            (error.column() > 0 ? ", character " + std::to_string(error.column()) : "") + ": " + error.what());
+  }
+  return composed;
+}
+
+std::string AddedName(const PlantDescription& plant, const EffectEntry& entry, std::string_view name) {
+  return PrefixOf(AsWritten(plant), entry) + std::string(name);
+}
+
+std::map<std::string, double> NoEffect(const PlantDescription& plant, const EffectEntry& entry,
+                                       const EffectBinding& binding, const DataScales& scales) {
+  std::map<std::string, double> none;
+  for (const EffectParameter& p : entry.forms.at(binding.form).parameters)
+    if (!p.none.empty()) none[p.name] = ScaleValue(p.none, plant, scales, binding.symbols);
+  return none;
+}
+
+}  // namespace armcmc

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace armcmc::support {
+
+/// One signal of a plant over a recording.
+struct RecordedSignal {
+  std::string name;
+  std::string unit;
+  std::vector<double> value;  ///< [row]
+};
+
+/// What somebody else reports of the same data, to be shown beside our numbers.
+struct PublishedFigure {
+  std::string what;
+  double value = 0.0;
+  std::string source;
+};
+
+/// Measured data of a plant, as a recording file describes them: every signal of the plant, in its units, at equal
+/// intervals within each run.
+struct Recording {
+  std::string title;
+  std::string model;                    ///< Name of a plant that came with the product, or path of a plant file.
+  std::string plant;                    ///< Name that the plant file gives.
+  std::uint64_t fingerprint = 0;        ///< Of the plant's signals.
+  std::vector<RecordedSignal> signals;  ///< In the order of the plant file.
+  std::size_t output = 0;               ///< Among the signals.
+  double dt = 0.0;                      ///< s, sample interval.
+  std::vector<double> t;                ///< [row] s, increasing within a run.
+  std::vector<std::size_t> runs;        ///< First row of every run: no memory and no derivative goes across.
+  std::vector<std::uint8_t> held_out;   ///< [row] 1: kept apart, to judge a model on.
+  std::vector<PublishedFigure> published;
+  std::vector<std::string> notes;  ///< What a person should know: what was derived, resampled, left out.
+
+  [[nodiscard]] std::size_t num_rows() const { return t.size(); }
+};
+
+/// Name or path of the plant that a recording file belongs to; a path is relative to the recording file.
+/// @throws ConfigError.
+[[nodiscard]] std::string RecordingModel(const std::filesystem::path& recording);
+
+/// Reads a recording file and its CSV.
+/// @param data_dir  Where the CSV is if it is not beside the recording file; may be empty.
+/// @throws ConfigError naming file, line, column and key; InputError naming file and line of the CSV.
+[[nodiscard]] Recording ReadRecording(const std::filesystem::path& recording, const std::filesystem::path& data_dir);
+
+/// Reads a CSV whose columns are called `t` and as the signals of the plant.
+/// @param model  Name of a plant that came with the product, or path of a plant file.
+/// @param skip_bad  Count and skip bad rows; otherwise the first one is an error.
+[[nodiscard]] Recording ReadRecordedCsv(const std::filesystem::path& csv, const std::string& model, bool skip_bad);
+
+}  // namespace armcmc::support

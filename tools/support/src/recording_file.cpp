@@ -1,0 +1,127 @@
+#include "recording_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "nearest.hpp"
+
+namespace armcmc::support {
+namespace {
+
+constexpr double kHuge = std::numeric_limits<double>::max();
+constexpr double kRows = 1e12;
+
+ColumnSource ReadSource(StrictTable& columns, const std::string& signal) {
+  ColumnSource source;
+  if (columns.IsText(signal)) {
+    source.column = columns.RequiredText(signal);
+    return source;
+  }
+  StrictTable table = columns.Table(signal);
+  source.value = table.Text("value", "");
+  if (!source.value.empty()) {
+    for (const char* key : {"column", "scale", "offset"})
+      if (table.Has(key)) throw table.Error(key, "does not go together with `value`, which is an expression");
+    return source;
+  }
+  source.column = table.RequiredText("column");
+  source.scale = table.Number("scale", 1.0, -kHuge, kHuge);
+  source.offset = table.Number("offset", 0.0, -kHuge, kHuge);
+  if (source.scale == 0.0) throw table.Error("scale", "must not be 0");
+  return source;
+}
+
+std::map<std::string, ColumnSource> ReadSources(StrictTable columns, const std::vector<std::string>& signals) {
+  std::map<std::string, ColumnSource> sources;
+  for (const std::string& name : columns.Keys()) {
+    if (name != "t" && std::find(signals.begin(), signals.end(), name) == signals.end())
+      throw columns.Error(name, "is no signal of the plant" + DidYouMean(name, signals));
+    sources[name] = ReadSource(columns, name);
+  }
+  return sources;
+}
+
+std::vector<RowRange> ReadRanges(StrictTable& table, const char* key) {
+  std::vector<RowRange> ranges;
+  for (const std::vector<double>& pair : table.NumberLists(key, 2, 0.0, kRows)) {
+    if (!(pair[0] < pair[1])) throw table.Error(key, "expected [first row, row after the last], as in [[0, 15]]");
+    ranges.push_back({static_cast<std::size_t>(pair[0]), static_cast<std::size_t>(pair[1])});
+  }
+  return ranges;
+}
+
+void ReadRows(StrictTable rows, RecordingFile* file) {
+  if (rows.Has("from") || rows.Has("until")) {
+    RowRange range;
+    range.from = static_cast<std::size_t>(rows.Integer("from", 0, 0, static_cast<std::int64_t>(kRows)));
+    range.until = static_cast<std::size_t>(
+        rows.Integer("until", static_cast<std::int64_t>(kRows), 1, static_cast<std::int64_t>(kRows)));
+    if (range.from >= range.until) throw rows.Error("until", "must be above `from`");
+    file->rows = range;
+  }
+  if (rows.Has("from_s")) file->from_s = rows.Number("from_s", 0.0, -kHuge, kHuge);
+  if (rows.Has("until_s")) file->until_s = rows.Number("until_s", 0.0, -kHuge, kHuge);
+  if (file->from_s && file->until_s && *file->from_s >= *file->until_s)
+    throw rows.Error("until_s", "must be above `from_s`");
+  file->drop = ReadRanges(rows, "drop");
+  file->every = static_cast<std::size_t>(rows.Integer("every", 1, 1, 1'000'000));
+  file->segment_column = rows.Text("segment_column", "");
+  StrictTable only = rows.Table("only");
+  for (const std::string& column : only.Keys()) file->only[column] = only.Texts(column);
+}
+
+void ReadHeldOut(StrictTable& root, const std::vector<std::string>& signals, RecordingFile* file) {
+  HeldOut& held = file->held_out;
+  held.given = root.Has("held_out");
+  StrictTable table = root.Table("held_out");
+  if (table.Has("from"))
+    held.rows.push_back({static_cast<std::size_t>(table.Integer("from", 0, 0, static_cast<std::int64_t>(kRows))),
+                         static_cast<std::size_t>(kRows)});
+  if (table.Has("from_s")) held.from_s = table.Number("from_s", 0.0, -kHuge, kHuge);
+  const std::vector<RowRange> rows = ReadRanges(table, "rows");
+  held.rows.insert(held.rows.end(), rows.begin(), rows.end());
+  held.segments = table.Texts("segments");
+  if (!held.segments.empty() && file->segment_column.empty())
+    throw table.Error("segments", "needs [rows] segment_column, which says what a segment is");
+  held.file = table.Text("file", "");
+  held.columns = ReadSources(table.Table("columns"), signals);
+  const bool any =
+      held.from_s || !held.rows.empty() || !held.segments.empty() || !held.file.empty() || !held.columns.empty();
+  if (held.given && !any)
+    throw root.Error("held_out", "says nothing; expected from, from_s, rows, segments, file or columns");
+}
+
+}  // namespace
+
+RecordingFile ReadRecordingFile(const std::filesystem::path& path, const std::vector<std::string>& signals) {
+  StrictTable root = StrictTable::FromFile(path);
+  RecordingFile file;
+  root.RequiredInteger("schema", 1, 1);
+  file.title = root.Text("title", path.stem().string());
+  file.model = root.RequiredText("model");
+  file.file = root.RequiredText("file");
+  file.columns = ReadSources(root.Table("columns"), signals);
+  file.rate_hz = root.Number("rate_hz", 0.0, 1e-9, 1e9);
+  if (file.rate_hz > 0.0 && file.columns.count("t") > 0)
+    throw root.Error("rate_hz", "does not go together with [columns] t: the time says how often was sampled");
+  ReadRows(root.Table("rows"), &file);
+  StrictTable derivatives = root.Table("derivatives");
+  file.bandwidth_hz = derivatives.Number("bandwidth_hz", 0.0, 1e-9, 1e9);
+  file.filtered_with = derivatives.Texts("filtered_with");
+  for (const std::string& name : file.filtered_with)
+    if (std::find(signals.begin(), signals.end(), name) == signals.end())
+      throw derivatives.Error("filtered_with", name + " is no signal of the plant" + DidYouMean(name, signals));
+  ReadHeldOut(root, signals, &file);
+  for (StrictTable& published : root.Tables("published")) {
+    PublishedFigure figure;
+    figure.what = published.RequiredText("what");
+    figure.value = published.RequiredNumber("value", -kHuge, kHuge);
+    figure.source = published.Text("source", "");
+    file.published.push_back(std::move(figure));
+  }
+  root.Finish();
+  return file;
+}
+
+}  // namespace armcmc::support
