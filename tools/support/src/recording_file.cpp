@@ -51,17 +51,21 @@ std::vector<RowRange> ReadRanges(StrictTable& table, const char* key) {
   return ranges;
 }
 
+/// A number that may be left out.
+std::optional<double> ReadOptional(StrictTable& table, const char* key) {
+  const double value = table.Number(key, 0.0, -kHuge, kHuge);  // asked for also where it is absent: then it is known
+  return table.Has(key) ? std::optional(value) : std::nullopt;
+}
+
 void ReadRows(StrictTable rows, RecordingFile* file) {
-  if (rows.Has("from") || rows.Has("until")) {
-    RowRange range;
-    range.from = static_cast<std::size_t>(rows.Integer("from", 0, 0, static_cast<std::int64_t>(kRows)));
-    range.until = static_cast<std::size_t>(
-        rows.Integer("until", static_cast<std::int64_t>(kRows), 1, static_cast<std::int64_t>(kRows)));
-    if (range.from >= range.until) throw rows.Error("until", "must be above `from`");
-    file->rows = range;
-  }
-  if (rows.Has("from_s")) file->from_s = rows.Number("from_s", 0.0, -kHuge, kHuge);
-  if (rows.Has("until_s")) file->until_s = rows.Number("until_s", 0.0, -kHuge, kHuge);
+  constexpr auto kMost = static_cast<std::int64_t>(kRows);
+  RowRange range;
+  range.from = static_cast<std::size_t>(rows.Integer("from", 0, 0, kMost));
+  range.until = static_cast<std::size_t>(rows.Integer("until", kMost, 1, kMost));
+  if (range.from >= range.until) throw rows.Error("until", "must be above `from`");
+  if (rows.Has("from") || rows.Has("until")) file->rows = range;
+  file->from_s = ReadOptional(rows, "from_s");
+  file->until_s = ReadOptional(rows, "until_s");
   if (file->from_s && file->until_s && *file->from_s >= *file->until_s)
     throw rows.Error("until_s", "must be above `from_s`");
   file->drop = ReadRanges(rows, "drop");
@@ -75,10 +79,9 @@ void ReadHeldOut(StrictTable& root, const std::vector<std::string>& signals, Rec
   HeldOut& held = file->held_out;
   held.given = root.Has("held_out");
   StrictTable table = root.Table("held_out");
-  if (table.Has("from"))
-    held.rows.push_back({static_cast<std::size_t>(table.Integer("from", 0, 0, static_cast<std::int64_t>(kRows))),
-                         static_cast<std::size_t>(kRows)});
-  if (table.Has("from_s")) held.from_s = table.Number("from_s", 0.0, -kHuge, kHuge);
+  const auto from = static_cast<std::size_t>(table.Integer("from", 0, 0, static_cast<std::int64_t>(kRows)));
+  if (table.Has("from")) held.rows.push_back({from, static_cast<std::size_t>(kRows)});
+  held.from_s = ReadOptional(table, "from_s");
   const std::vector<RowRange> rows = ReadRanges(table, "rows");
   held.rows.insert(held.rows.end(), rows.begin(), rows.end());
   held.segments = table.Texts("segments");
