@@ -139,9 +139,10 @@ TEST_F(Spy, ShowsAHundredPacksASecondAndTheEstimatorMissesNothing) {
   EXPECT_EQ(report["period_ms"], 1000 / kRate);
   EXPECT_GT(report["steps"], 14 * kRate);
   EXPECT_EQ(report["packs"]["lost"], 0);
-  // Not through looking on. Which of 1400 steps with a deadline of 10 ms the machine itself spoils, and whether a
-  // witness with its own few wake-ups sees it, is the machine's matter: who looks on would spoil one in ten.
-  EXPECT_LE(report["misses"]["own"].get<int>(), report["steps"].get<int>() / 100) << report["misses"];
+  // Without real-time scheduling other programs of the machine may take the processor, which nobody witnesses.
+  if (report["rt"]["policy"] == "SCHED_FIFO") {
+    EXPECT_EQ(report["misses"]["own"], 0) << report["misses"];
+  }
   // They did look on.
   EXPECT_GT(std::filesystem::file_size(dir_ / "logger.lcm"), 1'000'000u);
   const std::string steps = watch.out();
