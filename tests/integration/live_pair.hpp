@@ -98,8 +98,8 @@ class LivePair : public ::testing::Test {
   std::string config_ = SourceDir() / "rt/config/hunt_crossley.toml";
   ScratchDir dir_;
   std::filesystem::path scenario_ = SourceDir() / "plant_sim/scenarios/hunt_crossley_paper.toml";
-  std::string seed_ = "7";   ///< Of the plant.
-  std::string prefix_ = "";  ///< Of all channels. Set before SetUp().
+  std::string seed_ = "7";  ///< Of the plant.
+  std::string prefix_;      ///< Of all channels. Set before SetUp().
   std::unique_ptr<TestBus> bus_;
   std::unique_ptr<BusRecorder> recorder_;
 

@@ -12,7 +12,10 @@
 #include "armcmc/gap/report.hpp"
 #include "armcmc/gap/result_json.hpp"
 #include "armcmc/gap/workflow.hpp"
+#include "armcmc/ladder/diagnosis.hpp"
 #include "armcmc/support/model_file.hpp"
+#include "armcmc/support/plant_library.hpp"
+#include "armcmc/support/plant_writer.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
 #include "armcmc/support/strict_toml.hpp"
@@ -22,7 +25,7 @@ namespace armcmc::gap {
 namespace {
 
 struct Arguments {
-  std::string model = "hunt_crossley", data, heldout, earlier, out, steps = "show";
+  std::string model = "hunt_crossley", data, recording, data_dir, heldout, earlier, out, steps = "show";
   std::vector<std::string> without;
   std::uint64_t seed = 1;
   double period_ms = 100.0;
@@ -30,14 +33,19 @@ struct Arguments {
 };
 
 void Declare(CLI::App* app, Arguments* a) {
-  app->add_option("--model", a->model, "Built-in model, or a model file (.toml) whose effects are already known")
+  app->add_option("--model", a->model,
+                  "Plant file, or name of one that came along; or a model file (.toml) whose effects are already known")
       ->capture_default_str();
-  app->add_option("--data", a->data, "CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha)")
-      ->required();
+  auto* data =
+      app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (hunt_crossley: t,x,v,f)");
+  auto* recording =
+      app->add_option("--recording", a->recording, "Recording file: which columns of which CSV are the plant's signals")
+          ->excludes(data);
+  app->add_option("--data-dir", a->data_dir, "Where the recording's CSV is if not beside its file")->needs(recording);
   app->add_option("--heldout", a->heldout, "CSV of another run to show the gap on; without it the last 30 % of --data");
   app->add_option("--earlier", a->earlier,
                   "CSV of an earlier run with the same effect: names that it leaves open are judged by both runs");
-  app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->required();
+  app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->type_name("TEXT REQUIRED");
   app->add_option("--seed", a->seed, "Seed of the bootstrap: the same seed gives the same result")
       ->capture_default_str();
   app->add_option("--steps", a->steps,
@@ -57,6 +65,8 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-plant --scenario contact_rich --hide-effect random --seed 5 --sealed truth.json --csv run.csv\n"
       "  armcmc-gap --model hunt_crossley --data run.csv --out gap\n"
       "  armcmc-estimator --config hunt_crossley --model gap/model.toml\n"
+      "  armcmc-gap --model valve.toml --data valve.csv --out gap\n"
+      "  armcmc-gap --recording tools/gap/recordings/emps_estimation.toml --data-dir data --out gap\n"
       "Where several names remain, gap/experiment.toml is the motion that separates them. Make it, and let both runs "
       "speak:\n"
       "  armcmc-gap --model hunt_crossley --data experiment.csv --earlier run.csv --out gap2\n"
@@ -126,6 +136,24 @@ std::string Summary(const Result& result) {
   return out.str();
 }
 
+/// The ladder, rung by rung.
+std::string LadderText(const Result& result) {
+  std::ostringstream out;
+  char line[240];
+  std::snprintf(line, sizeof(line), "%-44s %12s %9s %12s\n", "", "error", "closed", "probability");
+  out << line;
+  std::snprintf(line, sizeof(line), "%-44s %12.4g\n", "model as it is", result.gap.before.rmse);
+  out << line;
+  for (const LadderRung& rung : result.ladder) {
+    std::string names;
+    for (const std::string& name : rung.effects) names += (names.empty() ? "+ " : " or ") + name;
+    std::snprintf(line, sizeof(line), "%-44s %12.4g %7.1f %% %12.2f%s\n", names.c_str(), rung.heldout_error,
+                  100.0 * rung.closed_fraction, rung.probability, rung.provisional ? "  (few events)" : "");
+    out << line;
+  }
+  return out.str();
+}
+
 /// The effects of a model file, which are not to be found again.
 std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& settings) {
   std::vector<std::pair<std::string, When>> known;
@@ -144,7 +172,8 @@ std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& 
   return known;
 }
 
-int Run(const Arguments& a) {
+/// A plant that came with code of its own.
+int RunBuiltIn(const Arguments& a) {
   WorkflowRequest request;
   request.until = LastStep(a.steps);
   request.model = support::BaseModel(a.model);
@@ -186,6 +215,54 @@ int Run(const Arguments& a) {
   if (request.until == Step::kShow) std::cout << "report: " << (out / "report.html").string() << '\n';
   if (outcome.augmented) std::cout << "model:  " << (out / "model.toml").string() << '\n';
   return support::kExitOk;
+}
+
+/// Refuses what only built-in plants have.
+void CheckDescribed(const Arguments& a) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw support::InputError(std::string(option) + ": not for plants that a file describes; leave it out");
+  };
+  refuse(!a.heldout.empty(), "--heldout");
+  refuse(!a.earlier.empty(), "--earlier");
+  refuse(a.no_pairs, "--no-pairs");
+  refuse(LastStep(a.steps) != Step::kShow, "--steps");
+}
+
+/// A plant that a file describes.
+int RunDescribed(const Arguments& a) {
+  CheckDescribed(a);
+  ladder::DiagnosisRequest request;
+  request.recording = a.recording.empty() ? support::ReadRecordedCsv(a.data, a.model, a.skip_bad)
+                                          : support::ReadRecording(a.recording, a.data_dir);
+  const support::PlantFile plant = support::ReadPlantFile(support::FindPlantFile(request.recording.model));
+  request.plant = &plant;
+  request.without = a.without;
+  const std::filesystem::path out = a.out;
+  Claim(out);
+  support::Progress progress("gap");
+  request.progress = [&](const std::string&, double share) { progress.Update(share); };
+  ladder::Diagnosis diagnosis = ladder::Diagnose(request);
+  Result& result = diagnosis.result;
+  result.seed = a.seed;
+  if (!result.effects.empty()) {
+    result.model_file = "model.toml";
+    Write(out / result.model_file, support::PlantFileText(diagnosis.plant, "Made by armcmc-gap: " + result.sentence));
+  }
+  Write(out / "result.json", ToJson(result).dump(2) + "\n");
+  Write(out / "report.html", ReportHtml(result));
+  std::cout << LadderText(result) << Summary(result);
+  std::cout << "result: " << (out / "result.json").string() << '\n'
+            << "report: " << (out / "report.html").string() << '\n';
+  if (!result.model_file.empty()) std::cout << "model:  " << (out / result.model_file).string() << '\n';
+  return support::kExitOk;
+}
+
+int Run(const Arguments& a) {
+  if (a.recording.empty() && a.data.empty())
+    throw support::InputError("nothing to diagnose: give --data CSV or --recording FILE (see --help)");
+  if (a.out.empty()) throw support::InputError("nowhere to write: give --out FOLDER (see --help)");
+  if (!a.recording.empty() || support::DescribedPlant(a.model)) return RunDescribed(a);
+  return RunBuiltIn(a);
 }
 
 }  // namespace

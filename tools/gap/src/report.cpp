@@ -13,6 +13,7 @@ std::string ReportHtml(const Result& result) {
   plots::Page page("Gap report: " + std::filesystem::path(result.data_file).filename().string());
   page.Html("<main>\n");
   AddHeadline(result, &page);
+  AddLadder(result, &page);
   AddGapAndEffects(result, &page);
   AddOpenQuestions(result, &page);
   AddTimeFigures(result, &page);

@@ -11,6 +11,8 @@ namespace armcmc::gap {
 
 /// Verdict, probability, what follows from it.
 void AddHeadline(const Result& result, plots::Page* page);
+/// What was named, rung by rung, and what is left.
+void AddLadder(const Result& result, plots::Page* page);
 /// Gap before and after beside what was added.
 void AddGapAndEffects(const Result& result, plots::Page* page);
 /// What is ambiguous, and the experiment that would separate it.

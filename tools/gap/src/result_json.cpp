@@ -101,6 +101,23 @@ json ParametersJson(const std::vector<ParameterChange>& changes) {
   return {{"before", before}, {"after", after}};
 }
 
+json SparseJson(const SparseTerm& t) {
+  return {{"expression", Text(t.expression)}, {"coefficient", Number(t.coefficient)}, {"share", Number(t.share)}};
+}
+
+json RungJson(const LadderRung& r) {
+  return {{"effects", Texts(r.effects)},
+          {"closed_fraction", Number(r.closed_fraction)},
+          {"heldout_error", Number(r.heldout_error)},
+          {"probability", Number(r.probability)},
+          {"remainder_ratio", Number(r.remainder_ratio)},
+          {"provisional", r.provisional}};
+}
+
+json PublishedJson(const PublishedFigure& p) {
+  return {{"what", Text(p.what)}, {"value", Number(p.value)}, {"source", Text(p.source)}};
+}
+
 json BudgetJson(const Budget& b) {
   // A time that nobody measured is not zero.
   return {{"measured", b.measured},
@@ -144,9 +161,14 @@ json ToJson(const Result& result) {
   out["candidates"] = List(result.candidates, CandidateJson);
   out["where"] = List(result.where, WhereJson);
   out["aliases"] = Texts(result.aliases);
-  out["sparse"] = List(result.sparse, [](const SparseTerm& t) -> json {
-    return {{"expression", Text(t.expression)}, {"coefficient", Number(t.coefficient)}, {"share", Number(t.share)}};
-  });
+  out["sparse"] = List(result.sparse, SparseJson);
+  out["ladder"] = List(result.ladder, RungJson);
+  out["complete"] = result.complete;
+  out["remainder"] = {{"share", Number(result.remainder.share)},
+                      {"where", List(result.remainder.where, WhereJson)},
+                      {"sparse", List(result.remainder.sparse, SparseJson)}};
+  out["published"] = List(result.published, PublishedJson);
+  out["relative_error"] = {{"before", Number(result.relative_before)}, {"after", Number(result.relative_after)}};
   out["gap"] = GapJson(result.gap);
   out["parameters"] = ParametersJson(result.parameters);
   out["budget"] = BudgetJson(result.budget);

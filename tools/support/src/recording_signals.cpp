@@ -184,6 +184,7 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
       std::vector<double>& value = recording->signals[index_of(signal)].value;
       if (value.empty()) continue;
       value = Filtered(*recording, value, file.bandwidth_hz);
+      recording->output_smoothed = recording->output_smoothed || signal == plant.output;
       recording->notes.push_back(signal + ": low pass without delay, " + ExactNumber(file.bandwidth_hz) + " Hz");
     }
   // One may be derived from another that is derived itself.

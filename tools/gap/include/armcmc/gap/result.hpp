@@ -140,6 +140,31 @@ struct MapFigure {
   std::vector<double> value;  ///< Row by row of y; NaN where there are no data.
 };
 
+/// An effect that was named and added, with all before it refitted; or several that the data cannot tell apart.
+struct LadderRung {
+  std::vector<std::string> effects;       ///< What was named; the first was added.
+  std::vector<std::string> parameters{};  ///< Of it, in words: "Fc = 20.4 +- 0.1 N".
+  double closed_fraction = 0.0;           ///< Of the gap, all rungs so far, on data kept apart.
+  double heldout_error = 0.0;             ///< Rms there, unit of the output.
+  double probability = 0.0;               ///< That an effect of this family is there.
+  double remainder_ratio = 0.0;           ///< What is still unexplained, over the noise (rms).
+  bool provisional = false;               ///< Seen in too few separate events.
+};
+
+/// What is left when nothing more earns a name.
+struct Unexplained {
+  double share = 0.0;  ///< Of the squared error beyond the noise before anything was named.
+  std::vector<Where> where;
+  std::vector<SparseTerm> sparse;
+};
+
+/// What somebody else reports of the same data.
+struct PublishedFigure {
+  std::string what;
+  double value = 0.0;
+  std::string source;
+};
+
 /// Everything that the report plots.
 struct Figures {
   std::string output_title;                           ///< "force, N"
@@ -177,6 +202,11 @@ struct Result {
   std::vector<Where> where;                ///< Largest effect size first.
   std::vector<std::string> aliases;        ///< What these inputs cannot show, whatever the data.
   std::vector<SparseTerm> sparse;
+  std::vector<LadderRung> ladder;  ///< In the order in which effects were named.
+  bool complete = false;           ///< Behind the last rung nothing is left that a flexible function finds.
+  Unexplained remainder;
+  std::vector<PublishedFigure> published;
+  double relative_before = 0.0, relative_after = 0.0;  ///< Held-out rms error over the rms of what is explained.
   GapSummary gap;
   std::vector<ParameterChange> parameters;
   Budget budget;

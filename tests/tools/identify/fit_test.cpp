@@ -1,0 +1,189 @@
+#include "armcmc/identify/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <random>
+
+#include "core/plant/plants.hpp"
+
+namespace armcmc::identify::fit_test {
+namespace {
+
+using Eigen::VectorXd;
+
+struct Made {
+  std::shared_ptr<const TrajectoryModel> model;
+  std::vector<std::uint8_t> rows;
+};
+
+Made Make(PlantDescription description, Series series) {
+  const std::size_t rows = series.num_rows();
+  return {std::make_shared<const TrajectoryModel>(std::make_shared<const Plant>(std::move(description)),
+                                                  std::make_shared<const Series>(std::move(series))),
+          std::vector<std::uint8_t>(rows, 1)};
+}
+
+/// An axis (v, a, F) of 100 kg, 180 N s/m, -3 N with noise of 1 N.
+Series Axis() {
+  Series series;
+  series.dt = 0.01;
+  series.runs = {0};
+  series.signals.resize(3);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  for (int n = 0; n < 800; ++n) {
+    const double t = 0.01 * n, v = 0.2 * std::sin(2.0 * t), a = 0.4 * std::cos(2.0 * t);
+    series.t.push_back(t);
+    series.signals[0].push_back(v);
+    series.signals[1].push_back(a);
+    series.signals[2].push_back(100.0 * a + 180.0 * v - 3.0 + noise(random));
+  }
+  return series;
+}
+
+TEST(Fit, OfALinearLawIsRegularisedLeastSquares) {
+  const Made made = Make(test::DescribedAxis(), Axis());
+  const FitResult fit = Fit(*made.model, made.rows, made.model->Start());
+  ASSERT_TRUE(fit.valid);
+  // The normal equations, with the errors' size that the fit ends with.
+  const Series& s = made.model->series();
+  Eigen::MatrixXd x(800, 3);
+  VectorXd y(800);
+  for (Eigen::Index n = 0; n < 800; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    x.row(n) << s.signals[1][k], s.signals[0][k], 1.0;
+    y[n] = s.signals[2][k];
+  }
+  const double precision = 1.0 / (fit.error_sd * fit.error_sd);
+  Eigen::MatrixXd normal = precision * x.transpose() * x;
+  const VectorXd prior = PriorPrecision(*made.model);
+  normal.diagonal() += prior;
+  const VectorXd expected =
+      normal.ldlt().solve(precision * x.transpose() * y + prior.cwiseProduct(made.model->Start()));
+  for (Eigen::Index d = 0; d < 3; ++d) EXPECT_NEAR(fit.theta[d], expected[d], 1e-4 * std::fabs(expected[d]));
+  EXPECT_NEAR(fit.error_sd, 1.0, 0.08);
+  const VectorXd sd = StandardDeviations(*made.model, made.rows, fit);
+  const VectorXd variance = normal.inverse().diagonal();
+  for (Eigen::Index d = 0; d < 3; ++d) EXPECT_NEAR(sd[d], std::sqrt(variance[d]), 1e-3 * sd[d]);
+}
+
+TEST(Fit, CountsOnlyItsRows) {
+  Series series = Axis();
+  for (std::size_t n = 400; n < 800; ++n) series.signals[2][n] += 1e6;
+  Made made = Make(test::DescribedAxis(), std::move(series));
+  std::fill(made.rows.begin() + 400, made.rows.end(), std::uint8_t{0});
+  const FitResult fit = Fit(*made.model, made.rows, made.model->Start());
+  EXPECT_NEAR(fit.theta[0], 100.0, 2.0);
+  EXPECT_NEAR(fit.theta[1], 180.0, 3.0);
+}
+
+TEST(Fit, StaysWithinTheBounds) {
+  PlantDescription axis = test::DescribedAxis();
+  axis.parameters[0].upper = 95.0;
+  axis.parameters[0].mean = 80.0;
+  const Made made = Make(std::move(axis), Axis());
+  const FitResult fit = Fit(*made.model, made.rows, made.model->Start());
+  EXPECT_DOUBLE_EQ(fit.theta[0], 95.0);
+  EXPECT_NEAR(fit.theta[1], 180.0, 3.0);
+}
+
+/// x'' = -k x - d x' from x = 1 at rest, k and d to be found, measured without noise.
+PlantDescription Oscillator() {
+  PlantDescription plant;
+  plant.name = "swing";
+  plant.output = "y";
+  plant.law = "pos";
+  plant.signals = {{"u", "m/s^2", "", ""}, {"y", "m", "position", ""}};
+  plant.parameters = {{"k", "1/s^2", "lognormal", 5.0, 1.0}, {"d", "1/s", "normal", 0.5, 0.5, 0.0, 5.0}};
+  plant.states = {{"pos", "m", "position", "speed", "1", "", 1},
+                  {"speed", "m/s", "velocity", "u - k*pos - d*speed", "0", "", 4}};
+  plant.noise.std = 0.01;
+  return plant;
+}
+
+Series Swing(int rows, const std::vector<std::size_t>& runs = {0}) {
+  Series series;
+  series.dt = 0.02;
+  series.runs = runs;
+  series.signals.resize(2);
+  for (int n = 0; n < rows; ++n) {
+    int of_run = n;
+    for (const std::size_t run : runs)
+      if (static_cast<int>(run) <= n) of_run = n - static_cast<int>(run);
+    const double t = 0.02 * of_run, w = std::sqrt(9.0 - 0.04);
+    series.t.push_back(t);
+    series.signals[0].push_back(0.0);
+    // k = 9, d = 0.4: under-damped from rest.
+    series.signals[1].push_back(std::exp(-0.2 * t) * (std::cos(w * t) + 0.2 / w * std::sin(w * t)));
+  }
+  return series;
+}
+
+TEST(TrajectoryModel, StatesFollowTheClosedFormAndBeginAnewInEveryRun) {
+  const Made made = Make(Oscillator(), Swing(600, {0, 250}));
+  VectorXd prediction;
+  ASSERT_TRUE(made.model->PredictOne(VectorXd{{std::log(9.0), 0.4}}, &prediction));
+  EXPECT_LT((prediction - made.model->target()).cwiseAbs().maxCoeff(), 2e-8);
+}
+
+TEST(TrajectoryModel, SeveralCandidatesAtOnceAreEachAsAlone) {
+  const Made made = Make(Oscillator(), Swing(100));
+  Eigen::MatrixXd thetas(2, 37), predictions;
+  for (Eigen::Index c = 0; c < 37; ++c)
+    thetas.col(c) << std::log(3.0 + 0.3 * static_cast<double>(c)), 0.1 * static_cast<double>(c % 5);
+  made.model->Predict(thetas, &predictions);
+  for (const Eigen::Index c : {0, 15, 16, 31, 36}) {
+    VectorXd alone;
+    ASSERT_TRUE(made.model->PredictOne(thetas.col(c), &alone));
+    EXPECT_EQ(alone, VectorXd(predictions.col(c))) << c;
+  }
+}
+
+TEST(TrajectoryModel, KnowsWhenAStartIsForgotten) {
+  const Made made = Make(Oscillator(), Swing(3000));
+  // exp(-d t / 2) = 0.01 after 23 s of d = 0.4.
+  const Eigen::Index rows = made.model->RowsToForget(VectorXd{{std::log(9.0), 0.4}}, 0.01);
+  EXPECT_NEAR(0.02 * static_cast<double>(rows), 2.0 / 0.4 * std::log(100.0), 0.7);
+}
+
+TEST(Fit, FindsTheParametersOfASimulatedPlantFromFarOff) {
+  const Made made = Make(Oscillator(), Swing(400));
+  const FitResult fit = BestFit(*made.model, made.rows, {made.model->Start()}, 1);
+  EXPECT_NEAR(made.model->Shown(0, fit.theta[0]), 9.0, 1e-3);
+  EXPECT_NEAR(fit.theta[1], 0.4, 1e-3);
+}
+
+TEST(Fit, AParameterThatIsFarOffDoesNotCarryTheOthersAway) {
+  // The offset begins a million times the signal away; the place and the power of the contact have to be found still.
+  PlantDescription contact;
+  contact.name = "bead";
+  contact.output = "f";
+  contact.law = "k*max(x - x0, 0)^n + f0";
+  contact.signals = {{"x", "m", "position", ""}, {"f", "N", "force", ""}};
+  contact.parameters = {{"k", "N/m^n", "lognormal", 1.0, 5.0},
+                        {"n", "1", "normal", 1.5, 0.35, 1.0, 3.0},
+                        {"x0", "m", "normal", 0.0, 1e-3},
+                        {"f0", "N", "normal", 0.0, 0.1}};
+  Series series;
+  series.dt = 0.01;
+  series.runs = {0};
+  series.signals.resize(2);
+  for (int n = 0; n < 400; ++n) {
+    const double x = 1e-7 * n;
+    series.t.push_back(0.01 * n);
+    series.signals[0].push_back(x);
+    series.signals[1].push_back(0.05 * std::pow(std::max(x - 2e-5, 0.0), 1.5) + 3e-9 + 1e-12 * std::sin(37.0 * n));
+  }
+  const Made made = Make(std::move(contact), std::move(series));
+  VectorXd start = made.model->Start();
+  start << -6.0, 1.8, 1.2e-5, -0.07;
+  const FitResult fit = BestFit(*made.model, made.rows, {start}, 1);
+  EXPECT_NEAR(fit.theta[2], 2e-5, 1e-6);
+  EXPECT_NEAR(fit.theta[3], 3e-9, 1e-11);
+  EXPECT_LT(fit.error_sd, 3e-12);
+}
+
+}  // namespace
+}  // namespace armcmc::identify::fit_test

@@ -1,0 +1,131 @@
+#include "armcmc/ladder/climb.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "armcmc/support/effect_library.hpp"
+#include "tools/ladder/made_data.hpp"
+
+namespace armcmc::ladder::climb_test {
+namespace {
+
+using test::AxisSample;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+double Sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+
+/// Climbs with a part of the catalogue, which takes a second where all of it takes ten.
+Ladder ClimbWith(const std::vector<std::string>& effects, const Dataset& data) {
+  ClimbRequest request;
+  request.plant = std::make_shared<const Plant>(test::AxisPlant());
+  for (EffectEntry& entry : support::ReadEffectLibrary())
+    if (std::find(effects.begin(), effects.end(), entry.name) != effects.end())
+      request.entries.push_back(std::move(entry));
+  request.data = data;
+  return Climb(request);
+}
+
+std::vector<std::string> NamesOf(const Rung& rung) {
+  std::vector<std::string> names;
+  for (const std::size_t i : rung.named) names.push_back(rung.contenders[i].candidate.entry->name);
+  return names;
+}
+
+const std::vector<std::string> kSome{"coulomb_friction", "presliding_friction", "drag",    "cubic_stiffness",
+                                     "output_drift",     "asymmetric_friction", "cogging", "sensor_lag"};
+
+TEST(Climb, NothingHiddenIsNothingMissing) {
+  for (const unsigned seed : {3U, 4U, 5U}) {
+    const Ladder ladder = ClimbWith(kSome, test::AxisData([](const AxisSample&) { return 0.0; }, seed));
+    ASSERT_EQ(ladder.rungs.size(), 1u) << seed;
+    EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << seed;
+    EXPECT_TRUE(ladder.complete) << seed;
+    EXPECT_NEAR(ladder.noise_floor, 2.0, 0.2);
+  }
+}
+
+TEST(Climb, NamesTheSimplestThatExplainsItAndStops) {
+  // Asymmetric friction holds dry friction as a special case.
+  const Ladder ladder = ClimbWith(kSome, test::AxisData([](const AxisSample& s) { return 12.0 * Sign(s.v); }));
+  ASSERT_EQ(ladder.rungs.size(), 2u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
+  EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty());
+  EXPECT_TRUE(ladder.complete);
+  EXPECT_GT(ladder.rungs[0].probability, 0.95);
+  EXPECT_FALSE(ladder.rungs[0].provisional);
+  const Eigen::VectorXd& theta = ladder.final_trial.fit.theta;
+  ASSERT_EQ(theta.size(), 4);
+  EXPECT_NEAR(theta[0], 100.0, 1.0);
+  EXPECT_NEAR(theta[3], 12.0, 0.5);
+}
+
+TEST(Climb, NamesTwoEffectsOneAfterTheOther) {
+  const Ladder ladder = ClimbWith(
+      kSome, test::AxisData([](const AxisSample& s) { return 15.0 * Sign(s.v) + 60000.0 * s.q * s.q * s.q; }));
+  ASSERT_EQ(ladder.rungs.size(), 3u);
+  std::vector<std::string> names = NamesOf(ladder.rungs[0]);
+  for (const std::string& name : NamesOf(ladder.rungs[1])) names.push_back(name);
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("coulomb_friction", "cubic_stiffness"));
+  EXPECT_TRUE(ladder.complete);
+}
+
+TEST(Climb, TheSamePhysicsByAnotherFormulaHasTheSameName) {
+  const Ladder ladder =
+      ClimbWith(kSome, test::AxisData([](const AxisSample& s) { return 20.0 * std::tanh(s.v / 0.02); }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
+}
+
+TEST(Climb, FindsAFrequencyThatThePriorDoesNotTell) {
+  const Ladder ladder =
+      ClimbWith(kSome, test::AxisData([](const AxisSample& s) { return 6.0 * std::sin(s.q / 0.004); }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cogging"));
+}
+
+TEST(Climb, WhatNoEffectExplainsHasNoName) {
+  const Ladder ladder = ClimbWith(
+      kSome, test::AxisData([](const AxisSample& s) { return 12.0 * std::exp(-std::pow((s.q - 0.02) / 0.01, 2)); }));
+  ASSERT_EQ(ladder.rungs.size(), 1u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_FALSE(ladder.complete);
+}
+
+TEST(Climb, ALawThatIsALittleOffIsNoEffect) {
+  const Ladder ladder = ClimbWith(
+      kSome, test::AxisData([](const AxisSample& s) {
+        return 0.05 * (100.0 * s.a * std::sin(40.0 * s.q + 1.0) + 180.0 * s.v * std::cos(7.0 * s.v - 20.0 * s.q));
+      }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+}
+
+TEST(Climb, TheTrueEffectIsNamedThoughTheLawIsALittleOff) {
+  const Ladder ladder = ClimbWith(kSome, test::AxisData([](const AxisSample& s) {
+                                    return 15.0 * Sign(s.v) + 0.05 * (100.0 * s.a * std::sin(40.0 * s.q + 1.0) +
+                                                                      180.0 * s.v * std::cos(7.0 * s.v - 20.0 * s.q));
+                                  }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
+  EXPECT_FALSE(ladder.complete);
+}
+
+TEST(Climb, WithTheTrueEffectOutOfTheCatalogueThereIsNoFalseFamily) {
+  const Ladder ladder = ClimbWith({"cubic_stiffness", "output_drift", "cogging", "stiffness_drift", "baseline_tilt"},
+                                  test::AxisData([](const AxisSample& s) { return 12.0 * Sign(s.v); }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_FALSE(ladder.complete);
+}
+
+TEST(Climb, WhatDataKeptApartDoNotShowIsWithdrawn) {
+  // A drift that ends where the held-out rows begin.
+  Dataset data = test::AxisData([](const AxisSample& s) { return s.t < 14.0 ? 0.9 * s.t : 0.0; });
+  const Ladder ladder = ClimbWith({"output_drift"}, data);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  ASSERT_FALSE(ladder.notes.empty());
+  EXPECT_THAT(ladder.notes.back(), ::testing::HasSubstr("output_drift was not named"));
+}
+
+}  // namespace
+}  // namespace armcmc::ladder::climb_test

@@ -1,0 +1,116 @@
+// armcmc-gap on plants that a file describes: what a user types, and what is in the folder then.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "support/json.hpp"
+#include "support/paths.hpp"
+#include "support/process.hpp"
+
+namespace armcmc::test::ladder_program_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kScenario = R"(schema = 1
+rate_hz = 100
+duration_s = 20
+seed = 11
+[truth]
+M = 100.0
+Fv = 180.0
+off = 2.0
+[inputs]
+q = { kind = "multisine", amplitude = 0.08, bandwidth_hz = 1.5 }
+[noise]
+law = "gaussian"
+std = 2.0
+)";
+
+class LadderProgram : public ::testing::Test {
+ protected:
+  std::filesystem::path Simulate(const std::string& hidden) const {
+    std::ofstream(dir_ / "scenario.toml") << kScenario << hidden;
+    const Outcome run = RunProgram(Program("armcmc-plant"), {"--model", "servo_axis", "--scenario",
+                                                             dir_ / "scenario.toml", "--csv", dir_ / "run.csv"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return dir_ / "run.csv";
+  }
+  [[nodiscard]] Outcome Gap(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all{"--out", dir_ / "out"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return RunProgram(Program("armcmc-gap"), all);
+  }
+  [[nodiscard]] Json Result() const { return ReadJson(dir_ / "out" / "result.json"); }
+  ScratchDir dir_;
+};
+
+constexpr const char* kFriction = "[[hidden]]\nslot = \"output\"\nvalue = \"14*tanh(v/0.004)\"\n";
+
+TEST_F(LadderProgram, NamesWhatIsHiddenAndWritesAModelThatLacksNothing) {
+  const std::filesystem::path csv = Simulate(kFriction);
+  const Outcome run = Gap({"--model", "servo_axis", "--data", csv});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("+ coulomb_friction"));
+  const Json result = Result();
+  EXPECT_EQ(result["verdict"], "named");
+  EXPECT_EQ(result["schema"], 1);
+  ASSERT_EQ(result["ladder"].size(), 1u);
+  ASSERT_EQ(result["ladder"][0]["effects"].size(), 1u);
+  EXPECT_EQ(result["ladder"][0]["effects"][0], "coulomb_friction");
+  EXPECT_GT(result["ladder"][0]["closed_fraction"].number(), 0.95);
+  EXPECT_GT(result["ladder"][0]["probability"].number(), 0.95);
+  EXPECT_EQ(result["complete"], true);
+  EXPECT_EQ(result["effects"][0]["name"], "coulomb_friction");
+  EXPECT_EQ(result["effects"][0]["family"], "dry friction");
+  EXPECT_NEAR(result["effects"][0]["parameters"]["Fc"]["mean"].get<double>(), 14.0, 1.0);
+  EXPECT_EQ(result["effects"][0]["parameters"]["Fc"]["unit"], "N");
+  // The friction that the model lacked was taken for viscosity.
+  EXPECT_GT(result["parameters"]["before"]["Fv"]["mean"].get<double>(), 195.0);
+  EXPECT_NEAR(result["parameters"]["after"]["Fv"]["mean"].get<double>(), 180.0, 6.0);
+  EXPECT_NEAR(result["gap"]["heldout_rmse_after"].get<double>(), 2.0, 0.25);
+  for (const char* key : {"ambiguous_set", "separate_by", "candidates", "where", "budget", "remainder", "published"})
+    EXPECT_TRUE(result.contains(key)) << key;
+  for (const char* file : {"report.html", "model.toml"})
+    EXPECT_TRUE(std::filesystem::exists(dir_ / "out" / file)) << file;
+
+  const std::filesystem::path model = dir_ / "found.toml";
+  std::filesystem::copy_file(dir_ / "out" / "model.toml", model);
+  const Outcome check = RunProgram(Program("armcmc-model"), {"check", model});
+  EXPECT_EQ(check.code, 0) << check.err;
+  const Outcome again = Gap({"--model", model, "--data", csv});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(Result()["verdict"], "none");
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "out" / "model.toml"));
+}
+
+TEST_F(LadderProgram, AnEffectThatIsLeftOutIsNotTried) {
+  const Outcome run = Gap({"--model", "servo_axis", "--data", Simulate(kFriction), "--without", "coulomb_friction"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json result = Result();
+  for (std::size_t c = 0; c < result["candidates"].size(); ++c)
+    EXPECT_NE(result["candidates"][c]["effects"][0].text(), "coulomb_friction");
+  // Its family can be named still.
+  for (std::size_t e = 0; e < result["effects"].size(); ++e) EXPECT_EQ(result["effects"][e]["family"], "dry friction");
+}
+
+TEST_F(LadderProgram, SaysWhatIsWrongWithAnOrder) {
+  const std::filesystem::path csv = Simulate("");
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& words) {
+    const Outcome run = Gap(arguments);
+    EXPECT_EQ(run.code, 2) << words;
+    EXPECT_THAT(run.err, HasSubstr(words));
+  };
+  refused({"--model", "servo_axis"}, "--data CSV or --recording FILE");
+  refused({"--model", "servo_axis", "--data", csv, "--heldout", csv}, "--heldout");
+  refused({"--model", "servo_axis", "--data", csv, "--steps", "compare"}, "--steps");
+  refused({"--model", "servo_axes", "--data", csv}, "servo_axes");
+  std::ofstream(dir_ / "few.csv") << "t,q,v,a,F\n0,0,0,0,0\n0.01,0,0,0,1\n";
+  refused({"--model", "servo_axis", "--data", dir_ / "few.csv"}, "few.csv");
+}
+
+}  // namespace
+}  // namespace armcmc::test::ladder_program_test

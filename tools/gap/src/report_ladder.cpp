@@ -1,0 +1,91 @@
+// The ladder: what was named, in which order, what it takes off the error, and what is left.
+#include <cmath>
+#include <sstream>
+
+#include "armcmc/plots/html.hpp"
+#include "report_sections.hpp"
+#include "report_words.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+using plots::EscapeHtml;
+using plots::NumberText;
+using plots::PercentText;
+
+std::string Names(const LadderRung& rung) {
+  std::string names;
+  for (const std::string& name : rung.effects)
+    names += (names.empty() ? "<b>" : " <span class=\"soft\">or</span> <b>") + EscapeHtml(EffectTitle(name)) + "</b>";
+  return names;
+}
+
+void AddRung(const LadderRung& rung, const std::string& unit, std::ostream& out) {
+  out << "<tr><td>+ " << Names(rung);
+  if (rung.provisional) out << " <span class=\"chip small doubt\">few events</span>";
+  for (const std::string& parameter : rung.parameters)
+    out << "<br><span class=\"soft mono\">" << EscapeHtml(parameter) << "</span>";
+  out << "</td><td class=\"num\">" << NumberText(rung.heldout_error, 3) << ' ' << EscapeHtml(unit)
+      << "</td><td class=\"num\">" << PercentText(rung.closed_fraction) << "</td><td class=\"num\">"
+      << NumberText(rung.remainder_ratio, 3) << "</td><td class=\"num\">" << PercentText(rung.probability)
+      << "</td></tr>\n";
+}
+
+void AddRemainder(const Result& result, std::ostream& out) {
+  if (result.complete) {
+    out << "<p>Nothing is left: a flexible function of all quantities finds no more, and neighbouring samples differ "
+           "by "
+           "as much as the model errs.</p>\n";
+    return;
+  }
+  out << "<p><b>" << PercentText(result.remainder.share)
+      << "</b> of the squared error beyond the noise is still unexplained, and no effect that fits this plant earns a "
+         "name for it.";
+  if (!result.remainder.where.empty()) {
+    const Where& w = result.remainder.where.front();
+    out << " Most of it is where: " << EscapeHtml(w.region) << " (" << PercentText(w.share_of_excess) << ").";
+  }
+  out << "</p>\n";
+  if (result.remainder.sparse.empty()) return;
+  out << "<p class=\"soft\">As a sum of simple terms:";
+  for (const SparseTerm& term : result.remainder.sparse)
+    out << " <span class=\"mono\">" << (term.coefficient < 0.0 ? "− " : "+ ")
+        << NumberText(std::fabs(term.coefficient), 3) << "·" << EscapeHtml(term.expression) << "</span>";
+  out << "; a description, not physics.</p>\n";
+}
+
+void AddPublished(const Result& result, std::ostream& out) {
+  if (result.published.empty()) return;
+  out << "<h3>What others report of these data</h3>\n<div class=\"scroll\"><table>\n<tr><th>what</th><th "
+         "class=\"num\">value</th><th>source</th></tr>\n";
+  for (const PublishedFigure& p : result.published)
+    out << "<tr><td>" << EscapeHtml(p.what) << "</td><td class=\"num\">" << NumberText(p.value, 3) << "</td><td>"
+        << EscapeHtml(p.source) << "</td></tr>\n";
+  out << "</table></div>\n<p class=\"soft\">Ours, on the rows kept apart: rms error "
+      << NumberText(result.gap.before.rmse, 3) << " → " << NumberText(result.gap.after.rmse, 3) << ' '
+      << EscapeHtml(result.gap.unit) << ", relative error " << PercentText(result.relative_before) << " → "
+      << PercentText(result.relative_after) << ".</p>\n";
+}
+
+}  // namespace
+
+void AddLadder(const Result& result, plots::Page* page) {
+  if (result.ladder.empty() && result.published.empty()) return;
+  std::ostringstream out;
+  out << "<section class=\"card\" id=\"ladder\">\n<h2>What was named, step by step</h2>\n<p class=\"soft\">Each effect "
+         "was added to the model, everything was fitted again, and what was left was looked at anew. Errors are those "
+         "on data that had no part in the diagnosis.</p>\n<div class=\"scroll\"><table>\n<tr><th>model</th><th "
+         "class=\"num\">error (rms)</th><th class=\"num\">gap closed</th><th class=\"num\">error of the fit over the "
+         "noise</th><th class=\"num\">probability</th></tr>\n<tr><td>as it is</td><td class=\"num\">"
+      << NumberText(result.gap.before.rmse, 3) << ' ' << EscapeHtml(result.gap.unit)
+      << "</td><td class=\"num\"></td><td class=\"num\">" << NumberText(result.gap.gap_ratio, 3)
+      << "</td><td></td></tr>\n";
+  for (const LadderRung& rung : result.ladder) AddRung(rung, result.gap.unit, out);
+  out << "</table></div>\n";
+  AddRemainder(result, out);
+  AddPublished(result, out);
+  out << "</section>\n";
+  page->Html(out.view());
+}
+
+}  // namespace armcmc::gap

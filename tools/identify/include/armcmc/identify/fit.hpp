@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "armcmc/identify/trajectory_model.hpp"
+
+namespace armcmc::identify {
+
+/// Where a law fits best.
+struct FitResult {
+  Eigen::VectorXd theta;       ///< Sampled coordinates.
+  Eigen::VectorXd prediction;  ///< [row]
+  Eigen::MatrixXd jacobian;    ///< [row][parameter]
+  double error_sd = 0.0;       ///< Root mean square of target - prediction over the rows that count.
+  double cost = 0.0;           ///< n log(error_sd) + half the squared distance from the prior's mean in its sd.
+  int iterations = 0;
+  bool valid = false;  ///< The start was finite.
+};
+
+/// Maximum a posteriori under Gaussian errors of unknown size, by Levenberg-Marquardt within the bounds:
+///
+///   minimise n log(s) + 1/2 sum_d ((theta_d - m_d) / sd_d)^2,   s^2 = 1/n sum_rows (target - law)^2
+///
+/// Parameters with a uniform prior have no pull. Each iteration tries several dampings at once and keeps the best; a
+/// parameter at a bound that would leave it stays.
+/// @param rows   [row] 1: counts. Only rows where a mode acts do.
+/// @param start  Clamped to the bounds.
+[[nodiscard]] FitResult Fit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
+                            const Eigen::VectorXd& start, int max_iterations = 30);
+
+/// A start that is moved along one parameter at a time, the one that helps most: a parameter that is far off is mended
+/// without the others running away.
+[[nodiscard]] Eigen::VectorXd AlongOne(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
+                                       const Eigen::VectorXd& start, int steps);
+
+/// The best of fits by cost. Starts are moved along single parameters first; the fits begin at the `most_fits` best.
+[[nodiscard]] FitResult BestFit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
+                                const std::vector<Eigen::VectorXd>& starts, std::size_t most_fits,
+                                int max_iterations = 30);
+
+/// Precision of the prior of every sampled parameter; 0 of a uniform one.
+[[nodiscard]] Eigen::VectorXd PriorPrecision(const TrajectoryModel& model);
+
+/// Posterior standard deviations in sampled coordinates at a fit: of the inverse of J' J / s^2 + prior.
+[[nodiscard]] Eigen::VectorXd StandardDeviations(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
+                                                 const FitResult& fit);
+
+}  // namespace armcmc::identify

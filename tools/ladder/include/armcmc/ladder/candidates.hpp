@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "armcmc/plant/effect.hpp"
+#include "armcmc/plant/effect_scales.hpp"
+#include "armcmc/plant/plant.hpp"
+
+namespace armcmc::ladder {
+
+/// A plant with one more effect.
+struct Candidate {
+  const EffectEntry* entry = nullptr;  ///< Of the entries that were asked for.
+  EffectBinding binding;
+  std::shared_ptr<const Plant> plant;
+  std::size_t first_parameter = 0;  ///< Of the effect, among the plant's.
+
+  [[nodiscard]] const EffectForm& form() const { return entry->forms[binding.form]; }
+};
+
+/// Every way in which one more effect of `entries` fits the plant; what does not fit a plant's limits is left out and
+/// noted.
+/// @param entries  Outlive the candidates.
+[[nodiscard]] std::vector<Candidate> Candidates(const PlantDescription& plant, const std::vector<EffectEntry>& entries,
+                                                const DataScales& scales, std::vector<std::string>* notes);
+
+}  // namespace armcmc::ladder

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "armcmc/ladder/candidates.hpp"
+#include "armcmc/ladder/dataset.hpp"
+#include "armcmc/ladder/trial.hpp"
+#include "armcmc/plant/effect.hpp"
+
+namespace armcmc::ladder {
+
+/// Squared error of one model over that of another on rows left out, by kind of group: 1 without gain.
+///
+/// Of blocks and regions the ratio of the sums or of the typical one, whichever is less, without those that hold nearly
+/// all that shows the effect: they cannot speak against it when they are left out.
+struct Comparison {
+  double folds = 1.0, blocks = 1.0, regions = 1.0;
+};
+
+/// One more effect that was tried on a rung, and what it is worth on data left out.
+struct Contender {
+  Candidate candidate;
+  Trial trial;               ///< On all training rows where it was worth it, else on the quick part.
+  bool refined = false;      ///< On all of them.
+  double closed = 0.0;       ///< Share of the base's squared error that is gone in the fit, [0, 1].
+  Comparison alone;          ///< With the base. Of those judged.
+  Comparison beside;         ///< The same where both have the flexible function beside them.
+  double gain_share = 0.0;   ///< Share of bootstrap samples of stretches in which it gains at least a tenth.
+  double win_share = 0.0;    ///< Share in which its family has the least error of all.
+  bool larger_part = false;  ///< It takes the larger part of what is unexplained.
+  bool earned = false;       ///< Its gain is more than a flexible function has, wherever it is looked for.
+};
+
+/// An effect that was named, or several that the data cannot tell apart.
+struct Rung {
+  std::vector<std::size_t> named;  ///< In `contenders`: the effect, and one of every family that explains it as well.
+  std::vector<Contender> contenders;  ///< Best first.
+  double probability = 0.0;           ///< That an effect of the named family is there.
+  bool open = false;                  ///< Takes the smaller part: named only with the next one.
+  bool provisional = false;           ///< Seen in too few separate stretches to be judged on others.
+  Trial base;                         ///< What it was compared with,
+  View view;                          ///< in which view.
+
+  [[nodiscard]] const Contender& leader() const { return contenders[named.front()]; }
+};
+
+/// Names one effect after the other until none earns its name.
+struct Ladder {
+  std::shared_ptr<const std::vector<EffectEntry>> entries;  ///< That candidates refer to.
+  double noise_floor = 0.0;
+  Trial base;                          ///< The plant as it came.
+  std::vector<Rung> rungs;             ///< The last one has no name.
+  std::shared_ptr<const Plant> plant;  ///< With all that was named.
+  Trial final_trial;                   ///< Of that plant on all training rows.
+  View view;                           ///< Of the last rung.
+  double flexible_gain = 0.0;          ///< Share of the squared error that is left which a flexible function takes.
+  bool complete = false;               ///< It takes next to nothing, and neighbouring samples differ by as much.
+  std::vector<std::string> notes;
+};
+
+struct ClimbRequest {
+  std::shared_ptr<const Plant> plant;
+  std::vector<EffectEntry> entries;
+  Dataset data;
+  bool smoothed = false;  ///< The output was filtered: neighbouring samples say nothing of its noise.
+  int max_rungs = 5;
+  std::function<void(const std::string& step, double share)> progress;
+};
+
+/// The rule of a rung, after every candidate was fitted:
+///
+/// 1. Earned. On data left out it
+///    - takes at least a tenth of the squared error in folds, in 99 % of bootstrap samples of their stretches (in 95 %,
+///      provisionally, on the first rung);
+///    - does not lose where long blocks or regions are left out;
+///    - gains even beside a flexible function: 5 % in two of these three senses, or 25 % in one;
+///    - takes the larger part of what is unexplained, alone or with the next one, unless its family has been named
+///      before or it leaves nothing but noise.
+/// 2. Simplest first. Of those that close 95 % of what the best closes the ones with the fewest parameters, and of
+/// these
+///    the best. What a simple effect leaves is looked at on the next rung.
+/// 3. Ties. With it go what is kin to it and leaves less than half as much again, where its own formula is not exact;
+///    a family of as few parameters that wins one bootstrap sample in twenty; and a larger effect of another family
+///    that leaves less than half and is better wherever it is looked for. Behind a tie nothing more is named: it would
+///    stand on what is not known.
+/// 4. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain.
+[[nodiscard]] Ladder Climb(const ClimbRequest& request);
+
+}  // namespace armcmc::ladder

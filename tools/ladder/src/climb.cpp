@@ -1,0 +1,392 @@
+#include "armcmc/ladder/climb.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "held_out.hpp"
+
+namespace armcmc::ladder {
+namespace {
+
+constexpr std::size_t kMostRows = 20'000;     // that models are compared on, in stretches of
+constexpr std::size_t kWindow = 1000;         // so many, long enough for what remembers; and
+constexpr std::size_t kMostSimulated = 8000;  // of a plant that is simulated, whose fits take long
+constexpr std::size_t kMostJudged = 8;        // of a rung, by closing: what is far behind is not named anyway
+constexpr int kBootstrap = 400;
+constexpr double kLeastGain = 0.1;     // of the squared error: what a name has to take
+constexpr double kSure = 0.99;         // share of bootstrap samples in which it does
+constexpr double kLikely = 0.95;       // the same where few events show it: named, provisionally
+constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effect is named first
+constexpr double kTie = 0.05;          // share of bootstrap samples that another family may win
+constexpr double kLargerPart = 0.5;    // squared error that a name of a new family leaves at most
+constexpr double kBeside = 0.95;       // squared error that a name reaches where both may bend, in two of three senses,
+constexpr double kFarBeside = 0.75;    // or in one, where few events show it
+constexpr double kLeavesAsMuch = 1.5;  // times what the named one leaves: kin that are not excluded
+constexpr double kFarBetter = 2.0;     // times less than the simple one leaves: a larger effect that is a rival of it
+constexpr double kLoses = 1.1;         // squared error in regions that says: it is not that
+
+/// Runs work(i) for i < count on both cores of a small machine.
+void InParallel(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  const auto loop = [&] {
+    for (std::size_t i = next++; i < count; i = next++) work(i);
+  };
+  std::thread other(loop);
+  loop();
+  other.join();
+}
+
+double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Whether a group holds so much of what shows an effect that its absence says nothing: without it the fit gains less
+/// than half of what it gains with it.
+bool HoldsTheEvidence(const Contender& c, const Trial& base, std::size_t group) {
+  return 1.0 - c.trial.rest[group] / (base.rest[group] + 1e-300) < 0.5 * c.closed;
+}
+
+Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool beside) {
+  const std::vector<double>& mine = beside ? c.trial.beside : c.trial.alone;
+  const std::vector<double>& base = beside ? base_trial.beside : base_trial.alone;
+  std::map<GroupKind, double> sum, sum_base;
+  std::map<GroupKind, std::vector<double>> ratios;
+  for (std::size_t g = 0; g < mine.size(); ++g) {
+    const GroupKind kind = view.groups[g].kind;
+    if (kind != GroupKind::kFold && HoldsTheEvidence(c, base_trial, g)) continue;
+    sum[kind] += mine[g];
+    sum_base[kind] += base[g];
+    ratios[kind].push_back(mine[g] / (base[g] + 1e-300));
+  }
+  const auto ratio = [&](GroupKind kind) {
+    if (ratios[kind].empty()) return 1.0;
+    const double of_sums = sum[kind] / (sum_base[kind] + 1e-300);
+    return kind == GroupKind::kFold ? of_sums : std::min(of_sums, Median(ratios[kind]));
+  };
+  return {ratio(GroupKind::kFold), ratio(GroupKind::kBlock), ratio(GroupKind::kRegion)};
+}
+
+/// Of the rows of all folds together.
+double FoldSquares(const View& view, const std::vector<double>& squares) {
+  double sum = 0.0;
+  for (std::size_t g = 0; g < squares.size(); ++g)
+    if (view.groups[g].kind == GroupKind::kFold) sum += squares[g];
+  return sum;
+}
+
+/// Share of the squared error that is left which a flexible function takes, in folds.
+double FlexibleGain(const View& view, const Trial& trial) {
+  return 1.0 - FoldSquares(view, trial.beside) / (FoldSquares(view, trial.alone) + 1e-300);
+}
+
+/// Whether a trial leaves more than noise: what a flexible function takes, or what is rough at the sampling rate.
+/// @param floor  Of neighbouring samples; 0: the output was smoothed, so that they say nothing.
+bool LeavesMore(const View& view, const Trial& trial, double floor) {
+  constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.5;
+  return FlexibleGain(view, trial) > kMore || (floor > 0.0 && trial.fit.error_sd > kRougher * floor);
+}
+
+bool Kin(const EffectEntry& a, const EffectEntry& b) {
+  const auto lists = [](const EffectEntry& x, const EffectEntry& y) {
+    return std::find(x.kin.begin(), x.kin.end(), y.name) != x.kin.end();
+  };
+  return lists(a, b) || lists(b, a);
+}
+
+std::size_t NumParameters(const Contender& c) { return c.candidate.form().parameters.size(); }
+
+/// Rungs are told of in order; a share of the whole is a guess.
+class Teller {
+ public:
+  explicit Teller(const ClimbRequest& request) : request_(request) {}
+  void Tell(const std::string& step, double share) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (request_.progress) request_.progress(step, share);
+  }
+
+ private:
+  const ClimbRequest& request_;
+  std::mutex mutex_;
+};
+
+/// One where amplitudes alone are sought, in which laws are linear; more where a shape is.
+std::size_t StartsFor(const Contender& c) {
+  constexpr std::size_t kOfShape = 8;
+  const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
+  const bool shape =
+      std::any_of(parameters.begin(), parameters.end(), [](const EffectParameter& p) { return p.none.empty(); });
+  return shape ? kOfShape : 1;
+}
+
+/// Fits everything quickly, what is worth it on all rows, and judges what may be named.
+void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung) {
+  constexpr double kWorthIt = 0.25, kNoGain = 0.05;
+  std::vector<Contender>& all = rung->contenders;
+  const Eigen::VectorXd error = rung->base.model->target() - rung->base.fit.prediction;
+  InParallel(all.size(), [&](std::size_t i) {
+    const Dataset quick = QuickPart(*all[i].candidate.plant, data, error);
+    const double base = Square(Refine(plant, quick, rung->base.fit.theta));
+    all[i].trial = Try(all[i].candidate.plant, quick, rung->base.fit.theta, StartsFor(all[i]));
+    if (all[i].trial.fit.valid) all[i].closed = std::clamp(1.0 - Square(all[i].trial) / base, 0.0, 1.0);
+  });
+  const auto best_closing = [&] {
+    double best = kNoGain;
+    for (const Contender& c : all) best = std::max(best, c.closed);
+    return best;
+  };
+  const double quick_best = best_closing();
+  InParallel(all.size(), [&](std::size_t i) {
+    if (!all[i].trial.fit.valid || all[i].closed < kWorthIt * quick_best) return;
+    all[i].trial = Refine(all[i].candidate.plant, data, all[i].trial.fit.theta);
+    all[i].refined = all[i].trial.fit.valid;
+    all[i].closed = all[i].refined ? std::clamp(1.0 - Square(all[i].trial) / Square(rung->base), 0.0, 1.0) : 0.0;
+  });
+  const double best = best_closing();
+  // Those that close most are judged, a simple one before a larger one that closes as much.
+  std::vector<std::size_t> judged;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].refined && all[i].closed >= std::max(kNoGain, 2.0 * kWorthIt * best)) judged.push_back(i);
+  const auto worth = [&](std::size_t i) { return all[i].closed - 0.005 * static_cast<double>(NumParameters(all[i])); };
+  std::stable_sort(judged.begin(), judged.end(), [&](std::size_t a, std::size_t b) { return worth(a) > worth(b); });
+  judged.resize(std::min(judged.size(), kMostJudged));
+  InParallel(judged.size(), [&](std::size_t k) {
+    const std::size_t i = judged[k];
+    LeaveOut(view, &all[i].trial);
+    all[i].alone = Compare(view, all[i], rung->base, false);
+    all[i].beside = Compare(view, all[i], rung->base, true);
+  });
+}
+
+/// Fills gain_share and win_share from bootstrap samples of the short stretches.
+void Bootstrap(Rung* rung) {
+  std::mt19937_64 random(400);
+  const std::size_t stretches = rung->base.stretches.size();
+  std::vector<int> gains(rung->contenders.size(), 0);
+  std::map<std::string, int> wins;
+  for (int b = 0; b < kBootstrap; ++b) {
+    std::vector<double> weight(stretches, 0.0);
+    for (std::size_t k = 0; k < stretches; ++k) weight[random() % stretches] += 1.0;
+    const auto total = [&](const std::vector<double>& squares) {
+      return std::inner_product(weight.begin(), weight.end(), squares.begin(), 0.0);
+    };
+    const double base = total(rung->base.stretches);
+    double least = base;
+    std::string winner;
+    for (std::size_t i = 0; i < rung->contenders.size(); ++i) {
+      const Contender& c = rung->contenders[i];
+      if (!c.trial.judged) continue;
+      const double mine = total(c.trial.stretches);
+      if (mine < (1.0 - kLeastGain) * base) ++gains[i];
+      if (mine < least) {
+        least = mine;
+        winner = c.candidate.entry->family;
+      }
+    }
+    ++wins[winner];
+  }
+  for (std::size_t i = 0; i < rung->contenders.size(); ++i) {
+    Contender& c = rung->contenders[i];
+    c.gain_share = static_cast<double>(gains[i]) / kBootstrap;
+    c.win_share = static_cast<double>(wins[c.candidate.entry->family]) / kBootstrap;
+  }
+}
+
+/// @param families  That were named before: more of the same is looked for in finer parts.
+/// @param before    Share of the error that the rung before leaves, where its name is still open; else 1.
+void Judge(const View& view, double floor, const std::set<std::string>& families, double before, Rung* rung) {
+  for (Contender& c : rung->contenders) {
+    if (!c.trial.judged) continue;
+    // What stands on an earlier name has to be sure.
+    const bool gains = c.alone.folds < 1.0 - kLeastGain && c.gain_share >= (families.empty() ? kLikely : kSure);
+    // A law that is a little off everywhere can be bent by many effects, each a little. What is really missing takes
+    // the larger part of what is unexplained, or leaves nothing.
+    c.larger_part = before * c.alone.folds < kLargerPart || families.contains(c.candidate.entry->family) ||
+                    !LeavesMore(view, c.trial, floor);
+    const bool elsewhere = c.alone.blocks < 1.0 && c.alone.regions < kLoses;
+    const std::array<double, 3> bent{c.beside.folds, c.beside.blocks, c.beside.regions};
+    const auto below = [&](double limit) {
+      return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
+    };
+    const bool beside = below(kBeside) >= 2 || below(kFarBeside) >= 1;
+    c.earned = gains && elsewhere && beside;
+  }
+}
+
+/// Better wherever it is looked for.
+bool BetterEverywhere(const Contender& a, const Contender& b) {
+  return a.alone.folds < b.alone.folds && a.alone.blocks < b.alone.blocks && a.alone.regions < b.alone.regions;
+}
+
+/// @param open  Also what takes the smaller part only.
+void Name(const View& view, double floor, bool open, Rung* rung) {
+  std::vector<Contender>& all = rung->contenders;
+  const auto may = [open](const Contender& c) { return c.earned && (open || c.larger_part); };
+  double best = 0.0;
+  for (const Contender& c : all)
+    if (may(c)) best = std::max(best, 1.0 - c.alone.folds);
+  std::vector<std::size_t> good;
+  std::size_t fewest = SIZE_MAX;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (may(all[i]) && 1.0 - all[i].alone.folds >= kAsGood * best) {
+      good.push_back(i);
+      fewest = std::min(fewest, NumParameters(all[i]));
+    }
+  if (good.empty()) return;
+  std::size_t leader = SIZE_MAX;
+  for (const std::size_t i : good)
+    if (NumParameters(all[i]) == fewest && (leader == SIZE_MAX || all[i].alone.folds < all[leader].alone.folds))
+      leader = i;
+  rung->named = {leader};
+  rung->provisional = all[leader].alone.blocks > 1.0 - kLeastGain || all[leader].gain_share < kSure;
+  // A formula that leaves noise alone is exact: what is like it, or holds it, is no rival.
+  const bool not_exact = LeavesMore(view, all[leader].trial, floor);
+  std::set<std::string> families{all[leader].candidate.entry->family};
+  double tied = all[leader].win_share;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!may(all[i]) || i == leader) continue;
+    const bool as_good = std::find(good.begin(), good.end(), i) != good.end();
+    const std::string& family = all[i].candidate.entry->family;
+    const bool equal = as_good && NumParameters(all[i]) == fewest && all[i].win_share > kTie;
+    const bool larger = as_good && NumParameters(all[i]) > fewest &&
+                        kFarBetter * all[i].alone.folds < all[leader].alone.folds &&
+                        BetterEverywhere(all[i], all[leader]);
+    const bool kin = not_exact && Kin(*all[i].candidate.entry, *all[leader].candidate.entry) &&
+                     all[i].alone.folds < kLeavesAsMuch * all[leader].alone.folds;
+    if ((!equal && !larger && !kin) || !families.insert(family).second) continue;
+    rung->named.push_back(i);
+    tied += all[i].win_share;
+  }
+  // Which of them it is, simple or not, is open: the model that predicts best goes first.
+  std::sort(rung->named.begin(), rung->named.end(),
+            [&](std::size_t a, std::size_t b) { return all[a].alone.folds < all[b].alone.folds; });
+  leader = rung->named.front();
+  // Simpler effects that are named first do not win against larger ones; those are no rivals.
+  rung->probability = rung->named.size() > 1 ? all[leader].win_share / std::max(tied, 1e-9) : all[leader].gain_share;
+}
+
+/// The output about its mean: where there is something to explain.
+Eigen::VectorXd Deviation(const Dataset& data, const Plant& plant) {
+  const std::vector<double>& output = data.series->signals[static_cast<std::size_t>(plant.output())];
+  const Eigen::VectorXd value =
+      Eigen::Map<const Eigen::VectorXd>(output.data(), static_cast<Eigen::Index>(output.size()));
+  return value.array() - value.mean();
+}
+
+/// Whether the data kept apart agree: at least half of the gain is found there. Without any there is no objection.
+bool Confirmed(const Dataset& data, const Trial& base, const Contender& c) {
+  constexpr double kAgain = 0.5;
+  const WholeRun before = RunWhole(data, base), after = RunWhole(data, c.trial);
+  const std::vector<Eigen::Index> rows = HeldOutRows(data, before);
+  if (rows.empty()) return true;
+  const double was = FitOn(before, rows, 1.0).rmse, is = FitOn(after, rows, 1.0).rmse;
+  return 1.0 - is * is / (was * was) > kAgain * (1.0 - c.alone.folds);
+}
+
+void Sort(Rung* rung) {
+  const auto key = [](const Contender& c) { return c.trial.judged ? c.alone.folds : 2.0 - c.closed; };
+  std::stable_sort(rung->contenders.begin(), rung->contenders.end(),
+                   [&](const Contender& a, const Contender& b) { return key(a) < key(b); });
+}
+
+}  // namespace
+
+Ladder Climb(const ClimbRequest& request) {
+  constexpr std::size_t kFirstStarts = 24;
+  Teller teller(request);
+  Ladder ladder;
+  ladder.entries = std::make_shared<const std::vector<EffectEntry>>(request.entries);
+  ladder.plant = request.plant;
+  Dataset data = IsSimulated(ladder.plant->description()) ? Beginnings(request.data, kMostSimulated)
+                                                          : Windows(request.data, {}, kWindow, kMostRows);
+
+  teller.Tell("fitting the model as it is", 0.0);
+  const Trial first =
+      Try(ladder.plant, QuickPart(*ladder.plant, data, Deviation(data, *ladder.plant)), {}, kFirstStarts);
+  if (!first.fit.valid) {
+    ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
+    return ladder;
+  }
+  Trial base = Refine(ladder.plant, data, first.fit.theta);
+  LeaveOutStarts(base, &data);
+  base = Refine(ladder.plant, data, base.fit.theta);
+  ladder.noise_floor = NoiseFloor(data, base.model->target(), base.model->active());
+  ladder.base = base;
+  std::set<std::string> families;
+  for (int r = 0; r < request.max_rungs; ++r) {
+    const std::string which = "rung " + std::to_string(r + 1);
+    const DataScales scales = ScalesOf(data, ladder.plant->description(), ladder.noise_floor);
+    Rung rung;
+    ladder.view = MakeView(data, *base.model, base.fit.theta, scales.period);
+    LeaveOut(ladder.view, &base);
+    if (r == 0) ladder.base = base;
+    rung.base = base;
+    rung.view = ladder.view;
+    for (Candidate& candidate : Candidates(ladder.plant->description(), *ladder.entries, scales, &ladder.notes))
+      rung.contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false});
+    teller.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
+                static_cast<double>(r) / request.max_rungs);
+    TryAll(ladder.plant, data, ladder.view, &rung);
+    Bootstrap(&rung);
+    const double floor = request.smoothed ? 0.0 : ladder.noise_floor;
+    const Rung* const open = !ladder.rungs.empty() && ladder.rungs.back().open ? &ladder.rungs.back() : nullptr;
+    Judge(ladder.view, floor, families, open != nullptr ? open->leader().alone.folds : 1.0, &rung);
+    Sort(&rung);
+    Name(ladder.view, floor, false, &rung);
+    // Two effects of one size each take the smaller part: the first may be named if the next one makes up for it.
+    if (rung.named.empty() && open == nullptr) {
+      Name(ladder.view, floor, true, &rung);
+      rung.open = !rung.named.empty();
+    }
+    if (!rung.named.empty() && !Confirmed(request.data, base, rung.leader())) {
+      ladder.notes.push_back(rung.leader().candidate.entry->name +
+                             " was not named: what it gains is not found again in the data kept apart");
+      rung.named.clear();
+      rung.open = false;
+    }
+    const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
+    if (!named && open != nullptr) {
+      // Back to where nothing was open.
+      Rung& alone = ladder.rungs.back();
+      ladder.plant = std::make_shared<const Plant>(alone.base.model->plant().description());
+      base = alone.base;
+      ladder.view = alone.view;
+      alone.named.clear();
+      alone.open = false;
+      break;
+    }
+    if (named && open != nullptr) ladder.rungs.back().open = false;
+    ladder.rungs.push_back(std::move(rung));
+    if (!named) break;
+    const Contender& leader = ladder.rungs.back().leader();
+    ladder.plant = leader.candidate.plant;
+    families.insert(leader.candidate.entry->family);
+    base = leader.trial;
+    if (tie) break;
+  }
+  if (!ladder.rungs.empty() && ladder.rungs.back().open) {  // the last that was allowed
+    Rung& alone = ladder.rungs.back();
+    ladder.plant = std::make_shared<const Plant>(alone.base.model->plant().description());
+    base = alone.base;
+    alone.named.clear();
+  }
+  ladder.final_trial = base;
+  if (base.judged) {
+    ladder.flexible_gain = FlexibleGain(ladder.view, base);
+    ladder.complete = !LeavesMore(ladder.view, base, request.smoothed ? 0.0 : ladder.noise_floor);
+  }
+  return ladder;
+}
+
+}  // namespace armcmc::ladder

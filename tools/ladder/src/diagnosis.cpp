@@ -1,0 +1,323 @@
+#include "armcmc/ladder/diagnosis.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "armcmc/ladder/evidence.hpp"
+#include "armcmc/support/program.hpp"
+#include "held_out.hpp"
+
+namespace armcmc::ladder {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using gap::ParameterEstimate;
+using gap::Verdict;
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value);
+  return text;
+}
+
+std::string Joined(const std::vector<std::string>& words, const char* between) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
+  return out;
+}
+
+/// The fit as people read it: of a lognormal parameter the median and its standard deviation.
+std::vector<ParameterEstimate> Estimates(const Trial& trial, const std::vector<std::uint8_t>& rows) {
+  const VectorXd sd = identify::StandardDeviations(*trial.model, rows, trial.fit);
+  std::vector<ParameterEstimate> out;
+  for (Index d = 0; d < trial.fit.theta.size(); ++d) {
+    const ParameterDescription& p = trial.model->parameters()[static_cast<std::size_t>(d)];
+    const double value = trial.model->Shown(d, trial.fit.theta[d]);
+    out.push_back({p.name, p.unit, value, p.prior == "lognormal" ? value * sd[d] : sd[d]});
+  }
+  return out;
+}
+
+std::string NameOf(const Contender& c) { return c.candidate.entry->name; }
+
+std::string InWords(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// Names that were added up to a rung, not counting it.
+std::vector<std::string> NamesBefore(const Ladder& ladder, std::size_t rung) {
+  std::vector<std::string> names;
+  for (std::size_t r = 0; r < rung; ++r) names.push_back(NameOf(ladder.rungs[r].leader()));
+  return names;
+}
+
+std::size_t NumNamed(const Ladder& ladder) {
+  return static_cast<std::size_t>(
+      std::count_if(ladder.rungs.begin(), ladder.rungs.end(), [](const Rung& r) { return !r.named.empty(); }));
+}
+
+/// The plant with its priors about the fit: means there, standard deviations of ten times what these data leave open,
+/// since the next run is another one; never wider than the file's.
+PlantDescription Tuned(const PlantDescription& plant, const Trial& trial, const std::vector<std::uint8_t>& rows) {
+  constexpr double kWider = 10.0;
+  PlantDescription tuned = plant;
+  const VectorXd sd = identify::StandardDeviations(*trial.model, rows, trial.fit);
+  for (Index d = 0; d < trial.fit.theta.size(); ++d)
+    for (ParameterDescription& p : tuned.parameters) {
+      if (p.name != trial.model->parameters()[static_cast<std::size_t>(d)].name || p.prior == "uniform") continue;
+      p.mean = trial.model->Shown(d, trial.fit.theta[d]);
+      p.sd = std::clamp(kWider * sd[d], 1e-6 * p.sd, p.sd);
+    }
+  tuned.noise.std = std::max(trial.fit.error_sd, 1e-300);
+  return tuned;
+}
+
+/// Everything that the diagnosis is made from, beside the result that it fills.
+class Teller {
+ public:
+  Teller(const DiagnosisRequest& request, const Dataset& data, const Ladder& ladder, gap::Result* result)
+      : request_(request), data_(data), ladder_(ladder), result_(*result), training_(ladder.view.data.training) {}
+
+  void TellAll() {
+    TellOrigin();
+    TellGap();
+    TellLadder();
+    TellCandidates();
+    TellParameters();
+    TellRemainder();
+    TellVerdict();
+  }
+
+ private:
+  void TellOrigin() {
+    const support::Recording& recording = request_.recording;
+    result_.version = support::Version();
+    result_.model = recording.plant;
+    result_.data_file = recording.title;
+    result_.rows = static_cast<long long>(recording.num_rows());
+    result_.dt = recording.dt;
+    result_.notes = recording.notes;
+    result_.notes.insert(result_.notes.end(), ladder_.notes.begin(), ladder_.notes.end());
+    for (const support::PublishedFigure& p : recording.published)
+      result_.published.push_back({p.what, p.value, p.source});
+  }
+
+  void TellGap() {
+    before_ = RunWhole(data_, ladder_.base);
+    after_ = RunWhole(data_, ladder_.final_trial);
+    rows_ = HeldOutRows(data_, before_);
+    if (rows_.empty()) result_.notes.push_back("nothing was kept apart: errors are those of the fit itself");
+    if (rows_.empty())
+      for (std::size_t n = 0; n < data_.training.size(); ++n)
+        if (data_.training[n] != 0 && before_.model->active()[n] != 0) rows_.push_back(static_cast<Index>(n));
+    gap::GapSummary& gap = result_.gap;
+    gap.unit = OutputUnit();
+    gap.before = FitOn(before_, rows_, ladder_.base.fit.error_sd);
+    gap.after = FitOn(after_, rows_, ladder_.final_trial.fit.error_sd);
+    const double left = ladder_.final_trial.fit.error_sd * std::sqrt(std::max(0.0, 1.0 - ladder_.flexible_gain));
+    gap.noise_floor = std::min(ladder_.noise_floor, left);
+    result_.notes.push_back(
+        ladder_.noise_floor <= left
+            ? "noise floor: from differences of neighbouring samples, " + Number(ladder_.noise_floor)
+            : "noise floor: neighbouring samples differ by more (" + Number(ladder_.noise_floor) +
+                  ") than models leave, since the signal moves between them; taken from what a flexible model leaves");
+    gap.closed_fraction = Closed(gap.after.rmse);
+    gap.closed_low = gap.closed_high = gap.closed_fraction;
+    gap.gap_ratio = ladder_.base.fit.error_sd / std::max(gap.noise_floor, 1e-300);
+    const VectorXd target = before_.model->target()(rows_);
+    const double size = std::sqrt(target.squaredNorm() / static_cast<double>(target.size()));
+    result_.relative_before = gap.before.rmse / size;
+    result_.relative_after = gap.after.rmse / size;
+  }
+
+  void TellLadder() {
+    for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
+      const Rung& rung = ladder_.rungs[r];
+      if (rung.named.empty()) continue;
+      const Contender& leader = rung.leader();
+      gap::LadderRung told;
+      for (const std::size_t i : rung.named) told.effects.push_back(NameOf(rung.contenders[i]));
+      const WholeRun run = RunWhole(data_, leader.trial);
+      told.heldout_error = FitOn(run, rows_, leader.trial.fit.error_sd).rmse;
+      told.closed_fraction = Closed(told.heldout_error);
+      told.probability = rung.probability;
+      told.provisional = rung.provisional;
+      told.remainder_ratio = leader.trial.fit.error_sd / std::max(result_.gap.noise_floor, 1e-300);
+      const std::vector<ParameterEstimate> all = Estimates(leader.trial, training_);
+      for (std::size_t d = leader.candidate.first_parameter; d < all.size(); ++d)
+        told.parameters.push_back(all[d].name + " = " + Number(all[d].mean) + " ± " + Number(all[d].sd) + " " +
+                                  all[d].unit);
+      result_.ladder.push_back(told);
+      AddFinding(leader, rung);
+    }
+  }
+
+  void AddFinding(const Contender& leader, const Rung& rung) {
+    gap::EffectFinding finding;
+    finding.name = NameOf(leader);
+    finding.family = leader.candidate.entry->family;
+    finding.probability = rung.probability;
+    finding.provisional = rung.provisional;
+    finding.approximate = leader.candidate.form().variant || !ladder_.complete;
+    finding.formula_text = leader.candidate.form().terms.front().formula;
+    const std::vector<ParameterEstimate> all = Estimates(ladder_.final_trial, training_);
+    const std::string prefix = leader.candidate.entry->name + "_";
+    for (std::size_t d = leader.candidate.first_parameter; d < all.size(); ++d)
+      if (all[d].name.starts_with(prefix))
+        finding.parameters.push_back({all[d].name.substr(prefix.size()), all[d].unit, all[d].mean, all[d].sd});
+    result_.effects.push_back(std::move(finding));
+  }
+
+  void TellCandidates() {
+    for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
+      const Rung& rung = ladder_.rungs[r];
+      const auto looked_at = static_cast<double>(ladder_.view.looked_at.size());
+      std::set<std::string> told;
+      for (const Contender& c : rung.contenders) {
+        if (!c.trial.judged || !told.insert(NameOf(c)).second) continue;
+        gap::CandidateScore score;
+        score.effects = NamesBefore(ladder_, r);
+        score.effects.push_back(NameOf(c));
+        score.log_evidence = -c.trial.fit.cost;
+        score.heldout_score = -0.5 * looked_at * std::log(c.alone.folds + 1e-300);
+        score.probability = r == 0 ? c.win_share : 0.0;
+        score.closed_fraction = std::clamp(1.0 - c.alone.folds, 0.0, 1.0);
+        result_.candidates.push_back(std::move(score));
+      }
+    }
+  }
+
+  void TellParameters() {
+    const std::vector<ParameterEstimate> before = Estimates(ladder_.base, training_);
+    const std::vector<ParameterEstimate> after = Estimates(ladder_.final_trial, training_);
+    for (std::size_t d = 0; d < before.size(); ++d) result_.parameters.push_back({before[d], after[d]});
+  }
+
+  void TellRemainder() {
+    const std::vector<Feature> features = FeaturesOf(*before_.model, ladder_.base.fit.theta);
+    std::vector<Index> rows;
+    const std::size_t every = std::max<std::size_t>(1, data_.training.size() / 4000);
+    for (std::size_t n = 0; n < data_.training.size(); n += every)
+      if (data_.training[n] != 0 && before_.model->active()[n] != 0) rows.push_back(static_cast<Index>(n));
+    if (before_.error.size() > 0)
+      result_.where = WhereErrorsAre(before_.error, features, rows, result_.gap.noise_floor);
+    if (after_.error.size() > 0) {
+      const double noise = result_.gap.noise_floor * result_.gap.noise_floor;
+      const double base = ladder_.base.fit.error_sd * ladder_.base.fit.error_sd - noise;
+      const double left = ladder_.final_trial.fit.error_sd * ladder_.final_trial.fit.error_sd - noise;
+      result_.complete = ladder_.complete;
+      result_.remainder.share = base > 0.0 ? std::clamp(left / base, 0.0, 1.0) : 0.0;
+      if (!ladder_.complete) {
+        result_.remainder.where = WhereErrorsAre(after_.error, features, rows, result_.gap.noise_floor);
+        result_.remainder.sparse = SparseSum(after_.error, features, rows);
+      }
+      if (NumNamed(ladder_) == 0) result_.sparse = result_.remainder.sparse;
+    }
+    const PlantDescription& plant = request_.plant->plant.description();
+    const bool named = NumNamed(ladder_) > 0;
+    if (before_.error.size() > 0 && after_.error.size() > 0)
+      result_.figures = FiguresOf(data_, before_, named ? &after_ : nullptr, features,
+                                  plant.signals[static_cast<std::size_t>(request_.plant->plant.output())]);
+  }
+
+  void TellVerdict() {
+    const std::size_t named = NumNamed(ladder_);
+    const Rung* first = named > 0 ? &ladder_.rungs.front() : nullptr;
+    if (first != nullptr) {
+      result_.verdict = first->named.size() > 1 ? Verdict::kAmbiguous : Verdict::kNamed;
+      result_.probability_none = 1.0 - first->leader().gain_share;
+      result_.probability_unnamed = 0.0;
+    } else {
+      result_.verdict = ladder_.complete ? Verdict::kNone : Verdict::kUnnamed;
+      result_.probability_none = ladder_.complete ? 1.0 : 0.0;
+      result_.probability_unnamed = ladder_.complete ? 0.0 : 1.0;
+    }
+    std::vector<std::string> experiments;
+    for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
+      const Rung& rung = ladder_.rungs[r];
+      if (rung.named.size() < 2) continue;
+      for (const std::size_t i : rung.named) {
+        if (r == 0) result_.ambiguous_set.push_back({NameOf(rung.contenders[i])});
+        experiments.push_back(NameOf(rung.contenders[i]) + ": " + rung.contenders[i].candidate.entry->experiment);
+      }
+    }
+    result_.separate_by.words = Joined(experiments, " ");
+    result_.sentence = Sentence();
+  }
+
+  std::string Sentence() const {
+    const std::string percent = Number(std::round(1000.0 * result_.gap.closed_fraction) / 10.0);
+    if (result_.ladder.empty())
+      return ladder_.complete ? "Nothing is missing that these data show: the model explains them to the noise."
+                              : "Something is missing, and no effect that fits this plant earns a name.";
+    std::vector<std::string> rungs;
+    for (const Rung& rung : ladder_.rungs) {
+      if (rung.named.empty()) continue;
+      std::vector<std::string> titles;
+      for (const std::size_t i : rung.named) titles.push_back(InWords(NameOf(rung.contenders[i])));
+      rungs.push_back(Joined(titles, " or "));
+    }
+    return "Missing: " + Joined(rungs, ", then ") + ". With that, " + percent +
+           " % of the gap on data kept apart is closed" +
+           (ladder_.complete ? ", and nothing is left to explain." : "; something is still unexplained.");
+  }
+
+  [[nodiscard]] double Closed(double rmse) const {
+    const double noise = result_.gap.noise_floor * result_.gap.noise_floor;
+    const double base = result_.gap.before.rmse * result_.gap.before.rmse - noise;
+    return base > 0.0 ? (result_.gap.before.rmse * result_.gap.before.rmse - rmse * rmse) / base : 0.0;
+  }
+
+  [[nodiscard]] std::string OutputUnit() const {
+    const Plant& plant = request_.plant->plant;
+    return plant.description().signals[static_cast<std::size_t>(plant.output())].unit;
+  }
+
+  const DiagnosisRequest& request_;
+  const Dataset& data_;
+  const Ladder& ladder_;
+  gap::Result& result_;
+  std::vector<std::uint8_t> training_;
+  WholeRun before_, after_;
+  std::vector<Index> rows_;  ///< That errors are told of.
+};
+
+}  // namespace
+
+Diagnosis Diagnose(const DiagnosisRequest& request) {
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnosis diagnosis;
+  Dataset data = DatasetOf(request.recording);
+  if (data.num_training() < 100)
+    throw support::InputError(request.recording.title + ": a diagnosis needs at least 100 rows to fit to, there are " +
+                              std::to_string(data.num_training()));
+  ClimbRequest climb;
+  climb.plant = std::make_shared<const Plant>(request.plant->plant.description());
+  for (EffectEntry& entry : support::EffectsFor(request.plant->effects)) {
+    const auto named = [&](const std::vector<std::string>& names) {
+      return std::find(names.begin(), names.end(), entry.name) != names.end();
+    };
+    if (!named(request.without) && !named(request.plant->effects.without)) climb.entries.push_back(std::move(entry));
+  }
+  climb.data = data;
+  climb.smoothed = request.recording.output_smoothed;
+  climb.progress = request.progress;
+  diagnosis.ladder = Climb(climb);
+  const Ladder& ladder = diagnosis.ladder;
+  if (!ladder.base.fit.valid) throw support::InputError(request.recording.title + ": " + Joined(ladder.notes, "; "));
+  LeaveOutStarts(ladder.base, &data);
+  Teller(request, data, ladder, &diagnosis.result).TellAll();
+  diagnosis.plant = NumNamed(ladder) > 0
+                        ? Tuned(ladder.plant->description(), ladder.final_trial, ladder.view.data.training)
+                        : request.plant->plant.description();
+  diagnosis.result.seconds.emplace_back(
+      "all", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  return diagnosis;
+}
+
+}  // namespace armcmc::ladder

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "armcmc/gap/result.hpp"
+#include "armcmc/ladder/climb.hpp"
+#include "armcmc/ladder/dataset.hpp"
+#include "armcmc/ladder/features.hpp"
+
+namespace armcmc::ladder {
+
+/// A fitted plant over a whole recording.
+struct WholeRun {
+  std::shared_ptr<const identify::TrajectoryModel> model;
+  Eigen::VectorXd prediction, error;  ///< [row]; empty where the law is not finite.
+};
+
+[[nodiscard]] WholeRun RunWhole(const Dataset& data, const Trial& trial);
+
+/// Errors on `rows`. @param sd  Standard deviation that the fit claims.
+[[nodiscard]] gap::Fit FitOn(const WholeRun& run, const std::vector<Eigen::Index>& rows, double sd);
+
+/// Rows that are kept apart and where a mode acts.
+[[nodiscard]] std::vector<Eigen::Index> HeldOutRows(const Dataset& data, const WholeRun& run);
+
+/// Rows behind the beginning of every run in which a start of states that nobody measured still shows.
+void LeaveOutStarts(const Trial& trial, Dataset* data);
+
+/// Curves of the report. `after` may be null.
+[[nodiscard]] gap::Figures FiguresOf(const Dataset& data, const WholeRun& before, const WholeRun* after,
+                                     const std::vector<Feature>& features, const SignalDescription& output);
+
+}  // namespace armcmc::ladder
