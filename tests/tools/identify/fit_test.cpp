@@ -155,8 +155,9 @@ TEST(Fit, FindsTheParametersOfASimulatedPlantFromFarOff) {
   EXPECT_NEAR(fit.theta[1], 0.4, 1e-3);
 }
 
-TEST(Fit, AParameterThatIsFarOffDoesNotCarryTheOthersAway) {
-  // The offset begins a million times the signal away; the place and the power of the contact have to be found still.
+/// Force of a bead over its place, k = 0.05 with the power 1.5 behind x = 2e-5, 3e-9 before it; `wave` on top.
+/// @param give  Share of the force that is missing behind x = 3e-5.
+Made Bead(double wave, double give = 0.0) {
   PlantDescription contact;
   contact.name = "bead";
   contact.output = "f";
@@ -174,15 +175,93 @@ TEST(Fit, AParameterThatIsFarOffDoesNotCarryTheOthersAway) {
     const double x = 1e-7 * n;
     series.t.push_back(0.01 * n);
     series.signals[0].push_back(x);
-    series.signals[1].push_back(0.05 * std::pow(std::max(x - 2e-5, 0.0), 1.5) + 3e-9 + 1e-12 * std::sin(37.0 * n));
+    const double force = 0.05 * std::pow(std::max(x - 2e-5, 0.0), 1.5) * (x > 3e-5 ? 1.0 - give : 1.0);
+    series.signals[1].push_back(force + 3e-9 + wave * std::sin(37.0 * n));
   }
-  const Made made = Make(std::move(contact), std::move(series));
+  return Make(std::move(contact), std::move(series));
+}
+
+TEST(Fit, AParameterThatIsFarOffDoesNotCarryTheOthersAway) {
+  // The offset begins a million times the signal away; the place and the power of the contact have to be found still.
+  const Made made = Bead(1e-12);
   VectorXd start = made.model->Start();
   start << -6.0, 1.8, 1.2e-5, -0.07;
   const FitResult fit = BestFit(*made.model, made.rows, {start}, 1);
   EXPECT_NEAR(fit.theta[2], 2e-5, 1e-6);
   EXPECT_NEAR(fit.theta[3], 3e-9, 1e-11);
   EXPECT_LT(fit.error_sd, 3e-12);
+}
+
+/// Places of `rows` from `first` on.
+std::vector<Eigen::Index> Places(Eigen::Index first, Eigen::Index count) {
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index k = first; k < first + count; ++k) places.push_back(k);
+  return places;
+}
+
+/// Side by side each group is left out as well as Fit does it alone. Where the rest determines the parameters well,
+/// that is in the group, too.
+void ExpectTheFitsAlone(const Made& made, const VectorXd& start, const std::vector<Eigen::Index>& rows,
+                        const std::vector<std::vector<Eigen::Index>>& groups, bool well_determined = true) {
+  std::vector<std::uint8_t> counted(made.rows.size(), 0);
+  for (const Eigen::Index n : rows) counted[static_cast<std::size_t>(n)] = 1;
+  const FitResult all = BestFit(*made.model, counted, {start}, 1);
+  ASSERT_TRUE(all.valid);
+  const FitsWithout fits = FitWithoutEach(*made.model, all, rows, groups, 60);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::vector<std::uint8_t> rest = counted;
+    for (const Eigen::Index k : groups[g]) rest[static_cast<std::size_t>(rows[static_cast<std::size_t>(k)])] = 0;
+    const FitResult alone = Fit(*made.model, rest, all.theta, 60);
+    const VectorXd expected = (made.model->target() - alone.prediction)(rows),
+                   found = fits.error.col(static_cast<Eigen::Index>(g));
+    const auto squares_of_rest = [&](const VectorXd& e) {
+      double sum = e.squaredNorm();
+      for (const Eigen::Index k : groups[g]) sum -= e[k] * e[k];
+      return sum;
+    };
+    EXPECT_LT(squares_of_rest(found), (1.0 + 1e-3) * squares_of_rest(expected)) << "group " << g;
+    if (well_determined) {
+      EXPECT_LT((found - expected).norm(), 0.02 * expected.norm()) << "group " << g;
+    }
+    VectorXd prediction;
+    ASSERT_TRUE(made.model->PredictOne(fits.theta.col(static_cast<Eigen::Index>(g)), &prediction));
+    EXPECT_LT((found - (made.model->target() - prediction)(rows)).cwiseAbs().maxCoeff(), 1e-12 * expected.norm())
+        << "parameters and errors belong together";
+  }
+}
+
+TEST(FitWithoutEach, OfALinearLawIsWhatFitsAloneAre) {
+  const Made made = Make(test::DescribedAxis(), Axis());
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index n = 3; n < 800; n += 2) rows.push_back(n);
+  ExpectTheFitsAlone(made, made.model->Start(), rows, {Places(0, 80), Places(100, 200), {5, 77, 300}, {}});
+}
+
+TEST(FitWithoutEach, GoesAsFarAsTheRemovalOfARegionAsksFor) {
+  // What gives way at depth moves power and place a long way when the deepest rows are left out.
+  const Made made = Bead(2e-11, 0.4);
+  VectorXd start = made.model->Start();
+  start << -3.0, 1.5, 2e-5, 0.0;
+  ExpectTheFitsAlone(made, start, Places(0, 400),
+                     {Places(0, 100), Places(210, 190), Places(240, 160), Places(300, 100), Places(150, 60)}, false);
+}
+
+TEST(FitWithoutEach, AStateIsSimulatedThroughTheRowsThatAreLeftOut) {
+  Series series = Swing(400);
+  for (std::size_t n = 0; n < 400; ++n) series.signals[1][n] += 0.01 * std::sin(1.7 * static_cast<double>(n));
+  const Made made = Make(Oscillator(), std::move(series));
+  ExpectTheFitsAlone(made, made.model->Start(), Places(0, 400), {Places(0, 150), Places(100, 50), Places(300, 100)});
+}
+
+TEST(TrajectoryModel, RowsThatAreNotWantedAreZeroAndTheOthersTheSame) {
+  const Made made = Bead(1e-10);
+  const VectorXd theta{{-3.0, 1.5, 2e-5, 1e-9}};
+  const std::vector<Eigen::Index> wanted{0, 7, 8, 250, 251, 252, 253, 254, 255, 256, 257, 399};
+  Eigen::MatrixXd some, all;
+  made.model->Predict(theta, &some, &wanted);
+  made.model->Predict(theta, &all);
+  EXPECT_EQ(some(wanted, 0), all(wanted, 0));
+  EXPECT_EQ(some(100, 0), 0.0);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -24,67 +25,100 @@ std::vector<double> Signals(std::size_t n, std::size_t lane) {
   return {std::sin(3.0 * t + phase), 3.0 * std::cos(3.0 * t + phase), 0.2 + 0.05 * static_cast<double>(lane)};
 }
 
-/// Every lane of a text has, sample by sample, what the program of packs has for it alone.
-void ExpectTheSame(const std::string& text, const std::vector<std::uint8_t>& shared = {0, 0, 0}) {
+constexpr Varies kLane = Varies::kByLane, kSample = Varies::kBySample, kBoth = Varies::kByBoth;
+
+/// Every lane of a text has, sample by sample, what the program of packs has for it alone, however many samples are
+/// evaluated at once.
+void ExpectTheSame(const std::string& text, const std::vector<Varies>& varies = {kBoth, kBoth, kLane}) {
   constexpr std::size_t kSamples = 40, kSecondRun = 25;
   Graph graph;
   const int node = graph.Lower(expression::Parse(text), test::PlantWords(), {});
-  const LaneProgram lanes(graph, {node}, shared);
+  const LaneProgram lanes(graph, {node}, varies);
   const expression::FeatureProgram one(graph, {node});
-  LaneMemory memory = lanes.Memory();
+  const auto signal = [&](std::size_t n, std::size_t lane, std::size_t s) {
+    return Signals(varies[s] == kLane ? 0 : n, varies[s] == kSample ? 0 : lane)[s];
+  };
+  std::vector<Lanes> fixed(3);
+  for (std::size_t l = 0; l < kLanes; ++l)
+    for (std::size_t s = 0; s < 3; ++s) fixed[s][l] = varies[s] == kLane ? signal(0, l, s) : std::nan("");
+  LaneRun run = lanes.Begin(fixed.data(), kDt);
   std::vector<std::unique_ptr<expression::FeatureMemory>> memories;
   for (std::size_t l = 0; l < kLanes; ++l) memories.push_back(std::make_unique<expression::FeatureMemory>());
-  for (std::size_t n = 0; n < kSamples; ++n) {
-    const double t = kDt * static_cast<double>(n);
-    std::vector<Lanes> input(3);
-    for (std::size_t l = 0; l < kLanes; ++l)
-      for (std::size_t s = 0; s < 3; ++s) input[s][l] = Signals(n, shared[s] != 0 ? 0 : l)[s];
-    if (n == kSecondRun) memory.Clear();
-    Lanes out;
-    lanes.Evaluate(input.data(), t, kDt, &memory, &out);
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      if (n == kSecondRun) memories[l]->Clear();
-      const double mine[] = {input[0][l], input[1][l], input[2][l]};
-      double expected = 0.0;
-      one.Evaluate({mine, t, kDt}, memories[l].get(), &expected);
-      // Delays are counted from the other end, which rounds otherwise.
-      EXPECT_NEAR(out[l], expected, 1e-13 * (1.0 + std::fabs(expected)))
-          << text << ": lane " << l << ", sample " << n << ": " << out[l] << " for " << expected;
+  std::size_t samples = 1;
+  for (std::size_t first = 0; first < kSamples; first += samples) {
+    samples = std::min({samples % kTile + 1, kSamples - first, first < kSecondRun ? kSecondRun - first : kSamples});
+    if (first == kSecondRun) run.Clear();
+    std::vector<Lanes> input(3 * kTile), out(kTile);
+    std::vector<double> t;
+    for (std::size_t r = 0; r < samples; ++r) {
+      t.push_back(kDt * static_cast<double>(first + r));
+      for (std::size_t l = 0; l < kLanes; ++l)
+        for (std::size_t s = 0; s < 3; ++s)
+          input[s * kTile + r][l] = varies[s] == kLane ? std::nan("") : signal(first + r, l, s);
     }
+    lanes.Evaluate(samples, input.data(), kTile, t.data(), &run, out.data());
+    for (std::size_t r = 0; r < samples; ++r)
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        if (first == kSecondRun && r == 0) memories[l]->Clear();
+        const double mine[] = {signal(first + r, l, 0), signal(first + r, l, 1), signal(first + r, l, 2)};
+        double expected = 0.0;
+        one.Evaluate({mine, t[r], kDt}, memories[l].get(), &expected);
+        // Delays are counted from the other end, which rounds otherwise.
+        EXPECT_NEAR(out[r][l], expected, 1e-13 * (1.0 + std::fabs(expected)))
+            << text << ": lane " << l << ", sample " << first + r << " of " << samples << " at once";
+      }
   }
 }
 
 TEST(LaneProgram, EveryLaneHasWhatTheProgramOfPacksHas) {
   for (const char* text : {"x + v*u - 2", "-x/u", "sqrt(abs(x)) + exp(u) - log(u)",
                            "if(v > 0 and not (x >= 0.5), x^2, sign(v))", "clamp(x, -0.5, u) + min(x, v)*max(u, 0)",
-                           "tanh(x) + sin(v)*cos(t) + atan(u)", "step(x) + (x != v) + (x == x)"})
+                           "tanh(x) + sin(v)*cos(t) + atan(u)", "step(x) + (x != v) + (x == x)", "3", "2*u + exp(u*u)"})
     ExpectTheSame(text);
 }
 
 TEST(LaneProgram, FunctionsWithMemoryTakeTimeConstantsThatDifferByLane) {
-  for (const char* text : {"lowpass(x, u)", "delay(x, u)", "delay(x, u/10)", "integral(v)*u", "previous(x)",
-                           "elapsed() + u", "lowpass(delay(v, u), 0.1) + integral(previous(x))", "delay(x, 0-u)"})
+  for (const char* text :
+       {"lowpass(x, u)", "delay(x, u)", "delay(x, u/10)", "integral(v)*u", "previous(x)", "elapsed() + u",
+        "lowpass(delay(v, u), 0.1) + integral(previous(x))", "delay(x, 0-u)", "lowpass(x, 0)", "lowpass(x, 0-u)"})
     ExpectTheSame(text);
 }
 
+TEST(LaneProgram, ATimeConstantMayChangeFromSampleToSample) {
+  ExpectTheSame("lowpass(x, 0.1 + abs(v))");
+  ExpectTheSame("lowpass(x, u)", {kBoth, kBoth, kBoth});
+  ExpectTheSame("delay(x, 0.1 + abs(v))");
+}
+
 TEST(LaneProgram, WhatLanesShareIsComputedOnce) {
-  ExpectTheSame("sin(x)*v + u", {1, 1, 0});
-  ExpectTheSame("lowpass(sin(x), 0.2)", {1, 1, 1});
-  ExpectTheSame("lowpass(sin(x), u)", {1, 1, 0});
+  ExpectTheSame("sin(x)*v + u", {kSample, kSample, kLane});
+  ExpectTheSame("lowpass(sin(x), 0.2)", {kSample, kSample, kSample});
+  ExpectTheSame("lowpass(sin(x), u)", {kSample, kSample, kLane});
+  ExpectTheSame("x + u*v", {kLane, kSample, kLane});
+}
+
+TEST(LaneProgram, KnowsWhichSignalsItReadsSampleBySample) {
+  Graph graph;
+  const int node = graph.Lower(expression::Parse("x*u + t"), test::PlantWords(), {});
+  const LaneProgram program(graph, {node}, {kSample, kSample, kLane});
+  EXPECT_TRUE(program.Reads(0));
+  EXPECT_FALSE(program.Reads(1));
+  EXPECT_FALSE(program.Reads(2)) << "once a run";
 }
 
 TEST(LaneProgram, ADelayReachesBackToTheBeginningOfTheRun) {
   Graph graph;
   const int node = graph.Lower(expression::Parse("delay(x, u)"), test::PlantWords(), {});
-  const LaneProgram program(graph, {node}, {0, 0, 0});
-  LaneMemory memory = program.Memory();
+  const LaneProgram program(graph, {node}, {kBoth, kBoth, kLane});
+  std::vector<Lanes> input(3, Lanes{});
+  input[2].fill(2000.0 * kDt);
+  LaneRun run = program.Begin(input.data(), kDt);
   constexpr int kSamples = 3000;  // more than a line of the estimator holds
   for (int n = 0; n < kSamples; ++n) {
-    std::vector<Lanes> input(3, Lanes{});
     input[0].fill(static_cast<double>(n));
-    input[2].fill(2000.0 * kDt);
+    const double t = n * kDt;
     Lanes out;
-    program.Evaluate(input.data(), n * kDt, kDt, &memory, &out);
+    program.Evaluate(1, input.data(), 1, &t, &run, &out);
     EXPECT_NEAR(out[3], std::max(0, n - 2000), 1e-6);
   }
 }

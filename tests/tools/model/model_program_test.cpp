@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include "support/paths.hpp"
@@ -127,6 +130,62 @@ TEST_F(ModelProgram, NamesTheNearestPlantOfANameThatIsNone) {
   const test::Outcome check = Run({"check", "servo_axes"});
   EXPECT_EQ(check.code, 2);
   EXPECT_THAT(check.err, HasSubstr("servo_axis"));
+}
+
+/// 20 s of an axis of 100 kg, 180 N s/m, -3 N, whose speed is `speed(t)`; columns t, q, v, a, F.
+template <class Speed>
+std::string AxisCsv(Speed speed) {
+  std::ostringstream csv;
+  csv.precision(12);
+  csv << "t,q,v,a,F\n";
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  double q = 0.0;
+  for (int n = 0; n < 2000; ++n) {
+    const double t = 0.01 * n, v = speed(t), a = (speed(t + 1e-4) - speed(t - 1e-4)) / 2e-4;
+    q += 0.01 * v;
+    csv << t << ',' << q << ',' << v << ',' << a << ',' << 100.0 * a + 180.0 * v - 3.0 + noise(random) << '\n';
+  }
+  return csv.str();
+}
+
+TEST_F(ModelProgram, SaysWhatAStepCosts) {
+  const test::Outcome axis = Run({"check", "servo_axis"}), tanks = Run({"check", "two_tanks"});
+  EXPECT_TRUE(std::regex_search(axis.out, std::regex("costs: 2 operations a candidate and sample; "))) << axis.out;
+  EXPECT_TRUE(std::regex_search(axis.out, std::regex("step: [0-9.]+ ms on this computer for 14979 draws"))) << axis.out;
+  EXPECT_TRUE(std::regex_search(tanks.out, std::regex("and [1-9][0-9]+ for the states"))) << tanks.out;
+}
+
+TEST_F(ModelProgram, SaysThatRichDataTellEveryParameter) {
+  const std::string csv =
+      Write("rich.csv", AxisCsv([](double t) { return 0.2 * std::sin(2.0 * t) + 0.05 * std::sin(7.0 * t); }));
+  const test::Outcome check = Run({"check", "servo_axis", "--data", csv});
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("These data tell M, Fv and off.\n"));
+  EXPECT_TRUE(std::regex_search(check.out, std::regex("M +kg +(99|100)[.0-9]* \\+- 0\\.[0-9]+ +yes"))) << check.out;
+  EXPECT_THAT(check.out, HasSubstr("over these data"));
+}
+
+TEST_F(ModelProgram, SaysWhichParametersNothingInTheDataDependsOnAndWhichMakeUpForOthers) {
+  // At constant speed nothing depends on the mass, and friction is as good as an offset.
+  const test::Outcome check =
+      Run({"check", Write("axis.toml", AxisText()), "--data", Write("slow.csv", AxisCsv([](double) { return 0.2; }))});
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("not M: hardly anything in them depends on it"));
+  EXPECT_THAT(check.out, HasSubstr("not off: it moves against Fv"));
+  EXPECT_THAT(check.out, HasSubstr("not Fv: it moves against off"));
+}
+
+TEST_F(ModelProgram, ARecordingOfOtherSignalsIsRefused) {
+  (void)Write("rich.csv", AxisCsv([](double t) { return 0.2 * std::sin(t); }));
+  const std::string recording = Write("rec.toml",
+                                      "schema = 1\nmodel = \"servo_axis\"\nfile = \"rich.csv\"\n[columns]\n"
+                                      "t = { column = \"t\" }\nq = { column = \"q\" }\nF = { column = \"F\" }\n");
+  EXPECT_EQ(Run({"check", "servo_axis", "--data", recording}).code, 0);
+  const test::Outcome other = Run({"check", "pendulum", "--data", recording});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("servo_axis"));
+  EXPECT_EQ(std::count(other.err.begin(), other.err.end(), '\n'), 1);
 }
 
 }  // namespace

@@ -14,47 +14,70 @@
 #else
 #define ARMCMC_FOR_WIDER_LANES
 #endif
+/// Inside of such a function, so that it takes part.
+#define ARMCMC_INSIDE __attribute__((always_inline)) inline
 
 namespace armcmc::identify {
 namespace {
 
 using expression::Op;
 
-/// out = f(a, b) lane by lane.
-template <class Function>
-void ForLanes(const Lanes& a, const Lanes& b, Lanes* out, Function f) {
-  for (std::size_t l = 0; l < kLanes; ++l) (*out)[l] = f(a[l], b[l]);
-}
-
-/// Operations that the compiler makes vector instructions of; false: none of these.
-bool Vectorised(Op op, const Lanes& a, const Lanes& b, const Lanes& c, Lanes* out) {
-  switch (op) {
-    case Op::kAdd: ForLanes(a, b, out, [](double x, double y) { return x + y; }); return true;
-    case Op::kSubtract: ForLanes(a, b, out, [](double x, double y) { return x - y; }); return true;
-    case Op::kMultiply: ForLanes(a, b, out, [](double x, double y) { return x * y; }); return true;
-    case Op::kDivide: ForLanes(a, b, out, [](double x, double y) { return x / y; }); return true;
-    case Op::kNegate: ForLanes(a, b, out, [](double x, double) { return -x; }); return true;
-    case Op::kAbs: ForLanes(a, b, out, [](double x, double) { return std::fabs(x); }); return true;
-    case Op::kSqrt: ForLanes(a, b, out, [](double x, double) { return std::sqrt(x); }); return true;
-    case Op::kIf:
-      for (std::size_t l = 0; l < kLanes; ++l) (*out)[l] = a[l] != 0.0 ? b[l] : c[l];
-      return true;
-    default: return false;
+template <Op op>
+ARMCMC_INSIDE void ForAll(std::size_t count, const double* __restrict a, const double* __restrict b,
+                          const double* __restrict c, double* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    // Written out where Evaluate would not become vector instructions.
+    if constexpr (op == Op::kAdd)
+      out[i] = a[i] + b[i];
+    else if constexpr (op == Op::kSubtract)
+      out[i] = a[i] - b[i];
+    else if constexpr (op == Op::kMultiply)
+      out[i] = a[i] * b[i];
+    else if constexpr (op == Op::kDivide)
+      out[i] = a[i] / b[i];
+    else if constexpr (op == Op::kNegate)
+      out[i] = -a[i];
+    else if constexpr (op == Op::kAbs)
+      out[i] = std::fabs(a[i]);
+    else if constexpr (op == Op::kSqrt)
+      out[i] = std::sqrt(a[i]);
+    else if constexpr (op == Op::kLess)
+      out[i] = a[i] < b[i] ? 1.0 : 0.0;
+    else if constexpr (op == Op::kLessEqual)
+      out[i] = a[i] <= b[i] ? 1.0 : 0.0;
+    else if constexpr (op == Op::kIf)
+      out[i] = a[i] != 0.0 ? b[i] : c[i];
+    else
+      out[i] = expression::Evaluate(op, a[i], b[i], c[i]);
   }
 }
 
-Lanes All(double value) {
-  Lanes lanes;
-  lanes.fill(value);
-  return lanes;
+ARMCMC_INSIDE void Apply(Op op, std::size_t count, const double* a, const double* b, const double* c, double* out) {
+  switch (op) {
+    case Op::kAdd: return ForAll<Op::kAdd>(count, a, b, c, out);
+    case Op::kSubtract: return ForAll<Op::kSubtract>(count, a, b, c, out);
+    case Op::kMultiply: return ForAll<Op::kMultiply>(count, a, b, c, out);
+    case Op::kDivide: return ForAll<Op::kDivide>(count, a, b, c, out);
+    case Op::kNegate: return ForAll<Op::kNegate>(count, a, b, c, out);
+    case Op::kLess: return ForAll<Op::kLess>(count, a, b, c, out);
+    case Op::kLessEqual: return ForAll<Op::kLessEqual>(count, a, b, c, out);
+    case Op::kAbs: return ForAll<Op::kAbs>(count, a, b, c, out);
+    case Op::kSign: return ForAll<Op::kSign>(count, a, b, c, out);
+    case Op::kSqrt: return ForAll<Op::kSqrt>(count, a, b, c, out);
+    case Op::kMin: return ForAll<Op::kMin>(count, a, b, c, out);
+    case Op::kMax: return ForAll<Op::kMax>(count, a, b, c, out);
+    case Op::kIf: return ForAll<Op::kIf>(count, a, b, c, out);
+    default:
+      for (std::size_t i = 0; i < count; ++i) out[i] = expression::Evaluate(op, a[i], b[i], c[i]);
+  }
 }
 
-double Lowpass(double state, double before, double e, double tau, double dt) {
+/// What is left of the state after a sample, and the weight of the argument at the sample before.
+void LowpassWeights(double tau, double dt, double* decay, double* weight) {
   const double ratio = tau > 0.0 ? dt / tau : std::numeric_limits<double>::infinity();
-  const double decay = std::exp(-ratio);
+  *decay = std::exp(-ratio);
   // (1 - e^-r) / r, which is 1 where nothing decays.
-  const double mean = ratio > 0.0 ? -std::expm1(-ratio) / ratio : 1.0;
-  return state * decay + before * (mean - decay) + e * (1.0 - mean);
+  *weight = ratio > 0.0 ? -std::expm1(-ratio) / ratio : 1.0;
 }
 
 /// The value `tau` before the newest, linear between samples; before the first sample, the first.
@@ -69,15 +92,17 @@ double Delayed(const std::vector<Lanes>& line, std::size_t lane, double tau, dou
   return part > 0.0 ? earlier + part * (line[whole + 1][lane] - earlier) : earlier;
 }
 
+Varies Both(Varies a, Varies b) { return a == b ? a : Varies::kByBoth; }
+
 }  // namespace
 
-void LaneMemory::Clear() {
+void LaneRun::Clear() {
   empty = true;
   for (std::vector<Lanes>& l : line) l.clear();
 }
 
 LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>& outputs,
-                         const std::vector<std::uint8_t>& shared) {
+                         const std::vector<Varies>& inputs) {
   std::vector<bool> needed(static_cast<std::size_t>(graph.size()), false);
   for (const int output : outputs) needed[static_cast<std::size_t>(output)] = true;
   for (int n = graph.size() - 1; n >= 0; --n)
@@ -85,7 +110,12 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
       for (const int argument : graph.at(n).argument)
         if (argument >= 0) needed[static_cast<std::size_t>(argument)] = true;
 
-  std::vector<int> place(static_cast<std::size_t>(graph.size()), -1);
+  struct Place {
+    std::size_t block = 0;
+    Varies varies = Varies::kByLane;
+    bool constant = false;  ///< Varies neither way.
+  };
+  std::vector<Place> place(static_cast<std::size_t>(graph.size()));
   for (int n = 0; n < graph.size(); ++n) {
     if (!needed[static_cast<std::size_t>(n)]) continue;
     const expression::GraphNode& node = graph.at(n);
@@ -93,75 +123,136 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
     i.op = node.op;
     i.value = node.value;
     i.time = node.kind == expression::SymbolKind::kTime;
-    i.index = node.index;
-    i.shared = true;
+    i.block = num_blocks_++;
+    bool constant = i.op != Op::kSymbol, first = true;
     for (std::size_t a = 0; a < expression::kMaxArguments; ++a) {
-      i.argument[a] = node.argument[a] < 0 ? -1 : place[static_cast<std::size_t>(node.argument[a])];
-      if (i.argument[a] >= 0) i.shared = i.shared && code_[static_cast<std::size_t>(i.argument[a])].shared;
+      if (node.argument[a] < 0) continue;
+      const Place& argument = place[static_cast<std::size_t>(node.argument[a])];
+      i.argument[a] = argument.block;
+      if (argument.constant) continue;
+      constant = false;
+      i.varies = first ? argument.varies : Both(i.varies, argument.varies);
+      first = false;
     }
-    if (i.op == Op::kSymbol && !i.time) i.shared = shared[static_cast<std::size_t>(i.index)] != 0;
+    if (i.op == Op::kSymbol) {
+      i.index = static_cast<std::size_t>(node.index);
+      i.varies = i.time ? Varies::kBySample : inputs[i.index];
+    }
     if (expression::InfoOf(i.op).memory) {
+      i.steady = i.op == Op::kLowpass && place[static_cast<std::size_t>(node.argument[1])].varies == Varies::kByLane;
       i.index = num_memories_++;
-      i.shared = false;
+      i.varies = Varies::kByBoth;
+      constant = false;
     }
     if (i.op == Op::kDelay) i.line = num_delays_++;
-    place[static_cast<std::size_t>(n)] = static_cast<int>(code_.size());
-    code_.push_back(i);
+    place[static_cast<std::size_t>(n)] = {i.block, i.varies, constant};
+    (i.varies == Varies::kByLane ? once_ : each_).push_back(i);
   }
-  for (const int output : outputs) outputs_.push_back(place[static_cast<std::size_t>(output)]);
+  for (const int output : outputs) outputs_.push_back(place[static_cast<std::size_t>(output)].block);
 }
 
-LaneMemory LaneProgram::Memory() const {
-  LaneMemory memory;
-  memory.slot.resize(static_cast<std::size_t>(num_memories_));
-  memory.line.resize(static_cast<std::size_t>(num_delays_));
-  return memory;
+bool LaneProgram::Reads(std::size_t signal) const {
+  return std::any_of(each_.begin(), each_.end(),
+                     [signal](const Instruction& i) { return i.op == Op::kSymbol && !i.time && i.index == signal; });
+}
+
+LaneRun LaneProgram::Begin(const Lanes* input, double dt) const {
+  LaneRun run;
+  run.dt = dt;
+  run.block.resize(num_blocks_);
+  run.slot.resize(num_memories_);
+  run.line.resize(num_delays_);
+  for (const Instruction& i : once_) {
+    std::array<double, kTile* kLanes>& value = run.block[i.block].value;
+    if (i.op == Op::kNumber)
+      value.fill(i.value);
+    else if (i.op == Op::kSymbol)
+      for (std::size_t r = 0; r < kTile; ++r)
+        std::copy(input[i.index].begin(), input[i.index].end(),
+                  value.begin() + static_cast<std::ptrdiff_t>(r * kLanes));
+    else
+      Compute(i, kTile, run.block.data());
+  }
+  for (const Instruction& i : each_) {
+    if (!i.steady) continue;
+    LaneRun::Slot& slot = run.slot[i.index];
+    for (std::size_t l = 0; l < kLanes; ++l)
+      LowpassWeights(run.block[i.argument[1]].value[l], dt, &slot.decay[l], &slot.weight[l]);
+  }
+  return run;
 }
 
 ARMCMC_FOR_WIDER_LANES
-void LaneProgram::Evaluate(const Lanes* input, double t, double dt, LaneMemory* memory, Lanes* out) const {
-  static const Lanes zero{};
-  static thread_local std::vector<Lanes> value;
-  if (value.size() < code_.size()) value.resize(code_.size());
-  for (std::size_t n = 0; n < code_.size(); ++n) {
-    const Instruction& i = code_[n];
-    const auto argument = [&](std::size_t a) -> const Lanes& {
-      return i.argument[a] < 0 ? zero : value[static_cast<std::size_t>(i.argument[a])];
-    };
-    const Lanes &a = argument(0), &b = argument(1), &c = argument(2);
-    if (i.op == Op::kNumber)
-      value[n] = All(i.value);
-    else if (i.op == Op::kSymbol)
-      value[n] = i.time ? All(t) : input[i.index];
-    else if (expression::InfoOf(i.op).memory)
-      Remember(i, a, b, dt, memory, &value[n]);
-    else if (i.shared)
-      value[n] = All(expression::Evaluate(i.op, a[0], b[0], c[0]));
-    else if (!Vectorised(i.op, a, b, c, &value[n]))
-      for (std::size_t l = 0; l < kLanes; ++l) value[n][l] = expression::Evaluate(i.op, a[l], b[l], c[l]);
-  }
-  for (std::size_t o = 0; o < outputs_.size(); ++o) out[o] = value[static_cast<std::size_t>(outputs_[o])];
-  if (memory != nullptr) memory->empty = false;
+void LaneProgram::Compute(const Instruction& i, std::size_t samples, Block* blocks) {
+  const double* const a = blocks[i.argument[0]].value.data();
+  const double* const b = blocks[i.argument[1]].value.data();
+  const double* const c = blocks[i.argument[2]].value.data();
+  double* const out = blocks[i.block].value.data();
+  if (i.varies != Varies::kBySample) return Apply(i.op, samples * kLanes, a, b, c, out);
+  for (std::size_t r = 0; r < samples * kLanes; r += kLanes)
+    std::fill_n(out + r, kLanes, expression::Evaluate(i.op, a[r], b[r], c[r]));
 }
 
-void LaneProgram::Remember(const Instruction& instruction, const Lanes& e, const Lanes& tau, double dt,
-                           LaneMemory* memory, Lanes* out) const {
-  LaneMemory::Slot& slot = memory->slot[static_cast<std::size_t>(instruction.index)];
-  const bool first = memory->empty;
-  if (first) slot = {instruction.op == Op::kLowpass ? e : Lanes{}, e};
-  if (instruction.op == Op::kDelay) memory->line[static_cast<std::size_t>(instruction.line)].push_back(e);
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    double& state = slot.state[l];
-    double& y = (*out)[l];
-    switch (instruction.op) {
-      case Op::kLowpass: y = state = first ? e[l] : Lowpass(state, slot.before[l], e[l], tau[l], dt); break;
-      case Op::kIntegral: y = state += first ? 0.0 : 0.5 * dt * (slot.before[l] + e[l]); break;
-      case Op::kPrevious: y = slot.before[l]; break;
-      case Op::kElapsed: y = state += first ? 0.0 : dt; break;
-      default: y = Delayed(memory->line[static_cast<std::size_t>(instruction.line)], l, tau[l], dt);
-    }
+void LaneProgram::Evaluate(std::size_t samples, const Lanes* input, std::size_t stride, const double* t, LaneRun* run,
+                           Lanes* out) const {
+  Block* const blocks = run->block.data();
+  for (const Instruction& i : each_) {
+    double* const value = blocks[i.block].value.data();
+    if (i.op == Op::kSymbol && i.time)
+      for (std::size_t r = 0; r < samples; ++r) std::fill_n(value + r * kLanes, kLanes, t[r]);
+    else if (i.op == Op::kSymbol)
+      for (std::size_t r = 0; r < samples; ++r)
+        std::copy_n(input[i.index * stride + r].data(), kLanes, value + r * kLanes);
+    else if (expression::InfoOf(i.op).memory)
+      Remember(i, samples, run);
+    else
+      Compute(i, samples, blocks);
   }
-  slot.before = e;
+  for (std::size_t o = 0; o < outputs_.size(); ++o)
+    for (std::size_t r = 0; r < samples; ++r)
+      std::copy_n(blocks[outputs_[o]].value.data() + r * kLanes, kLanes, out[o * stride + r].data());
+  run->empty = run->empty && samples == 0;
+}
+
+ARMCMC_FOR_WIDER_LANES
+void LaneProgram::Remember(const Instruction& instruction, std::size_t samples, LaneRun* run) {
+  LaneRun::Slot& slot = run->slot[instruction.index];
+  const double dt = run->dt;
+  for (std::size_t r = 0; r < samples; ++r) {
+    const double* const e = run->block[instruction.argument[0]].value.data() + r * kLanes;
+    const double* const tau = run->block[instruction.argument[1]].value.data() + r * kLanes;
+    double* const y = run->block[instruction.block].value.data() + r * kLanes;
+    const bool first = run->empty && r == 0;
+    if (first) {
+      std::copy_n(e, kLanes, slot.before.data());
+      slot.state = instruction.op == Op::kLowpass ? slot.before : Lanes{};
+    }
+    switch (instruction.op) {
+      case Op::kLowpass:
+        if (!instruction.steady)
+          for (std::size_t l = 0; l < kLanes; ++l) LowpassWeights(tau[l], dt, &slot.decay[l], &slot.weight[l]);
+        for (std::size_t l = 0; l < kLanes && !first; ++l)
+          slot.state[l] = slot.state[l] * slot.decay[l] + slot.before[l] * (slot.weight[l] - slot.decay[l]) +
+                          e[l] * (1.0 - slot.weight[l]);
+        std::copy_n(slot.state.data(), kLanes, y);
+        break;
+      case Op::kIntegral:
+        for (std::size_t l = 0; l < kLanes; ++l)
+          y[l] = slot.state[l] += first ? 0.0 : 0.5 * dt * (slot.before[l] + e[l]);
+        break;
+      case Op::kPrevious: std::copy_n(slot.before.data(), kLanes, y); break;
+      case Op::kElapsed:
+        for (std::size_t l = 0; l < kLanes; ++l) y[l] = slot.state[l] += first ? 0.0 : dt;
+        break;
+      default: {
+        std::vector<Lanes>& line = run->line[instruction.line];
+        line.emplace_back();
+        std::copy_n(e, kLanes, line.back().data());
+        for (std::size_t l = 0; l < kLanes; ++l) y[l] = Delayed(line, l, tau[l], dt);
+      }
+    }
+    std::copy_n(e, kLanes, slot.before.data());
+  }
 }
 
 }  // namespace armcmc::identify

@@ -16,10 +16,7 @@
 namespace armcmc::ladder {
 namespace {
 
-constexpr std::size_t kMostRows = 20'000;     // that models are compared on, in stretches of
-constexpr std::size_t kWindow = 1000;         // so many, long enough for what remembers; and
-constexpr std::size_t kMostSimulated = 8000;  // of a plant that is simulated, whose fits take long
-constexpr std::size_t kMostJudged = 8;        // of a rung, by closing: what is far behind is not named anyway
+constexpr std::size_t kMostJudged = 8;  // of a rung, by closing: what is far behind is not named anyway
 constexpr int kBootstrap = 400;
 constexpr double kLeastGain = 0.1;     // of the squared error: what a name has to take
 constexpr double kSure = 0.99;         // share of bootstrap samples in which it does
@@ -28,7 +25,7 @@ constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effec
 constexpr double kTie = 0.05;          // share of bootstrap samples that another family may win
 constexpr double kLargerPart = 0.5;    // squared error that a name of a new family leaves at most
 constexpr double kBeside = 0.95;       // squared error that a name reaches where both may bend, in two of three senses,
-constexpr double kFarBeside = 0.75;    // or in one, where few events show it
+constexpr double kFarBeside = 0.8;     // or in one, losing in none, where few events show it or bending feigns it
 constexpr double kLeavesAsMuch = 1.5;  // times what the named one leaves: kin that are not excluded
 constexpr double kFarBetter = 2.0;     // times less than the simple one leaves: a larger effect that is a rival of it
 constexpr double kLoses = 1.1;         // squared error in regions that says: it is not that
@@ -121,12 +118,12 @@ class Teller {
   std::mutex mutex_;
 };
 
-/// One where amplitudes alone are sought, in which laws are linear; more where a shape is.
+/// One where amplitudes alone are sought, which vanish at 0 and in which laws are linear; more where a shape is.
 std::size_t StartsFor(const Contender& c) {
   constexpr std::size_t kOfShape = 8;
   const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
   const bool shape =
-      std::any_of(parameters.begin(), parameters.end(), [](const EffectParameter& p) { return p.none.empty(); });
+      std::any_of(parameters.begin(), parameters.end(), [](const EffectParameter& p) { return p.none != "0"; });
   return shape ? kOfShape : 1;
 }
 
@@ -219,7 +216,7 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
     const auto below = [&](double limit) {
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
-    const bool beside = below(kBeside) >= 2 || below(kFarBeside) >= 1;
+    const bool beside = below(kBeside) >= 2 || (below(kFarBeside) >= 1 && below(1.0) == 3);
     c.earned = gains && elsewhere && beside;
   }
 }
@@ -268,20 +265,19 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     rung->named.push_back(i);
     tied += all[i].win_share;
   }
-  // Which of them it is, simple or not, is open: the model that predicts best goes first.
+  // Which of them it is, is open, and nothing follows that would refine it: of each its best form, the one that
+  // predicts best first.
+  if (rung->named.size() > 1)
+    for (std::size_t& named : rung->named)
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (may(all[i]) && all[i].candidate.entry == all[named].candidate.entry &&
+            all[i].alone.folds < all[named].alone.folds)
+          named = i;
   std::sort(rung->named.begin(), rung->named.end(),
             [&](std::size_t a, std::size_t b) { return all[a].alone.folds < all[b].alone.folds; });
   leader = rung->named.front();
   // Simpler effects that are named first do not win against larger ones; those are no rivals.
   rung->probability = rung->named.size() > 1 ? all[leader].win_share / std::max(tied, 1e-9) : all[leader].gain_share;
-}
-
-/// The output about its mean: where there is something to explain.
-Eigen::VectorXd Deviation(const Dataset& data, const Plant& plant) {
-  const std::vector<double>& output = data.series->signals[static_cast<std::size_t>(plant.output())];
-  const Eigen::VectorXd value =
-      Eigen::Map<const Eigen::VectorXd>(output.data(), static_cast<Eigen::Index>(output.size()));
-  return value.array() - value.mean();
 }
 
 /// Whether the data kept apart agree: at least half of the gain is found there. Without any there is no objection.
@@ -303,24 +299,18 @@ void Sort(Rung* rung) {
 }  // namespace
 
 Ladder Climb(const ClimbRequest& request) {
-  constexpr std::size_t kFirstStarts = 24;
   Teller teller(request);
   Ladder ladder;
   ladder.entries = std::make_shared<const std::vector<EffectEntry>>(request.entries);
   ladder.plant = request.plant;
-  Dataset data = IsSimulated(ladder.plant->description()) ? Beginnings(request.data, kMostSimulated)
-                                                          : Windows(request.data, {}, kWindow, kMostRows);
+  Dataset data = Compared(*ladder.plant, request.data);
 
   teller.Tell("fitting the model as it is", 0.0);
-  const Trial first =
-      Try(ladder.plant, QuickPart(*ladder.plant, data, Deviation(data, *ladder.plant)), {}, kFirstStarts);
-  if (!first.fit.valid) {
+  Trial base = FitAlone(ladder.plant, &data);
+  if (!base.fit.valid) {
     ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
     return ladder;
   }
-  Trial base = Refine(ladder.plant, data, first.fit.theta);
-  LeaveOutStarts(base, &data);
-  base = Refine(ladder.plant, data, base.fit.theta);
   ladder.noise_floor = NoiseFloor(data, base.model->target(), base.model->active());
   ladder.base = base;
   std::set<std::string> families;

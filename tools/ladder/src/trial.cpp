@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "held_out.hpp"
+
 namespace armcmc::ladder {
 namespace {
 
@@ -34,14 +36,20 @@ double StrongestFrequency(const VectorXd& error, const VectorXd& x) {
   constexpr Index kMost = 4000;
   const double range = x.maxCoeff() - x.minCoeff();
   double strongest = 0.0, power = 0.0;
+  // Waves of one more half turn over the range each: turned on by the slowest one.
+  const Eigen::ArrayXd phase = std::numbers::pi / range * x.array();
+  const Eigen::ArrayXd turn_cos = phase.cos(), turn_sin = phase.sin();
+  Eigen::ArrayXd cosine = turn_cos, sine = turn_sin, turned(x.size());
   // Past the highest frequency that so many rows can tell there is nothing to seek.
   const Index last = std::min(kMost, 2 * x.size());
   for (Index half_turns = 2; half_turns < last; ++half_turns) {
-    const double w = std::numbers::pi * static_cast<double>(half_turns) / range;
-    const double c = error.dot(VectorXd((w * x).array().cos())), s = error.dot(VectorXd((w * x).array().sin()));
+    turned = cosine * turn_cos - sine * turn_sin;
+    sine = sine * turn_cos + cosine * turn_sin;
+    cosine.swap(turned);
+    const double c = error.dot(cosine.matrix()), s = error.dot(sine.matrix());
     if (c * c + s * s > power) {
       power = c * c + s * s;
-      strongest = w;
+      strongest = std::numbers::pi * static_cast<double>(half_turns) / range;
     }
   }
   return strongest;
@@ -79,37 +87,57 @@ void AddFrequencies(const identify::TrajectoryModel& model, const Dataset& data,
   }
 }
 
-/// Precision of the prior, and what it pulls with at a fit.
-struct Pull {
-  Eigen::VectorXd precision, gradient;
+/// Law and flexible function together, about fits that leave one group out each.
+class Beside {
+ public:
+  Beside(const identify::TrajectoryModel& model, const View& view)
+      : flexible_(view.flexible),
+        gram_(view.flexible.transpose() * view.flexible),
+        precision_(identify::PriorPrecision(model)),
+        centre_(model.Start()) {}
+
+  /// Squared error of a group when all others were fitted.
+  /// @param theta, error, jacobian  Of the law alone, fitted without the group.
+  [[nodiscard]] double Square(const VectorXd& theta, const VectorXd& error, const Eigen::MatrixXd& jacobian,
+                              const RowGroup& group) const {
+    const Index parameters = precision_.size(), features = flexible_.cols();
+    Eigen::MatrixXd part(static_cast<Index>(group.rows.size()), parameters + features);
+    part << jacobian(group.rows, Eigen::all), flexible_(group.rows, Eigen::all);
+    const VectorXd group_error = error(group.rows);
+    const double square = std::max(
+        (error.squaredNorm() - group_error.squaredNorm()) / static_cast<double>(error.size() - group_error.size()),
+        1e-300);
+    Eigen::MatrixXd matrix(parameters + features, parameters + features);
+    matrix.topLeftCorner(parameters, parameters) = jacobian.transpose() * jacobian;
+    matrix.bottomLeftCorner(features, parameters) = flexible_.transpose() * jacobian;
+    matrix.topRightCorner(parameters, features) = matrix.bottomLeftCorner(features, parameters).transpose();
+    matrix.bottomRightCorner(features, features) = gram_;
+    matrix -= part.transpose() * part;
+    matrix.diagonal().head(parameters) += square * precision_;
+    matrix.diagonal().tail(features).array() += kRidge;
+    VectorXd right(parameters + features);
+    right << jacobian.transpose() * error, flexible_.transpose() * error;
+    right -= part.transpose() * group_error;
+    right.head(parameters) += square * precision_.cwiseProduct(centre_ - theta);
+    const VectorXd size = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd scaled = size.asDiagonal() * matrix * size.asDiagonal();
+    scaled.diagonal().array() += 1e-9;
+    const VectorXd step = size.cwiseProduct(scaled.ldlt().solve(size.cwiseProduct(right)));
+    return (group_error - part * step).squaredNorm();
+  }
+
+ private:
+  const Eigen::MatrixXd& flexible_;
+  Eigen::MatrixXd gram_;
+  VectorXd precision_, centre_;
 };
 
-Pull PriorPull(const identify::TrajectoryModel& model, const identify::FitResult& fit) {
-  const Eigen::VectorXd precision = identify::PriorPrecision(model);
-  return {precision, precision.cwiseProduct(model.Start() - fit.theta)};
-}
-
-/// Squared error of a group, predicted by law and flexible function together, fitted to the other rows.
-double SquareBeside(const Eigen::VectorXd& error, const Eigen::MatrixXd& jacobian, const Pull& pull, const View& view,
-                    const RowGroup& group) {
-  const Eigen::Index parameters = jacobian.cols(), features = view.flexible.cols();
-  Eigen::MatrixXd joint(jacobian.rows(), parameters + features);
-  joint << jacobian, view.flexible;
-  const Eigen::MatrixXd part = joint(group.rows, Eigen::all);
-  const Eigen::VectorXd group_error = error(group.rows);
-  const double square = std::max(
-      (error.squaredNorm() - group_error.squaredNorm()) / static_cast<double>(error.size() - group_error.size()),
-      1e-300);
-  Eigen::MatrixXd matrix = joint.transpose() * joint - part.transpose() * part;
-  matrix.diagonal().head(parameters) += square * pull.precision;
-  matrix.diagonal().tail(features).array() += kRidge;
-  Eigen::VectorXd right = joint.transpose() * error - part.transpose() * group_error;
-  right.head(parameters) += square * pull.gradient;
-  const Eigen::VectorXd size = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = size.asDiagonal() * matrix * size.asDiagonal();
-  scaled.diagonal().array() += 1e-9;
-  const Eigen::VectorXd step = size.cwiseProduct(scaled.ldlt().solve(size.cwiseProduct(right)));
-  return (group_error - part * step).squaredNorm();
+/// The output about its mean: where there is something to explain.
+Eigen::VectorXd Deviation(const Dataset& data, const Plant& plant) {
+  const std::vector<double>& output = data.series->signals[static_cast<std::size_t>(plant.output())];
+  const Eigen::VectorXd value =
+      Eigen::Map<const Eigen::VectorXd>(output.data(), static_cast<Eigen::Index>(output.size()));
+  return value.array() - value.mean();
 }
 
 }  // namespace
@@ -161,9 +189,24 @@ Trial Try(const std::shared_ptr<const Plant>& plant, const Dataset& data, const 
   constexpr std::size_t kFits = 3;
   Trial trial;
   trial.model = std::make_shared<const identify::TrajectoryModel>(plant, data.series);
-  trial.fit =
-      identify::BestFit(*trial.model, data.training, Starts(*trial.model, data, known, starts), kFits, kIterations);
+  trial.fit = identify::BestFit(*trial.model, data.training, Starts(*trial.model, data, known, starts), kFits,
+                                kIterations, known.size() == 0);
   return trial;
+}
+
+Dataset Compared(const Plant& plant, const Dataset& data) {
+  constexpr std::size_t kMost = 20'000, kWindow = 1000;  // long enough for what remembers
+  constexpr std::size_t kMostSimulated = 8000;           // fits take long
+  return IsSimulated(plant.description()) ? Beginnings(data, kMostSimulated) : Windows(data, {}, kWindow, kMost);
+}
+
+Trial FitAlone(const std::shared_ptr<const Plant>& plant, Dataset* data) {
+  constexpr std::size_t kStarts = 24;
+  Trial trial = Try(plant, QuickPart(*plant, *data, Deviation(*data, *plant)), {}, kStarts);
+  if (!trial.fit.valid) return trial;
+  trial = Refine(plant, *data, trial.fit.theta);
+  LeaveOutStarts(trial, data);
+  return Refine(plant, *data, trial.fit.theta);
 }
 
 Trial Refine(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Eigen::VectorXd& theta) {
@@ -174,26 +217,23 @@ Trial Refine(const std::shared_ptr<const Plant>& plant, const Dataset& data, con
 }
 
 void LeaveOut(const View& view, Trial* trial) {
-  constexpr int kIterations = 6;
   trial->alone.clear();
   trial->beside.clear();
   trial->rest.clear();
   trial->stretches.assign(static_cast<std::size_t>(view.num_stretches), 0.0);
   trial->judged = true;
-  for (const RowGroup& group : view.groups) {
-    std::vector<std::uint8_t> rest(trial->model->num_rows(), 0);
-    for (const Eigen::Index n : view.looked_at) rest[static_cast<std::size_t>(n)] = 1;
-    for (const Eigen::Index k : group.rows)
-      rest[static_cast<std::size_t>(view.looked_at[static_cast<std::size_t>(k)])] = 0;
-    identify::FitResult fit = identify::Fit(*trial->model, rest, trial->fit.theta, kIterations);
-    if (!fit.valid) fit = trial->fit;
-    const Eigen::VectorXd error = (trial->model->target() - fit.prediction)(view.looked_at);
+  std::vector<std::vector<Index>> groups;
+  for (const RowGroup& group : view.groups) groups.push_back(group.rows);
+  const identify::FitsWithout fits = identify::FitWithoutEach(*trial->model, trial->fit, view.looked_at, groups);
+  const Beside beside(*trial->model, view);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const VectorXd theta = fits.theta.col(static_cast<Index>(g)), error = fits.error.col(static_cast<Index>(g));
+    const RowGroup& group = view.groups[g];
     trial->alone.push_back(error(group.rows).squaredNorm());
     trial->rest.push_back(error.squaredNorm() - trial->alone.back());
-    trial->beside.push_back(
-        SquareBeside(error, fit.jacobian(view.looked_at, Eigen::all), PriorPull(*trial->model, fit), view, group));
+    trial->beside.push_back(beside.Square(theta, error, fits.jacobian[g], group));
     if (group.kind != GroupKind::kFold) continue;
-    for (const Eigen::Index k : group.rows)
+    for (const Index k : group.rows)
       trial->stretches[static_cast<std::size_t>(view.stretch[static_cast<std::size_t>(k)])] += error[k] * error[k];
   }
 }

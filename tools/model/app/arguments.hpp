@@ -14,7 +14,9 @@ struct Arguments {
   std::string plant;                      ///< check, add
   std::vector<std::string> with;          ///< check
   bool effects = false;                   ///< check
-  std::string effect, data, out;          ///< add
+  std::string data;                       ///< check, add
+  std::string data_dir;                   ///< check
+  std::string effect, out;                ///< add
   std::string name, from = "servo_axis";  ///< new
 };
 

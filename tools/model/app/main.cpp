@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,30 +11,49 @@
 #include "armcmc/support/plant_file.hpp"
 #include "armcmc/support/plant_library.hpp"
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/recording.hpp"
 #include "armcmc/support/text_table.hpp"
 #include "compose.hpp"
+#include "costs.hpp"
 #include "effect_tables.hpp"
+#include "identifiability.hpp"
 #include "new_plant.hpp"
 #include "plant_text.hpp"
 
 namespace armcmc::model {
 namespace {
 
-int Check(const std::string& plant) {
-  const std::filesystem::path path = support::FindPlantFile(plant);
-  const Plant understood = support::ReadPlant(path);
-  // What is more than the estimator can hold is an error of the file, with its place.
-  if (MayRun(understood)) (void)support::ReadPlantProgram(path);
-  std::cout << PlantText(understood);
-  return support::kExitOk;
+/// Of a recording file, or of a CSV whose columns are the plant's signals; null without --data.
+std::shared_ptr<const support::Recording> ReadData(const Arguments& a) {
+  if (a.data.empty()) return nullptr;
+  if (!a.data.ends_with(".toml"))
+    return std::make_shared<const support::Recording>(
+        support::ReadRecordedCsv(a.data, support::FindPlantFile(a.plant).string(), false));
+  auto recording = std::make_shared<const support::Recording>(support::ReadRecording(a.data, a.data_dir));
+  const Plant plant = support::ReadPlant(support::FindPlantFile(a.plant));
+  if (recording->fingerprint != plant.fingerprint())
+    throw support::InputError(a.data + ": has the signals of \"" + recording->plant + "\", not those of \"" +
+                              plant.description().name + '"');
+  return recording;
 }
 
-/// The same with effects of the catalogue in it, or with what the catalogue has for it.
-int CheckEffects(const Arguments& arguments) {
-  const support::PlantFile file = support::ReadPlantFile(support::FindPlantFile(arguments.plant));
-  const PlantDescription composed = Composed(file, arguments.with, std::nullopt);
-  std::cout << PlantText(Plant(composed));
-  if (arguments.effects) std::cout << '\n' << FittingText(composed, support::EffectsFor(file.effects));
+int Check(const Arguments& a) {
+  const std::filesystem::path path = support::FindPlantFile(a.plant);
+  const support::PlantFile file = support::ReadPlantFile(path);
+  const auto plant =
+      std::make_shared<const Plant>(a.with.empty() ? file.plant.description() : Composed(file, a.with, std::nullopt));
+  std::cout << PlantText(*plant);
+  if (a.effects) {
+    std::cout << '\n' << FittingText(plant->description(), support::EffectsFor(file.effects));
+    return support::kExitOk;
+  }
+  const std::shared_ptr<const support::Recording> data = ReadData(a);
+  if (MayRun(*plant)) {
+    // What is more than the estimator can hold is an error of the file, with its place.
+    const auto program = a.with.empty() ? support::ReadPlantProgram(path) : std::make_shared<const PlantProgram>(plant);
+    std::cout << CostText(program, data);
+  }
+  if (data != nullptr) std::cout << '\n' << IdentifiabilityText(plant, *data);
   return support::kExitOk;
 }
 
@@ -78,9 +98,7 @@ int main(int argc, char** argv) {
   model::Declare(&app, &arguments);
   return support::RunProgram(app, "armcmc-model", argc, argv, [&] {
     if (app.got_subcommand("add")) return model::Add(arguments);
-    if (app.got_subcommand("check") && (arguments.effects || !arguments.with.empty()))
-      return model::CheckEffects(arguments);
-    if (app.got_subcommand("check")) return model::Check(arguments.plant);
+    if (app.got_subcommand("check")) return model::Check(arguments);
     return app.got_subcommand("list") ? model::List() : model::New(arguments.name, arguments.from);
   });
 }

@@ -43,6 +43,9 @@ class PlantProgram {
   [[nodiscard]] bool has_memory() const noexcept { return features_.has_memory(); }
   [[nodiscard]] const PlantStates& states() const noexcept { return states_; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
+  /// Of a sampled mode, and how many quantities of a sample the laws and rates read.
+  [[nodiscard]] const expression::Tape& law(int mode) const { return modes_[static_cast<std::size_t>(mode)].law; }
+  [[nodiscard]] int num_scalars() const noexcept { return num_scalars_; }
   /// The parameter's prior as it is sampled: of a lognormal one that of the logarithm.
   [[nodiscard]] const std::vector<ParameterDescription>& sampled() const noexcept { return sampled_; }
 

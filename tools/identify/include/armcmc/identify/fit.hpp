@@ -35,10 +35,26 @@ struct FitResult {
 [[nodiscard]] Eigen::VectorXd AlongOne(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                                        const Eigen::VectorXd& start, int steps);
 
-/// The best of fits by cost. Starts are moved along single parameters first; the fits begin at the `most_fits` best.
+/// The best of fits by cost. All begin with two steps; the `most_fits` best go on.
+/// @param along_one  Starts are moved along single parameters first, as those are that may be far off.
 [[nodiscard]] FitResult BestFit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                                 const std::vector<Eigen::VectorXd>& starts, std::size_t most_fits,
-                                int max_iterations = 30);
+                                int max_iterations = 30, bool along_one = true);
+
+/// Fits that each leave one group of rows out.
+struct FitsWithout {
+  Eigen::MatrixXd theta;                  ///< [parameter][group]
+  Eigen::MatrixXd error;                  ///< [place in `rows`][group] target - prediction, in the group, too.
+  std::vector<Eigen::MatrixXd> jacobian;  ///< [group][place in `rows`][parameter] There, or one step before.
+};
+
+/// Fits to `rows` without one group at a time: all groups side by side by steps with the Jacobian of the fit to all of
+/// them, which the removal of some rows changes little; then Fit for those that it does change.
+/// @param all     A valid fit.
+/// @param groups  Places in `rows`.
+[[nodiscard]] FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all,
+                                         const std::vector<Eigen::Index>& rows,
+                                         const std::vector<std::vector<Eigen::Index>>& groups, int max_iterations = 12);
 
 /// Precision of the prior of every sampled parameter; 0 of a uniform one.
 [[nodiscard]] Eigen::VectorXd PriorPrecision(const TrajectoryModel& model);

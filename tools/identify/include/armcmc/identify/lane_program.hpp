@@ -9,61 +9,86 @@
 
 namespace armcmc::identify {
 
-/// Candidates that are evaluated at once.
+/// Candidates that are evaluated side by side.
 inline constexpr std::size_t kLanes = 16;
+/// Samples that are evaluated by one walk through the operations.
+inline constexpr std::size_t kTile = 8;
 /// One value of every candidate.
 using Lanes = std::array<double, kLanes>;
 
-/// What functions with memory carry from sample to sample.
-struct LaneMemory {
-  struct Slot {
-    Lanes state{};   ///< Of a low pass or an integral.
-    Lanes before{};  ///< The argument one sample earlier.
+/// Along what an input changes.
+enum class Varies : std::uint8_t {
+  kByLane,    ///< Every candidate has a value for all samples: a parameter.
+  kBySample,  ///< All candidates have the same: a signal.
+  kByBoth,    ///< A state.
+};
+
+/// What the evaluation of a program carries from sample to sample.
+struct LaneRun {
+  struct alignas(64) Block {
+    std::array<double, kTile * kLanes> value;  ///< [sample][lane]
   };
-  bool empty = true;  ///< No sample yet.
-  std::vector<Slot> slot;
+  struct Slot {
+    Lanes state{};            ///< Of a low pass or an integral.
+    Lanes before{};           ///< The argument one sample earlier.
+    Lanes decay{}, weight{};  ///< Of a low pass from one sample to the next, and of the sample before.
+  };
+  double dt = 1.0;                       ///< s
+  bool empty = true;                     ///< No sample yet.
+  std::vector<Block> block;              ///< Zero, then one of every instruction.
+  std::vector<Slot> slot;                ///< Of every function with memory.
   std::vector<std::vector<Lanes>> line;  ///< [delay][sample of the run]
 
   /// The next sample is the first of a run.
   void Clear();
 };
 
-/// Expressions of a graph for several candidates side by side, sample by sample in the order of time.
+/// Expressions of a graph for several candidates side by side, over samples in the order of time.
 ///
 /// The same values as expression::FeatureProgram has for each of them; delays reach back to the beginning of the run.
-/// One walk through the operations serves all lanes, so that walking costs little.
+/// What only candidates differ in is computed once, and one walk through the rest serves all lanes of a few samples, so
+/// that walking costs little.
 class LaneProgram {
  public:
   LaneProgram() = default;
-  /// @param shared  [signal] 1: the same in all lanes.
-  LaneProgram(const expression::Graph& graph, const std::vector<int>& outputs, const std::vector<std::uint8_t>& shared);
+  /// @param inputs  [signal] How it changes.
+  LaneProgram(const expression::Graph& graph, const std::vector<int>& outputs, const std::vector<Varies>& inputs);
 
-  /// out[i] = output i at this sample.
-  /// @param input   Signals.
-  /// @param t, dt   s, plant time, and time since the sample before.
-  /// @param memory  Of Memory(); may be null without functions with memory.
-  void Evaluate(const Lanes* input, double t, double dt, LaneMemory* memory, Lanes* out) const;
+  /// A run whose first sample comes next.
+  /// @param input  [signal] Those that vary by lane are read.
+  /// @param dt     s, from sample to sample.
+  [[nodiscard]] LaneRun Begin(const Lanes* input, double dt) const;
 
-  [[nodiscard]] LaneMemory Memory() const;
-  [[nodiscard]] bool has_memory() const noexcept { return num_memories_ > 0; }
-  [[nodiscard]] std::size_t size() const noexcept { return code_.size(); }
-
- private:
-  struct Instruction {
-    expression::Op op = expression::Op::kNumber;
-    std::array<int, expression::kMaxArguments> argument{};
-    double value = 0.0;
-    bool time = false;
-    bool shared = false;  ///< The same in all lanes.
-    int index = 0;        ///< Of a signal; of a memory.
-    int line = -1;        ///< Of a delay.
-  };
-  void Remember(const Instruction& instruction, const Lanes& e, const Lanes& tau, double dt, LaneMemory* memory,
+  /// The next samples, at most kTile.
+  /// @param input  [signal][sample] Those that vary by sample, a row of `stride` each.
+  /// @param t      [sample] s, plant time.
+  /// @param[out] out  [output][sample] in rows of `stride`.
+  void Evaluate(std::size_t samples, const Lanes* input, std::size_t stride, const double* t, LaneRun* run,
                 Lanes* out) const;
 
-  std::vector<Instruction> code_;
-  std::vector<int> outputs_;
-  int num_memories_ = 0, num_delays_ = 0;
+  [[nodiscard]] bool has_memory() const noexcept { return num_memories_ > 0; }
+  /// Whether the signal is read sample by sample.
+  [[nodiscard]] bool Reads(std::size_t signal) const;
+
+ private:
+  using Block = LaneRun::Block;
+  struct Instruction {
+    expression::Op op = expression::Op::kNumber;
+    std::array<std::size_t, expression::kMaxArguments> argument{};  ///< Blocks.
+    std::size_t block = 0;                                          ///< That it fills.
+    double value = 0.0;
+    bool time = false;
+    Varies varies = Varies::kByLane;
+    bool steady = false;    ///< A low pass whose time constant varies by lane at most.
+    std::size_t index = 0;  ///< Of a signal; of a memory.
+    std::size_t line = 0;   ///< Of a delay.
+  };
+  static void Compute(const Instruction& instruction, std::size_t samples, Block* blocks);
+  static void Remember(const Instruction& instruction, std::size_t samples, LaneRun* run);
+
+  std::vector<Instruction> once_, each_;  ///< Computed once a run of candidates; at each sample.
+  std::vector<std::size_t> outputs_;      ///< Blocks.
+  std::size_t num_blocks_ = 1, num_memories_ = 0, num_delays_ = 0;
 };
 
 }  // namespace armcmc::identify

@@ -55,12 +55,15 @@ class TrajectoryModel {
   /// @param thetas  [parameter][candidate], sampled coordinates.
   /// @param[out] predictions  [row][candidate]; 0 where no mode acts. Of a candidate that is not finite somewhere, the
   ///   first row is not.
-  void Predict(const Eigen::MatrixXd& thetas, Eigen::MatrixXd* predictions) const;
+  /// @param only  Rows that are wanted, where the law needs no others; may be null. The rest are 0 then.
+  void Predict(const Eigen::MatrixXd& thetas, Eigen::MatrixXd* predictions,
+               const std::vector<Eigen::Index>* only = nullptr) const;
   /// Of one; false where something is not finite.
   [[nodiscard]] bool PredictOne(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction) const;
   /// PredictOne, and its derivatives by central differences of 1e-5 prior standard deviations.
-  [[nodiscard]] bool Linearise(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction,
-                               Eigen::MatrixXd* jacobian) const;
+  /// @param only  As of Predict.
+  [[nodiscard]] bool Linearise(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian,
+                               const std::vector<Eigen::Index>* only = nullptr) const;
   /// Rows behind the beginning of a run after which a wrong start of the states that begin with a mere number has at
   /// most `share` of its largest effect on the law; a start that is off by the state's rms. 0: there are no such
   /// states. The length of the first run: never.
@@ -81,14 +84,13 @@ class TrajectoryModel {
   [[nodiscard]] std::vector<int> SplitMemory(expression::Graph* graph, std::vector<int>* nodes) const;
   void EvaluateOnce(const expression::Graph& graph, const std::vector<int>& nodes,
                     std::vector<std::vector<double>>* columns) const;
-  /// Up to kLanes candidates from the first row to the last; `see` gets every row.
+  class Walk;
+  /// Up to kLanes candidates from the first row to the last; `see` gets every row, the law and the states at it.
   /// @param offset  [state] Added to the starts; may be null.
+  /// @param only    As of Predict.
   template <class See>
   void Run(const Eigen::MatrixXd& thetas, Eigen::Index first, Eigen::Index count, const std::vector<Lanes>* offset,
-           See see) const;
-  /// States from `row` to the next. @param before, after  What the rates remember at these rows.
-  void Advance(std::size_t row, const std::vector<Lanes>& before, const std::vector<Lanes>& after,
-               std::vector<Lanes>* input) const;
+           const std::vector<Eigen::Index>* only, See see) const;
 
   std::shared_ptr<const Plant> plant_;
   std::shared_ptr<const Series> series_;
@@ -97,7 +99,10 @@ class TrajectoryModel {
   std::size_t num_signals_, num_states_;
   int substeps_ = 1;
   LaneProgram law_, rate_, past_, start_;
-  std::size_t num_past_ = 0;                  ///< Outputs of past_.
+  std::size_t num_past_ = 0;  ///< Outputs of past_.
+  /// Inputs of the programs: signals, parameters, states, columns, what rates remember.
+  std::size_t first_state_ = 0, num_inputs_ = 0;
+  std::vector<std::size_t> law_reads_;        ///< Signals.
   std::vector<std::vector<double>> columns_;  ///< That the law reads instead of signals.
   Eigen::VectorXd target_;
   std::vector<std::uint8_t> active_;

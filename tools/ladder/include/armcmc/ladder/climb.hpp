@@ -75,7 +75,8 @@ struct ClimbRequest {
 ///    - takes at least a tenth of the squared error in folds, in 99 % of bootstrap samples of their stretches (in 95 %,
 ///      provisionally, on the first rung);
 ///    - does not lose where long blocks or regions are left out;
-///    - gains even beside a flexible function: 5 % in two of these three senses, or 25 % in one;
+///    - gains even beside a flexible function: 5 % in two of these three senses, or 20 % in one
+///      without losing in the others;
 ///    - takes the larger part of what is unexplained, alone or with the next one, unless its family has been named
 ///      before or it leaves nothing but noise.
 /// 2. Simplest first. Of those that close 95 % of what the best closes the ones with the fewest parameters, and of
@@ -84,7 +85,7 @@ struct ClimbRequest {
 /// 3. Ties. With it go what is kin to it and leaves less than half as much again, where its own formula is not exact;
 ///    a family of as few parameters that wins one bootstrap sample in twenty; and a larger effect of another family
 ///    that leaves less than half and is better wherever it is looked for. Behind a tie nothing more is named: it would
-///    stand on what is not known.
+///    stand on what is not known. So each of them shows the form of it that predicts best.
 /// 4. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain.
 [[nodiscard]] Ladder Climb(const ClimbRequest& request);
 

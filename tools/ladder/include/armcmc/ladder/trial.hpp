@@ -35,6 +35,15 @@ struct Trial {
 /// True for a plant whose own states are integrated from the beginning of a run, not those of an effect only.
 [[nodiscard]] bool IsSimulated(const PlantDescription& plant);
 
+/// The rows on which models are compared: all of a short recording, stretches of a long one that a law with memory can
+/// follow, beginnings where the plant is simulated.
+[[nodiscard]] Dataset Compared(const Plant& plant, const Dataset& data);
+
+/// A plant as it is, fitted to the training rows of `data`, from many starts; then those near the beginning of a run
+/// that depend on states nobody measured do not count any more, in `data` neither. Not valid where the law has no
+/// finite value.
+[[nodiscard]] Trial FitAlone(const std::shared_ptr<const Plant>& plant, Dataset* data);
+
 /// Best of fits to the training rows of `data` from `starts` starts.
 [[nodiscard]] Trial Try(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Eigen::VectorXd& known,
                         std::size_t starts);

@@ -1,0 +1,155 @@
+#include "identifiability.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "armcmc/ladder/trial.hpp"
+#include "armcmc/support/text_table.hpp"
+
+namespace armcmc::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using support::Significant;
+
+/// What data say about one parameter, in the coordinates that it is sampled in.
+struct Told {
+  double sd = 0.0;             ///< With all others to be found, too.
+  double sd_alone = 0.0;       ///< If the others were known.
+  bool felt = false;           ///< The data would tell it if the others were known.
+  bool told = false;           ///< They do.
+  std::vector<Index> against;  ///< What makes up for it where they do not.
+};
+
+/// Rows after which errors have forgotten: 1 + 2 sum of the autocorrelations before the first that is not positive.
+double RowsPerError(const VectorXd& error) {
+  const Index most = error.size() / 10;
+  const double power = error.squaredNorm();
+  double rows = 1.0;
+  for (Index lag = 1; lag < most; ++lag) {
+    const double product = error.head(error.size() - lag).dot(error.tail(error.size() - lag));
+    if (product <= 0.05 * power) break;
+    rows += 2.0 * product / power;
+  }
+  return rows;
+}
+
+/// Parameters whose move makes up for one of parameter d, the one that does most first.
+std::vector<Index> Against(const MatrixXd& information, Index d) {
+  constexpr double kMost = 3, kShare = 0.2;
+  std::vector<Index> others;
+  for (Index e = 0; e < information.rows(); ++e)
+    if (e != d) others.push_back(e);
+  if (others.empty()) return {};
+  const MatrixXd block = information(others, others);
+  const VectorXd move = block.ldlt().solve(VectorXd(information.col(d)(others)));
+  // In units of what parameter d does itself.
+  std::vector<std::pair<double, Index>> shares;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const double share = std::fabs(move[static_cast<Index>(k)]) *
+                         std::sqrt(block(static_cast<Index>(k), static_cast<Index>(k)) / (information(d, d) + 1e-300));
+    if (share > kShare) shares.emplace_back(share, others[k]);
+  }
+  std::sort(shares.rbegin(), shares.rend());
+  std::vector<Index> against;
+  for (const auto& [share, e] : shares)
+    if (static_cast<double>(against.size()) < kMost) against.push_back(e);
+  return against;
+}
+
+std::vector<Told> Judge(const ladder::Trial& trial, const std::vector<Index>& rows, double rows_per_error) {
+  constexpr double kThird = 1.0 / 3.0, kMakesUp = 10.0;
+  const identify::TrajectoryModel& model = *trial.model;
+  const VectorXd spread = model.Spread(), prior = identify::PriorPrecision(model);
+  const MatrixXd jacobian = trial.fit.jacobian(rows, Eigen::all) * spread.asDiagonal();
+  const double precision = 1.0 / (trial.fit.error_sd * trial.fit.error_sd * rows_per_error + 1e-300);
+  const MatrixXd data = precision * jacobian.transpose() * jacobian;
+  MatrixXd information = data;
+  // A uniform prior says as much as one of its standard deviation would.
+  information.diagonal().array() += 1.0;
+  const MatrixXd covariance = information.ldlt().solve(MatrixXd::Identity(data.rows(), data.cols()));
+  std::vector<Told> all;
+  for (Index d = 0; d < data.rows(); ++d) {
+    Told told;
+    told.sd = std::sqrt(covariance(d, d)) * spread[d];
+    told.sd_alone = spread[d] / std::sqrt(information(d, d));
+    told.felt = told.sd_alone < kThird * spread[d];
+    const bool made_up =
+        told.sd > kMakesUp * told.sd_alone &&
+        told.sd > kThird * std::fabs(model.parameters()[static_cast<std::size_t>(d)].prior == "lognormal"
+                                         ? 1.0
+                                         : trial.fit.theta[d]);
+    told.told = told.sd < kThird * spread[d] && !made_up;
+    if (told.felt && !told.told) told.against = Against(data, d);
+    all.push_back(told);
+  }
+  return all;
+}
+
+std::string Listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+  return text;
+}
+
+std::string InWords(const identify::TrajectoryModel& model, const std::vector<Told>& all) {
+  const auto name = [&](Index d) { return model.parameters()[static_cast<std::size_t>(d)].name; };
+  std::vector<std::string> told, not_felt;
+  std::string others;
+  for (std::size_t d = 0; d < all.size(); ++d) {
+    if (all[d].told) {
+      told.push_back(name(static_cast<Index>(d)));
+    } else if (!all[d].felt) {
+      not_felt.push_back(name(static_cast<Index>(d)));
+    } else {
+      std::vector<std::string> against;
+      for (const Index e : all[d].against) against.push_back(name(e));
+      others += "; not " + name(static_cast<Index>(d)) + ": " +
+                (against.empty() ? "its effect is too small" : "it moves against " + Listed(against));
+    }
+  }
+  std::string text = told.empty() ? "These data tell no parameter for itself" : "These data tell " + Listed(told);
+  if (!not_felt.empty())
+    text +=
+        "; not " + Listed(not_felt) + ": hardly anything in them depends on " + (not_felt.size() > 1 ? "these" : "it");
+  return text + others + ".\n";
+}
+
+}  // namespace
+
+std::string IdentifiabilityText(const std::shared_ptr<const Plant>& plant, const support::Recording& recording) {
+  ladder::Dataset data = ladder::Compared(*plant, ladder::DatasetOf(recording));
+  const ladder::Trial trial = ladder::FitAlone(plant, &data);
+  if (!trial.fit.valid) return "these data: the law has no finite value anywhere near the priors\n";
+  const identify::TrajectoryModel& model = *trial.model;
+  std::vector<Index> rows;
+  for (std::size_t n = 0; n < model.num_rows(); ++n)
+    if (data.training[n] != 0 && model.active()[n] != 0) rows.push_back(static_cast<Index>(n));
+  const VectorXd target = model.target()(rows), error = target - trial.fit.prediction(rows);
+  const double rows_per_error = RowsPerError(error);
+  const std::vector<Told> all = Judge(trial, rows, rows_per_error);
+
+  support::TextTable table({"parameter", "unit", "these data", "told", "if the others were known"},
+                           support::TextTable::Content::kWords);
+  for (std::size_t d = 0; d < all.size(); ++d) {
+    const ParameterDescription& p = model.parameters()[d];
+    const double value = model.Shown(static_cast<Index>(d), trial.fit.theta[static_cast<Index>(d)]);
+    // The standard deviation of a logarithm is relative.
+    const double scale = p.prior == "lognormal" ? value : 1.0;
+    table.AddRow({p.name, p.unit, Significant(value, 4) + " +- " + Significant(scale * all[d].sd, 2),
+                  all[d].told ? "yes" : "no", "+- " + Significant(scale * all[d].sd_alone, 2)});
+  }
+  const double rms = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
+  const double size = std::sqrt((target.array() - target.mean()).square().mean());
+  std::string text = std::to_string(rows.size()) + " rows looked at; " + plant->description().name + " leaves " +
+                     Significant(rms, 3) + " (rms), " + Significant(100.0 * rms / size, 3) +
+                     " % of what varies; errors are independent after " + Significant(rows_per_error, 2) + " rows\n\n";
+  return text + table.ToString() + '\n' + InWords(model, all);
+}
+
+}  // namespace armcmc::model
