@@ -40,6 +40,7 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       kernels(simd::Best()),
       state_filter(info.described != nullptr ? &info.described->states() : nullptr),
       predictor(info, s.constants, composition.flow()),
+      trajectory(info.described != nullptr ? info.described->prediction() : nullptr, kernels),
       summary(s.sampler.max_draws),
       gap_watch(info.described == nullptr
                     ? std::make_unique<GapWatch>(settings, model, kernels, FalseAlarmRate(settings, info))
@@ -254,6 +255,7 @@ void Estimator::Reset() noexcept {
   s.ShowPrior();
   s.known_draws.fill(false);
   s.predictor.Reset();
+  s.trajectory.Reset();
   s.composition.Reset();
   s.ForgetStates();
   if (s.gap_watch) s.gap_watch->Reset();

@@ -31,7 +31,10 @@ void Estimator::Impl::ShareVector(Estimate* e) noexcept {
 
 void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noexcept {
   const DataPack& pack = result.pack;
-  if (info.described != nullptr) {
+  if (!trajectory.empty()) {
+    std::fill_n(e->y_shown.begin(), static_cast<std::size_t>(pack.num_samples), kUnknown);
+    std::fill_n(e->y_shown_free_run.begin(), static_cast<std::size_t>(pack.num_samples), kUnknown);
+  } else if (info.described != nullptr) {
     PredictDescribed(result, e);
   } else if (contact_effects()) {
     PredictShown(result, e);
@@ -61,9 +64,11 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
       square += error * error;
       ++count;
     }
-    if (m == e->mode || contact_effects()) PredictLastSample(pack, m, e);
+    if (trajectory.empty() && (m == e->mode || contact_effects())) PredictLastSample(pack, m, e);
   }
-  if (info.described != nullptr && (!e->active || !info.described->LawIsOutput(e->mode)))
+  if (!trajectory.empty())
+    PredictSimulated(pack, e);
+  else if (info.described != nullptr && (!e->active || !info.described->LawIsOutput(e->mode)))
     e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
   e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
   if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
@@ -101,6 +106,36 @@ void Estimator::Impl::PredictDescribed(const AdjustResult& result, Estimate* e) 
   std::copy_n(e->y_shown.begin(), samples, e->y_shown_free_run.begin());
 }
 
+void Estimator::Impl::FillSimulated(ThetaTile* theta) const noexcept {
+  for (int m = 0; m < info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    for (int d = 0; d < info.num_parameters; ++d) {
+      std::array<double, kTileLanes>& row = theta->value[static_cast<std::size_t>(info.described->InPrediction(m, d))];
+      if (last_estimates[i].known)
+        row = band_theta[i].value[static_cast<std::size_t>(d)];
+      else
+        row.fill(samplers[i]->space().offset[static_cast<std::size_t>(d)]);
+      if (shown[1].known[i]) row[0] = shown[1].theta[i][static_cast<std::size_t>(d)];
+    }
+  }
+}
+
+void Estimator::Impl::PredictSimulated(const DataPack& pack, Estimate* e) noexcept {
+  const auto samples = static_cast<std::size_t>(pack.num_samples);
+  const auto last = samples - 1;
+  e->y_pred = e->y_lo = e->y_hi = e->y_free_run = kUnknown;
+  const bool known = std::any_of(shown[1].known.begin(), shown[1].known.end(), [](bool k) { return k; });
+  if (!known || !trajectory.Prepare(pack)) {
+    trajectory.Reset();
+    return;
+  }
+  FillSimulated(&shown_theta);
+  trajectory.Run(shown_theta, &band_prediction);
+  for (std::size_t n = 0; n < samples; ++n) e->y_shown[n] = e->y_shown_free_run[n] = band_prediction.value[n][0];
+  e->y_free_run = e->y_shown_free_run[last];
+  SetBand(band_prediction.value[last], e);
+}
+
 void Estimator::Impl::StoreBandDraws(int mode, const ModeDraws& draws) noexcept {
   const auto i = static_cast<std::size_t>(mode);
   for (int lane = 0; lane < kBandDraws; ++lane) {
@@ -124,6 +159,10 @@ void Estimator::Impl::PredictLastSample(const DataPack& pack, int mode, Estimate
       outputs[lane] = band_prediction.value[static_cast<std::size_t>(execute_data.num_samples - 1)][lane];
     }
   }
+  SetBand(outputs, e);
+}
+
+void Estimator::Impl::SetBand(const std::array<double, kTileLanes>& outputs, Estimate* e) noexcept {
   double mean = 0.0;
   double spread = 0.0;
   for (const double v : outputs) mean += v / kBandDraws;

@@ -13,6 +13,7 @@
 #include "armcmc/gap_watch/gap_watch.hpp"
 #include "armcmc/mode_sampler.hpp"
 #include "armcmc/output_predictor.hpp"
+#include "armcmc/plant/output_trajectory.hpp"
 #include "armcmc/plant/state_filter.hpp"
 #include "armcmc/summary.hpp"
 
@@ -74,6 +75,7 @@ struct Estimator::Impl {
 
   // Execute stage.
   OutputPredictor predictor;
+  OutputTrajectory trajectory;  ///< Of a described plant that predicts something else than its laws explain.
   SummaryWorkspace summary;
   ModeData execute_data;
   std::array<ThetaTile, kMaxModes> band_theta;  ///< Thinned chain of the last update of each mode.
@@ -91,7 +93,7 @@ struct Estimator::Impl {
   }
   /// The law is the output, so that the prior's mean predicts it. (The prior mean of the valves is no flow at all.)
   [[nodiscard]] bool predicts_from_prior() const noexcept {
-    return info.plant == PlantKind::kHuntCrossley || info.described != nullptr;
+    return info.plant == PlantKind::kHuntCrossley || (info.described != nullptr && trajectory.empty());
   }
   /// The effects of a contact act on the output that is predicted; those of the actuator on what bends it.
   [[nodiscard]] bool contact_effects() const noexcept {
@@ -104,10 +106,16 @@ struct Estimator::Impl {
   void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
   /// The same of a described plant, mode by mode.
   void PredictDescribed(const AdjustResult& result, Estimate* e) noexcept;
+  /// The same of a described plant whose output is simulated beside its laws.
+  void PredictSimulated(const DataPack& pack, Estimate* e) noexcept;
+  /// Parameters of the simulated output: those on display, lane 0 as shown before, the others as drawn by now.
+  void FillSimulated(ThetaTile* theta) const noexcept;
   void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
   void StoreBandDraws(int mode, const ModeDraws& draws) noexcept;
   /// Output at the last sample and its band; `band_prediction` holds the predictions of `mode`.
   void PredictLastSample(const DataPack& pack, int mode, Estimate* e) noexcept;
+  /// Mean and band of one output a lane.
+  static void SetBand(const std::array<double, kTileLanes>& outputs, Estimate* e) noexcept;
   static constexpr int kBandDraws = kTileLanes;  ///< Draws behind the predicted output and its band, one tile.
   [[nodiscard]] int BandDraw(const ModeDraws& draws, int lane) const noexcept {
     const int first = draws.burn_in;

@@ -84,6 +84,20 @@ TEST(Allocation, ConstructionDoes) {
   EXPECT_GT(guard.count(), 10) << "the counter sees this library";
 }
 
+/// Of a described plant, under every law of the noise.
+void ExpectNoHeapCalls(const PlantDescription& description, std::vector<DataPack> packs) {
+  const auto plant = test::Program(description);
+  for (DataPack& pack : packs) {
+    pack.plant = PlantKind::kDescribed;
+    pack.fingerprint = plant->plant().fingerprint();
+  }
+  for (const NoiseKind kind : kKinds) {
+    EstimatorSettings settings = DescribedSettings(plant);
+    for (NoiseSettings& noise : settings.noise) noise.kind = kind;
+    EXPECT_EQ(CountHeapCalls(settings, packs), 0) << description.name << ", noise " << static_cast<int>(kind);
+  }
+}
+
 TEST(Allocation, StepsOfADescribedPlantDoNotTouchTheHeap) {
   if (!AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
   // Functions with memory, a lognormal parameter, a quantity that is computed from them, a law without a loop of its
@@ -93,17 +107,7 @@ TEST(Allocation, StepsOfADescribedPlantDoNotTouchTheHeap) {
   description.modes[0].law = "x^p * (K + B*lowpass(v, 0.01)) + K*x*tanh(delay(v, 0.02)/g)";
   description.constants = {{"g", 1.0, ""}};
   description.reports = {{"KB", "1", "K*B"}};
-  const auto plant = test::Program(description);
-  for (const NoiseKind kind : kKinds) {
-    EstimatorSettings settings = DescribedSettings(plant);
-    for (NoiseSettings& noise : settings.noise) noise.kind = kind;
-    std::vector<DataPack> packs = ContactPacks();
-    for (DataPack& pack : packs) {
-      pack.plant = PlantKind::kDescribed;
-      pack.fingerprint = plant->plant().fingerprint();
-    }
-    EXPECT_EQ(CountHeapCalls(settings, packs), 0) << static_cast<int>(kind);
-  }
+  ExpectNoHeapCalls(description, ContactPacks());
 }
 
 TEST(Allocation, StepsOfAPlantWithStatesDoNotTouchTheHeap) {
@@ -112,17 +116,12 @@ TEST(Allocation, StepsOfAPlantWithStatesDoNotTouchTheHeap) {
   description.constants = {{"c", 0.01, "1/s"}};
   description.modes[0].law = "place^p * (K + B*v)";
   description.states = {{"place", "m", "position", "v + c*(x - place)", "x", "", 2}};
-  const auto plant = test::Program(description);
-  for (const NoiseKind kind : kKinds) {
-    EstimatorSettings settings = DescribedSettings(plant);
-    for (NoiseSettings& noise : settings.noise) noise.kind = kind;
-    std::vector<DataPack> packs = ContactPacks();
-    for (DataPack& pack : packs) {
-      pack.plant = PlantKind::kDescribed;
-      pack.fingerprint = plant->plant().fingerprint();
-    }
-    EXPECT_EQ(CountHeapCalls(settings, packs), 0) << static_cast<int>(kind);
-  }
+  ExpectNoHeapCalls(description, ContactPacks());
+}
+
+TEST(Allocation, StepsOfAPlantThatIsSimulatedBesideItsLawsDoNotTouchTheHeap) {
+  if (!AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  ExpectNoHeapCalls(test::DescribedVessel(), ContactPacks());
 }
 
 }  // namespace

@@ -18,17 +18,38 @@ bool IsLognormal(const ParameterDescription& p) { return p.prior == "lognormal";
 
 }  // namespace
 
-PlantProgram::PlantProgram(std::shared_ptr<const Plant> plant) : plant_(std::move(plant)), graph_(plant_->graph()) {
-  if (plant_->predicts() >= 0)
-    throw PlantError("predicts", 0, "the estimator shows what a law explains, and nothing else");
+PlantProgram::PlantProgram(std::shared_ptr<const Plant> plant, Part part)
+    : plant_(std::move(plant)), part_(part), graph_(plant_->graph()) {
   for (std::size_t m = 0; m < plant_->modes().size(); ++m)
     if (!plant_->modes()[m].passive) active_.push_back(m);
   const auto& parameters = plant_->description().parameters;
-  merged_ = active_.size() > 1 && (!plant_->states().empty() || std::any_of(parameters.begin(), parameters.end(),
-                                                                            [](const auto& p) { return !p.per_mode; }));
+  const bool one_law = part_ == Part::kPrediction || LawsNeedStates() ||
+                       std::any_of(parameters.begin(), parameters.end(), [](const auto& p) { return !p.per_mode; });
+  merged_ = active_.size() > 1 && one_law;
   ChooseParameters();
   CompileModes();
   FillInfo();
+  if (part_ == Part::kLaws && plant_->predicts() >= 0) MakePrediction();
+}
+
+bool PlantProgram::LawsNeedStates() const {
+  // Where nothing else predicts the output, the laws do.
+  if (plant_->predicts() < 0) return !plant_->states().empty();
+  for (std::size_t s = 0; s < plant_->states().size(); ++s) {
+    const int state = plant_->NodeOf(SymbolKind::kState, static_cast<int>(s));
+    for (const std::size_t m : active_)
+      if (graph_.DependsOn(plant_->modes()[m].law, state)) return true;
+  }
+  return false;
+}
+
+void PlantProgram::MakePrediction() {
+  prediction_ = std::make_unique<const PlantProgram>(plant_, Part::kPrediction);
+  for (std::size_t a = 0; a < active_.size(); ++a)
+    for (std::size_t d = 0; d < plant_->description().parameters.size(); ++d) {
+      const std::size_t mode = merged_ ? 0 : a;
+      in_prediction_[mode][static_cast<std::size_t>(index_[a][d])] = prediction_->index_[a][d];
+    }
 }
 
 void PlantProgram::ChooseParameters() {
@@ -45,7 +66,11 @@ void PlantProgram::ChooseParameters() {
       index_[a][d] = static_cast<int>(sampled_.size()) - 1;
     }
   }
-  const std::size_t coordinates = sampled_.size() + (description.noise.estimate ? 1 : 0);
+  if (part_ == Part::kPrediction && sampled_.size() > static_cast<std::size_t>(kMaxParams))
+    throw PlantError("predicts", 0,
+                     "depends on " + std::to_string(sampled_.size()) + " parameters of all modes together, at most " +
+                         std::to_string(kMaxParams) + " are possible");
+  const std::size_t coordinates = sampled_.size() + (description.noise.estimate && part_ == Part::kLaws ? 1 : 0);
   if (coordinates > static_cast<std::size_t>(kMaxParams))
     throw PlantError("parameters", 0,
                      "there are " + std::to_string(coordinates) +
@@ -65,57 +90,68 @@ int PlantProgram::InMode(int node, std::size_t active) {
   return graph_.Substitute(node, by);
 }
 
+void PlantProgram::CompileLaw(const std::string& name, int law, int target, const std::string& key,
+                              std::vector<int>* scalars) {
+  try {
+    SampledMode mode;
+    mode.name = name;
+    // law - target: squares do not mind the sign, and a product is added to minus the target in one instruction.
+    for (const bool error : {false, true}) {
+      const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
+      const expression::CompiledTape tape = CompileTape(&graph_, {node}, static_cast<int>(sampled_.size()),
+                                                        static_cast<int>(plant_->states().size()), std::move(*scalars));
+      *scalars = tape.scalars;
+      (error ? mode.error : mode.law) = tape.tape;
+    }
+    for (expression::Tape* tape : {&mode.law, &mode.error}) {
+      const ParameterDescription& exponent = sampled_[tape->exponent];
+      if (tape->shape == expression::TapeShape::kPower && !IsLognormal(exponent))
+        tape->largest_exponent = std::fmax(std::fabs(*exponent.lower), std::fabs(*exponent.upper));
+    }
+    modes_.push_back(std::move(mode));
+  } catch (const std::logic_error& error) {  // length_error, invalid_argument
+    throw PlantError(key, 0, std::string("the law ") + error.what());
+  }
+}
+
+template <class NodeOfMode>
+int PlantProgram::OfActingMode(NodeOfMode node_of) {
+  int node = node_of(active_.size() - 1);
+  for (std::size_t a = active_.size() - 1; a-- > 0;)
+    node = graph_.Make(Op::kIf, plant_->modes()[active_[a]].when, node_of(a), node);
+  return node;
+}
+
 void PlantProgram::CompileModes() {
   const auto& modes = plant_->modes();
   const auto& described = plant_->description().modes;
-  std::vector<int> scalars;
-  // law - target: squares do not mind the sign, and a product is added to minus the target in one instruction.
   const int output = plant_->NodeOf(SymbolKind::kSignal, plant_->output());
-  const auto compile = [&](const std::string& name, int law, int target, bool law_is_output, const std::string& key) {
-    try {
-      SampledMode mode;
-      mode.name = name;
-      mode.law_is_output = law_is_output;
-      for (const bool error : {false, true}) {
-        const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
-        const expression::CompiledTape tape =
-            CompileTape(&graph_, {node}, static_cast<int>(sampled_.size()), static_cast<int>(plant_->states().size()),
-                        std::move(scalars));
-        scalars = tape.scalars;
-        (error ? mode.error : mode.law) = tape.tape;
-      }
-      for (expression::Tape* tape : {&mode.law, &mode.error}) {
-        const ParameterDescription& exponent = sampled_[tape->exponent];
-        if (tape->shape == expression::TapeShape::kPower && !IsLognormal(exponent))
-          tape->largest_exponent = std::fmax(std::fabs(*exponent.lower), std::fabs(*exponent.upper));
-      }
-      modes_.push_back(std::move(mode));
-    } catch (const std::logic_error& error) {  // length_error, invalid_argument
-      throw PlantError(key, 0, std::string("the law ") + error.what());
-    }
+  const auto key_of = [&](std::size_t a) {
+    return plant_->description().law.empty() ? "mode[" + std::to_string(active_[a]) + "].law" : std::string("law");
   };
-  const auto key_of = [&](std::size_t m) {
-    return plant_->description().law.empty() ? "mode[" + std::to_string(m) + "].law" : std::string("law");
-  };
-  if (merged_) {
-    int law = graph_.Number(0.0);
-    int target = graph_.Number(0.0);
-    bool law_is_output = true;
-    for (std::size_t a = active_.size(); a-- > 0;) {
-      const PlantMode& mode = modes[active_[a]];
-      const int when = mode.when < 0 ? graph_.Number(1.0) : mode.when;
-      law = graph_.Make(Op::kIf, when, InMode(mode.law, a), law);
-      target = graph_.Make(Op::kIf, when, mode.target, target);
-      law_is_output = law_is_output && mode.target == output;
-    }
-    compile("active", law, target, law_is_output, key_of(active_[0]));
+  std::vector<int> scalars;
+  if (part_ == Part::kPrediction) {
+    const int law = OfActingMode([&](std::size_t a) { return InMode(plant_->predicts(), a); });
+    CompileLaw("prediction", law, output, "predicts", &scalars);
+  } else if (merged_) {
+    const int law = OfActingMode([&](std::size_t a) { return InMode(modes[active_[a]].law, a); });
+    const int target = OfActingMode([&](std::size_t a) { return modes[active_[a]].target; });
+    CompileLaw("active", law, target, key_of(0), &scalars);
+    for (const std::size_t m : active_)
+      modes_.back().law_is_output = modes_.back().law_is_output && modes[m].target == output;
   } else {
     for (std::size_t a = 0; a < active_.size(); ++a) {
       const PlantMode& mode = modes[active_[a]];
-      compile(described[active_[a]].name, InMode(mode.law, a), mode.target, mode.target == output, key_of(active_[a]));
+      CompileLaw(described[active_[a]].name, InMode(mode.law, a), mode.target, key_of(a), &scalars);
+      modes_.back().law_is_output = mode.target == output;
     }
   }
-  CompileStates(&scalars);
+  if (part_ == Part::kPrediction || LawsNeedStates()) CompileStates(&scalars);
+  CompileFeatures(scalars);
+}
+
+void PlantProgram::CompileFeatures(const std::vector<int>& scalars) {
+  const auto& modes = plant_->modes();
   num_scalars_ = static_cast<int>(scalars.size());
   std::vector<int> features = scalars;
   const auto feature = [&](int node) {
@@ -123,12 +159,12 @@ void PlantProgram::CompileModes() {
     return static_cast<int>(features.size()) - 1;
   };
   std::size_t next = 0;
-  for (std::size_t m = 0; m < modes.size(); ++m) {
+  for (std::size_t m = 0; m < modes.size() && part_ == Part::kLaws; ++m) {
     Outputs out;
     if (modes[m].when >= 0) out.when = feature(modes[m].when);
     if (modes[m].passive) {
       if (graph_.at(modes[m].law).sampled)
-        throw PlantError(key_of(m), 1, "what a passive mode shows depends on no parameter");
+        throw PlantError("mode[" + std::to_string(m) + "].law", 1, "what a passive mode shows depends on no parameter");
       out.passive = feature(modes[m].law);
     } else {
       out.sampled = merged_ ? 0 : static_cast<int>(next++);
@@ -136,6 +172,9 @@ void PlantProgram::CompileModes() {
     }
     outputs_.push_back(out);
   }
+  // What is shown is shown at every sample, whatever mode acts.
+  if (part_ == Part::kPrediction)
+    outputs_.push_back({-1, feature(plant_->NodeOf(SymbolKind::kSignal, plant_->output())), -1, 0});
   try {
     features_ = expression::FeatureProgram(graph_, features);
   } catch (const std::length_error& error) {
@@ -148,22 +187,16 @@ void PlantProgram::CompileStates(std::vector<int>* scalars) {
   std::vector<int> rates, starts;
   for (const PlantState& state : plant_->states()) {
     // In a mode a parameter means that mode's value; in a passive one that of the last mode that is none.
-    int rate = InMode(state.rate, active_.size() - 1);
-    int start = InMode(state.start, active_.size() - 1);
-    for (std::size_t a = active_.size() - 1; a-- > 0;) {
-      const int when = plant_->modes()[active_[a]].when;
-      rate = graph_.Make(Op::kIf, when, InMode(state.rate, a), rate);
-      start = graph_.Make(Op::kIf, when, InMode(state.start, a), start);
-    }
-    rates.push_back(rate);
-    starts.push_back(start);
+    rates.push_back(OfActingMode([&](std::size_t a) { return InMode(state.rate, a); }));
+    starts.push_back(OfActingMode([&](std::size_t a) { return InMode(state.start, a); }));
   }
   states_ = PlantStates(*plant_, &graph_, rates, starts, static_cast<int>(sampled_.size()), scalars);
 }
 
 void PlantProgram::FillInfo() {
   const PlantDescription& description = plant_->description();
-  const auto& reports = description.reports;
+  const std::vector<ReportDescription> none;
+  const auto& reports = part_ == Part::kLaws ? description.reports : none;
   if (sampled_.size() + reports.size() > static_cast<std::size_t>(kMaxReported))
     throw PlantError("report", 0,
                      "at most " + std::to_string(kMaxReported) + " quantities are reported, parameters included");

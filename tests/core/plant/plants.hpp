@@ -35,6 +35,22 @@ inline PlantDescription DescribedAxis() {
   return plant;
 }
 
+/// A vessel that a valve fills (u > 0) and drains (u < 0) at rates that are measured; its level is what is shown.
+inline PlantDescription DescribedVessel() {
+  PlantDescription plant;
+  plant.name = "vessel";
+  plant.output = "y";
+  plant.predicts = "level";
+  plant.signals = {{"u", "1", "drive", ""}, {"r", "m/s", "", ""}, {"y", "m", "level", ""}};
+  plant.parameters = {{"g", "m/s", "normal", 0.0, 5.0}};
+  plant.parameters[0].per_mode = true;
+  plant.modes = {
+      {"fill", "u > 0", "g*u", "r", false}, {"drain", "u < 0", "g*u", "r", false}, {"shut", "", "", "", true}};
+  plant.states = {{"level", "m", "level", "if(u != 0, g*u, 0)", "y", "", 1}};
+  plant.noise.std = 0.05;
+  return plant;
+}
+
 inline std::shared_ptr<const PlantProgram> Program(PlantDescription plant) {
   return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(std::move(plant)));
 }

@@ -48,11 +48,13 @@ int Check(const Arguments& a) {
     return support::kExitOk;
   }
   const std::shared_ptr<const support::Recording> data = ReadData(a);
-  if (MayRun(*plant)) {
-    // What is more than the estimator can hold is an error of the file, with its place.
-    const auto program = a.with.empty() ? support::ReadPlantProgram(path) : std::make_shared<const PlantProgram>(plant);
-    std::cout << CostText(program, data);
+  // What is more than the estimator can hold is an error of the file, with its place; with effects it was said above.
+  std::shared_ptr<const PlantProgram> program;
+  try {
+    program = a.with.empty() ? support::ReadPlantProgram(path) : std::make_shared<const PlantProgram>(plant);
+  } catch (const PlantError&) {
   }
+  if (program != nullptr) std::cout << CostText(program, data);
   if (data != nullptr) std::cout << '\n' << IdentifiabilityText(plant, *data);
   return support::kExitOk;
 }

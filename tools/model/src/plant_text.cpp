@@ -84,7 +84,6 @@ std::string NoiseText(const Plant& plant) {
 }
 
 std::string EstimatorText(const Plant& plant) {
-  if (!MayRun(plant)) return "the estimator runs no plants with `predicts`\n";
   std::string text = "the estimator samples";
   try {
     const PlantProgram program(std::make_shared<const Plant>(plant));
@@ -99,8 +98,6 @@ std::string EstimatorText(const Plant& plant) {
 }
 
 }  // namespace
-
-bool MayRun(const Plant& plant) { return plant.predicts() < 0; }
 
 std::string PlantText(const Plant& plant) {
   const PlantDescription& description = plant.description();

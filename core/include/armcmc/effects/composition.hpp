@@ -8,6 +8,7 @@
 #include "armcmc/effects/flow_plan.hpp"
 #include "armcmc/effects/flow_rows.hpp"
 #include "armcmc/effects/registry.hpp"
+#include "armcmc/last_pack.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/model.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -75,16 +76,6 @@ class Composition {
     EffectGate gate = EffectGate::kAlways;
     double from_s = 0.0, until_s = 0.0;
     int parameter = 0;  ///< Row of its first amplitude among the parameters.
-  };
-  /// Which pack was the last.
-  struct LastPack {
-    std::int64_t seq = -1, run_id = 0;
-    double dt = 0.0;
-    [[nodiscard]] static LastPack Of(const DataPack& pack) noexcept { return {pack.seq, pack.run_id, pack.dt}; }
-    /// The next of the same run, sampled alike: what is remembered holds.
-    [[nodiscard]] bool ContinuesWith(const DataPack& pack) const noexcept {
-      return seq >= 0 && pack.seq == seq + 1 && pack.run_id == run_id && pack.dt == dt;
-    }
   };
   /// What one pack leaves to the next. Two of them, so that a pack that fails changes nothing.
   struct Memory {

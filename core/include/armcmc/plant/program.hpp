@@ -31,11 +31,15 @@ struct PlantPack {
 ///
 /// Modes whose parameters are all their own are sampled apart. Where a parameter is shared, all modes are sampled as
 /// one, whose law is that of the mode that acts; parameters of a mode then carry its name. So they are where the plant
-/// has states, which go on from mode to mode.
+/// has states that a law needs, which go on from mode to mode.
 class PlantProgram {
  public:
+  /// kLaws: what is sampled. kPrediction: what is shown as prediction of the output where the modes explain a target,
+  /// as a law of all parameters and states.
+  enum class Part : std::uint8_t { kLaws, kPrediction };
+
   /// @throws PlantError where the plant is past a limit of the estimator.
-  explicit PlantProgram(std::shared_ptr<const Plant> plant);
+  explicit PlantProgram(std::shared_ptr<const Plant> plant, Part part = Part::kLaws);
   PlantProgram(const PlantProgram&) = delete;  // info() points into it
   PlantProgram& operator=(const PlantProgram&) = delete;
 
@@ -66,6 +70,13 @@ class PlantProgram {
     return modes_[static_cast<std::size_t>(mode)].law_is_output;
   }
 
+  /// Of the laws: the prediction; null where the laws predict the output themselves.
+  [[nodiscard]] const PlantProgram* prediction() const noexcept { return prediction_.get(); }
+  /// The prediction's parameter that parameter d is in a sampled mode.
+  [[nodiscard]] int InPrediction(int mode, int d) const noexcept ARMCMC_NONBLOCKING {
+    return in_prediction_[static_cast<std::size_t>(mode)][static_cast<std::size_t>(d)];
+  }
+
   /// Reported quantity r for sampled parameters theta. @rt No heap, no lock, no throw.
   [[nodiscard]] double Report(int r, const double* theta) const noexcept ARMCMC_NONBLOCKING;
   /// True where it is the sampled parameter r.
@@ -89,13 +100,21 @@ class PlantProgram {
   };
 
   void ChooseParameters();
+  /// The law of the mode that acts, the last one's where none does.
+  template <class NodeOfMode>
+  [[nodiscard]] int OfActingMode(NodeOfMode node_of);
+  [[nodiscard]] bool LawsNeedStates() const;
   void CompileModes();
+  void CompileLaw(const std::string& name, int law, int target, const std::string& key, std::vector<int>* scalars);
+  void CompileFeatures(const std::vector<int>& scalars);
+  void MakePrediction();
   void CompileStates(std::vector<int>* scalars);
   void FillInfo();
   /// The node with the plant's parameters replaced by those that are sampled in one of its modes.
   [[nodiscard]] int InMode(int node, std::size_t active);
 
   std::shared_ptr<const Plant> plant_;
+  Part part_;
   expression::Graph graph_;
   std::vector<std::size_t> active_;  ///< Modes of the plant that are not passive.
   bool merged_ = false;
@@ -110,6 +129,8 @@ class PlantProgram {
   std::vector<std::string> names_, units_;
   std::string target_unit_;
   ModelInfo info_{};
+  std::unique_ptr<const PlantProgram> prediction_;
+  std::array<std::array<int, kMaxParams>, kMaxModes> in_prediction_{};
 };
 
 }  // namespace armcmc
