@@ -155,8 +155,8 @@ Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, 
     if (!active[i]) continue;
     // Modes that share a pack share the time that is left.
     const Nanos now = clock.Now();
-    const Nanos mode_deadline =
-        clock.read != nullptr ? now + (deadline_ns - now) / pending : std::numeric_limits<Nanos>::max() / 2;
+    const Nanos mode_deadline = clock.read != nullptr ? now + (deadline_ns - now) / std::max(pending, 1)
+                                                      : std::numeric_limits<Nanos>::max() / 2;
     --pending;
     const Status mode_status =
         s.DrawMode(i, static_cast<std::uint64_t>(pack.seq), mode_deadline, clock, limits[i], result);
