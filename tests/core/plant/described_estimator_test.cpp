@@ -273,7 +273,7 @@ TEST(DescribedEstimator, APredictionOfTooManyParametersIsAnError) {
   description.predicts = "level";
   description.modes.insert(description.modes.begin() + 1, {"half", "u > 0.5", "(a + b)*u + c*u^2", "r", false});
   for (const char* name : {"a", "b", "c"}) {
-    description.parameters.push_back({name, name[0] == 'c' ? "m/s" : "m/s", "normal", 0.0, 5.0});
+    description.parameters.push_back({name, "m/s", "normal", 0.0, 5.0});
     description.parameters.back().per_mode = true;
   }
   for (std::size_t m : {0U, 2U}) description.modes[m].law = "(g + a + b)*u + c*u^2";

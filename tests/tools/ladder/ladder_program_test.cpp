@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,24 @@ TEST_F(LadderProgram, SaysWhatIsWrongWithAnOrder) {
   refused({"--model", "servo_axes", "--data", csv}, "servo_axes");
   std::ofstream(dir_ / "few.csv") << "t,q,v,a,F\n0,0,0,0,0\n0.01,0,0,0,1\n";
   refused({"--model", "servo_axis", "--data", dir_ / "few.csv"}, "few.csv");
+}
+
+TEST_F(LadderProgram, AGalleryLinksTheReportsOfAFolder) {
+  const Outcome empty = RunProgram(Program("armcmc-gap"), {"--gallery", dir_.path()});
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_THAT(empty.err, HasSubstr("no folder in it holds result.json"));
+  ASSERT_EQ(Gap({"--model", "servo_axis", "--data", Simulate("")}).code, 0);
+  const Outcome run = RunProgram(Program("armcmc-gap"), {"--gallery", dir_.path()});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, "gallery: " + (dir_ / "index.html").string() + "\n");
+  std::ifstream file(dir_ / "index.html");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(page, HasSubstr("href=\"out/report.html\""));
+  EXPECT_THAT(page, HasSubstr("nothing is missing"));
+  std::ofstream(dir_ / "out" / "result.json") << "{}";
+  const Outcome broken = RunProgram(Program("armcmc-gap"), {"--gallery", dir_.path()});
+  EXPECT_EQ(broken.code, 2);
+  EXPECT_THAT(broken.err, HasSubstr("out/result.json: is no result of armcmc-gap"));
 }
 
 }  // namespace

@@ -20,12 +20,13 @@
 #include "armcmc/support/progress.hpp"
 #include "armcmc/support/strict_toml.hpp"
 #include "budget.hpp"
+#include "gallery_page.hpp"
 
 namespace armcmc::gap {
 namespace {
 
 struct Arguments {
-  std::string model = "hunt_crossley", data, recording, data_dir, heldout, earlier, out, steps = "show";
+  std::string model = "hunt_crossley", data, recording, data_dir, heldout, earlier, out, gallery, steps = "show";
   std::vector<std::string> without;
   std::uint64_t seed = 1;
   double period_ms = 100.0;
@@ -46,6 +47,10 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--earlier", a->earlier,
                   "CSV of an earlier run with the same effect: names that it leaves open are judged by both runs");
   app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->type_name("TEXT REQUIRED");
+  app->add_option("--gallery", a->gallery,
+                  "Only makes one page, index.html, that links the reports in the folders of this folder")
+      ->excludes(data)
+      ->excludes(recording);
   app->add_option("--seed", a->seed, "Seed of the bootstrap: the same seed gives the same result")
       ->capture_default_str();
   app->add_option("--steps", a->steps,
@@ -66,7 +71,8 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-gap --model hunt_crossley --data run.csv --out gap\n"
       "  armcmc-estimator --config hunt_crossley --model gap/model.toml\n"
       "  armcmc-gap --model valve.toml --data valve.csv --out gap\n"
-      "  armcmc-gap --recording tools/gap/recordings/emps_estimation.toml --data-dir data --out gap\n"
+      "  armcmc-gap --recording tools/gap/recordings/emps_estimation.toml --data-dir data --out gaps/emps\n"
+      "  armcmc-gap --gallery gaps\n"
       "Where several names remain, gap/experiment.toml is the motion that separates them. Make it, and let both runs "
       "speak:\n"
       "  armcmc-gap --model hunt_crossley --data experiment.csv --earlier run.csv --out gap2\n"
@@ -258,6 +264,11 @@ int RunDescribed(const Arguments& a) {
 }
 
 int Run(const Arguments& a) {
+  if (!a.gallery.empty()) {
+    const std::filesystem::path page = WriteGallery(a.gallery);
+    std::cout << "gallery: " << page.string() << '\n';
+    return support::kExitOk;
+  }
   if (a.recording.empty() && a.data.empty())
     throw support::InputError("nothing to diagnose: give --data CSV or --recording FILE (see --help)");
   if (a.out.empty()) throw support::InputError("nowhere to write: give --out FOLDER (see --help)");
