@@ -91,7 +91,7 @@ double FlexibleGain(const View& view, const Trial& trial) {
 /// Whether a trial leaves more than noise: what a flexible function takes, or what is rough at the sampling rate.
 /// @param floor  Of neighbouring samples; 0: the output was smoothed, so that they say nothing.
 bool LeavesMore(const View& view, const Trial& trial, double floor) {
-  constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.5;
+  constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.2;
   return FlexibleGain(view, trial) > kMore || (floor > 0.0 && trial.fit.error_sd > kRougher * floor);
 }
 
