@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,10 @@ using ::testing::IsEmpty;
 double Sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 /// Climbs with a part of the catalogue, which takes a second where all of it takes ten.
-Ladder ClimbWith(const std::vector<std::string>& effects, const Dataset& data) {
+Ladder ClimbWith(const std::vector<std::string>& effects, const Dataset& data,
+                 PlantDescription plant = test::AxisPlant()) {
   ClimbRequest request;
-  request.plant = std::make_shared<const Plant>(test::AxisPlant());
+  request.plant = std::make_shared<const Plant>(std::move(plant));
   for (EffectEntry& entry : support::ReadEffectLibrary())
     if (std::find(effects.begin(), effects.end(), entry.name) != effects.end())
       request.entries.push_back(std::move(entry));
@@ -125,6 +127,16 @@ TEST(Climb, WhatDataKeptApartDoNotShowIsWithdrawn) {
   EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
   ASSERT_FALSE(ladder.notes.empty());
   EXPECT_THAT(ladder.notes.back(), ::testing::HasSubstr("output_drift was not named"));
+}
+
+TEST(Climb, AnInputThatGivesWayIsFoundThoughTheLawBendsAfterIt) {
+  // Stiffness and mass make up for much of what a weak input lacks: limits far from the data's are out of reach of a
+  // fit that begins at these.
+  const Ladder ladder =
+      ClimbWith({"input_saturation", "cubic_stiffness", "coulomb_friction", "drag"},
+                test::SwingData([](double u) { return 6.0 * std::tanh(u / 6.0); }), test::SwingPlant());
+  ASSERT_FALSE(ladder.rungs.empty());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("input_saturation"));
 }
 
 }  // namespace
