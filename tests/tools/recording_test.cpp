@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <random>
 #include <string>
 
 #include "support/paths.hpp"
@@ -91,6 +92,26 @@ TEST_F(RecordingFile, ScalesColumnsAndMakesDerivativesWithoutDelay) {
   }
   EXPECT_EQ(r.held_out[699], 0);
   EXPECT_EQ(r.held_out[700], 1) << "the last 30 % where nothing is said";
+}
+
+TEST_F(RecordingFile, AFilteredOutputKnowsTheNoiseThatTheFilterLetThrough) {
+  const auto force = [](int n) { return 20.0 * std::sin(2.0 * M_PI * 1.5e-3 * n); };
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.3);
+  std::ofstream file(dir_ / "data.csv");
+  file.precision(15);
+  file << "t,q,F\n";
+  for (int n = 0; n < 6000; ++n)
+    file << 1e-3 * n << ',' << 0.1 * std::sin(2e-3 * n) << ',' << force(n) + noise(random) << '\n';
+  file.close();
+  const std::string columns = "[columns]\nt = { column = \"t\" }\nq = { column = \"q\" }\nF = { column = \"F\" }\n";
+  const Recording r = Read("[derivatives]\nbandwidth_hz = 40\nfiltered_with = [\"F\"]\n", columns);
+  double square = 0.0;
+  for (int n = 100; n < 5900; ++n)
+    square += std::pow(r.signals[3].value[static_cast<std::size_t>(n)] - force(n), 2) / 5800.0;
+  EXPECT_NEAR(r.smoothed_noise, 0.3 * std::sqrt(2.0 * 40.0 * 1e-3), 0.01);
+  EXPECT_NEAR(r.smoothed_noise, std::sqrt(square), 0.2 * std::sqrt(square));
+  EXPECT_EQ(Read("[derivatives]\nbandwidth_hz = 40\n", columns).smoothed_noise, 0.0) << "not filtered";
 }
 
 TEST_F(RecordingFile, AColumnMayBeAnExpression) {

@@ -89,7 +89,7 @@ double FlexibleGain(const View& view, const Trial& trial) {
 }
 
 /// Whether a trial leaves more than noise: what a flexible function takes, or what is rough at the sampling rate.
-/// @param floor  Of neighbouring samples; 0: the output was smoothed, so that they say nothing.
+/// @param floor  Standard deviation of the noise; 0: nobody knows.
 bool LeavesMore(const View& view, const Trial& trial, double floor) {
   constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.2;
   return FlexibleGain(view, trial) > kMore || (floor > 0.0 && trial.fit.error_sd > kRougher * floor);
@@ -311,7 +311,8 @@ Ladder Climb(const ClimbRequest& request) {
     ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
     return ladder;
   }
-  ladder.noise_floor = NoiseFloor(data, base.model->target(), base.model->active());
+  ladder.noise_floor =
+      request.known_noise > 0.0 ? request.known_noise : NoiseFloor(data, base.model->target(), base.model->active());
   ladder.base = base;
   std::set<std::string> families;
   for (int r = 0; r < request.max_rungs; ++r) {
@@ -329,7 +330,7 @@ Ladder Climb(const ClimbRequest& request) {
                 static_cast<double>(r) / request.max_rungs);
     TryAll(ladder.plant, data, ladder.view, &rung);
     Bootstrap(&rung);
-    const double floor = request.smoothed ? 0.0 : ladder.noise_floor;
+    const double floor = ladder.noise_floor;
     const Rung* const open = !ladder.rungs.empty() && ladder.rungs.back().open ? &ladder.rungs.back() : nullptr;
     Judge(ladder.view, floor, families, open != nullptr ? open->leader().alone.folds : 1.0, &rung);
     Sort(&rung);
@@ -374,7 +375,7 @@ Ladder Climb(const ClimbRequest& request) {
   ladder.final_trial = base;
   if (base.judged) {
     ladder.flexible_gain = FlexibleGain(ladder.view, base);
-    ladder.complete = !LeavesMore(ladder.view, base, request.smoothed ? 0.0 : ladder.noise_floor);
+    ladder.complete = !LeavesMore(ladder.view, base, ladder.noise_floor);
   }
   return ladder;
 }

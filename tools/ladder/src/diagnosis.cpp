@@ -122,7 +122,9 @@ class Teller {
     const double left = ladder_.final_trial.fit.error_sd * std::sqrt(std::max(0.0, 1.0 - ladder_.flexible_gain));
     gap.noise_floor = std::min(ladder_.noise_floor, left);
     result_.notes.push_back(
-        ladder_.noise_floor <= left
+        request_.recording.smoothed_noise > 0.0 && ladder_.noise_floor <= left
+            ? "noise floor: from differences of neighbouring samples before the filter, " + Number(ladder_.noise_floor)
+        : ladder_.noise_floor <= left
             ? "noise floor: from differences of neighbouring samples, " + Number(ladder_.noise_floor)
             : "noise floor: neighbouring samples differ by more (" + Number(ladder_.noise_floor) +
                   ") than models leave, since the signal moves between them; taken from what a flexible model leaves");
@@ -305,7 +307,7 @@ Diagnosis Diagnose(const DiagnosisRequest& request) {
     if (!named(request.without) && !named(request.plant->effects.without)) climb.entries.push_back(std::move(entry));
   }
   climb.data = data;
-  climb.smoothed = request.recording.output_smoothed;
+  climb.known_noise = request.recording.smoothed_noise;
   climb.progress = request.progress;
   diagnosis.ladder = Climb(climb);
   const Ladder& ladder = diagnosis.ladder;

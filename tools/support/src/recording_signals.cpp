@@ -171,6 +171,18 @@ std::string LikelyCause(double factor) {
   return std::fabs(factor + 1.0) < 0.25 ? "; likely its sign" : "";
 }
 
+/// Standard deviation of white noise, from third differences of neighbouring samples, which smooth signals hardly have.
+double Roughness(const Recording& recording, const std::vector<double>& value) {
+  double square = 0.0;
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < recording.runs.size(); ++r) {
+    const std::size_t end = r + 1 < recording.runs.size() ? recording.runs[r + 1] : value.size();
+    for (std::size_t n = recording.runs[r] + 3; n < end; ++n, ++count)
+      square += std::pow(value[n] - 3.0 * value[n - 1] + 3.0 * value[n - 2] - value[n - 3], 2);
+  }
+  return count > 0 ? std::sqrt(square / (20.0 * static_cast<double>(count))) : 0.0;
+}
+
 }  // namespace
 
 void Derive(const RecordingFile& file, const PlantDescription& plant, const std::string& name, Recording* recording) {
@@ -183,8 +195,10 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
     for (const std::string& signal : file.filtered_with) {
       std::vector<double>& value = recording->signals[index_of(signal)].value;
       if (value.empty()) continue;
+      if (signal == plant.output)
+        recording->smoothed_noise =
+            Roughness(*recording, value) * std::sqrt(std::min(1.0, 2.0 * file.bandwidth_hz * recording->dt));
       value = Filtered(*recording, value, file.bandwidth_hz);
-      recording->output_smoothed = recording->output_smoothed || signal == plant.output;
       recording->notes.push_back(signal + ": low pass without delay, " + ExactNumber(file.bandwidth_hz) + " Hz");
     }
   // One may be derived from another that is derived itself.

@@ -64,7 +64,8 @@ struct ClimbRequest {
   std::shared_ptr<const Plant> plant;
   std::vector<EffectEntry> entries;
   Dataset data;
-  bool smoothed = false;  ///< The output was filtered: neighbouring samples say nothing of its noise.
+  /// Standard deviation of the noise, where neighbouring samples do not tell it since the output was filtered; else 0.
+  double known_noise = 0.0;
   int max_rungs = 5;
   std::function<void(const std::string& step, double share)> progress;
 };

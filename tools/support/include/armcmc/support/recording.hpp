@@ -34,7 +34,8 @@ struct Recording {
   std::vector<double> t;                ///< [row] s, increasing within a run.
   std::vector<std::size_t> runs;        ///< First row of every run: no memory and no derivative goes across.
   std::vector<std::uint8_t> held_out;   ///< [row] 1: kept apart, to judge a model on.
-  bool output_smoothed = false;         ///< Was filtered here.
+  /// Standard deviation of the noise that the filter has let through where the output was filtered here; else 0.
+  double smoothed_noise = 0.0;
   std::vector<PublishedFigure> published;
   std::vector<std::string> notes;  ///< What a person should know: what was derived, resampled, left out.
 
