@@ -25,7 +25,7 @@ std::filesystem::path WriteGallery(const std::filesystem::path& folder) {
   std::vector<nlohmann::json> parsed;
   parsed.reserve(results.size());
   std::vector<GalleryEntry> entries;
-  const std::filesystem::path page = folder / "index.html";
+  std::filesystem::path page = folder / "index.html";
   for (const std::filesystem::path& path : results) {
     try {
       std::ifstream file(path);
