@@ -131,9 +131,14 @@ void Estimator::Impl::PredictSimulated(const DataPack& pack, Estimate* e) noexce
   }
   FillSimulated(&shown_theta);
   trajectory.Run(shown_theta, &band_prediction);
-  for (std::size_t n = 0; n < samples; ++n) e->y_shown[n] = e->y_shown_free_run[n] = band_prediction.value[n][0];
+  for (std::size_t n = 0; n < samples; ++n) {
+    const double shown_now = band_prediction.value[n][0];
+    if (std::isfinite(shown_now)) e->y_shown[n] = e->y_shown_free_run[n] = shown_now;
+  }
   e->y_free_run = e->y_shown_free_run[last];
   SetBand(band_prediction.value[last], e);
+  // One draw that diverges leaves no mean.
+  if (!std::isfinite(e->y_lo) || !std::isfinite(e->y_hi)) e->y_pred = e->y_lo = e->y_hi = kUnknown;
 }
 
 void Estimator::Impl::StoreBandDraws(int mode, const ModeDraws& draws) noexcept {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "armcmc/ladder/dataset.hpp"
+#include "core/plant/plants.hpp"
 
 namespace armcmc::test {
 
@@ -47,18 +48,9 @@ inline ladder::Dataset AxisData(const std::function<double(const AxisSample&)>& 
 
 /// The axis without anything hidden.
 inline PlantDescription AxisPlant() {
-  PlantDescription plant;
-  plant.name = "axis";
-  plant.output = "F";
-  plant.law = "M*a + Fv*v + off";
-  plant.signals = {{"q", "m", "position", ""},
-                   {"v", "m/s", "velocity", "q"},
-                   {"a", "m/s^2", "acceleration", "v"},
-                   {"F", "N", "force", ""}};
-  plant.parameters = {{"M", "kg", "normal", 90.0, 30.0, 1.0, 500.0},
-                      {"Fv", "N s/m", "normal", 200.0, 100.0, 0.0, 2000.0},
-                      {"off", "N", "normal", 0.0, 10.0}};
-  plant.noise.std = 1.0;
+  PlantDescription plant = DescribedAxis();
+  plant.signals.insert(plant.signals.begin(), {"q", "m", "position", ""});
+  plant.signals[1].derivative_of = "q";
   return plant;
 }
 

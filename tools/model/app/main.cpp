@@ -42,18 +42,15 @@ int Check(const Arguments& a) {
   const support::PlantFile file = support::ReadPlantFile(path);
   const auto plant =
       std::make_shared<const Plant>(a.with.empty() ? file.plant.description() : Composed(file, a.with, std::nullopt));
-  std::cout << PlantText(*plant);
-  if (a.effects) {
-    std::cout << '\n' << FittingText(plant->description(), support::EffectsFor(file.effects));
-    return support::kExitOk;
-  }
-  const std::shared_ptr<const support::Recording> data = ReadData(a);
-  // What is more than the estimator can hold is an error of the file, with its place; with effects it was said above.
+  // What is more than the estimator can hold is an error of the file, with its place. With effects PlantText says it.
   std::shared_ptr<const PlantProgram> program;
   try {
     program = a.with.empty() ? support::ReadPlantProgram(path) : std::make_shared<const PlantProgram>(plant);
   } catch (const PlantError&) {
   }
+  const std::shared_ptr<const support::Recording> data = ReadData(a);
+  std::cout << PlantText(*plant);
+  if (a.effects) std::cout << '\n' << FittingText(plant->description(), support::EffectsFor(file.effects));
   if (program != nullptr) std::cout << CostText(program, data);
   if (data != nullptr) std::cout << '\n' << IdentifiabilityText(plant, *data);
   return support::kExitOk;
