@@ -105,9 +105,9 @@ bool Kin(const EffectEntry& a, const EffectEntry& b) {
 std::size_t NumParameters(const Contender& c) { return c.candidate.form().parameters.size(); }
 
 /// Rungs are told of in order; a share of the whole is a guess.
-class Teller {
+class SharedProgress {
  public:
-  explicit Teller(const ClimbRequest& request) : request_(request) {}
+  explicit SharedProgress(const ClimbRequest& request) : request_(request) {}
   void Tell(const std::string& step, double share) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (request_.progress) request_.progress(step, share);
@@ -299,13 +299,13 @@ void Sort(Rung* rung) {
 }  // namespace
 
 Ladder Climb(const ClimbRequest& request) {
-  Teller teller(request);
+  SharedProgress progress(request);
   Ladder ladder;
   ladder.entries = std::make_shared<const std::vector<EffectEntry>>(request.entries);
   ladder.plant = request.plant;
   Dataset data = Compared(*ladder.plant, request.data);
 
-  teller.Tell("fitting the model as it is", 0.0);
+  progress.Tell("fitting the model as it is", 0.0);
   Trial base = FitAlone(ladder.plant, &data);
   if (!base.fit.valid) {
     ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
@@ -326,8 +326,8 @@ Ladder Climb(const ClimbRequest& request) {
     rung.view = ladder.view;
     for (Candidate& candidate : Candidates(ladder.plant->description(), *ladder.entries, scales, &ladder.notes))
       rung.contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false});
-    teller.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
-                static_cast<double>(r) / request.max_rungs);
+    progress.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
+                  static_cast<double>(r) / request.max_rungs);
     TryAll(ladder.plant, data, ladder.view, &rung);
     Bootstrap(&rung);
     const double floor = ladder.noise_floor;
