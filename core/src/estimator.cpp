@@ -42,9 +42,7 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       predictor(info, s.constants, composition.flow()),
       trajectory(info.described != nullptr ? info.described->prediction() : nullptr, kernels),
       summary(s.sampler.max_draws),
-      gap_watch(info.described == nullptr
-                    ? std::make_unique<GapWatch>(settings, model, kernels, FalseAlarmRate(settings, info))
-                    : nullptr),
+      gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
       bend_watch(info.plant == PlantKind::kSoftActuator
                      ? std::make_unique<BendWatch>(settings, FalseAlarmRate(settings, info))
                      : nullptr) {
@@ -258,7 +256,7 @@ void Estimator::Reset() noexcept {
   s.trajectory.Reset();
   s.composition.Reset();
   s.ForgetStates();
-  if (s.gap_watch) s.gap_watch->Reset();
+  s.gap_watch.Reset();
   if (s.bend_watch) s.bend_watch->Reset();
   s.report_mode = 0;
 }
@@ -275,6 +273,13 @@ int Estimator::num_reported() const noexcept { return impl_->info.num_reported; 
 ReportedQuantity Estimator::reported(int index) const noexcept {
   const ReportedInfo& r = impl_->info.reported[static_cast<std::size_t>(index)];
   return {r.name, r.unit};
+}
+
+bool Estimator::watches_gap() const noexcept { return impl_->gap_watch.enabled(); }
+
+std::string_view Estimator::gap_check_name(int check) const noexcept {
+  const std::string_view fitted = impl_->gap_watch.CheckName(check);
+  return fitted.empty() && impl_->info.described == nullptr ? GapCheckName(impl_->info.plant, check) : fitted;
 }
 
 int Estimator::num_inputs() const noexcept { return impl_->info.num_inputs; }

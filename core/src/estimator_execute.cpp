@@ -11,7 +11,6 @@ namespace armcmc {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr GapState kNotWatched{};
 
 }  // namespace
 
@@ -178,7 +177,6 @@ void Estimator::Impl::SetBand(const std::array<double, kTileLanes>& outputs, Est
 }
 
 void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
-  if (!gap_watch) return;
   GapReference estimate;
   bool changed = false;
   for (int m = 0; m < info.num_modes; ++m) {
@@ -187,17 +185,17 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     estimate.known[i] = mode.known && mode.noise_std > 0.0;
     estimate.noise_std[i] = mode.noise_std;
     for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
-      estimate.theta[i][d] = mode.marginal[static_cast<std::size_t>(info.ReportedOf(static_cast<int>(d)))].ar_ap;
+      estimate.theta[i][d] = info.Sampled(
+          static_cast<int>(d), mode.marginal[static_cast<std::size_t>(info.ReportedOf(static_cast<int>(d)))].ar_ap);
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
-  gap_watch->Step(pack, estimate, changed);
+  gap_watch.Step(pack, estimate, changed);
   if (bend_watch) bend_watch->Step(pack, predictor, shown[0]);
   e->gap = Gap();
 }
 
 const GapState& Estimator::Impl::Gap() const noexcept {
-  if (!gap_watch) return kNotWatched;
-  const GapState& fitted = gap_watch->state();
+  const GapState& fitted = gap_watch.state();
   if (!bend_watch) return fitted;
   const GapState& bend = bend_watch->state();
   if (fitted.suspected != bend.suspected) return bend.suspected ? bend : fitted;

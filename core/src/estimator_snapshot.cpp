@@ -31,7 +31,7 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
       out.PutRow(shown.theta[m].data(), static_cast<std::size_t>(s.info.num_parameters));
     }
   }
-  if (s.gap_watch) s.gap_watch->Save(&out);
+  s.gap_watch.Save(&out);
   if (s.bend_watch) s.bend_watch->Save(&out);
   return out.size();
 }
@@ -58,7 +58,8 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
       display.Row(shown.theta[m].data(), static_cast<std::size_t>(s.info.num_parameters));
     }
   }
-  if (s.gap_watch) s.gap_watch->Restore(&display);
+  // Snapshots of described plants end here that were written when those were not watched.
+  if (s.info.described == nullptr || !display.finished()) s.gap_watch.Restore(&display);
   if (s.bend_watch) s.bend_watch->Restore(&display);
   if (posterior.finished() && display.finished()) return true;
   Reset();

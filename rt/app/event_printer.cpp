@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/deadline_monitor.hpp"
 #include "armcmc/rt/injection.hpp"
@@ -48,7 +47,7 @@ bool IsNews(EventKind kind) { return kind != EventKind::kPacksLost && kind != Ev
 
 }  // namespace
 
-std::string EventText(const rt::Event& event) {
+std::string EventText(const rt::Event& event, const GapCheckNames& gap_check) {
   const std::string a = std::to_string(event.a);
   switch (event.kind) {
     case EventKind::kWaitingForPlant: return "waiting for the plant";
@@ -66,8 +65,8 @@ std::string EventText(const rt::Event& event) {
       return "pack " + a + ": " + std::string(ToString(static_cast<Status>(event.detail))) + ", what was known is kept";
     case EventKind::kPublishFailed: return "publishing failed, " + a + " times so far";
     case EventKind::kGapSuspected:
-      return "GAP SUSPECTED: the model misses something since pack " + a + ", seen in " +
-             std::string(GapCheckName(static_cast<PlantKind>(event.b), event.detail));
+      return "GAP SUSPECTED: the model misses something since pack " + a +
+             (gap_check ? ", seen in " + gap_check(event.detail) : "");
     case EventKind::kClockJumped: return "the plant's clock jumped by " + Millis(event.b) + " at pack " + a;
     case EventKind::kBusFlooded: return "the bus is flooded: " + Count(event.a, "message") + " of other channels";
     case EventKind::kStageHung:
@@ -94,7 +93,7 @@ void EventPrinter::Print(const rt::Event& event) {
     return;
   }
   ++printed_[kind];
-  Line(event.t_ns, EventText(event));
+  Line(event.t_ns, EventText(event, gap_check_));
 }
 
 void EventPrinter::PrintHeldBack(Nanos now_ns) {

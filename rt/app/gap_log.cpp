@@ -13,6 +13,8 @@
 #include <system_error>
 #include <utility>
 
+#include "armcmc/plant/program.hpp"
+
 namespace armcmc::app {
 namespace {
 
@@ -20,15 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr char kStem[] = "gap-";
 constexpr auto kPause = std::chrono::milliseconds(20);
-
-struct Columns {
-  const char* header;
-  std::size_t num_inputs;
-};
-
-Columns ColumnsOf(PlantKind plant) {
-  return plant == PlantKind::kHuntCrossley ? Columns{"t,x,v,f\n", 2} : Columns{"t,u_c,u_d,p,pdot,alpha\n", 4};
-}
 
 void AppendNumber(double value, std::string* text) {
   char digits[32];
@@ -56,14 +49,26 @@ bool WriteWhole(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-GapLog::GapLog(const GapLogSettings& settings, PlantKind plant, rt::RecordRing* packs,
+std::vector<std::string> ColumnsOf(const EstimatorSettings& settings) {
+  if (settings.plant == nullptr)
+    return settings.model == "hunt_crossley" ? std::vector<std::string>{"x", "v", "f"}
+                                             : std::vector<std::string>{"u_c", "u_d", "p", "pdot", "alpha"};
+  std::vector<std::string> names;
+  const PlantDescription& plant = settings.plant->plant().description();
+  for (const SignalDescription& signal : plant.signals)
+    if (signal.name != plant.output) names.push_back(signal.name);
+  names.push_back(plant.output);
+  return names;
+}
+
+GapLog::GapLog(const GapLogSettings& settings, std::vector<std::string> columns, rt::RecordRing* packs,
                const std::atomic<std::int64_t>* alarm, Say say)
     : settings_(settings),
-      plant_(plant),
+      columns_(std::move(columns)),
       packs_(packs),
       alarm_(alarm),
       say_(std::move(say)),
-      num_columns_(ColumnsOf(plant).num_inputs + 2),
+      num_columns_(columns_.size() + 1),
       rows_(kMaxRows * num_columns_) {}
 
 void GapLog::Start() {
@@ -160,7 +165,9 @@ void GapLog::Write() {
   std::string text = "# samples around a suspected gap between the model and the plant; the alarm rose at t = ";
   AppendNumber(alarm_t_, &text);
   text += "\n";
-  text += ColumnsOf(plant_).header;
+  text += "t";
+  for (const std::string& name : columns_) text += "," + name;
+  text += "\n";
   text.reserve(text.size() + count_ * num_columns_ * 24);
   for (std::size_t i = 0; i < count_; ++i) {
     const double* row = Row(i);

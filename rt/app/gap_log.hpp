@@ -11,6 +11,7 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/rt/hand_over.hpp"
+#include "armcmc/settings.hpp"
 
 namespace armcmc::app {
 
@@ -22,10 +23,13 @@ struct GapLogSettings {
   int max_files = 10;                  ///< Oldest of our files in the directory are removed beyond that.
 };
 
+/// What a recording calls the inputs and, last, the output of the plant that is estimated.
+[[nodiscard]] std::vector<std::string> ColumnsOf(const EstimatorSettings& settings);
+
 /// Keeps the last packs and, when the gap watch raises its alarm, writes them to a CSV that armcmc-gap and
-/// armcmc-replay read: t,x,v,f or t,u_c,u_d,p,pdot,alpha. Once at the alarm, and again under the same name when the
-/// data after it are complete or the run ends. A file appears whole (written beside its name, flushed to the disk,
-/// renamed) or not at all.
+/// armcmc-replay read, its columns named as those of the plant (ColumnsOf). Once at the alarm, and again under the same
+/// name when the data after it are complete or the run ends. A file appears whole (written beside its name, flushed to
+/// the disk, renamed) or not at all.
 ///
 /// Runs on a thread of its own without real-time priority. Memory is fixed: at most kMaxRows samples are kept, so that
 /// at high sample rates the window is shorter than asked for.
@@ -34,11 +38,12 @@ class GapLog {
   static constexpr std::size_t kMaxRows = 200'000;
   using Say = std::function<void(const std::string&)>;
 
+  /// @param columns Names of the inputs, in the order of a pack, then of the output.
   /// @param packs   Filled by the collect stage; emptied here.
   /// @param alarm   Number of the pack at which the alarm rose, 0 while there is none.
   /// @param say     Told in words what was written or went wrong; called from the thread of Poll().
-  GapLog(const GapLogSettings& settings, PlantKind plant, rt::RecordRing* packs, const std::atomic<std::int64_t>* alarm,
-         Say say);
+  GapLog(const GapLogSettings& settings, std::vector<std::string> columns, rt::RecordRing* packs,
+         const std::atomic<std::int64_t>* alarm, Say say);
   ~GapLog() { Stop(); }
   GapLog(const GapLog&) = delete;
   GapLog& operator=(const GapLog&) = delete;
@@ -62,7 +67,7 @@ class GapLog {
   void RemoveOldest() const;
 
   GapLogSettings settings_;
-  PlantKind plant_;
+  std::vector<std::string> columns_;
   rt::RecordRing* packs_;
   const std::atomic<std::int64_t>* alarm_;
   Say say_;

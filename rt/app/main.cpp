@@ -192,8 +192,7 @@ int Run(const Options& options) {
   rt::PipelineOptions pipeline_options;
   pipeline_options.max_steps = options.steps;
   if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
-  // A described plant has no gap watch yet, and the watch's window is all that the packs are kept for.
-  pipeline_options.record_packs = configuration.estimator.gap_watch.enabled && configuration.estimator.plant == nullptr;
+  pipeline_options.record_packs = engine.estimator().watches_gap();
   if (injects) pipeline_options.injection = &injection;
   rt::StepEngine* computes = &engine;
   if (injects) computes = &disturbed;
@@ -212,11 +211,13 @@ int Run(const Options& options) {
     std::cerr << kName << ": " << configuration.estimator.model << " on " << configuration.rt.lcm_url
               << ", scoring with " << InstructionSet() << '\n';
   }
-  EventPrinter printer(std::cerr, start_ns, options.verbose);
+  EventPrinter printer(std::cerr, start_ns, options.verbose,
+                       [&engine](int check) { return std::string(engine.estimator().gap_check_name(check)); });
   std::unique_ptr<GapLog> gap_log;
   if (pipeline.record() != nullptr) {
-    gap_log = std::make_unique<GapLog>(configuration.gap_log, engine.plant(), pipeline.record(), &pipeline.gap_alarm(),
-                                       [](const std::string& line) { std::cerr << line + "\n"; });
+    gap_log =
+        std::make_unique<GapLog>(configuration.gap_log, ColumnsOf(configuration.estimator), pipeline.record(),
+                                 &pipeline.gap_alarm(), [](const std::string& line) { std::cerr << line + "\n"; });
     gap_log->Start();
   }
   if (saver) saver->Start();

@@ -123,7 +123,7 @@ Json Injected(const Injection* injection) {
 Json Gap(const GapState& gap, const std::string& window) {
   return {{"watched", gap.watched},
           {"suspected", gap.suspected},
-          {"where", gap.check >= 0 ? Json(gap.where) : Json(nullptr)},
+          {"where", gap.check >= 0 ? Json(gap.where.view()) : Json(nullptr)},
           {"log_evidence", gap.log_evidence},
           {"log_threshold", gap.log_threshold},
           {"share_of_excess_error", gap.share},

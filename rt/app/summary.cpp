@@ -57,7 +57,7 @@ std::string Gap(const GapState& gap, const std::string& window) {
         << ", threshold " << Significant(gap.log_threshold, 3) << ")\n";
     return out.str();
   }
-  out << "GAP SUSPECTED since pack " << gap.since_seq << ": the model misses something, seen in " << gap.where
+  out << "GAP SUSPECTED since pack " << gap.since_seq << ": the model misses something, seen in " << gap.where.view()
       << " (log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
       << ")\n";
   if (!window.empty()) out << "data: " << window << "; armcmc-gap --data finds out what\n";

@@ -186,7 +186,7 @@ void FillStatus(const StatusContext& context, const RtSettings& settings, const 
   message->gap_watched = gap.watched ? 1 : 0;
   message->gap_suspected = gap.suspected ? 1 : 0;
   message->gap_check = gap.check;
-  FillText(gap.where, message->gap_where);
+  FillText(gap.where.view(), message->gap_where);
   message->gap_log_evidence = gap.log_evidence;
   message->gap_log_threshold = gap.log_threshold;
   message->gap_share = gap.share;

@@ -38,8 +38,7 @@ int PublishStage::PublishSteps() noexcept {
 void PublishStage::NoteGap(const GapState& gap) noexcept {
   if (!gap.suspected || gap_alarm_.load(std::memory_order_relaxed) == gap.alarm_seq) return;
   gap_alarm_.store(gap.alarm_seq, std::memory_order_release);
-  events_->Add({MonotonicNow(), EventKind::kGapSuspected, static_cast<std::uint8_t>(gap.check), gap.since_seq,
-                static_cast<std::int64_t>(engine_->plant())});
+  events_->Add({MonotonicNow(), EventKind::kGapSuspected, static_cast<std::uint8_t>(gap.check), gap.since_seq, 0});
 }
 
 void PublishStage::PublishIdleStatus() noexcept { PublishStatus(nullptr); }

@@ -92,7 +92,7 @@ TEST(Snapshot, KeepsTheAlarmOfTheGapWatch) {
   ASSERT_TRUE(resumed.estimator.Restore(saved.adjusted, saved.executed));
   resumed.Step(Contact{}.Pack(601));
   EXPECT_TRUE(resumed.estimate().gap.suspected);
-  EXPECT_EQ(resumed.estimate().gap.where, rig.estimate().gap.where);
+  EXPECT_EQ(resumed.estimate().gap.where.view(), rig.estimate().gap.where.view());
   EXPECT_EQ(resumed.estimate().gap.alarm_seq, rig.estimate().gap.alarm_seq);
   EXPECT_EQ(resumed.estimate().gap.log_evidence, rig.estimate().gap.log_evidence);
 }

@@ -67,7 +67,12 @@ class LivePair : public ::testing::Test {
     arguments.insert(arguments.end(), {"--csv", dir_ / "played.csv", "--log", dir_ / "played.lcm"});
     const Outcome made = RunProgram(Program("armcmc-plant"), arguments);
     EXPECT_EQ(made.code, 0) << made.err;
-    lcm::LogFile messages(dir_ / "played.lcm", "r");
+    return PlayLog(dir_ / "played.lcm");
+  }
+
+  /// The same of packs that are in a log.
+  std::size_t PlayLog(const std::filesystem::path& log) {
+    lcm::LogFile messages(log.string(), "r");
     lcm::LCM bus(bus_->url());
     if (!messages.good() || !bus.good()) {
       ADD_FAILURE() << "nothing to play, or no bus";
@@ -76,7 +81,7 @@ class LivePair : public ::testing::Test {
     const std::size_t before = recorder_->estimates().size();
     std::size_t packs = 0;
     while (const lcm::LogEvent* event = messages.readNextEvent()) {
-      if (event->channel == prefix_ + "PLANT_PACK") {
+      if (event->channel.rfind(prefix_ + "PLANT_PACK", 0) == 0) {  // with or without the number of a version
         if (!recorder_->WaitForEstimates(before + packs)) break;
         ++packs;
       }

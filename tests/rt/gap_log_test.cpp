@@ -25,8 +25,8 @@ class GapLogTest : public ::testing::Test {
     settings.after_s = 1.0;
     return settings;
   }
-  std::unique_ptr<GapLog> Make(const GapLogSettings& settings, PlantKind plant = PlantKind::kHuntCrossley) {
-    return std::make_unique<GapLog>(settings, plant, &ring_, &alarm_,
+  std::unique_ptr<GapLog> Make(const GapLogSettings& settings, std::vector<std::string> columns = {"x", "v", "f"}) {
+    return std::make_unique<GapLog>(settings, std::move(columns), &ring_, &alarm_,
                                     [this](const std::string& line) { said_.push_back(line); });
   }
   void Send(GapLog* log, std::int64_t seq, std::int64_t run_id = 1) {
@@ -160,7 +160,7 @@ TEST_F(GapLogTest, AFullDiskIsSaidAndLeavesNothing) {
 }
 
 TEST_F(GapLogTest, AnActuatorHasItsOwnColumns) {
-  auto log = Make(Settings(), PlantKind::kSoftActuator);
+  auto log = Make(Settings(), {"u_c", "u_d", "p", "pdot", "alpha"});
   Send(log.get(), 1);
   alarm_ = 1;
   log->Poll();

@@ -166,7 +166,8 @@ TEST(FillStatus, CarriesTimesCountersAndFlags) {
   context.output = output.get();
   context.fault_flags = estimator_status_t::FAULT_BAD_DATA;
   context.degraded_flags = estimator_status_t::DEGRADED_NO_FIFO;
-  context.gap = {true, true, 3, "free_direction", 9.5, 5.25, 0.75, 21, 160, 4};
+  context.gap = {true, true, 3, {}, 9.5, 5.25, 0.75, 21, 160, 4};
+  context.gap.where = "free_direction";
   estimator_status_t message;
   std::memset(static_cast<void*>(&message), 0xff, sizeof message);
   FillStatus(context, settings, *counters, *monitor, &message);

@@ -87,7 +87,7 @@ TEST(GapWatchPower, FindsWhatBendsTheActuator) {
     const GapState state =
         Watch(Hiding("soft_actuator_excited", effect, 1.0, 1, kSeconds), 1, kSeconds, "soft_actuator_excited");
     EXPECT_TRUE(state.suspected) << effect << ": log evidence " << state.log_evidence;
-    EXPECT_NE(state.where.find("bend"), std::string_view::npos) << effect << ": " << state.where;
+    EXPECT_NE(state.where.view().find("bend"), std::string_view::npos) << effect << ": " << state.where.view();
   }
 }
 
@@ -97,15 +97,15 @@ TEST(GapWatchPower, IsSilentWithoutAHiddenEffect) {
                            "hunt_crossley_heavy_tailed", "hunt_crossley_impulsive"})
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const GapState state = Watch(Scenario(name, kSeconds), seed, kSeconds, "hunt_crossley");
-      EXPECT_FALSE(state.suspected) << name << ' ' << seed << ": " << state.where;
+      EXPECT_FALSE(state.suspected) << name << ' ' << seed << ": " << state.where.view();
       EXPECT_GE(state.num_blocks, 9);
     }
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const GapState state = Watch(Scenario("soft_actuator_excited", kSeconds), seed, kSeconds, "soft_actuator_excited");
-    EXPECT_FALSE(state.suspected) << seed << ": " << state.where;
+    EXPECT_FALSE(state.suspected) << seed << ": " << state.where.view();
   }
   const GapState quiet = Watch(Scenario("soft_actuator_paper", kSeconds), 1, kSeconds, "soft_actuator");
-  EXPECT_FALSE(quiet.suspected) << quiet.where;
+  EXPECT_FALSE(quiet.suspected) << quiet.where.view();
 }
 
 }  // namespace

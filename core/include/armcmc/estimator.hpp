@@ -95,6 +95,10 @@ class Estimator {
   [[nodiscard]] std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING;
+  /// Whether the gap watch is on: enabled, and able to watch this plant (see GapWatch).
+  [[nodiscard]] bool watches_gap() const noexcept;
+  /// Name of a check of the gap watch by its index in GapState, as long as the estimator lives; empty for none.
+  [[nodiscard]] std::string_view gap_check_name(int check) const noexcept;
   [[nodiscard]] int num_inputs() const noexcept ARMCMC_NONBLOCKING;  ///< Columns of u that a pack must have.
 
  private:

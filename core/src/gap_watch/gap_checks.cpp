@@ -11,25 +11,12 @@ namespace {
 
 constexpr double kEarly = 0.25;    // s after a change of mode
 constexpr double kShallow = 0.25;  // of the largest magnitude
-constexpr double kHigh = 0.9;      // of the largest output
 
 /// Time since the last change of mode, carried from pack to pack.
 double TimeInMode(int mode, double dt, RegionMemory* memory) noexcept {
   memory->in_mode_s = mode == memory->mode || memory->mode < 0 ? memory->in_mode_s + dt : 0.0;
   memory->mode = mode;
   return memory->in_mode_s;
-}
-
-/// Mean slope of one input over the pack: acceleration from a velocity that may be noisy.
-double Slope(const DataPack& pack, std::size_t input) noexcept {
-  const int n = pack.num_samples;
-  double sum = 0.0, square = 0.0;
-  for (int i = 0; i < n; ++i) {
-    const double s = i - 0.5 * (n - 1);
-    sum += s * pack.u[static_cast<std::size_t>(i)][input];
-    square += s * s;
-  }
-  return square > 0.0 ? sum / (square * pack.dt) : 0.0;
 }
 
 enum ContactRegion : std::uint8_t {
@@ -50,10 +37,25 @@ enum ContactRegion : std::uint8_t {
   kNumContactRegions
 };
 
-void FillContact(const DataPack& pack, const std::array<int, kMaxPackSamples>&, const double* prediction,
-                 RegionMemory* memory, RegionTemplates* out) noexcept ARMCMC_NONBLOCKING {
+class ContactFamily final : public GapFamily {
+ public:
+  constexpr ContactFamily()
+      : GapFamily({.first = 0,
+                   .num_regions = kNumContactRegions,
+                   .regions = {"everywhere", "free", "contact_direction", "free_direction", "contact_speed",
+                               "free_speed", "shallow_contact", "deep_contact", "shallow_retracting", "early_contact",
+                               "contact_acceleration", "free_acceleration", "output_rate", "high_output"},
+                   .serial = kSerialChecks},
+                  true) {}
+
+  void Fill(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double* prediction,
+            RegionMemory* memory, RegionTemplates* out) const noexcept ARMCMC_NONBLOCKING override;
+};
+
+void ContactFamily::Fill(const DataPack& pack, const std::array<int, kMaxPackSamples>&, const double* prediction,
+                         RegionMemory* memory, RegionTemplates* out) const noexcept {
   RegionTemplates& t = *out;
-  const double acceleration = Slope(pack, 1);
+  const double acceleration = MeanSlope(pack, 1);
   for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
     const double x = pack.u[n][0];
     const double v = pack.u[n][1];
@@ -82,20 +84,6 @@ void FillContact(const DataPack& pack, const std::array<int, kMaxPackSamples>&, 
   }
 }
 
-constexpr std::array<std::string_view, kNumSerialChecks> kSerialChecks{
-    "repeats_after_a_pack", "repeats_after_two_packs", "slow_wander", "wander_after_two_packs"};
-
-constexpr GapFamily kContactFamily{
-    .checks = {.first = 0,
-               .num_regions = kNumContactRegions,
-               .regions = {"everywhere", "free", "contact_direction", "free_direction", "contact_speed", "free_speed",
-                           "shallow_contact", "deep_contact", "shallow_retracting", "early_contact",
-                           "contact_acceleration", "free_acceleration", "output_rate", "high_output"},
-               .serial = kSerialChecks},
-    .passive_is_zero = true,
-    .fill = &FillContact,
-};
-
 enum ActuatorRegion : std::uint8_t {
   kAnyValve,
   kVenting,
@@ -107,10 +95,24 @@ enum ActuatorRegion : std::uint8_t {
   kNumActuatorRegions
 };
 
+class ActuatorFamily final : public GapFamily {
+ public:
+  constexpr ActuatorFamily()
+      : GapFamily({.first = 0,
+                   .num_regions = kNumActuatorRegions,
+                   .regions = {"any_valve", "venting", "high_pressure_filling", "high_pressure_venting",
+                               "small_opening", "early_opening", "pressure"},
+                   .serial = kSerialChecks},
+                  false) {}
+
+  void Fill(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double* prediction,
+            RegionMemory* memory, RegionTemplates* out) const noexcept ARMCMC_NONBLOCKING override;
+};
+
 // pdot is measured with noise, which is also in the errors: no region may depend on it, nor on predictions made from
 // it.
-void FillActuator(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double*,
-                  RegionMemory* memory, RegionTemplates* out) noexcept ARMCMC_NONBLOCKING {
+void ActuatorFamily::Fill(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double*,
+                          RegionMemory* memory, RegionTemplates* out) const noexcept {
   RegionTemplates& t = *out;
   constexpr double kAtmosphere = 101'325.0;  // only a size to compare with
   for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
@@ -130,18 +132,11 @@ void FillActuator(const DataPack& pack, const std::array<int, kMaxPackSamples>& 
   }
 }
 
-constexpr GapFamily kActuatorFamily{
-    .checks = {.first = 0,
-               .num_regions = kNumActuatorRegions,
-               .regions = {"any_valve", "venting", "high_pressure_filling", "high_pressure_venting", "small_opening",
-                           "early_opening", "pressure"},
-               .serial = kSerialChecks},
-    .passive_is_zero = false,
-    .fill = &FillActuator,
-};
+constinit const ContactFamily kContactFamily;
+constinit const ActuatorFamily kActuatorFamily;
 
 constexpr GapChecks kBendChecks{
-    .first = kActuatorFamily.checks.size(),
+    .first = kNumActuatorRegions + kNumSerialChecks,
     .num_regions = kNumBendRegions,
     .regions = {"bending", "bend_direction", "bend_speed", "bend_angle", "bend_large_angle", "bend_acceleration"},
     .serial = {"bend_repeats_after_a_pack", "bend_repeats_after_two_packs", "bend_slow_wander",
@@ -151,13 +146,14 @@ constexpr GapChecks kBendChecks{
 }  // namespace
 
 const GapFamily& FamilyOf(PlantKind plant) noexcept {
-  return plant == PlantKind::kSoftActuator ? kActuatorFamily : kContactFamily;
+  if (plant == PlantKind::kSoftActuator) return kActuatorFamily;
+  return kContactFamily;
 }
 
 const GapChecks& BendChecks() noexcept { return kBendChecks; }
 
 std::string_view GapCheckName(PlantKind plant, int check) noexcept {
-  const GapChecks& fitted = FamilyOf(plant).checks;
+  const GapChecks& fitted = FamilyOf(plant).checks();
   if (check < 0) return "";
   if (check < fitted.size()) return fitted.name(check);
   const int bend = check - kBendChecks.first;

@@ -14,12 +14,9 @@ constexpr double kRelativeStep = 1e-4;  // of a difference quotient, relative to
 
 }  // namespace
 
-GapLineariser::GapLineariser(const EstimatorSettings& settings, int model, const simd::Kernels& kernels)
-    : settings_(settings),
-      model_(model),
-      kernels_(kernels),
-      passive_is_zero_(FamilyOf(AllModels::kInfos[At(model)]->plant).passive_is_zero),
-      composition_(settings) {}
+GapLineariser::GapLineariser(const EstimatorSettings& settings, int model, const simd::Kernels& kernels,
+                             bool judges_passive)
+    : settings_(settings), model_(model), kernels_(kernels), judges_passive_(judges_passive), composition_(settings) {}
 
 const ParameterSettings& GapLineariser::parameter(int column) const noexcept {
   return composition_.sampled().parameters[At(column % info().num_parameters)];
@@ -54,7 +51,8 @@ bool GapLineariser::FillMode(int mode, double noise_std, const std::array<int, k
   bool finite = true;
   int row = 0;
   for (std::size_t n = 0; n < At(rows->num_samples) && row < data_.num_samples; ++n) {
-    if (data_.flow != nullptr ? At(data_.sample[At(row)]) != n : !all && modes[n] != mode) continue;
+    const bool placed = data_.flow != nullptr || data_.tape != nullptr;
+    if (placed ? At(data_.sample[At(row)]) != n : !all && modes[n] != mode) continue;
     const auto& value = prediction_.value[At(row)];
     rows->used[n] = true;
     rows->output[n] = value[0] / noise_std;
@@ -79,8 +77,8 @@ bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapR
   std::fill_n(rows->error.begin(), n, 0.0);
   std::fill_n(rows->output.begin(), n, 0.0);
   for (int c = 0; c < num_columns(); ++c) std::fill_n(rows->slope[At(c)].begin(), n, 0.0);
-  for (int i = 0; i < n; ++i) (*modes)[At(i)] = info().mode_of(pack, i);
   if (!composition_.empty() && !composition_.Prepare(pack, &effects_)) return false;
+  for (int i = 0; i < n; ++i) (*modes)[At(i)] = composition_.ModeOf(pack, effects_, i);
   bool finite = true;
   for (int m = 0; m < info().num_modes; ++m) {
     if (!at.known[At(m)]) continue;
@@ -92,14 +90,20 @@ bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapR
     }
     if (data_.num_samples > 0) finite = FillMode(m, at.noise_std[At(m)], *modes, rows) && finite;
   }
-  if (passive_is_zero_ && composition_.empty() && at.known[0]) {
-    for (std::size_t i = 0; i < At(n); ++i) {
-      if ((*modes)[i] != info().num_modes) continue;
-      rows->used[i] = true;
-      rows->error[i] = pack.y[i] / at.noise_std[0];
-    }
-  }
+  if (judges_passive_ && at.known[0]) FillPassive(pack, at.noise_std[0], *modes, rows);
   return finite;
+}
+
+void GapLineariser::FillPassive(const DataPack& pack, double noise_std, const std::array<int, kMaxPackSamples>& modes,
+                                GapRows* rows) const noexcept {
+  const bool described = info().described != nullptr;
+  if (!described && !composition_.empty()) return;  // with effects every sample is one of the contact's
+  for (std::size_t i = 0; i < At(rows->num_samples); ++i) {
+    if (modes[i] != info().num_modes || (described && !effects_.described.says[i])) continue;
+    rows->used[i] = true;
+    rows->output[i] = described ? effects_.described.passive[i] / noise_std : 0.0;
+    rows->error[i] = pack.y[i] / noise_std - rows->output[i];
+  }
 }
 
 }  // namespace armcmc

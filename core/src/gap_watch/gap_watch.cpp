@@ -12,19 +12,28 @@ namespace {
 constexpr int kFirstChange = 3;    // an earlier one just shortens the block
 constexpr int kPacksOfChange = 3;  // that the estimator may need to settle
 
+bool CanWatch(const EstimatorSettings& settings, int num_columns) {
+  return num_columns <= kGapColumns && (settings.plant == nullptr || settings.plant->states().size() == 0);
+}
+
 }  // namespace
 
 GapWatch::GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels, double rate)
     : settings_(settings.gap_watch),
-      family_(FamilyOf(AllModels::kInfos[At(model)]->plant)),
-      first_(settings, model, kernels),
-      second_(settings, model, kernels),
-      enabled_(settings.gap_watch.enabled && first_.num_columns() <= kGapColumns),
-      block_(family_.checks, std::min(first_.num_columns(), kGapColumns)),
-      judge_(family_.checks, rate) {
+      described_(settings.plant != nullptr ? std::make_unique<const DescribedFamily>(*settings.plant) : nullptr),
+      family_(described_ != nullptr ? *described_ : FamilyOf(AllModels::kInfos[At(model)]->plant)),
+      first_(settings, model, kernels, family_.judges_passive()),
+      second_(settings, model, kernels, family_.judges_passive()),
+      enabled_(settings.gap_watch.enabled && CanWatch(settings, first_.num_columns())),
+      block_(family_.checks(), std::min(first_.num_columns(), kGapColumns)),
+      judge_(family_.checks(), rate) {
   if (enabled_)
     for (Recording& recording : recordings_) recording.packs.resize(kGapBlockPacks);
   judge_.Reset(enabled_);
+}
+
+std::string_view GapWatch::CheckName(int check) const noexcept {
+  return check >= 0 && check < family_.checks().size() ? family_.checks().name(check) : "";
 }
 
 void GapWatch::Reset() noexcept {
@@ -64,7 +73,7 @@ void GapWatch::AnalysePiece() noexcept {
     AnalysePack(piece - kSecondPass, true);
   } else if (piece == kScores) {
     block_.BeginScores();
-  } else if (const int check = piece - kScores - 1; check < family_.checks.size()) {
+  } else if (const int check = piece - kScores - 1; check < family_.checks().size()) {
     new_scores_[At(check)] = block_.Score(check, settings_.tolerance);
   } else {
     Judge();
@@ -141,8 +150,8 @@ void GapWatch::AnalysePack(int k, bool second_pass) noexcept {
     if (usable && !left_out_[At(k)]) block_.AddFit(k, rows_, tau, changed);
     return;
   }
-  family_.fill(pack, modes_, rows_.output.data(), &memory_, &regions_);
-  for (int r = 0; r < family_.checks.num_regions; ++r)
+  family_.Fill(pack, modes_, rows_.output.data(), &memory_, &regions_);
+  for (int r = 0; r < family_.checks().num_regions; ++r)
     for (std::size_t n = 0; n < At(pack.num_samples); ++n)
       if (!rows_.used[n]) regions_[At(r)][n] = 0.0;
   if (!usable || left_out_[At(k)]) {

@@ -87,7 +87,7 @@ class BendRig {
 
 TEST(BendWatch, IsSilentWhenNothingIsMissing) {
   BendRig rig;
-  EXPECT_EQ(rig.Run(600.0), 0.0) << rig.watch().state().where;
+  EXPECT_EQ(rig.Run(600.0), 0.0) << rig.watch().state().where.view();
   EXPECT_GE(rig.watch().state().num_blocks, 48);
   EXPECT_LT(rig.watch().state().log_evidence, rig.watch().state().log_threshold);
 }
@@ -96,7 +96,7 @@ TEST(BendWatch, IsSilentOnDataWithoutNoise) {
   // What is left is the pressure between two samples, which the watch takes for linear.
   BendRig rig;
   rig.angle_noise = rig.pressure_noise = 0.0;
-  EXPECT_EQ(rig.Run(120.0), 0.0) << rig.watch().state().where;
+  EXPECT_EQ(rig.Run(120.0), 0.0) << rig.watch().state().where.view();
 }
 
 TEST(BendWatch, FindsWhatTheEquationLacks) {
@@ -132,7 +132,7 @@ TEST(BendWatch, FindsWhatTheEquationLacks) {
     rig.measure = missing.measure;
     const double alarm = rig.Run(60.0);
     EXPECT_GT(alarm, 0.0) << missing.name << ": log evidence " << rig.watch().state().log_evidence;
-    const std::string where(rig.watch().state().where);
+    const std::string where(rig.watch().state().where.view());
     EXPECT_TRUE(std::find(missing.where.begin(), missing.where.end(), where) != missing.where.end())
         << missing.name << ": " << where;
     EXPECT_EQ(GapCheckName(PlantKind::kSoftActuator, rig.watch().state().check), where);
@@ -147,7 +147,7 @@ TEST(BendWatch, GoesOnAfterALossAndANewRun) {
     if (k == 600) rig.run_id = 2;
     rig.Give(pack);
   }
-  EXPECT_FALSE(rig.watch().state().suspected) << rig.watch().state().where;
+  EXPECT_FALSE(rig.watch().state().suspected) << rig.watch().state().where.view();
   EXPECT_GE(rig.watch().state().num_blocks, 8);
   rig.law = [](double, const BendMotion::State& s) { return -20.0 * std::tanh(s.rate / 0.1); };
   for (int k = 1; k <= 600; ++k) {
@@ -180,7 +180,7 @@ TEST(BendWatch, KnowsAfterARestartWhatItKnew) {
   other.watch().Restore(&reader);
   EXPECT_TRUE(reader.finished());
   EXPECT_TRUE(other.watch().state().suspected);
-  EXPECT_EQ(other.watch().state().where, rig.watch().state().where);
+  EXPECT_EQ(other.watch().state().where.view(), rig.watch().state().where.view());
   EXPECT_EQ(other.watch().state().log_evidence, rig.watch().state().log_evidence);
   other.watch().Reset();
   EXPECT_FALSE(other.watch().state().suspected);

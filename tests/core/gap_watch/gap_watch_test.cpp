@@ -27,7 +27,7 @@ TEST(GapWatch, IsSilentWhenNothingIsMissing) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       GapRig rig;
       EXPECT_EQ(rig.Run(5.0 * kMinute, TruthAlone, MakeNoise(law, seed)), 0.0)
-          << law << ' ' << seed << ": " << rig.watch().state().where;
+          << law << ' ' << seed << ": " << rig.watch().state().where.view();
       EXPECT_GE(rig.watch().state().num_blocks, 23);
     }
 }
@@ -76,7 +76,7 @@ TEST(GapWatch, TakesADriftForWhatItIs) {
     const double share = s.t / 60.0;
     return BaseForce(s.x, s.v, 4.0 + 1.5 * share, 2.3 - 0.8 * share, 1.7 - 0.25 * share);
   };
-  EXPECT_EQ(rig.Run(kMinute, drifting, MakeNoise("white", 4)), 0.0) << rig.watch().state().where;
+  EXPECT_EQ(rig.Run(kMinute, drifting, MakeNoise("white", 4)), 0.0) << rig.watch().state().where.view();
 }
 
 TEST(GapWatch, TakesAStepForWhatItIsWhenTheEstimatorSawIt) {
@@ -88,7 +88,7 @@ TEST(GapWatch, TakesAStepForWhatItIsWhenTheEstimatorSawIt) {
     return (place > 14.0 && place < 14.15) || (place < 0.15 && t > 1.0);
   };
   GapRig rig;
-  EXPECT_EQ(rig.Run(3.0 * kMinute, stepping, MakeNoise("white", 5), {}, seen), 0.0) << rig.watch().state().where;
+  EXPECT_EQ(rig.Run(3.0 * kMinute, stepping, MakeNoise("white", 5), {}, seen), 0.0) << rig.watch().state().where.view();
 }
 
 struct Missing {
@@ -134,7 +134,7 @@ TEST(GapWatch, SaysWhere) {
   rig.Run(
       kMinute, [](const ContactSample& s) { return TruthAlone(s) + (s.x < 0.0 ? (s.v > 0.0 ? 0.1 : -0.1) : 0.0); },
       MakeNoise("white", 7));
-  EXPECT_EQ(rig.watch().state().where, "free_direction");
+  EXPECT_EQ(rig.watch().state().where.view(), "free_direction");
   EXPECT_EQ(rig.watch().state().since_seq, 1);
 }
 

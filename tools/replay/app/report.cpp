@@ -35,7 +35,7 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
   const GapState& gap = summary.last.gap;
   if (gap.num_blocks > 0) {
     out << (gap.suspected ? "GAP SUSPECTED since pack " + std::to_string(gap.since_seq) + " (alarm at pack " +
-                                std::to_string(gap.alarm_seq) + "), seen in " + std::string(gap.where)
+                                std::to_string(gap.alarm_seq) + "), seen in " + std::string(gap.where.view())
                           : std::string("gap between model and plant: none suspected"))
         << "; log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
         << '\n';
@@ -100,7 +100,7 @@ void WriteReport(const std::filesystem::path& path, const Estimator& estimator, 
   report["estimates"] = modes;
   const GapState& gap = summary.last.gap;
   report["gap"] = {
-      {"watched", gap.watched},           {"suspected", gap.suspected},         {"where", gap.where},
+      {"watched", gap.watched},           {"suspected", gap.suspected},         {"where", gap.where.view()},
       {"log_evidence", gap.log_evidence}, {"log_threshold", gap.log_threshold}, {"share_of_excess_error", gap.share},
       {"since_pack", gap.since_seq},      {"alarm_pack", gap.alarm_seq},        {"blocks", gap.num_blocks}};
   const support::LcmLogDamage damage = source.damage();

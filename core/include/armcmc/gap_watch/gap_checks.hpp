@@ -26,6 +26,14 @@ struct RegionMemory {
   int mode = -1;
   double last_prediction = 0.0;
   double highest_prediction = 0.0;  ///< Of its absolute value.
+  /// Of every input of a described plant.
+  struct Input {
+    bool seen = false;
+    double lowest = 0.0, highest = 0.0;
+    bool positive = false;
+    int since_reversal = 1 << 20;  ///< Samples since the sign changed.
+  };
+  std::array<Input, kMaxPackInputs> input{};
 };
 
 /// What the errors of one equation are checked for: regions, and how errors follow each other. A region is a template:
@@ -46,17 +54,36 @@ struct GapChecks {
   }
 };
 
-/// The checks of the equation that the estimator of a plant family fits. A new family is one entry in FamilyOf()
-/// (gap_checks.cpp).
-struct GapFamily {
-  GapChecks checks;
-  bool passive_is_zero;  ///< The passive mode predicts 0: its samples are judged, too.
+/// The checks of the laws that the estimator of a plant fits, and what their regions are.
+class GapFamily {
+ public:
+  virtual ~GapFamily() = default;
+  GapFamily(const GapFamily&) = delete;  // names may point into a family
+  GapFamily& operator=(const GapFamily&) = delete;
+
+  [[nodiscard]] const GapChecks& checks() const noexcept { return checks_; }
+  /// The passive mode says what it predicts: its samples are judged, too.
+  [[nodiscard]] bool judges_passive() const noexcept { return judges_passive_; }
   /// @param modes       Mode of every sample.
   /// @param prediction  Output of the model at every sample, in units of the noise.
-  void (*fill)(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double* prediction,
-               RegionMemory* memory, RegionTemplates* out) noexcept ARMCMC_NONBLOCKING;
+  /// @rt No heap, no lock, no throw. O(samples x regions).
+  virtual void Fill(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double* prediction,
+                    RegionMemory* memory, RegionTemplates* out) const noexcept ARMCMC_NONBLOCKING = 0;
+
+ protected:
+  constexpr GapFamily() = default;
+  constexpr GapFamily(const GapChecks& checks, bool judges_passive)
+      : checks_(checks), judges_passive_(judges_passive) {}
+
+  GapChecks checks_{};
+  bool judges_passive_ = false;
 };
 
+/// Names of the serial checks of the laws that are fitted.
+inline constexpr std::array<std::string_view, kNumSerialChecks> kSerialChecks{
+    "repeats_after_a_pack", "repeats_after_two_packs", "slow_wander", "wander_after_two_packs"};
+
+/// Of a plant that is built in; of a described one see DescribedFamily.
 [[nodiscard]] const GapFamily& FamilyOf(PlantKind plant) noexcept ARMCMC_NONBLOCKING;
 
 /// Regions of the bend equation of the soft actuator, in the order of BendChecks().
@@ -72,7 +99,7 @@ enum BendRegion : std::uint8_t {
 /// The checks of the bend equation of the soft actuator.
 [[nodiscard]] const GapChecks& BendChecks() noexcept ARMCMC_NONBLOCKING;
 
-/// Name of a check of a plant by its index in GapState; empty for none.
+/// Name of a check of a built-in plant by its index in GapState; empty for none.
 [[nodiscard]] std::string_view GapCheckName(PlantKind plant, int check) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

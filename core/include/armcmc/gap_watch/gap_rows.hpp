@@ -28,8 +28,8 @@ struct GapReference {
 /// beside it for each parameter, side by side in one tile.
 class GapLineariser {
  public:
-  /// @param settings  Valid; of the estimator.
-  GapLineariser(const EstimatorSettings& settings, int model, const simd::Kernels& kernels);
+  /// @param settings  Valid; of the estimator. @param judges_passive  See GapFamily.
+  GapLineariser(const EstimatorSettings& settings, int model, const simd::Kernels& kernels, bool judges_passive);
 
   /// Parameters of all modes together: columns of GapRows.
   [[nodiscard]] int num_columns() const noexcept { return info().num_modes * info().num_parameters; }
@@ -50,11 +50,14 @@ class GapLineariser {
   void FillTheta(const std::array<double, kMaxParams>& theta) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
                               GapRows* rows) noexcept ARMCMC_NONBLOCKING;
+  /// Errors of the samples at which no mode acts.
+  void FillPassive(const DataPack& pack, double noise_std, const std::array<int, kMaxPackSamples>& modes,
+                   GapRows* rows) const noexcept ARMCMC_NONBLOCKING;
 
   const EstimatorSettings& settings_;
   int model_;
   const simd::Kernels& kernels_;
-  bool passive_is_zero_;
+  bool judges_passive_;
   Composition composition_;
   EffectPack effects_;
   ModeData data_;

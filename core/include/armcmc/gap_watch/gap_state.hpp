@@ -1,16 +1,38 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
+#include "armcmc/nonblocking.hpp"
+
 namespace armcmc {
+
+/// Name of a check by value, since those of a described plant live no longer than its estimator. What is longer than
+/// the room is cut.
+class GapCheckText {
+ public:
+  GapCheckText& operator=(std::string_view text) noexcept ARMCMC_NONBLOCKING {
+    text_.fill('\0');
+    size_ = std::min(text.size(), text_.size());
+    std::copy_n(text.data(), size_, text_.data());
+    return *this;
+  }
+  [[nodiscard]] std::string_view view() const noexcept ARMCMC_NONBLOCKING { return {text_.data(), size_}; }
+
+ private:
+  std::array<char, 48> text_{};
+  std::size_t size_ = 0;
+};
 
 /// What the gap watch has found so far.
 struct GapState {
   bool watched = false;         ///< The watch is on.
   bool suspected = false;       ///< The alarm: the model misses something. Stays until Estimator::Reset().
   int check = -1;               ///< The check with the most evidence, an index into GapFamily::checks; -1: none yet.
-  std::string_view where;       ///< Its name; static storage.
+  GapCheckText where;           ///< Its name.
   double log_evidence = 0.0;    ///< ln e-value against "no gap", nats; at most 0 on average when there is none.
   double log_threshold = 0.0;   ///< The alarm rises when log_evidence passes this, nats.
   double share = 0.0;           ///< Of the squared error beyond the noise that this check explains, [0, 1].

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <string_view>
 #include <vector>
 
 #include "armcmc/data_pack.hpp"
+#include "armcmc/gap_watch/described_family.hpp"
 #include "armcmc/gap_watch/gap_block.hpp"
 #include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/gap_watch/gap_judge.hpp"
@@ -30,6 +33,9 @@ namespace armcmc {
 /// the noise level to be known.
 ///
 /// The estimates decide only where to linearise, so the number of draws hardly matters here.
+///
+/// Not watched: plants with more than kGapColumns parameters in all modes together, and described plants whose law
+/// needs states, since where those start in a pack is itself an estimate that follows the misfit.
 class GapWatch {
  public:
   /// Allocates. @param settings  Valid; outlives the watch. @param rate  Of false alarms, see GapEvidence.
@@ -41,6 +47,9 @@ class GapWatch {
   void Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept ARMCMC_NONBLOCKING;
   void Reset() noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] const GapState& state() const noexcept { return judge_.state(); }
+  [[nodiscard]] bool enabled() const noexcept { return enabled_; }
+  /// Name of a check by its index in GapState; empty for none.
+  [[nodiscard]] std::string_view CheckName(int check) const noexcept;
   /// The evidence of the blocks that were judged, and the alarm. The block under way is not kept.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING { judge_.Save(out); }
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING { judge_.Restore(in); }
@@ -73,6 +82,7 @@ class GapWatch {
   void Judge() noexcept ARMCMC_NONBLOCKING;
 
   const GapWatchSettings& settings_;
+  std::unique_ptr<const GapFamily> described_;  ///< Null: built in.
   const GapFamily& family_;
   GapLineariser first_, second_;  ///< One for each pass: each sees every pack once, in order.
   bool enabled_;

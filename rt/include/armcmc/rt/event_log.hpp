@@ -21,7 +21,7 @@ enum class EventKind : std::uint8_t {
   kPackDropped,      ///< a: pack number; `detail` is the MissCause.
   kNumericTrouble,   ///< a: pack number; `detail` is the Status of core.
   kPublishFailed,    ///< a: failures so far.
-  kGapSuspected,     ///< a: pack since when, b: PlantKind; `detail` is the check of its GapFamily.
+  kGapSuspected,     ///< a: pack since when; `detail` is the check, see Estimator::gap_check_name().
   kClockJumped,      ///< a: pack number, b: by how much, ns.
   kBusFlooded,       ///< a: messages of other channels in one period.
   kStageHung,        ///< a: ns overdue when it was seen; `detail` is the Watched.
