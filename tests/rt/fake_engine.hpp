@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <new>
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/clock.hpp"
@@ -21,7 +22,7 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // hidden from the compiler on purpose: whoever 
     inline void
     PlantedFault(Planted fault) noexcept ARMCMC_NONBLOCKING {
   if (fault == Planted::kAllocation) {
-    auto* leak = new int(1);
+    auto* leak = new (std::nothrow) int(1);
     asm volatile("" : : "g"(leak) : "memory");
     delete leak;
   } else if (fault == Planted::kLock) {

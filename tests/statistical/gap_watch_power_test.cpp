@@ -14,7 +14,7 @@ namespace armcmc::gap_watch_power_test {
 namespace {
 
 /// State of the watch after `seconds` of a scenario, through the whole estimator.
-GapState Watch(plant_sim::Scenario scenario, std::uint64_t seed, double seconds, const std::string& model) {
+GapState Watch(const plant_sim::Scenario& scenario, std::uint64_t seed, double seconds, const std::string& model) {
   EstimatorSettings settings = BuiltinSettings(model);
   // The watch needs to know only about where the parameters are.
   settings.sampler.rule = DrawRule::kFixed;

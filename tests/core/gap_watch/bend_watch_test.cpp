@@ -191,6 +191,7 @@ TEST(BendWatch, AllocatesNothing) {
   if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
   const auto rig = std::make_unique<BendRig>();
   std::vector<DataPack> packs;
+  packs.reserve(260);
   for (int k = 0; k < 260; ++k) packs.push_back(rig->Next());
   long allocations = 0;
   {

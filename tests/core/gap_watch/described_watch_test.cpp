@@ -261,6 +261,7 @@ TEST(DescribedWatch, LeavesPlantsAloneWhoseLawNeedsStates) {
 TEST(DescribedWatch, AllocatesNothing) {
   Rig rig(Axis(), kNearTruth);
   std::vector<DataPack> packs;
+  packs.reserve(300);
   for (std::int64_t seq = 1; seq <= 300; ++seq)
     packs.push_back(test::DescribedPack(rig.program(), seq, [](double t) {
       Sample s = Moving(t);

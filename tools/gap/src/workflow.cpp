@@ -20,6 +20,7 @@
 #include "armcmc/gap/plant_diagnosis.hpp"
 #include "armcmc/gap/verify.hpp"
 #include "describe.hpp"
+#include "rungs.hpp"
 #include "sparse.hpp"
 
 namespace armcmc::gap {
@@ -331,6 +332,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
       result.parameters.push_back({first[i], second[i]});
     const Signals all = equation->PrepareLike(parts.shown, look.signals.window, look.signals);
     result.figures = MakeFigures(*equation, all, look, before, after);
+    if (can_name) TellRungs(*equation, heldout, diagnosis, &result);
     result.figures.diagnosis_end_s =
         request.heldout ? std::numeric_limits<double>::quiet_NaN() : parts.shown.t[parts.first_shown];
   }
