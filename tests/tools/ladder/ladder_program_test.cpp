@@ -98,6 +98,14 @@ TEST_F(LadderProgram, AnEffectThatIsLeftOutIsNotTried) {
   for (std::size_t e = 0; e < result["effects"].size(); ++e) EXPECT_EQ(result["effects"][e]["family"], "dry friction");
 }
 
+TEST_F(LadderProgram, AnEffectIsLeftOutByAnyOfItsNames) {
+  const Outcome run = Gap({"--model", "servo_axis", "--data", Simulate(kFriction), "--without", "joint_friction"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json result = Result();
+  for (std::size_t c = 0; c < result["candidates"].size(); ++c)
+    EXPECT_NE(result["candidates"][c]["effects"][0].text(), "coulomb_friction");
+}
+
 TEST_F(LadderProgram, SaysWhatIsWrongWithAnOrder) {
   const std::filesystem::path csv = Simulate("");
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& words) {
@@ -106,6 +114,8 @@ TEST_F(LadderProgram, SaysWhatIsWrongWithAnOrder) {
     EXPECT_THAT(run.err, HasSubstr(words));
   };
   refused({"--model", "servo_axis"}, "--data CSV or --recording FILE");
+  refused({"--model", "servo_axis", "--data", csv, "--without", "coulomb"},
+          "--without: no effect is called \"coulomb\"");
   refused({"--model", "servo_axis", "--data", csv, "--heldout", csv}, "--heldout");
   refused({"--model", "servo_axis", "--data", csv, "--steps", "compare"}, "--steps");
   refused({"--model", "servo_axes", "--data", csv}, "servo_axes");

@@ -13,6 +13,8 @@
 #include "armcmc/gap/result_json.hpp"
 #include "armcmc/gap/workflow.hpp"
 #include "armcmc/ladder/diagnosis.hpp"
+#include "armcmc/models/registry.hpp"
+#include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/model_file.hpp"
 #include "armcmc/support/plant_library.hpp"
 #include "armcmc/support/plant_writer.hpp"
@@ -178,12 +180,25 @@ std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& 
   return known;
 }
 
+/// A name that no effect has would leave out nothing, silently.
+void CheckWithout(const std::string& model, const std::vector<std::string>& without) {
+  const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(FindModel(model))]->plant;
+  for (const std::string& name : without) {
+    try {
+      (void)MakeEffect(plant, name);
+    } catch (const std::invalid_argument& error) {
+      throw support::InputError("--without " + name + ": " + error.what());
+    }
+  }
+}
+
 /// A plant that came with code of its own.
 int RunBuiltIn(const Arguments& a) {
   WorkflowRequest request;
   request.until = LastStep(a.steps);
   request.model = support::BaseModel(a.model);
   request.diagnose.seed = a.seed;
+  CheckWithout(request.model, a.without);
   request.diagnose.without = a.without;
   request.diagnose.pairs = !a.no_pairs;
   request.diagnose.known = KnownEffects(support::ReadModel(a.model));
@@ -216,6 +231,7 @@ int RunBuiltIn(const Arguments& a) {
   }
   Write(out / "result.json", ToJson(result).dump(2) + "\n");
   if (request.until == Step::kShow) Write(out / "report.html", ReportHtml(result));
+  if (!result.ladder.empty()) std::cout << LadderText(result);
   std::cout << Summary(result);
   std::cout << "result: " << (out / "result.json").string() << '\n';
   if (request.until == Step::kShow) std::cout << "report: " << (out / "report.html").string() << '\n';
@@ -242,6 +258,8 @@ int RunDescribed(const Arguments& a) {
                                           : support::ReadRecording(a.recording, a.data_dir);
   const support::PlantFile plant = support::ReadPlantFile(support::FindPlantFile(request.recording.model));
   request.plant = &plant;
+  const std::vector<EffectEntry> known = support::EffectsFor(plant.effects);
+  for (const std::string& name : a.without) (void)support::FindEffect(known, name, "--without: ");
   request.without = a.without;
   const std::filesystem::path out = a.out;
   Claim(out);

@@ -302,7 +302,9 @@ Diagnosis Diagnose(const DiagnosisRequest& request) {
   climb.plant = std::make_shared<const Plant>(request.plant->plant.description());
   for (EffectEntry& entry : support::EffectsFor(request.plant->effects)) {
     const auto named = [&](const std::vector<std::string>& names) {
-      return std::find(names.begin(), names.end(), entry.name) != names.end();
+      return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+        return name == entry.name || std::find(entry.aliases.begin(), entry.aliases.end(), name) != entry.aliases.end();
+      });
     };
     if (!named(request.without) && !named(request.plant->effects.without)) climb.entries.push_back(std::move(entry));
   }
