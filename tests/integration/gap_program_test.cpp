@@ -132,6 +132,8 @@ TEST_F(GapProgram, BadUsageIsRefused) {
   ExpectRefused({"--data", Data(), "--model", "no_such_model"}, {"no_such_model", "hunt_crossley"});
   ExpectRefused({"--data", Data(), "--seed", "minus one"}, {"--seed"});
   ExpectRefused({"--data", Data(), "--without", "force_bais"}, {"--without", "force_bais", "force_bias"});
+  ExpectRefused({"--data", Data(), "--model", "soft_actuator_excited", "--without", "force_bias"},
+                {"--without", "leak"});
   ExpectRefused({"--data", Data(), "--heldout", dir_ / "missing.csv"}, {"missing.csv"});
   std::ofstream(dir_ / "file") << "in the way";
   const Outcome o = RunProgram(Program("armcmc-gap"), {"--data", Data(), "--out", dir_ / "file/out"});

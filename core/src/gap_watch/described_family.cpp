@@ -37,13 +37,13 @@ bool LawsAvoid(const Plant& plant, const std::vector<bool>& signals) {
   return true;
 }
 
-/// Every passive mode says what is measured in it.
-bool PassiveModesPredict(const PlantProgram& program) {
+/// Some passive mode says what is measured in it.
+bool APassiveModePredicts(const PlantProgram& program) {
   for (int m = 0; m < program.info().num_modes; ++m)
     if (!program.LawIsOutput(m)) return false;
   const auto& modes = program.plant().description().modes;
-  return std::none_of(modes.begin(), modes.end(),
-                      [](const ModeDescription& mode) { return mode.passive && mode.law.empty(); });
+  return std::any_of(modes.begin(), modes.end(),
+                     [](const ModeDescription& mode) { return mode.passive && !mode.law.empty(); });
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ DescribedFamily::DescribedFamily(const PlantProgram& program) {
   const Plant& plant = program.plant();
   const PlantDescription& description = plant.description();
   const ModelInfo& info = program.info();
-  judges_passive_ = PassiveModesPredict(program);
+  judges_passive_ = APassiveModePredicts(program);
   checks_.serial = kSerialChecks;
   Add(Kind::kEverywhere, 0, "everywhere");
   const std::vector<bool> explained = ExplainedSignals(plant);
@@ -60,9 +60,7 @@ DescribedFamily::DescribedFamily(const PlantProgram& program) {
     Add(Kind::kOutputRate, 0, "output_rate");
     Add(Kind::kHighOutput, 0, "high_output");
   }
-  const bool has_passive = std::any_of(description.modes.begin(), description.modes.end(),
-                                       [](const ModeDescription& mode) { return mode.passive; });
-  const int num_modes = info.num_modes + (has_passive && judges_passive_ ? 1 : 0);
+  const int num_modes = info.num_modes + (judges_passive_ ? 1 : 0);
   for (int m = 1; m < num_modes; ++m) Add(Kind::kInMode, m, "in_" + std::string(info.modes[At(m)]));
   const bool has_acceleration = !plant.SignalsWithRole("acceleration").empty();
   // Motion first: most of what is missing in machines goes with it.

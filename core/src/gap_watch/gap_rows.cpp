@@ -51,8 +51,7 @@ bool GapLineariser::FillMode(int mode, double noise_std, const std::array<int, k
   bool finite = true;
   int row = 0;
   for (std::size_t n = 0; n < At(rows->num_samples) && row < data_.num_samples; ++n) {
-    const bool placed = data_.flow != nullptr || data_.tape != nullptr;
-    if (placed ? At(data_.sample[At(row)]) != n : !all && modes[n] != mode) continue;
+    if (data_.flow != nullptr ? At(data_.sample[At(row)]) != n : !all && modes[n] != mode) continue;
     const auto& value = prediction_.value[At(row)];
     rows->used[n] = true;
     rows->output[n] = value[0] / noise_std;

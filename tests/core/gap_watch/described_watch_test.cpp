@@ -246,6 +246,27 @@ TEST(DescribedWatch, JudgesAPassiveModeThatSaysWhatIsMeasuredInIt) {
   }
 }
 
+TEST(DescribedWatch, LeavesAPassiveModeAloneThatSaysNothing) {
+  // Near the surface the force is 0; what it is far from it, the file leaves open.
+  PlantDescription contact = test::DescribedContact();
+  contact.modes = {contact.modes[0], {"near", "x > -0.3", "0", "", true}, {"far", "", "", "", true}};
+  for (const bool far : {true, false}) {
+    Rig rig(contact, {4.0, 2.3, 1.7});
+    std::mt19937_64 random(8);
+    std::normal_distribution<double> normal;
+    const auto sample = [&](double t) {
+      Sample s;
+      s.u[0] = 0.6 * std::sin(2.3 * t) + 0.1 * std::sin(7.1 * t);
+      s.u[1] = 1.38 * std::cos(2.3 * t) + 0.71 * std::cos(7.1 * t);
+      const bool biased = s.u[0] < 0.0 && (s.u[0] <= -0.3) == far;
+      s.y = (s.u[0] >= 0.0 ? std::pow(s.u[0], 1.7) * (4.0 + 2.3 * s.u[1]) : 0.0) + (biased ? 0.1 : 0.0) +
+            0.1 * normal(random);
+      return s;
+    };
+    EXPECT_EQ(rig.Run(kMinute, sample) > 0.0, !far) << rig.watch().state().where.view();
+  }
+}
+
 TEST(DescribedWatch, LeavesPlantsAloneWhoseLawNeedsStates) {
   PlantDescription vessel = test::DescribedVessel();
   vessel.predicts.clear();

@@ -182,7 +182,8 @@ std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& 
 
 /// A name that no effect has would leave out nothing, silently.
 void CheckWithout(const std::string& model, const std::vector<std::string>& without) {
-  const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(FindModel(model))]->plant;
+  const int base = FindModel(BuiltinSettings(model).model);
+  const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(base)]->plant;
   for (const std::string& name : without) {
     try {
       (void)MakeEffect(plant, name);

@@ -62,7 +62,7 @@ class GapFamily {
   GapFamily& operator=(const GapFamily&) = delete;
 
   [[nodiscard]] const GapChecks& checks() const noexcept { return checks_; }
-  /// The passive mode says what it predicts: its samples are judged, too.
+  /// A passive mode says what is measured in it: its samples are judged, too.
   [[nodiscard]] bool judges_passive() const noexcept { return judges_passive_; }
   /// @param modes       Mode of every sample.
   /// @param prediction  Output of the model at every sample, in units of the noise.
