@@ -226,6 +226,14 @@ TEST(DescribedWatch, SaysWhereCoulombFrictionIsSeen) {
   EXPECT_EQ(rig.watch().state().where.view(), "direction_of_v");
 }
 
+/// In contact about half of the time.
+Sample Tapping(double t) {
+  Sample s;
+  s.u[0] = 0.6 * std::sin(2.3 * t) + 0.1 * std::sin(7.1 * t);
+  s.u[1] = 1.38 * std::cos(2.3 * t) + 0.71 * std::cos(7.1 * t);
+  return s;
+}
+
 TEST(DescribedWatch, JudgesAPassiveModeThatSaysWhatIsMeasuredInIt) {
   // A bias that contact hides: the sensor's zero is off in the air alone.
   for (const bool says : {true, false}) {
@@ -235,9 +243,7 @@ TEST(DescribedWatch, JudgesAPassiveModeThatSaysWhatIsMeasuredInIt) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
     const auto sample = [&](double t) {
-      Sample s;
-      s.u[0] = 0.6 * std::sin(2.3 * t) + 0.1 * std::sin(7.1 * t);
-      s.u[1] = 1.38 * std::cos(2.3 * t) + 0.71 * std::cos(7.1 * t);
+      Sample s = Tapping(t);
       const bool touches = s.u[0] >= 0.0;
       s.y = (touches ? std::pow(s.u[0], 1.7) * (4.0 + 2.3 * s.u[1]) : 0.07) + 0.1 * normal(random);
       return s;
@@ -255,9 +261,7 @@ TEST(DescribedWatch, LeavesAPassiveModeAloneThatSaysNothing) {
     std::mt19937_64 random(8);
     std::normal_distribution<double> normal;
     const auto sample = [&](double t) {
-      Sample s;
-      s.u[0] = 0.6 * std::sin(2.3 * t) + 0.1 * std::sin(7.1 * t);
-      s.u[1] = 1.38 * std::cos(2.3 * t) + 0.71 * std::cos(7.1 * t);
+      Sample s = Tapping(t);
       const bool biased = s.u[0] < 0.0 && (s.u[0] <= -0.3) == far;
       s.y = (s.u[0] >= 0.0 ? std::pow(s.u[0], 1.7) * (4.0 + 2.3 * s.u[1]) : 0.0) + (biased ? 0.1 : 0.0) +
             0.1 * normal(random);
