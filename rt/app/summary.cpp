@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "armcmc/plant/program.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/support/text_table.hpp"
 
@@ -49,7 +50,8 @@ std::string Parameters(const rt::Pipeline& pipeline, const Estimator& estimator)
   return any ? table.ToString() : "no parameter was learnt: no pack with information came\n";
 }
 
-std::string Gap(const GapState& gap, const std::string& window) {
+/// @param model  As the user may call it, or its plant file.
+std::string Gap(const GapState& gap, const std::string& window, const std::string& model) {
   if (!gap.watched || gap.num_blocks == 0) return {};
   std::ostringstream out;
   if (!gap.suspected) {
@@ -60,7 +62,9 @@ std::string Gap(const GapState& gap, const std::string& window) {
   out << "GAP SUSPECTED since pack " << gap.since_seq << ": the model misses something, seen in " << gap.where.view()
       << " (log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
       << ")\n";
-  if (!window.empty()) out << "data: " << window << "; armcmc-gap --data finds out what\n";
+  if (!window.empty())
+    out << "data: " << window << "; what is missing: armcmc-gap --model " << model << " --data " << window
+        << " --out FOLDER\n";
   return out.str();
 }
 
@@ -82,7 +86,9 @@ std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator
     out << "draws a posterior: median " << draws.Quantile(0.5) << ", least " << draws.min() << "; effective: median "
         << pipeline.execute().ess().Quantile(0.5) << '\n';
   }
-  out << Gap(pipeline.last_estimate().gap, gap_window);
+  const EstimatorSettings& settings = estimator.settings();
+  out << Gap(pipeline.last_estimate().gap, gap_window,
+             settings.plant != nullptr ? settings.plant->plant().description().name : settings.model);
   const auto degraded = rt::DegradedNames(pipeline.degraded_flags());
   if (!degraded.empty()) {
     out << "degraded:";

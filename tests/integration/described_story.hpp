@@ -27,6 +27,8 @@ class DescribedStory : public LivePair {
     EXPECT_EQ(PlayLog(log), packs) << estimator->err();
     estimator->Signal(SIGINT);
     EXPECT_EQ(estimator->Wait(std::chrono::seconds(10)).code, 0) << estimator->err();
+    const std::string words = estimator->out();
+    EXPECT_NE(words.find("armcmc-gap --model servo_axis --data "), std::string::npos) << words;
     const Json report = ReadJson(Report());
     for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
     said_ = estimator->err();
