@@ -133,7 +133,7 @@ TEST_F(GapProgram, BadUsageIsRefused) {
   ExpectRefused({"--data", Data(), "--seed", "minus one"}, {"--seed"});
   ExpectRefused({"--data", Data(), "--without", "force_bais"}, {"--without", "force_bais", "force_bias"});
   ExpectRefused({"--data", Data(), "--model", "soft_actuator_excited", "--without", "force_bias"},
-                {"--without", "leak"});
+                {"--without", "leak", "joint_friction"});
   ExpectRefused({"--data", Data(), "--heldout", dir_ / "missing.csv"}, {"missing.csv"});
   std::ofstream(dir_ / "file") << "in the way";
   const Outcome o = RunProgram(Program("armcmc-gap"), {"--data", Data(), "--out", dir_ / "file/out"});

@@ -51,5 +51,12 @@ TEST(EventText, SaysWhichPackByHowMuchAndWhy) {
             "stage execute hangs: overdue by 250.000 ms");
 }
 
+TEST(EventText, SaysWhereAGapIsSeen) {
+  const rt::Event gap{0, rt::EventKind::kGapSuspected, 3, 21, 0};
+  EXPECT_EQ(EventText(gap), "GAP SUSPECTED: the model misses something since pack 21");
+  EXPECT_EQ(EventText(gap, [](int check) { return check == 3 ? std::string("direction_of_v") : std::string(); }),
+            "GAP SUSPECTED: the model misses something since pack 21, seen in direction_of_v");
+}
+
 }  // namespace
 }  // namespace armcmc::app::event_printer_test

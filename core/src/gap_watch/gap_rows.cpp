@@ -98,7 +98,7 @@ void GapLineariser::FillPassive(const DataPack& pack, double noise_std, const st
   const bool described = info().described != nullptr;
   if (!described && !composition_.empty()) return;  // with effects every sample is one of the contact's
   for (std::size_t i = 0; i < At(rows->num_samples); ++i) {
-    if (modes[i] != info().num_modes || (described && !effects_.described.says[i])) continue;
+    if (modes[i] != info().num_modes || (described && !effects_.described.passive_given[i])) continue;
     rows->used[i] = true;
     rows->output[i] = described ? effects_.described.passive[i] / noise_std : 0.0;
     rows->error[i] = pack.y[i] / noise_std - rows->output[i];

@@ -166,7 +166,7 @@ void PlantProgram::CompileFeatures(const std::vector<int>& scalars) {
       if (graph_.at(modes[m].law).sampled)
         throw PlantError("mode[" + std::to_string(m) + "].law", 1, "what a passive mode shows depends on no parameter");
       out.passive = feature(modes[m].law);
-      out.says = !plant_->description().modes[m].law.empty();
+      out.passive_given = !plant_->description().modes[m].law.empty();
     } else {
       out.sampled = merged_ ? 0 : static_cast<int>(next++);
       out.target = feature(modes[m].target);
@@ -257,7 +257,7 @@ bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memo
                        value.data());
     out->mode[in] = static_cast<std::int8_t>(info_.num_modes);
     out->target[in] = out->passive[in] = 0.0;
-    out->says[in] = false;
+    out->passive_given[in] = false;
     for (const Outputs& mode : outputs_) {
       if (mode.when >= 0 && value[static_cast<std::size_t>(mode.when)] == 0.0) continue;
       if (mode.sampled >= 0) {
@@ -266,7 +266,7 @@ bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memo
         finite = finite && std::isfinite(out->target[in]);
       } else {
         out->passive[in] = value[static_cast<std::size_t>(mode.passive)];
-        out->says[in] = mode.says;
+        out->passive_given[in] = mode.passive_given;
       }
       break;
     }

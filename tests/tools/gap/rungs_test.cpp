@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "armcmc/gap/workflow.hpp"
+#include "rungs.hpp"
 #include "tools/gap/gap_rig.hpp"
 
 namespace armcmc::gap::rungs_test {
@@ -56,6 +58,42 @@ TEST(Rungs, OfTwoEffectsTheOneThatExplainsMostIsFirst) {
   EXPECT_GT(result.ladder[0].heldout_error, result.ladder[1].heldout_error);
   EXPECT_LT(result.ladder[0].closed_fraction, result.ladder[1].closed_fraction);
   EXPECT_EQ(result.ladder[1].heldout_error, result.gap.after.rmse);
+}
+
+TEST(Rungs, OfATieAreWhatIsSureAndThenWhatIsOpen) {
+  using Sets = std::vector<std::vector<std::string>>;
+  HiddenEffect friction = test::Hidden("coulomb_friction"), bias = test::Hidden("force_bias");
+  bias.amplitude[0] *= 0.3;
+  constexpr Eigen::Index kDiagnosed = 2800;
+  const Recording recording = test::Measure({friction, bias}, 4000, 0.02, 21).recording;
+  const std::unique_ptr<Equation> equation = std::move(MakeEquations("hunt_crossley").front());
+  Diagnosis diagnosis = Diagnose(*equation, recording.Slice(0, kDiagnosed), {});
+  const HeldOut heldout(*equation, *diagnosis.look, recording, kDiagnosed);
+  // As if these hypotheses were equally good, the first the best.
+  const auto rungs_of = [&](const Sets& sets) {
+    Finding& finding = diagnosis.finding;
+    finding.verdict = Verdict::kAmbiguous;
+    finding.set.clear();
+    for (const std::vector<std::string>& names : sets) {
+      const auto with = std::find_if(finding.tried.begin(), finding.tried.end(),
+                                     [&](const CandidatePtr& tried) { return tried->names() == names; });
+      if (with != finding.tried.end()) finding.set.push_back(*with);
+    }
+    EXPECT_EQ(finding.set.size(), sets.size());
+    finding.best = finding.set.front();
+    Result result;
+    TellRungs(*equation, heldout, diagnosis, &result);
+    Sets rungs;
+    for (const LadderRung& rung : result.ladder) rungs.push_back(rung.effects);
+    return rungs;
+  };
+  EXPECT_EQ(rungs_of({{"coulomb_friction"}, {"viscous_friction"}}), (Sets{{"coulomb_friction", "viscous_friction"}}));
+  EXPECT_EQ(rungs_of({{"coulomb_friction", "force_bias"}, {"coulomb_friction", "force_drift"}}),
+            (Sets{{"coulomb_friction"}, {"force_bias", "force_drift"}}));
+  // Whether there is a bias besides is open: no rung tells of what the best hypothesis does not have.
+  EXPECT_EQ(rungs_of({{"coulomb_friction"}, {"coulomb_friction", "force_bias"}}), (Sets{{"coulomb_friction"}}));
+  EXPECT_EQ(rungs_of({{"coulomb_friction", "force_bias"}, {"viscous_friction"}}),
+            (Sets{{"coulomb_friction + force_bias", "viscous_friction"}}));
 }
 
 TEST(Rungs, OfWhatHasNoNameAreNoneAndAllIsLeft) {

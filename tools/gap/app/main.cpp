@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap/equation.hpp"
 #include "armcmc/gap/report.hpp"
 #include "armcmc/gap/result_json.hpp"
@@ -185,11 +186,10 @@ void CheckWithout(const std::string& model, const std::vector<std::string>& with
   const int base = FindModel(BuiltinSettings(model).model);
   const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(base)]->plant;
   for (const std::string& name : without) {
-    try {
-      (void)MakeEffect(plant, name);
-    } catch (const std::invalid_argument& error) {
-      throw support::InputError("--without " + name + ": " + error.what());
-    }
+    if (FindEffect(plant, name) != nullptr) continue;
+    std::string there;
+    for (const EffectInfo* effect : EffectsOf(plant)) there += (there.empty() ? "" : ", ") + std::string(effect->name);
+    throw support::InputError("--without: no effect is called \"" + name + "\"; there: " + there);
   }
 }
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "describe.hpp"
+
 namespace armcmc::gap {
 namespace {
 
@@ -85,11 +87,15 @@ void TellRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis
     result->ladder.back().probability = together;
     told = next->names();
   }
+  // Whether anything more is there may be what is open: then the ladder ends with what is sure.
+  if (Without(finding.best->names(), told).empty()) return;
   Names last;
-  for (const CandidatePtr& candidate : finding.set)
-    for (const std::string& name : Without(candidate->names(), told))
-      if (std::find(last.begin(), last.end(), name) == last.end()) last.push_back(name);
+  for (const CandidatePtr& candidate : finding.set) {
+    const std::string rest = Joined(Without(candidate->names(), told), " + ");
+    if (!rest.empty() && std::find(last.begin(), last.end(), rest) == last.end()) last.push_back(rest);
+  }
   tell(std::move(last), finding.best);
+  result->ladder.back().provisional = AnyProvisional(*result, Without(finding.best->names(), told));
 }
 
 }  // namespace armcmc::gap

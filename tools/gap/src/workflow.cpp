@@ -333,6 +333,12 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     const Signals all = equation->PrepareLike(parts.shown, look.signals.window, look.signals);
     result.figures = MakeFigures(*equation, all, look, before, after);
     if (can_name) TellRungs(*equation, heldout, diagnosis, &result);
+    // What another equation lacks, or could not have shown, is left as well.
+    const std::vector<const EquationDiagnosis*> others = plant.Others();
+    result.complete = result.complete && mute == plant.equations.end() &&
+                      std::all_of(others.begin(), others.end(), [](const EquationDiagnosis* other) {
+                        return other->diagnosis.finding.verdict == Verdict::kNamed;
+                      });
     result.figures.diagnosis_end_s =
         request.heldout ? std::numeric_limits<double>::quiet_NaN() : parts.shown.t[parts.first_shown];
   }

@@ -19,11 +19,11 @@ namespace armcmc {
 
 /// What no parameter changes of one pack of a described plant.
 struct PlantPack {
-  expression::TapeScalars scalars;                  ///< Of every sample, whatever its mode.
-  std::array<std::int8_t, kMaxPackSamples> mode{};  ///< That acts: of those that are sampled, their number for none.
-  std::array<double, kMaxPackSamples> target{};     ///< What the law of that mode explains.
-  std::array<double, kMaxPackSamples> passive{};    ///< What is shown where no sampled mode acts.
-  std::array<bool, kMaxPackSamples> says{};         ///< A passive mode acts, and its law is given.
+  expression::TapeScalars scalars;                    ///< Of every sample, whatever its mode.
+  std::array<std::int8_t, kMaxPackSamples> mode{};    ///< That acts: of those that are sampled, their number for none.
+  std::array<double, kMaxPackSamples> target{};       ///< What the law of that mode explains.
+  std::array<double, kMaxPackSamples> passive{};      ///< What is shown where no sampled mode acts.
+  std::array<bool, kMaxPackSamples> passive_given{};  ///< A passive mode acts, and its law is given.
   StateRun states;
 };
 
@@ -97,8 +97,8 @@ class PlantProgram {
     int when = -1;  ///< -1: always.
     int target = 0;
     int passive = -1;
-    int sampled = -1;   ///< Sampled mode, -1: passive.
-    bool says = false;  ///< The law of a passive mode is given.
+    int sampled = -1;            ///< Sampled mode, -1: passive.
+    bool passive_given = false;  ///< The law of a passive mode is given.
   };
 
   void ChooseParameters();

@@ -142,7 +142,8 @@ struct MapFigure {
 
 /// An effect that was named and added, with all before it refitted; or several that the data cannot tell apart.
 struct LadderRung {
-  std::vector<std::string> effects;       ///< What was named; the first was added.
+  /// What was named; the first was added. Several at once: "a + b".
+  std::vector<std::string> effects;
   std::vector<std::string> parameters{};  ///< Of it, in words: "Fc = 20.4 +- 0.1 N".
   double closed_fraction = 0.0;           ///< Of the gap, all rungs so far, on data kept apart.
   double heldout_error = 0.0;             ///< Rms there, unit of the output.
