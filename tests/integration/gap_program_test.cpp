@@ -57,7 +57,7 @@ class GapProgram : public ::testing::Test {
   /// Four seconds of a plant that hides a bias (its truth beside it, in run.json), or of one that hides nothing
   /// (plain.csv). Made when first asked for.
   static std::string Data(const std::string& name = "run.csv") {
-    const std::string path = *shared_ / name;
+    std::string path = *shared_ / name;
     if (std::filesystem::exists(path)) return path;
     std::vector<std::string> arguments = {
         "--scenario", (SourceDir() / "plant_sim/scenarios/contact_rich.toml").string(),
@@ -113,7 +113,7 @@ TEST_F(GapProgram, HelpTeaches) {
 
 TEST_F(GapProgram, BadFilesAreRefusedInOneLineThatNamesThePlace) {
   ExpectRefused({"--data", dir_ / "missing.csv"}, {"missing.csv"});
-  std::ofstream(dir_ / "empty.csv");
+  { const std::ofstream empty(dir_ / "empty.csv"); }
   ExpectRefused({"--data", dir_ / "empty.csv"}, {"empty.csv", "t,x,v,f"});
   ExpectRefused({"--data", Changed([](auto* rows) { rows->resize(1); })}, {"changed.csv"});
   ExpectRefused({"--data", Changed([](auto* rows) { rows->resize(2); })}, {"changed.csv", "1 samples"});

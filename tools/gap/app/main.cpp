@@ -188,8 +188,13 @@ void CheckWithout(const std::string& model, const std::vector<std::string>& with
   for (const std::string& name : without) {
     if (FindEffect(plant, name) != nullptr) continue;
     std::string there;
-    for (const EffectInfo* effect : EffectsOf(plant)) there += (there.empty() ? "" : ", ") + std::string(effect->name);
-    throw support::InputError("--without: no effect is called \"" + name + "\"; there: " + there);
+    for (const EffectInfo* effect : EffectsOf(plant)) {
+      if (!there.empty()) there += ", ";
+      there += effect->name;
+    }
+    std::string words = "--without: no effect is called \"";
+    words.append(name).append("\"; there: ").append(there);
+    throw support::InputError(words);
   }
 }
 
