@@ -15,6 +15,8 @@ namespace {
 
 using NameMap = std::map<std::string, std::string>;
 
+const std::string kRateOf = "rate_of_";  // and the state: of the let that holds a rate which an effect wraps
+
 /// To as many digits as a prior deserves.
 double ShortPrior(double value) {
   if (value == 0.0) return value;
@@ -50,6 +52,22 @@ std::string UnitOfSymbol(const PlantDescription& plant, const std::string& name)
   return "1";
 }
 
+/// Each behind those that it speaks of, else as they come.
+std::vector<LetDescription> InOrder(std::vector<LetDescription> lets) {
+  std::vector<LetDescription> ordered;
+  while (!lets.empty()) {
+    const auto stands_alone = [&](const LetDescription& let) {
+      return std::none_of(lets.begin(), lets.end(),
+                          [&](const LetDescription& other) { return Mentions(let.text, other.name); });
+    };
+    auto next = std::find_if(lets.begin(), lets.end(), stands_alone);
+    if (next == lets.end()) next = lets.begin();  // a circle: what reads the plant says so
+    ordered.push_back(std::move(*next));
+    lets.erase(next);
+  }
+  return ordered;
+}
+
 class Composer {
  public:
   Composer(const PlantDescription& plant, const EffectEntry& entry, const EffectBinding& binding,
@@ -67,11 +85,13 @@ class Composer {
     for (const EffectTerm& term : form_.terms)
       if (term.slot == "input" || term.slot == "parameter") Replace(term);
     MakeLawVisible();
+    MakeRatesVisible();
     AddLetsAndStates();
     for (const EffectTerm& term : form_.terms) {
       if (term.slot == "rate") ChangeRate(term);
       if (term.slot == "output" || term.slot == "law") ChangeOutput(term);
     }
+    plant_.lets = InOrder(std::move(plant_.lets));
     return std::move(plant_);
   }
 
@@ -166,6 +186,25 @@ class Composer {
     names_["law"] = *law;
   }
 
+  /// A rate that the effect wraps gets a name: what other effects add to it later, it wraps as well. A rim holds back
+  /// all that flows in, whichever of the two is named first.
+  void MakeRatesVisible() {
+    for (const EffectTerm& term : form_.terms) {
+      if (term.slot != "rate" || !Mentions(term.formula, "rate")) continue;
+      StateDescription& state = State(binding_.symbols.at(term.of));
+      const std::string name = prefix_ + kRateOf + state.name;
+      plant_.lets.push_back({name, state.rate});
+      state.rate = name;
+      names_["rate_" + term.of] = name;
+    }
+  }
+
+  /// Where the rate of a state stands that the first effect has wrapped; the end where none has.
+  [[nodiscard]] auto WrappedRate(const std::string& state) {
+    return std::find_if(plant_.lets.begin(), plant_.lets.end(),
+                        [&](const LetDescription& let) { return let.name.ends_with('_' + (kRateOf + state)); });
+  }
+
   void AddLetsAndStates() {
     const bool in_front = std::any_of(form_.terms.begin(), form_.terms.end(), [](const auto& term) {
       return term.slot == "input" || term.slot == "parameter";
@@ -188,7 +227,14 @@ class Composer {
     NameMap names = names_;
     names["rate"] = rate;
     const std::string text = Inserted(term.formula, names);
-    rate = Mentions(term.formula, "rate") ? text : SumText(rate, text);
+    const auto wrapped = WrappedRate(binding_.symbols.at(term.of));
+    const bool wraps = Mentions(term.formula, "rate");
+    if (wraps)
+      rate = text;
+    else if (wrapped != plant_.lets.end() && !wrapped->name.starts_with(prefix_))
+      wrapped->text = SumText(wrapped->text, text);
+    else
+      rate = SumText(rate, text);
   }
 
   void ChangeOutput(const EffectTerm& term) {

@@ -151,6 +151,34 @@ TEST(EffectComposition, AddsToTheRateOfTheStateThatHasTheRole) {
   EXPECT_EQ(composed.states[1].rate, "u - k*pos - changed_c*speed");
 }
 
+TEST(EffectComposition, WrapsWhatIsAddedToARateLaterAsIfItHadBeenThereBefore) {
+  EffectEntry limit = WithTerm("rate", "rate - surplus", "v/s");
+  limit.name = "limit";
+  limit.forms[0].explains.clear();
+  limit.forms[0].needs = {Need("v", "state", "velocity")};
+  limit.forms[0].terms[0].of = "v";
+  limit.forms[0].lets = {{"surplus", "max(rate_v - c, 0)"}};
+  EffectEntry drag = WithTerm("rate", "-pull", "1/s");
+  drag.name = "drag";
+  drag.forms[0].explains.clear();
+  drag.forms[0].needs = limit.forms[0].needs;
+  drag.forms[0].terms[0].of = "v";
+  drag.forms[0].lets = {{"pull", "c*v"}};
+  const PlantDescription later = Added(Added(Simulated(), limit), drag);
+  EXPECT_EQ(later.states[1].rate, "limit_rate_of_speed - limit_surplus");
+  ASSERT_EQ(later.lets.size(), 3U);
+  EXPECT_EQ(later.lets[0].text, "drag_c*speed");
+  EXPECT_EQ(later.lets[1].text, "u - k*pos - drag_pull");
+  EXPECT_EQ(later.lets[2].text, "max(limit_rate_of_speed - limit_c, 0)");
+  const PlantDescription before = Added(Added(Simulated(), drag), limit);
+  EXPECT_EQ(before.states[1].rate, later.states[1].rate);
+  EXPECT_EQ(before.lets[1].text, later.lets[1].text);
+  // One limit in another: both hold back what is added.
+  const PlantDescription twice = Added(Added(Added(Simulated(), limit), limit), drag);
+  EXPECT_EQ(twice.states[1].rate, "limit_2_rate_of_speed - limit_2_surplus");
+  EXPECT_NO_THROW(Plant{twice});
+}
+
 TEST(EffectComposition, AddsStatesAndLetsUnderNamesOfItsOwn) {
   EffectEntry entry = Friction();
   EffectForm& form = entry.forms[0];

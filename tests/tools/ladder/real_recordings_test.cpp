@@ -44,11 +44,11 @@ INSTANTIATE_TEST_SUITE_P(
     Six, RealRecording,
     ::testing::Values(
         Real{"emps_estimation.toml", "emps_estimation.csv", {"coulomb_friction"}, 2.0},
-        Real{"cascaded_tanks.toml", "cascaded_tanks.csv", {"overflow"}, 0.36},
+        Real{"cascaded_tanks.toml", "cascaded_tanks.csv", {"overflow"}, 0.30},
         Real{"silverbox_snls80mv.toml", "silverbox_snls80mv.csv", {"cubic_stiffness"}, 1.3e-3},
-        Real{"afm_indentation_zebrafish.toml", "afm_indentation_zebrafish.csv", {"adhesion"}, 0.09e-9},
+        Real{"afm_indentation_zebrafish.toml", "afm_indentation_zebrafish.csv", {"adhesion"}, 0.08e-9},
         Real{"brfd_friction_backlash.toml", "brfd_friction_backlash.csv", {"backlash", "presliding_friction"}, 1335.0},
-        Real{"pneumatic_seal_friction.toml", "pneumatic_seal_friction.csv", {"pressure_dependent_friction"}, 1.9}),
+        Real{"pneumatic_seal_friction.toml", "pneumatic_seal_friction.csv", {"pressure_dependent_friction"}, 1.5}),
     [](const auto& info) {
       const std::string name = info.param.data;
       return name.substr(0, name.find('_'));

@@ -22,11 +22,17 @@ namespace {
 
 using expression::Op;
 
+constexpr double kMostMultiplied = 16.0;  // exponents below it
+
+ARMCMC_INSIDE double OrNan(double value, double of) { return of == of ? value : of; }
+ARMCMC_INSIDE double Least(double a, double b) { return OrNan(OrNan(a < b ? a : b, a), b); }
+ARMCMC_INSIDE double Greatest(double a, double b) { return OrNan(OrNan(a > b ? a : b, a), b); }
+
+/// Written out where expression::Evaluate would not become vector instructions.
 template <Op op>
 ARMCMC_INSIDE void ForAll(std::size_t count, const double* __restrict a, const double* __restrict b,
                           const double* __restrict c, double* __restrict out) {
   for (std::size_t i = 0; i < count; ++i) {
-    // Written out where Evaluate would not become vector instructions.
     if constexpr (op == Op::kAdd)
       out[i] = a[i] + b[i];
     else if constexpr (op == Op::kSubtract)
@@ -45,10 +51,31 @@ ARMCMC_INSIDE void ForAll(std::size_t count, const double* __restrict a, const d
       out[i] = a[i] < b[i] ? 1.0 : 0.0;
     else if constexpr (op == Op::kLessEqual)
       out[i] = a[i] <= b[i] ? 1.0 : 0.0;
-    else if constexpr (op == Op::kIf)
-      out[i] = a[i] != 0.0 ? b[i] : c[i];
+    else if constexpr (op == Op::kSign)
+      out[i] = a[i] > 0.0 ? 1.0 : a[i] < 0.0 ? -1.0 : a[i];
+    else if constexpr (op == Op::kMin)
+      out[i] = Least(a[i], b[i]);
+    else if constexpr (op == Op::kMax)
+      out[i] = Greatest(a[i], b[i]);
+    else if constexpr (op == Op::kClamp)
+      out[i] = Least(Greatest(a[i], b[i]), c[i]);
+    else if constexpr (op == Op::kStep)
+      out[i] = OrNan(a[i] >= 0.0 ? 1.0 : 0.0, a[i]);
     else
-      out[i] = expression::Evaluate(op, a[i], b[i], c[i]);
+      out[i] = a[i] != 0.0 ? b[i] : c[i];
+  }
+}
+
+/// a^(whole + 0.5 if half), by as few multiplications as there are bits.
+ARMCMC_INSIDE void PowerOfAll(std::size_t count, const double* __restrict a, int whole, bool half,
+                              double* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = half ? std::sqrt(a[i]) : 1.0;
+  std::array<double, kTile * kLanes> square;
+  std::copy_n(a, count, square.begin());
+  for (int bits = whole; bits > 0; bits >>= 1) {
+    if ((bits & 1) != 0)
+      for (std::size_t i = 0; i < count; ++i) out[i] *= square[i];
+    for (std::size_t i = 0; i < count; ++i) square[i] *= square[i];
   }
 }
 
@@ -66,6 +93,8 @@ ARMCMC_INSIDE void Apply(Op op, std::size_t count, const double* a, const double
     case Op::kSqrt: return ForAll<Op::kSqrt>(count, a, b, c, out);
     case Op::kMin: return ForAll<Op::kMin>(count, a, b, c, out);
     case Op::kMax: return ForAll<Op::kMax>(count, a, b, c, out);
+    case Op::kClamp: return ForAll<Op::kClamp>(count, a, b, c, out);
+    case Op::kStep: return ForAll<Op::kStep>(count, a, b, c, out);
     case Op::kIf: return ForAll<Op::kIf>(count, a, b, c, out);
     default:
       for (std::size_t i = 0; i < count; ++i) out[i] = expression::Evaluate(op, a[i], b[i], c[i]);
@@ -134,6 +163,12 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
       i.varies = first ? argument.varies : Both(i.varies, argument.varies);
       first = false;
     }
+    if (i.op == Op::kPower && graph.at(node.argument[1]).op == Op::kNumber) {
+      const double exponent = graph.at(node.argument[1]).value;
+      i.half = exponent - std::floor(exponent) == 0.5;
+      if (exponent > 0.0 && exponent < kMostMultiplied && (i.half || exponent == std::floor(exponent)))
+        i.power = static_cast<int>(exponent);
+    }
     if (i.op == Op::kSymbol) {
       i.index = static_cast<std::size_t>(node.index);
       i.varies = i.time ? Varies::kBySample : inputs[i.index];
@@ -188,6 +223,7 @@ void LaneProgram::Compute(const Instruction& i, std::size_t samples, Block* bloc
   const double* const b = blocks[i.argument[1]].value.data();
   const double* const c = blocks[i.argument[2]].value.data();
   double* const out = blocks[i.block].value.data();
+  if (i.varies != Varies::kBySample && i.power >= 0) return PowerOfAll(samples * kLanes, a, i.power, i.half, out);
   if (i.varies != Varies::kBySample) return Apply(i.op, samples * kLanes, a, b, c, out);
   for (std::size_t r = 0; r < samples * kLanes; r += kLanes)
     std::fill_n(out + r, kLanes, expression::Evaluate(i.op, a[r], b[r], c[r]));

@@ -79,6 +79,8 @@ class LaneProgram {
     double value = 0.0;
     bool time = false;
     Varies varies = Varies::kByLane;
+    int power = -1;         ///< Whole part of a constant exponent that is made of multiplications; else -1.
+    bool half = false;      ///< And one half.
     bool steady = false;    ///< A low pass whose time constant varies by lane at most.
     std::size_t index = 0;  ///< Of a signal; of a memory.
     std::size_t line = 0;   ///< Of a delay.
