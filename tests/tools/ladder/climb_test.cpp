@@ -120,6 +120,18 @@ TEST(Climb, WithTheTrueEffectOutOfTheCatalogueThereIsNoFalseFamily) {
   EXPECT_FALSE(ladder.complete);
 }
 
+TEST(Climb, ASpringThatStiffensIsNotMadeOfPlays) {
+  const Dataset data =
+      test::SwingData([](double u) { return u; }, [](double pos) { return 20.0 * pos + 40.0 * pos * pos * pos; });
+  const Ladder without = ClimbWith({"backlash", "output_bias"}, data, test::SwingPlant());
+  EXPECT_THAT(NamesOf(without.rungs[0]), IsEmpty());
+  ASSERT_FALSE(without.notes.empty());
+  EXPECT_THAT(without.notes.back(), ::testing::HasSubstr("pieces"));
+  EXPECT_FALSE(without.complete);
+  const Ladder with = ClimbWith({"backlash", "output_bias", "cubic_stiffness"}, data, test::SwingPlant());
+  EXPECT_THAT(NamesOf(with.rungs[0]), ElementsAre("cubic_stiffness"));
+}
+
 TEST(Climb, WhatDataKeptApartDoNotShowIsWithdrawn) {
   // A drift that ends where the held-out rows begin.
   Dataset data = test::AxisData([](const AxisSample& s) { return s.t < 14.0 ? 0.9 * s.t : 0.0; });

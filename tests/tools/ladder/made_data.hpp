@@ -54,9 +54,11 @@ inline PlantDescription AxisPlant() {
   return plant;
 }
 
-/// A mass on a spring and a damper u, y: 1 kg, 0.6 N s/m, 20 N/m, driven by `felt` of a sum of sines, from rest; 40 s
-/// at 50 Hz, a noise of 3 mm on the place. The last 30 % are kept apart.
-inline ladder::Dataset SwingData(const std::function<double(double)>& felt) {
+/// A mass on a spring and a damper u, y: 1 kg, 0.6 N s/m, `spring` (20 N/m), driven by `felt` of a sum of sines, from
+/// rest; 40 s at 50 Hz, a noise of 3 mm on the place. The last 30 % are kept apart.
+inline ladder::Dataset SwingData(
+    const std::function<double(double)>& felt,
+    const std::function<double(double)>& spring = [](double pos) { return 20.0 * pos; }) {
   constexpr int kSteps = 20;  // of an interval
   constexpr double kDt = 0.02, kStep = kDt / kSteps;
   const auto drive = [](double t) {
@@ -78,7 +80,7 @@ inline ladder::Dataset SwingData(const std::function<double(double)>& felt) {
     data.training.push_back(n < 1400 ? 1 : 0);
     data.held_out.push_back(n < 1400 ? 0 : 1);
     for (int i = 0; i < kSteps; ++i) {  // semi-implicit, fine enough
-      speed += kStep * (felt(drive(t + (i + 0.5) * kStep)) - 0.6 * speed - 20.0 * pos);
+      speed += kStep * (felt(drive(t + (i + 0.5) * kStep)) - 0.6 * speed - spring(pos));
       pos += kStep * speed;
     }
   }

@@ -280,6 +280,28 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
   rung->probability = rung->named.size() > 1 ? all[leader].win_share / std::max(tied, 1e-9) : all[leader].gain_share;
 }
 
+/// The rung that named the same effect in the same place, if a second one makes a curve of it; else how many there are.
+std::size_t FirstWith(const Ladder& ladder, const Candidate& candidate) {
+  const auto same = [&](const Rung& rung) {
+    if (rung.named.empty() || !candidate.entry->single) return false;
+    const Candidate& other = rung.leader().candidate;
+    return other.entry == candidate.entry && other.binding.form == candidate.binding.form &&
+           other.binding.symbols == candidate.binding.symbols;
+  };
+  return static_cast<std::size_t>(std::find_if(ladder.rungs.begin(), ladder.rungs.end(), same) - ladder.rungs.begin());
+}
+
+/// Back to where nothing had been named on a rung.
+void TakeBack(std::size_t rung, Ladder* ladder, Trial* base) {
+  ladder->rungs.resize(rung + 1);
+  Rung& alone = ladder->rungs.back();
+  ladder->plant = std::make_shared<const Plant>(alone.base.model->plant().description());
+  *base = alone.base;
+  ladder->view = alone.view;
+  alone.named.clear();
+  alone.open = false;
+}
+
 /// Whether the data kept apart agree: at least half of the gain is found there. Without any there is no objection.
 bool Confirmed(const Dataset& data, const Trial& base, const Contender& c) {
   constexpr double kAgain = 0.5;
@@ -348,13 +370,15 @@ Ladder Climb(const ClimbRequest& request) {
     }
     const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
     if (!named && open != nullptr) {
-      // Back to where nothing was open.
-      Rung& alone = ladder.rungs.back();
-      ladder.plant = std::make_shared<const Plant>(alone.base.model->plant().description());
-      base = alone.base;
-      ladder.view = alone.view;
-      alone.named.clear();
-      alone.open = false;
+      TakeBack(ladder.rungs.size() - 1, &ladder, &base);
+      break;
+    }
+    if (const std::size_t first = named ? FirstWith(ladder, rung.leader().candidate) : ladder.rungs.size();
+        first < ladder.rungs.size()) {
+      ladder.notes.push_back(rung.leader().candidate.entry->name +
+                             " was not named: one alone does not do, and two of them in one place are pieces of "
+                             "something that has another formula");
+      TakeBack(first, &ladder, &base);
       break;
     }
     if (named && open != nullptr) ladder.rungs.back().open = false;
@@ -366,12 +390,8 @@ Ladder Climb(const ClimbRequest& request) {
     base = leader.trial;
     if (tie) break;
   }
-  if (!ladder.rungs.empty() && ladder.rungs.back().open) {  // the last that was allowed
-    Rung& alone = ladder.rungs.back();
-    ladder.plant = std::make_shared<const Plant>(alone.base.model->plant().description());
-    base = alone.base;
-    alone.named.clear();
-  }
+  if (!ladder.rungs.empty() && ladder.rungs.back().open)  // the last that was allowed
+    TakeBack(ladder.rungs.size() - 1, &ladder, &base);
   ladder.final_trial = base;
   if (base.judged) {
     ladder.flexible_gain = FlexibleGain(ladder.view, base);

@@ -87,7 +87,9 @@ struct ClimbRequest {
 ///    a family of as few parameters that wins one bootstrap sample in twenty; and a larger effect of another family
 ///    that leaves less than half and is better wherever it is looked for. Behind a tie nothing more is named: it would
 ///    stand on what is not known. So each of them shows the form of it that predicts best.
-/// 4. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain.
+/// 4. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain; and where a
+///    later rung names it again in the same place and it has a kink: both are pieces of a curve that is none of theirs,
+///    as plays are of a spring that stiffens.
 [[nodiscard]] Ladder Climb(const ClimbRequest& request);
 
 }  // namespace armcmc::ladder
