@@ -17,6 +17,7 @@ enum Input { kX = 0, kV = 1 };
 constexpr double kSlaveMass = 1.0, kSlaveDamping = 0.5, kSlaveStiffness = 0.8;
 // Fast enough that the solver's error stays below 1e-11 of the amplitude for waves up to 30 rad/s.
 constexpr double kMaxStep = 1e-4;
+constexpr double kSpeedPerDepth = 5.0;  // 1/s, of a lively press
 
 double ContactForce(double k, double b, double p, double x, double v) noexcept {
   return x >= 0.0 ? std::pow(x, p) * (k + b * v) : 0.0;
@@ -34,7 +35,8 @@ HuntCrossleyPlant::HuntCrossleyPlant(const PlantSetup& setup)
       start_force_(setup.options.Number("start_force")),
       dt_(setup.sample_interval_s),
       paper_tracking_(setup.options.Choice("tracking") == "paper"),
-      substeps_(NumSubsteps(setup.sample_interval_s, kMaxStep)) {
+      substeps_(NumSubsteps(setup.sample_interval_s, kMaxStep)),
+      error_(setup.options.Number("error"), setup.seed) {
   const std::vector<double>& amplitude = setup.options.List("master_amplitude");
   const std::vector<double>& omega = setup.options.List("master_omega");
   const std::vector<double>& phase = setup.options.List("master_phase");
@@ -42,7 +44,19 @@ HuntCrossleyPlant::HuntCrossleyPlant(const PlantSetup& setup)
     throw std::invalid_argument("motion.master_amplitude, master_omega and master_phase must have one entry per wave");
   for (std::size_t i = 0; i < amplitude.size(); ++i)
     waves_.push_back({amplitude[i], omega[i], phase.empty() ? 0.0 : phase[i]});
-  if (setup.options.Choice("tracking") == "prescribed") motion_.emplace(setup.options, setup.seed);
+  if (setup.options.Choice("tracking") == "prescribed") {
+    motion_.emplace(setup.options, setup.seed);
+    depth_range_ = setup.options.Number("depth");
+    speed_range_ = kSpeedPerDepth * depth_range_ * setup.options.Number("pace");
+  } else {
+    double swing = 0.0, speed = 0.0;
+    for (const Wave& wave : waves_) {
+      swing += std::abs(wave.amplitude);
+      speed += std::abs(wave.amplitude * wave.omega);
+    }
+    if (offset_ + swing > 0.0) depth_range_ = offset_ + swing;
+    if (speed > 0.0) speed_range_ = speed;
+  }
 }
 
 double HuntCrossleyPlant::MasterPosition(double t) const noexcept {
@@ -94,7 +108,11 @@ void HuntCrossleyPlant::Advance(PlantSample* sample) noexcept {
   sample->t_s = static_cast<double>(k_) * dt_;
   sample->inputs = {state_[0], state_[1], 0.0, 0.0};
   sample->mode = state_[0] >= 0.0 ? kContact : kFree;
-  sample->output = Predict(Truth(kContact, sample->t_s), *sample);
+  sample->output = Respond(Truth(kContact, sample->t_s), *sample);
+}
+
+double HuntCrossleyPlant::Respond(const Theta& theta, const PlantSample& sample) const noexcept {
+  return Predict(theta, sample) * error_.Factor(sample.inputs[kX] / depth_range_, sample.inputs[kV] / speed_range_);
 }
 
 Theta HuntCrossleyPlant::Truth(int /*mode*/, double t_s) const noexcept {
@@ -124,6 +142,7 @@ const PlantFamily& HuntCrossleyFamily() {
                  OptionSpec::Number("motion", "stiffness", 2.0, 0.0, 1e5),
                  OptionSpec::Number("motion", "start_force", 0.0, -1e3, 1e3)};
     for (OptionSpec& spec : MotionOptions()) f.options.push_back(std::move(spec));
+    f.options.push_back(LawErrorOption());
     f.modes = {"contact"};
     f.truth_names = {"K", "B", "p"};
     f.target = {"f_true", "clean_force_mae_mN", 1e3, "noisy_force_l2_N"};

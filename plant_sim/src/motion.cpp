@@ -63,7 +63,7 @@ Motion::State Motion::At(double t_s) noexcept {
 std::vector<OptionSpec> MotionOptions() {
   return {OptionSpec::Choice("motion", "program",
                              {"rich", "sine", "slow_triangle", "fast_taps", "step_hold", "taps_of_depths",
-                              "contact_chirp", "free_air_chirp", "free_air", "recorded"}),
+                              "contact_chirp", "free_air_chirp", "free_air", "strokes", "recorded"}),
           OptionSpec::Number("motion", "depth", 1.0, 1e-9, 100.0),
           OptionSpec::Number("motion", "pace", 1.0, 1e-3, 1e3),
           OptionSpec::Number("motion", "band_hz", 14.0, 0.1, 1e3),

@@ -128,6 +128,45 @@ class RichPath final : public Path {
   std::array<Wave, 4> waves_{};
 };
 
+/// Strokes of a press or a force microscope: in and out again, each way straight at a speed of its own, with a rest at
+/// both ends.
+class StrokesPath final : public Path {
+ public:
+  explicit StrokesPath(std::uint64_t seed) : rng_(seed, kMotionStream) {}
+
+  [[nodiscard]] double At(double time_s) noexcept override {
+    while (time_s >= legs_.back().end_s) DrawStroke();
+    std::size_t leg = 0;
+    while (time_s >= legs_[leg].end_s) ++leg;
+    const double begin_s = leg == 0 ? begin_s_ : legs_[leg - 1].end_s;
+    return Blend(leg == 0 ? kAir : legs_[leg - 1].to, legs_[leg].to, (time_s - begin_s) / (legs_[leg].end_s - begin_s));
+  }
+
+ private:
+  static constexpr double kAir = -0.2;
+  struct Leg {
+    double end_s, to;
+  };
+
+  [[nodiscard]] double Between(double lo, double hi) noexcept { return lo + (hi - lo) * rng_.Uniform(); }
+
+  void DrawStroke() noexcept {
+    constexpr double kSlowest = 0.7, kFastest = 4.0;  // depths a second
+    const auto speed = [this] { return kSlowest * std::pow(kFastest / kSlowest, rng_.Uniform()); };
+    const double depth = Between(0.4, 1.0), way = depth - kAir;
+    begin_s_ = legs_.back().end_s;
+    double at = begin_s_;
+    legs_[0] = {at += way / speed(), depth};
+    legs_[1] = {at += Between(0.02, 0.2), depth};
+    legs_[2] = {at += way / speed(), kAir};
+    legs_[3] = {at += Between(0.02, 0.2), kAir};
+  }
+
+  Rng rng_;
+  double begin_s_ = 0.0;  ///< Of the stroke.
+  std::array<Leg, 4> legs_{};
+};
+
 /// What somebody recorded, from one of its times on; at its end it runs back, and at its beginning forth again.
 class RecordedPath final : public Path {
  public:
@@ -168,6 +207,7 @@ std::unique_ptr<Path> MakePath(const Options& options, std::uint64_t seed) {
     throw std::invalid_argument("motion.program = \"recorded\" and motion.recording, a CSV file, need each other");
   if (recording) return std::make_unique<RecordedPath>(recording, options.Number("recording_start_s"));
   if (program == "rich") return std::make_unique<RichPath>(seed);
+  if (program == "strokes") return std::make_unique<StrokesPath>(seed);
   return std::make_unique<FixedPath>(fixed.at(program));
 }
 

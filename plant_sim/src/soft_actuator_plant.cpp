@@ -12,6 +12,8 @@ namespace {
 
 enum ActuatorParameter { kTheta1Fill = 0, kTheta2Fill = 1, kTheta1Vent = 2, kTheta2Vent = 3 };
 
+constexpr double kPressureRange = 1e5, kOpeningRange = 0.1;  // Pa, of which a LawError's waves are no shorter
+
 double SignedRoot(double difference) noexcept { return std::copysign(std::sqrt(std::abs(difference)), difference); }
 
 std::unique_ptr<Plant> MakeSoftActuator(const PlantSetup& setup) { return std::make_unique<SoftActuatorPlant>(setup); }
@@ -27,6 +29,7 @@ SoftActuatorPlant::SoftActuatorPlant(const PlantSetup& setup)
       q3_(setup.options.Number("q3")),
       dt_(setup.sample_interval_s),
       substeps_(NumSubsteps(setup.sample_interval_s, setup.options.Number("max_step_s"))),
+      error_(setup.options.Number("error"), setup.seed),
       controller_(MakeValveController(setup.options, p_atm_, setup.sample_interval_s)) {
   if (!(p_supply_ > p_atm_)) throw std::invalid_argument("constants.p_supply must be above constants.p_atm");
   if (!(Truth(kFill, 0.0)[0] > 0.0))
@@ -49,7 +52,9 @@ double SoftActuatorPlant::PressureRate(const ValveOpening& valve, double gauge_p
       if (Acts(hidden, t_s)) supply = hidden.effect->Supply(supply, valve.fill);
     if (supply != p_supply_) flow = valve.fill * SignedRoot(supply - p_atm_ - gauge_pressure);
   }
-  return flow / (theta[0] + theta[1] * gauge_pressure);
+  const double opening = valve.fill - valve.vent;
+  return flow / (theta[0] + theta[1] * gauge_pressure) *
+         error_.Factor(gauge_pressure / kPressureRange, opening / kOpeningRange);
 }
 
 void SoftActuatorPlant::Hide(const std::vector<HiddenEffect>& effects, const EffectTiming& timing) {
@@ -144,6 +149,7 @@ const PlantFamily& SoftActuatorFamily() {
                                    OptionSpec::Number("constants", "q3", 3319.4, 0.0, 1e9),
                                    OptionSpec::Number("constants", "max_step_s", 1e-3, 1e-6, 1.0)})
       f.options.push_back(spec);
+    f.options.push_back(LawErrorOption());
     f.modes = {"u_c", "u_d"};
     f.truth_names = {"g", "theta2"};
     f.target = {"flow", "clean_flow_mae", 1.0, "noisy_flow_l2"};

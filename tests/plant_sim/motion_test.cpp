@@ -172,6 +172,28 @@ TEST(Motion, RichIsAnotherMotionForEverySeedAndTheSameForOne) {
   }
 }
 
+TEST(Motion, StrokesGoInAndOutAtConstantSpeedsOfTheirOwn) {
+  const std::vector<Motion::State> states = Follow(MotionSettings("strokes"), 3);
+  std::vector<double> speeds;  // of stretches of 50 samples without acceleration
+  int steady = 0, along = 0;
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    const bool same = std::abs(states[i].v - states[i - 1].v) < 1e-9;
+    steady += same ? 1 : 0;
+    along = same ? along + 1 : 0;
+    if (along == 50 && std::abs(states[i].v) > 0.1) speeds.push_back(states[i].v);
+  }
+  EXPECT_GT(steady, kSamples / 2);
+  ASSERT_GE(speeds.size(), 6u);
+  for (std::size_t i = 1; i < speeds.size(); ++i) {
+    EXPECT_LT(speeds[i] * speeds[i - 1], 0.0) << "in, then out";
+    EXPECT_GT(std::abs(std::abs(speeds[i]) - std::abs(speeds[i - 1])), 1e-6);
+    EXPECT_GT(std::abs(speeds[i]), 0.69);
+    EXPECT_LT(std::abs(speeds[i]), 4.01);
+  }
+  EXPECT_GT(ContactShare(states), 0.4);
+  EXPECT_LT(ContactShare(states), 0.95);
+}
+
 /// A recorded ramp of a unit a second, `seconds` long.
 Options RecordedRamp(double seconds, double start_s) {
   const auto ramp = std::make_shared<Series>();

@@ -30,7 +30,7 @@ const PlantSample& EffectChain::Apply(const PlantSample& truth) noexcept {
     const EffectSignal before = signal_;
     links_[i].effect->Apply(&signal_);
     if (!links_[i].gate.Open(truth)) signal_ = before;
-    if (i + 1 == law_at_) signal_.seen.output = plant_->Predict(signal_.theta, signal_.law);
+    if (i + 1 == law_at_) signal_.seen.output = plant_->Respond(signal_.theta, signal_.law);
   }
   return signal_.seen;
 }

@@ -154,8 +154,11 @@ class ContactGapMeter final : public GapMeter {
 std::unique_ptr<GapMeter> MakeGapMeter(const Scenario& scenario) {
   if (EffectRegistry(*scenario.family).empty())
     throw std::invalid_argument("no effects can be hidden in a plant of the family " + scenario.family->name);
-  if (scenario.family->name == "soft_actuator") return MakeActuatorGapMeter(scenario);
-  return std::make_unique<ContactGapMeter>(scenario);
+  // What the law itself errs by is a gap, too, but none of the effects'.
+  Scenario exact = scenario;
+  exact.options.Set("error", 0.0);
+  if (scenario.family->name == "soft_actuator") return MakeActuatorGapMeter(exact);
+  return std::make_unique<ContactGapMeter>(exact);
 }
 
 bool FindStrength(const GapMeter& meter, double gap_ratio, HiddenEffect* effect) {

@@ -26,5 +26,19 @@ TEST(RunCase, AHalfOfARecordingIsAllThatTheToolIsGiven) {
   }
 }
 
+TEST(RunCase, WhereThePlantIsNotTheCatalogueTheFirstRungIsHeldAgainstWhatTheTruthCloses) {
+  const test::ScratchDir folder;
+  const PlantProcess plant(test::Program("armcmc-plant"), folder.path());
+  Case what;
+  what.stratum = "strokes";
+  what.scenario = "contact_rich";
+  what.effect = "inertia:rigid";
+  const Outcome outcome = RunCase(plant, what, false);
+  ASSERT_EQ(outcome.grade, Grade::kRight) << Line(outcome);
+  ASSERT_TRUE(outcome.first_rung.has_value());
+  EXPECT_NEAR(*outcome.first_rung, 1.0, 0.02);
+  EXPECT_FALSE(CanFollowUp(outcome));
+}
+
 }  // namespace
 }  // namespace armcmc::gap_bench::run_test

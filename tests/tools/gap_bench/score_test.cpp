@@ -77,6 +77,27 @@ TEST(GradeOf, WhatTheCatalogueLacksHasNoRightName) {
   EXPECT_EQ(GradeOf(ablated, truth, Said({{"inertia"}})), Grade::kWrong);
 }
 
+TEST(GradeOf, WhatNoCatalogueListsNeedsNoNameBesideWhatOneDoes) {
+  Truth truth = Hidden({"coulomb_friction"});
+  truth.effects.push_back(Hidden({"backlash"}, "outside").effects.front());
+  EXPECT_EQ(GradeOf({}, truth, Said({{"coulomb_friction"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"inertia"}, {"coulomb_friction"}})), Grade::kTie);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"presliding_friction"}})), Grade::kFamily);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"coulomb_friction", "contact_offset"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, truth, Said(gap::Verdict::kUnnamed)), Grade::kUnnamed);
+  EXPECT_TRUE(LabelRight({}, truth, "coulomb_friction"));
+  EXPECT_FALSE(LabelRight({}, truth, "unnamed"));
+}
+
+TEST(LabelRight, ARelativeWillDoWhereThePlantIsNotTheCatalogue) {
+  Case what;
+  what.stratum = "singles";
+  EXPECT_FALSE(LabelRight(what, Hidden({"sensor_delay"}), "sensor_lag"));
+  what.stratum = "law_error";
+  EXPECT_TRUE(LabelRight(what, Hidden({"sensor_delay"}), "sensor_lag"));
+  EXPECT_FALSE(LabelRight(what, Hidden({"sensor_delay"}), "inertia"));
+}
+
 TEST(GradeOf, WhatARealRecordingHoldsByItselfIsNotJudgedBesideWhatIsHidden) {
   Case real;
   real.own = {"periodic_disturbance"};

@@ -8,9 +8,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "support/paths.hpp"
 
@@ -80,6 +83,92 @@ TEST(Strata, RealRecordingsHaveToBeThere) {
   const test::ScratchDir folder;
   EXPECT_THROW(static_cast<void>(CasesOf(kRecorded, 1, 5, folder.path())), support::InputError);
   EXPECT_THROW(static_cast<void>(CasesOf(kRecorded, 1, 5, folder.path(), folder.path())), support::InputError);
+}
+
+std::string TextOf(const test::ScratchDir& folder, const Case& one) {
+  std::ifstream file(folder.path() / one.scenario);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+TEST(Strata, SayInWhichOfThemThePlantIsNotTheCatalogue) {
+  for (const char* name :
+       {"law_error", "actuator_law_error", "unlisted", "formulas", "strokes", "strong_pairs", "near_null"}) {
+    EXPECT_TRUE(Imperfect(name)) << name;
+    EXPECT_NE(std::find(StratumNames().begin(), StratumNames().end(), name), StratumNames().end()) << name;
+  }
+  for (const char* name : {"null", "singles", "variants", "outside", "ties", kRecorded}) EXPECT_FALSE(Imperfect(name));
+}
+
+TEST(Strata, LawsErrByOneThreeAndTenPercentUnderEveryEffect) {
+  const test::ScratchDir folder;
+  for (const auto& [stratum, effects] : {std::pair<std::string, std::size_t>{"law_error", 14 * 2},
+                                         std::pair<std::string, std::size_t>{"actuator_law_error", 13}}) {
+    std::map<std::string, std::size_t> count;
+    for (const Case& one : CasesOf(stratum, 1, 5, folder.path())) {
+      const std::string text = TextOf(folder, one);
+      const std::size_t at = text.find("[law]\nerror = ");
+      ASSERT_NE(at, std::string::npos) << one.scenario;
+      ++count[text.substr(at + 14, text.find('\n', at + 14) - at - 14)];
+      EXPECT_FALSE(one.effect.empty());
+    }
+    EXPECT_EQ(count, (std::map<std::string, std::size_t>{{"0.01", effects}, {"0.03", effects}, {"0.1", effects}}));
+  }
+}
+
+TEST(Strata, WhatNobodyListedStandsBesideEveryEffectAtAThirdOfItsSize) {
+  const test::ScratchDir folder;
+  std::set<std::string> listed, others;
+  for (const Case& one : CasesOf("unlisted", 2, 5, folder.path())) {
+    const std::string text = TextOf(folder, one);
+    const auto value = [&](const std::string& key, std::size_t from) {
+      const std::size_t at = text.find(key, from) + key.size();
+      return text.substr(at, text.find('\n', at) - at);
+    };
+    const std::size_t first = text.find("[[hidden_effect]]"), second = text.find("[[hidden_effect]]", first + 1);
+    ASSERT_NE(second, std::string::npos);
+    listed.insert(value("name = ", first));
+    others.insert(value("name = ", second));
+    EXPECT_EQ(std::stod(value("strength = ", first)), one.strength);
+    EXPECT_NEAR(std::stod(value("strength = ", second)), one.strength / 3.0, 1e-4);
+    EXPECT_EQ(value("seed = ", first), std::to_string(one.seed));
+  }
+  EXPECT_EQ(listed.size(), 14u);
+  EXPECT_EQ(others.size(), 5u);
+}
+
+TEST(Strata, FormulasPairsAndStrokesAreAsStrongAsTheySay) {
+  const test::ScratchDir folder;
+  const auto strengths = [&](const char* stratum) {
+    std::map<double, int> count;
+    for (const Case& one : CasesOf(stratum, 1, 5, folder.path())) ++count[one.strength];
+    return count;
+  };
+  EXPECT_EQ(strengths("formulas"), (std::map<double, int>{{3.0, 10}, {10.0, 10}, {30.0, 10}}));
+  EXPECT_EQ(strengths("strokes"), (std::map<double, int>{{3.0, 14}, {10.0, 14}}));
+  EXPECT_EQ(strengths("strong_pairs"), (std::map<double, int>{{10.0, 10}}));
+  for (const Case& one : CasesOf("strokes", 1, 5, folder.path())) EXPECT_EQ(one.scenario, "contact_strokes");
+}
+
+TEST(Strata, NearTheNullNothingIsHiddenAndOneConstantOrTheLawIsOff) {
+  const test::ScratchDir folder;
+  std::set<std::string> constants;
+  int laws = 0;
+  for (const Case& one : CasesOf("near_null", 1, 5, folder.path())) {
+    EXPECT_EQ(one.effect, "none");
+    const std::string text = TextOf(folder, one);
+    if (text.find("[law]") != std::string::npos) {
+      ++laws;
+      continue;
+    }
+    for (const auto& [key, nominal] :
+         std::map<std::string, double>{{"p_supply = ", 8e5}, {"q1 = ", 0.0704}, {"q3 = ", 3319.4}}) {
+      const double off = std::stod(text.substr(text.find("\n" + key) + key.size() + 1)) / nominal - 1.0;
+      if (std::abs(off) > 1e-9) constants.insert(key + std::to_string(off));
+    }
+  }
+  EXPECT_EQ(laws, 9);
+  EXPECT_EQ(constants, (std::set<std::string>{"p_supply = 0.001000", "p_supply = 0.010000", "q1 = 0.001000",
+                                              "q1 = 0.010000", "q3 = 0.001000", "q3 = 0.010000"}));
 }
 
 TEST(Strata, AnUnknownStratumIsAnError) {

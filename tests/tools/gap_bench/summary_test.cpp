@@ -83,6 +83,39 @@ TEST(Gates, OfTheActuatorAreByWhatIsHidden) {
   EXPECT_EQ(value("outside the catalogue: false name"), 1.0);
 }
 
+TEST(Gates, WhereThePlantIsNotTheCatalogueAreOfFamiliesAndOfWhatTheFirstRungCloses) {
+  Outcome right = Made("law_error", Grade::kRight, 0.95, true), kin = Made("law_error", Grade::kFamily, 0.95, true);
+  right.first_rung = 1.0;
+  kin.first_rung = 0.5;
+  const std::vector<Gate> gates =
+      Gates({right, kin, Made("law_error", Grade::kUnnamed, 0.6, false), Made("law_error", Grade::kWrong, 0.9, false),
+             Made("near_null", Grade::kUnnamed, 0.6, false), Made("singles", Grade::kRight, 0.95, true)});
+  EXPECT_EQ(Find(gates, "law_error", "right family")->value, 0.5);
+  EXPECT_EQ(Find(gates, "law_error", "false family")->value, 0.25);
+  EXPECT_NEAR(Find(gates, "law_error", "closed of what the truth closes, 10 % quantile")->value, 0.55, 1e-12);
+  EXPECT_EQ(Find(gates, "near_null", "named")->value, 0.0);
+  // Printed probabilities are judged apart, too.
+  EXPECT_EQ(Find(gates, "calibration", "right when P >= 0.9")->n, 1);
+  EXPECT_EQ(Find(gates, "calibration, plant not the catalogue", "right when P >= 0.9")->n, 3);
+}
+
+TEST(Confuse, KeepsPlantsThatAreNotTheCatalogueApart) {
+  Outcome beside = Made("unlisted", Grade::kUnnamed, 0.9, false);
+  beside.truth.effects.resize(2);
+  beside.truth.effects[0].name = "inertia";
+  beside.truth.effects[1].name = "backlash";
+  beside.truth.effects[1].kind = "outside";
+  beside.answer.result.verdict = gap::Verdict::kUnnamed;
+  const auto total = [&](bool imperfect) {
+    int n = 0;
+    for (const auto& row : Confuse({beside}, imperfect).count)
+      for (const int count : row) n += count;
+    return n;
+  };
+  EXPECT_EQ(total(true), 1);
+  EXPECT_EQ(total(false), 0);
+}
+
 /// A half of a recording of a real motion, named so.
 Outcome Half(Part part, const std::string& scenario, const std::string& name) {
   Outcome outcome = Made(kRecorded, Grade::kRight, 0.9, true);

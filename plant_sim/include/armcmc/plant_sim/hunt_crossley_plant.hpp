@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "armcmc/plant_sim/law_error.hpp"
 #include "armcmc/plant_sim/motion.hpp"
 #include "armcmc/plant_sim/plant.hpp"
 
@@ -17,7 +18,8 @@ namespace armcmc::plant_sim {
 ///
 /// or, with tracking = "prescribed", x and x' of a motion program (see Motion) in place of slave and master.
 ///
-/// Motion does not depend on the force, so K, B, p may change at any time.
+/// Motion does not depend on the force, so K, B, p may change at any time. With an `error` of the law the force is this
+/// times a LawError of depth and speed.
 ///
 /// With tracking = "paper" the loop is sampled as in the simulation behind the paper's traces: one solver step
 /// per T, the master's velocity a difference quotient from the last sample (none yet at t = 0), and no command
@@ -29,6 +31,7 @@ class HuntCrossleyPlant final : public Plant {
   void Advance(PlantSample* sample) noexcept override;
   [[nodiscard]] Theta Truth(int mode, double t_s) const noexcept override;
   [[nodiscard]] double Predict(const Theta& theta, const PlantSample& sample) const noexcept override;
+  [[nodiscard]] double Respond(const Theta& theta, const PlantSample& sample) const noexcept override;
   [[nodiscard]] double Target(const PlantSample& sample) const noexcept override;
 
   static constexpr int kContact = 0, kFree = 1;
@@ -50,6 +53,8 @@ class HuntCrossleyPlant final : public Plant {
   bool paper_tracking_;
   int substeps_;
   std::optional<Motion> motion_;  ///< None: a slave follows a master.
+  LawError error_;
+  double depth_range_ = 1.0, speed_range_ = 1.0;  ///< m, m/s, of the motion.
   State state_ = State::Zero();
   long long k_ = -1;  ///< Index of the last sample.
 };

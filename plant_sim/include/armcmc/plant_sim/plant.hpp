@@ -45,6 +45,10 @@ class Plant {
   [[nodiscard]] virtual Theta Truth(int mode, double t_s) const noexcept = 0;
   /// Regression target (contact force, valve flow) that parameters predict at a sample; 0 when no mode acts.
   [[nodiscard]] virtual double Predict(const Theta& theta, const PlantSample& sample) const noexcept = 0;
+  /// What the plant answers with with those parameters: where its law is not quite the formula, not what Predict says.
+  [[nodiscard]] virtual double Respond(const Theta& theta, const PlantSample& sample) const noexcept {
+    return Predict(theta, sample);
+  }
   /// Regression target that a sample shows by itself.
   [[nodiscard]] virtual double Target(const PlantSample& sample) const noexcept = 0;
 };

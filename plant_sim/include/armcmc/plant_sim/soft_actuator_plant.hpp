@@ -6,6 +6,7 @@
 
 #include "armcmc/plant_sim/effects/actuator_effect.hpp"
 #include "armcmc/plant_sim/effects/gate.hpp"
+#include "armcmc/plant_sim/law_error.hpp"
 #include "armcmc/plant_sim/plant.hpp"
 #include "armcmc/plant_sim/valve_controller.hpp"
 
@@ -18,7 +19,7 @@ namespace armcmc::plant_sim {
 ///   u_d sign(p - p_atm) sqrt|p - p_atm| = p' (theta1_d + theta2_d p)      otherwise
 ///
 /// The left side is the valve flow. Reported parameters of a mode: g = theta1 + theta2 p_atm and theta2, so that
-/// flow = p' (g + theta2 (p - p_atm)).
+/// flow = p' (g + theta2 (p - p_atm)). With an `error` of the law p' is this times a LawError of pressure and opening.
 class SoftActuatorPlant final : public Plant {
  public:
   explicit SoftActuatorPlant(const PlantSetup& setup);
@@ -52,6 +53,7 @@ class SoftActuatorPlant final : public Plant {
   Schedule schedule_;
   double p_atm_, p_supply_, q1_, q2_, q3_, dt_;
   int substeps_;
+  LawError error_;
   std::unique_ptr<ValveController> controller_;
   State state_ = State::Zero();
   std::vector<Hidden> hidden_;

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "effect_lists.hpp"
+
 namespace armcmc::gap_bench {
 namespace {
 
@@ -34,6 +36,21 @@ std::string CaseBuilder::Write(const std::string& name, const std::string& text)
 std::string ScenarioOfPlant(const std::string& name) {
   std::ifstream file(support::FindSharedFile("scenarios", name), std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string GroupOf(double strength) { return "R " + Short(strength); }
+
+std::pair<std::string, std::string> DrawPair(std::mt19937_64* random) {
+  const std::size_t count = kCatalogue.size();
+  const std::size_t first = (*random)() % count, second = (first + 1 + (*random)() % (count - 1)) % count;
+  return {kCatalogue[first], kCatalogue[second]};
+}
+
+std::string HiddenTable(const std::string& effect, double strength) {
+  const std::size_t colon = effect.find(':');
+  std::string table = "\n[[hidden_effect]]\nname = \"" + effect.substr(0, colon) + "\"\n";
+  if (colon != std::string::npos) table += "variant = \"" + effect.substr(colon + 1) + "\"\n";
+  return table + "strength = " + Short(strength) + "\n";
 }
 
 std::string Short(double value) {

@@ -53,6 +53,13 @@ class CaseBuilder {
 [[nodiscard]] std::string ScenarioOfPlant(const std::string& name);
 [[nodiscard]] Case Like(const std::string& group, const std::string& scenario, const std::string& effect,
                         double strength);
+/// "R 0.3"
+[[nodiscard]] std::string GroupOf(double strength);
+/// Two different effects of the catalogue, drawn.
+[[nodiscard]] std::pair<std::string, std::string> DrawPair(std::mt19937_64* random);
+/// A [[hidden_effect]] table. The first of a file may go on with its seed, which draws for all.
+/// @param effect  "NAME:VARIANT", or a name with one formula.
+[[nodiscard]] std::string HiddenTable(const std::string& effect, double strength);
 /// "0.3"
 [[nodiscard]] std::string Short(double value);
 

@@ -19,7 +19,9 @@
 #include "armcmc/gap/workflow.hpp"
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "armcmc/gap_bench/score.hpp"
+#include "armcmc/gap_bench/strata.hpp"
 #include "armcmc/support/shared_files.hpp"
+#include "closing.hpp"
 #include "contents.hpp"
 
 namespace armcmc::gap_bench {
@@ -143,6 +145,8 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
     outcome->diagnosed_strength = DiagnosedStrength(plant, *outcome);
     if (*outcome->diagnosed_strength < kTrace) outcome->grade = Grade::kNotShown;
   }
+  if (Imperfect(outcome->what.stratum))
+    outcome->first_rung = FirstRung(plant, *outcome, ScenarioOf(plant, outcome->what));
   outcome->equation_right = EquationRight(outcome->truth, result);
   if (outcome->truth.effects.size() != 1) return;
   const TrueEffect& effect = outcome->truth.effects.front();
@@ -199,6 +203,8 @@ std::vector<Outcome> RunCases(const PlantProcess& plant, const std::vector<Case>
 
 bool CanFollowUp(const Outcome& outcome) {
   const std::vector<TrueEffect>& effects = outcome.truth.effects;
+  // The experiment is made with the catalogue's plant.
+  if (Imperfect(outcome.what.stratum)) return false;
   return outcome.grade == Grade::kTie && std::all_of(effects.begin(), effects.end(), [](const TrueEffect& effect) {
            return effect.kind == "catalogue";
          });

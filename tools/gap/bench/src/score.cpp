@@ -5,6 +5,7 @@
 #include <map>
 
 #include "armcmc/effects/registry.hpp"
+#include "armcmc/gap_bench/strata.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -41,6 +42,15 @@ Names Judged(const Case& what, const Truth& truth, Names said) {
   };
   std::erase_if(said, [&](const std::string& name) { return holds(what.own, name) && !holds(names, name); });
   return said;
+}
+
+/// The truth that an answer is held against: what no catalogue lists needs no name where it only stands beside what one
+/// does.
+Truth ToBeNamed(const Truth& truth) {
+  const auto outside = [](const TrueEffect& effect) { return effect.kind == "outside"; };
+  Truth named = truth;
+  if (!std::all_of(truth.effects.begin(), truth.effects.end(), outside)) std::erase_if(named.effects, outside);
+  return named;
 }
 
 /// Whether the tool could have given the right name.
@@ -95,7 +105,8 @@ std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::R
   return sets;
 }
 
-Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result) {
+Grade GradeOf(const Case& what, const Truth& all, const gap::Result& result) {
+  const Truth truth = ToBeNamed(all);
   const std::vector<Names> sets = JudgedSets(what, truth, result);
   const bool only_own = sets.size() == 1 && sets.front().empty();
   const bool none = result.verdict == gap::Verdict::kNone || only_own;
@@ -138,7 +149,8 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
   return *top;
 }
 
-bool LabelRight(const Case& what, const Truth& truth, const std::string& label) {
+bool LabelRight(const Case& what, const Truth& all, const std::string& label) {
+  const Truth truth = ToBeNamed(all);
   if (truth.effects.empty())
     return label == "none" || std::find(what.own.begin(), what.own.end(), label) != what.own.end();
   if (label == "none") return false;
@@ -152,8 +164,9 @@ bool LabelRight(const Case& what, const Truth& truth, const std::string& label) 
   }
   said = Judged(what, truth, std::move(said));
   if (Nameable(what, truth) && said == names) return true;
-  const bool own_formula = std::all_of(truth.effects.begin(), truth.effects.end(),
-                                       [](const TrueEffect& effect) { return effect.kind == "catalogue"; });
+  const bool own_formula =
+      !Imperfect(what.stratum) && std::all_of(truth.effects.begin(), truth.effects.end(),
+                                              [](const TrueEffect& effect) { return effect.kind == "catalogue"; });
   if (Nameable(what, truth) && own_formula) return false;
   return FamiliesOf(said) == FamiliesOf(names);
 }

@@ -7,47 +7,16 @@
 
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "case_builder.hpp"
+#include "effect_lists.hpp"
+#include "imperfect_strata.hpp"
 #include "recorded.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
 
-using Words = std::vector<std::string>;
-
-const Words kCatalogue = {"force_bias:constant",       "force_drift:linear",      "coulomb_friction:tanh",
-                          "presliding_friction:dahl",  "viscous_friction:linear", "inertia:rigid",
-                          "sensor_delay:dead_time",    "sensor_lag:first_order",  "stress_relaxation:linear",
-                          "adhesion:exponential",      "contact_offset:shift",    "sensor_saturation:clip",
-                          "periodic_disturbance:sine", "stiffness_drift:linear"};
-const Words kVariants = {"coulomb_friction:sign",
-                         "coulomb_friction:stribeck",
-                         "presliding_friction:lugre",
-                         "stress_relaxation:elastic",
-                         "stress_relaxation:two_time_constants",
-                         "adhesion:pull_off",
-                         "stiffness_drift:exponential",
-                         "sensor_lag:second_order",
-                         "force_drift:exponential",
-                         "periodic_disturbance:square"};
-const Words kOutside = {"quadratic_drag", "strain_stiffening", "backlash", "dead_zone", "spatial_ripple"};
 const Words kActingInOneMode = {"coulomb_friction:tanh", "presliding_friction:dahl", "viscous_friction:linear",
                                 "inertia:rigid", "periodic_disturbance:sine"};
-const Words kActuator = {"leak:linear",
-                         "valve_dead_band:rescaled",
-                         "valve_lag:spool",
-                         "supply_droop:opening",
-                         "pressure_bias:constant",
-                         "angle_bias:constant",
-                         "sensor_delay:dead_time",
-                         "joint_friction:tanh",
-                         "cubic_stiffness:cubic",
-                         "gravity_load:sine",
-                         "hysteresis:bouc_wen",
-                         "payload_step:inertia",
-                         "periodic_disturbance:sine"};
 const Words kActuatorOutside = {"quadratic_drag", "obstacle"};
-constexpr const char* kRich = "contact_rich";
-constexpr const char* kExcited = "soft_actuator_excited";
 constexpr int kPairCells = 10, kUnequalPairCells = 3, kActuatorNullCells = 5;
 
 struct NoiseVariant {
@@ -61,8 +30,6 @@ const std::vector<NoiseVariant> kNoises = {
     {"student", "kind = \"student_t\"\nstd_share = 0.01\ndof = 4.0\n"},
     {"growing", "kind = \"gaussian\"\nstd_share = 0.01\ngrowth = 1.0\n"}};
 
-std::string GroupOf(double strength) { return "R " + Short(strength); }
-
 void Null(CaseBuilder* b) {
   for (const char* scenario : {"contact_rich", "contact_rich_mm", "contact_sine", "contact_slow_triangle"})
     for (const NoiseVariant& noise : kNoises) {
@@ -75,19 +42,6 @@ void Null(CaseBuilder* b) {
 void Each(CaseBuilder* b, const Words& effects, const std::vector<double>& strengths) {
   for (const double strength : strengths)
     for (const std::string& effect : effects) b->Cell(Like(GroupOf(strength), kRich, effect, strength), effect);
-}
-
-/// Two different effects of the catalogue, drawn.
-std::pair<std::string, std::string> DrawPair(std::mt19937_64* random) {
-  const std::size_t count = kCatalogue.size();
-  const std::size_t first = (*random)() % count, second = (first + 1 + (*random)() % (count - 1)) % count;
-  return {kCatalogue[first], kCatalogue[second]};
-}
-
-std::string HiddenTable(const std::string& effect, double strength) {
-  const std::size_t colon = effect.find(':');
-  return "\n[[hidden_effect]]\nname = \"" + effect.substr(0, colon) + "\"\nvariant = \"" + effect.substr(colon + 1) +
-         "\"\nstrength = " + Short(strength) + "\n";
 }
 
 void Pairs(CaseBuilder* b) {
@@ -153,7 +107,6 @@ void OneScenario(CaseBuilder* b, const char* scenario) {
   for (const std::string& effect : kCatalogue) b->Cell(Like("R 1", scenario, effect, 1.0), effect);
 }
 
-using Fill = void (*)(CaseBuilder*);
 const std::vector<std::pair<std::string, Fill>>& Strata() {
   static const std::vector<std::pair<std::string, Fill>> strata = {
       {"null", Null},
@@ -185,11 +138,17 @@ const std::vector<std::pair<std::string, Fill>>& Strata() {
 const std::vector<std::string>& StratumNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const auto& stratum : Strata()) all.push_back(stratum.first);
+    for (const auto& strata : {Strata(), ImperfectStrata()})
+      for (const auto& stratum : strata) all.push_back(stratum.first);
     all.emplace_back(kRecorded);
     return all;
   }();
   return names;
+}
+
+bool Imperfect(const std::string& stratum) {
+  const auto& strata = ImperfectStrata();
+  return std::any_of(strata.begin(), strata.end(), [&](const auto& one) { return one.first == stratum; });
 }
 
 std::vector<Case> CasesOf(const std::string& stratum, int logs_per_cell, std::uint64_t seed,
@@ -199,12 +158,13 @@ std::vector<Case> CasesOf(const std::string& stratum, int logs_per_cell, std::ui
     AddRecorded(recordings, kCatalogue, &builder);
     return builder.Take();
   }
-  for (const auto& [name, fill] : Strata())
-    if (name == stratum) {
-      CaseBuilder builder(stratum, logs_per_cell, seed, folder);
-      fill(&builder);
-      return builder.Take();
-    }
+  for (const auto& strata : {Strata(), ImperfectStrata()})
+    for (const auto& [name, fill] : strata)
+      if (name == stratum) {
+        CaseBuilder builder(stratum, logs_per_cell, seed, folder);
+        fill(&builder);
+        return builder.Take();
+      }
   throw std::invalid_argument("there is no stratum \"" + stratum + "\"");
 }
 

@@ -7,6 +7,7 @@
 
 #include "armcmc/effects/registry.hpp"
 #include "armcmc/gap_bench/score.hpp"
+#include "armcmc/gap_bench/strata.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -73,7 +74,7 @@ Calibration Calibrate(const std::vector<Outcome>& outcomes) {
   return calibration;
 }
 
-Confusion Confuse(const std::vector<Outcome>& outcomes) {
+Confusion Confuse(const std::vector<Outcome>& outcomes, bool imperfect) {
   Confusion confusion;
   for (const EffectInfo* info : ContactEffects::kInfos) confusion.names.emplace_back(info->name);
   confusion.answers = confusion.names;
@@ -82,8 +83,11 @@ Confusion Confuse(const std::vector<Outcome>& outcomes) {
   const std::size_t tie = confusion.names.size();
   confusion.count.assign(confusion.names.size(), std::vector<int>(confusion.answers.size(), 0));
   for (const Outcome& outcome : outcomes) {
-    if (!SingleEffect(outcome) || outcome.what.strength < kVisible || outcome.truth.effects.size() != 1) continue;
-    const int row = ContactEffects::Find(outcome.truth.effects.front().name);
+    if (imperfect ? !Imperfect(outcome.what.stratum) || !Answered(outcome) : !SingleEffect(outcome)) continue;
+    std::vector<TrueEffect> effects = outcome.truth.effects;
+    std::erase_if(effects, [](const TrueEffect& effect) { return effect.kind == "outside"; });
+    if (outcome.what.strength < kVisible || effects.size() != 1) continue;
+    const int row = ContactEffects::Find(effects.front().name);
     if (row < 0) continue;
     const std::vector<Names> sets = SetsOf(outcome.answer.result);
     std::size_t column = tie + 1;

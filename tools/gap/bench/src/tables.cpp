@@ -59,9 +59,9 @@ std::string CalibrationTable(const std::vector<Outcome>& outcomes) {
   return table.ToString();
 }
 
-std::string ConfusionTable(const std::vector<Outcome>& outcomes) {
-  const Confusion confusion = Confuse(outcomes);
-  TextTable table({"truth", "n", "answers"});
+std::string ConfusionTable(const std::vector<Outcome>& outcomes, bool imperfect) {
+  const Confusion confusion = Confuse(outcomes, imperfect);
+  TextTable table({imperfect ? "truth, where the plant is not the catalogue" : "truth", "n", "answers"});
   for (std::size_t r = 0; r < confusion.names.size(); ++r) {
     int n = 0;
     std::string answers;
@@ -88,6 +88,7 @@ std::string Line(const Outcome& o) {
   line << " -> " << gap::Name(result.verdict);
   if (!SetsOf(result).empty()) line << ' ' << Sets(result) << ", closed " << Significant(result.gap.closed_fraction, 3);
   line << ", P " << Significant(o.label_probability, 3) << " of " << o.label;
+  if (o.first_rung) line << ", " << Significant(*o.first_rung, 3) << " of what the truth would close";
   if (o.onset_error_s) line << ", onset off by " << Significant(*o.onset_error_s, 2) << " s";
   if (o.diagnosed_strength) line << ", at most R " << Significant(*o.diagnosed_strength, 2) << " in what was diagnosed";
   line << ", " << Significant(o.answer.cpu_s, 2) << " s";
@@ -95,8 +96,8 @@ std::string Line(const Outcome& o) {
 }
 
 std::string Tables(const std::vector<Outcome>& outcomes) {
-  return CountTable(outcomes) + '\n' + ConfusionTable(outcomes) + '\n' + CalibrationTable(outcomes) + '\n' +
-         GateTable(outcomes);
+  return CountTable(outcomes) + '\n' + ConfusionTable(outcomes, false) + '\n' + ConfusionTable(outcomes, true) + '\n' +
+         CalibrationTable(outcomes) + '\n' + GateTable(outcomes);
 }
 
 }  // namespace armcmc::gap_bench

@@ -22,7 +22,7 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 [[nodiscard]] std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result);
 
 /// Compares an answer with the truth. An effect that is outside the catalogue, or was taken out of it, has no right
-/// name.
+/// name; beside one of the catalogue it needs none.
 [[nodiscard]] Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result);
 
 /// Whether the equation that carries the gap is one that a true effect changes. Nothing where the plant has one
@@ -32,7 +32,8 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 /// What the tool holds most probable, of: "none", "unnamed", and each set of names ("a + b", summed over formulas and
 /// times), with the probability that it prints.
 [[nodiscard]] std::pair<std::string, double> TopLabel(const gap::Result& result);
-/// Whether that label is true. A relative of the family counts where the catalogue lacks the effect or its formula.
+/// Whether that label is true. A relative of the family counts where the catalogue lacks the effect or its formula, and
+/// where the plant is not the catalogue.
 [[nodiscard]] bool LabelRight(const Case& what, const Truth& truth, const std::string& label);
 
 /// Times at which an effect could have begun without the data knowing: between them the effect would have changed the

@@ -17,6 +17,10 @@ inline constexpr const char* kRealNoise = "real motion and noise";
 /// Names of all strata.
 [[nodiscard]] const std::vector<std::string>& StratumNames();
 
+/// Whether the plant of a stratum is not the catalogue: its law differs from the formula, it holds what nobody listed,
+/// or its effects have formulas of their own.
+[[nodiscard]] bool Imperfect(const std::string& stratum);
+
 /// The cases of a stratum. A case depends on the seed, its stratum, its cell and its number in the cell alone, so that
 /// larger runs repeat the cases of smaller ones.
 ///

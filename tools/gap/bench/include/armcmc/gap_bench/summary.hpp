@@ -38,7 +38,7 @@ struct Calibration {
   double error = 0.0;  ///< Expected calibration error: mean |printed - right| over bins, weighted by their cases.
 };
 
-/// Truth against answer of the cases with one hidden effect and R >= 0.3.
+/// Truth against answer of the cases with one hidden effect of the catalogue and R >= 0.3.
 struct Confusion {
   std::vector<std::string> names;       ///< Of effects, for the rows.
   std::vector<std::string> answers;     ///< Of effects, then "tie", "pair", "unnamed", "none".
@@ -64,7 +64,8 @@ struct Onsets {
 [[nodiscard]] bool Counts(const Outcome& outcome);
 [[nodiscard]] std::vector<Row> Rows(const std::vector<Outcome>& outcomes);
 [[nodiscard]] Calibration Calibrate(const std::vector<Outcome>& outcomes);
-[[nodiscard]] Confusion Confuse(const std::vector<Outcome>& outcomes);
+/// @param imperfect  Of the strata in which the plant is not the catalogue, instead of the others.
+[[nodiscard]] Confusion Confuse(const std::vector<Outcome>& outcomes, bool imperfect = false);
 /// Gates of those strata that have cases.
 [[nodiscard]] std::vector<Gate> Gates(const std::vector<Outcome>& outcomes);
 /// Whether a case counts for the gap: one effect or two with R >= 1, found.
