@@ -24,8 +24,8 @@ std::vector<std::string> Candidate::families() const {
 }
 
 bool Candidate::exact() const {
-  return std::all_of(fit.hypothesis.terms.begin(), fit.hypothesis.terms.end(),
-                     [](const Term& term) { return term.form->exact(); });
+  const std::vector<Term> effects = added();
+  return std::all_of(effects.begin(), effects.end(), [](const Term& term) { return term.form->exact(); });
 }
 
 bool Candidate::always() const {

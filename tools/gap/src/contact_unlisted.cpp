@@ -1,5 +1,6 @@
 #include "armcmc/gap/features.hpp"
 #include "contact_forms.hpp"
+#include "law_error.hpp"
 
 namespace armcmc::gap {
 
@@ -56,6 +57,11 @@ void AddUnlisted(const Signals& s, std::vector<EffectForm>* out) {
   };
   SetStarts(&load, {3});
   out->push_back(load);
+
+  if (!s.law_seen) return;
+  constexpr double kFast = 2.0;  // times the rms speed
+  out->push_back(LawErrorForm({Role::kPosition, 0.0, s.at(Role::kPosition).maxCoeff()},
+                              {Role::kVelocity, 0.0, kFast * speed, true}));
 }
 
 }  // namespace armcmc::gap

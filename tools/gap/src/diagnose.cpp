@@ -11,7 +11,7 @@ namespace armcmc::gap {
 namespace {
 
 constexpr int kWidestWindow = 15;
-constexpr int kNoisePasses = 2;
+constexpr int kNoisePasses = 2, kSearchPasses = 4;
 constexpr int kBaseSteps = 30;
 constexpr double kCleaner = 0.97;  // of the innovation variance, below which the first noise model hid an effect
 
@@ -59,7 +59,7 @@ std::unique_ptr<Look> LookAt(const Equation& equation, const Recording& recordin
     whitener = NoiseLeftBy(fitter, Referee(fitter, base.predicted).Judge(base));
   }
   // What no additive basis expresses (an onset, a clipped force) hides in the first noise model.
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0; pass < kSearchPasses; ++pass) {
     look->fitter = std::make_unique<Fitter>(equation, look->signals, whitener);
     look->search = std::make_unique<Search>(*look->fitter, look->catalogue, bootstrap, options.thresholds,
                                             FitModel(*look->fitter, look->catalogue, options));

@@ -84,6 +84,18 @@ Vector ShapePrecision(const Fitted& fitted) {
   return precision;
 }
 
+/// What is known beforehand of many small amplitudes, whose mean is zero; zero of all other coordinates.
+Vector RegularPrecision(const Hypothesis& hypothesis, const std::vector<Coordinate>& coordinates) {
+  auto end = static_cast<Eigen::Index>(coordinates.size());
+  Vector precision = Vector::Zero(end);
+  for (auto term = hypothesis.terms.rbegin(); term != hypothesis.terms.rend(); ++term) {
+    end -= term->form->size();
+    for (int i = 0; term->form->regular && i < term->form->size(); ++i)
+      precision[end + i] = std::pow(coordinates[static_cast<std::size_t>(end + i)].prior_sd, -2);
+  }
+  return precision;
+}
+
 }  // namespace
 
 Matrix OrthonormalBasis(const Matrix& columns) {
@@ -145,6 +157,12 @@ Fitted Fitter::Fit(const Hypothesis& hypothesis, const Vector& start, int max_st
   const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
   Vector theta = start;
   Clamp(coordinates, &theta);
+  CoordinatePrior regular;
+  if (prior == nullptr && std::any_of(hypothesis.terms.begin(), hypothesis.terms.end(),
+                                      [](const Term& term) { return term.form->regular; })) {
+    regular = {Vector::Zero(theta.size()), RegularPrecision(hypothesis, coordinates).asDiagonal()};
+    prior = &regular;
+  }
   Prediction prediction = Evaluate(*equation_, *signals_, hypothesis, theta);
   Vector residual = whitener_.Apply(Vector(signals_->output - prediction.y));
   const auto penalty = [&](const Vector& at) {
@@ -201,7 +219,8 @@ void Fitter::Score(Fitted* fitted) const {
   fitted->at_bound = Blocked(fitted->coordinates, fitted->theta, ascent);
   // A shape of an amplitude of zero has no column either.
   for (std::size_t i = 0; i < fitted->at_bound.size(); ++i)
-    if (fitted->whitened_jacobian.col(static_cast<Eigen::Index>(i)).isZero(0.0) || fitted->coordinates[i].event)
+    if (fitted->whitened_jacobian.col(static_cast<Eigen::Index>(i)).isZero(0.0) || fitted->coordinates[i].event ||
+        fitted->coordinates[i].nuisance)
       fitted->at_bound[i] = true;
   const std::vector<Eigen::Index> free = FreeOf(fitted->at_bound);
   const Matrix columns = fitted->whitened_jacobian(Eigen::all, free);
@@ -232,7 +251,7 @@ void Fitter::Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, V
   }
 }
 
-Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
+std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, const Term& term) const {
   const EffectForm& form = *term.form;
   Hypothesis hypothesis = parent.hypothesis;
   hypothesis.terms.push_back(term);
@@ -277,6 +296,17 @@ Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
     starts.emplace_back(squares, theta);
   }
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return starts;
+}
+
+double Fitter::Promise(const Fitted& parent, const Term& term) const {
+  return parent.squares - Starts(parent, term).front().first;
+}
+
+Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
+  Hypothesis hypothesis = parent.hypothesis;
+  hypothesis.terms.push_back(term);
+  const std::vector<std::pair<double, Vector>> starts = Starts(parent, term);
   const std::size_t tries = starts.size() > 1 ? std::min(kRefinedStarts, starts.size()) : 1;
   Fitted best = Fit(hypothesis, starts.front().second);
   for (std::size_t i = 1; i < tries; ++i) {

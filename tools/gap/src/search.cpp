@@ -14,8 +14,10 @@ namespace {
 constexpr std::size_t kMaxGated = 4;      // gated hypotheses that are fitted, by what the scan promises
 constexpr std::size_t kPairBeam = 4;      // singles that get partners
 constexpr std::size_t kRefinedPairs = 3;  // pairs whose formulas and gates are tried anew
+constexpr std::size_t kBesideGrant = 6;   // effects that are fitted beside a grant, by what they promise
 constexpr std::size_t kJudged = 6;
 constexpr double kUnnamedAtLeast = 0.5;  // where the verdict is that
+constexpr double kLawMayFeign = 1.5;     // gap up to which a law that is not quite its formula is asked, too
 
 void SortByScore(std::vector<CandidatePtr>* candidates) {
   std::stable_sort(candidates->begin(), candidates->end(),
@@ -44,10 +46,14 @@ Search::Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, c
   base_->fit = std::move(base);
 }
 
-CandidatePtr Search::Make(Fitted fit) const {
+CandidatePtr Search::Make(Fitted fit, const CandidatePtr& parent) const {
   auto candidate = std::make_shared<Candidate>();
   candidate->fit = std::move(fit);
-  candidate->num_known = base_->num_known;
+  candidate->num_known = parent ? parent->num_known : base_->num_known;
+  if (parent && parent->granted) {
+    candidate->granted = std::make_shared<Granted>(*parent->granted);
+    candidate->granted->with = candidate->fit;
+  }
   return candidate;
 }
 
@@ -99,8 +105,8 @@ Search::Candidates Search::Near(const Candidates& sorted, double gap) const {
 Search::Candidates Search::Extend(const CandidatePtr& parent, bool variants) const {
   Candidates extended;
   for (const EffectForm& form : *catalogue_)
-    if (!Holds(parent->fit, form.effect) && (form.exact() || variants))
-      extended.push_back(Make(fitter_->Add(parent->fit, {&form, {}})));
+    if (!form.regular && !Holds(parent->fit, form.effect) && (form.exact() || variants))
+      extended.push_back(Make(fitter_->Add(parent->fit, {&form, {}}), parent));
   // A second effect that acts at times only could repair the formula of the first.
   const double floor = parent == base_ ? 0.0 : limits_.tie_share * Gain(parent) * rows_ / 2.0;
   const auto better = [&](const CandidatePtr& gated) {
@@ -131,7 +137,7 @@ Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candida
   std::sort(gates.begin(), gates.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   if (gates.size() > kMaxGated) gates.resize(kMaxGated);
   Candidates gated;
-  for (const GateCandidate& gate : gates) gated.push_back(Make(fitter_->Add(parent->fit, gate.term)));
+  for (const GateCandidate& gate : gates) gated.push_back(Make(fitter_->Add(parent->fit, gate.term), parent));
   if (parent == base_) ShareOnset(min_active, &gated);
   return gated;
 }
@@ -281,6 +287,42 @@ Search::Candidates Search::Listed(const Candidates& candidates, bool listed) con
   return some;
 }
 
+Search::Candidates Search::Beside(const Candidates& listed, const Candidates& unlisted) const {
+  std::vector<Term> grants;
+  for (const CandidatePtr& physics : unlisted) grants.push_back(physics->fit.hypothesis.terms.back());
+  for (const EffectForm& form : *catalogue_)
+    if (form.regular) grants.push_back({&form, {}});
+  const Term* best = nullptr;
+  double most = listed.front()->fit.score();
+  for (const Term& grant : grants) {
+    const double score = fitter_->Add(listed.front()->fit, grant).score();
+    if (!(score > most)) continue;
+    best = &grant;
+    most = score;
+  }
+  if (best == nullptr) return {};
+  const CandidatePtr parent = Make(fitter_->Add(base_->fit, *best));
+  ++parent->num_known;
+  parent->granted = std::make_shared<Granted>();
+  parent->granted->what = best->form->effect;
+  parent->granted->without = parent->fit;
+  std::vector<std::pair<double, Term>> promises;
+  for (const EffectForm& form : *catalogue_)
+    if (form.exact()) promises.emplace_back(fitter_->Promise(parent->fit, {&form, {}}), Term{&form, {}});
+  std::stable_sort(promises.begin(), promises.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  Candidates beside;
+  for (std::size_t i = 0; i < std::min(kBesideGrant, promises.size()); ++i)
+    beside.push_back(Make(fitter_->Add(parent->fit, promises[i].second), parent));
+  SortByScore(&beside);
+  return beside;
+}
+
+CandidatePtr Search::LawError() const {
+  for (const EffectForm& form : *catalogue_)
+    if (form.regular) return Make(fitter_->Add(base_->fit, {&form, {}}));
+  return nullptr;
+}
+
 Finding Search::Run(bool pairs) const {
   Finding finding;
   finding.base = finding.best = base_;
@@ -333,14 +375,24 @@ Finding Search::Run(bool pairs) const {
       if (!Better(all_pairs.front()->fit, candidate->fit) && Adequate(candidate, gap)) good.push_back(candidate);
     SortByScore(&good);
   }
+  Candidates beside;
   if (good.empty() && !all_pairs.empty()) {
-    for (const CandidatePtr& pair : Near(all_pairs, gap)) {
-      const bool earned = std::all_of(listed.begin(), listed.end(), [&](const CandidatePtr& single) {
+    beside = Beside(listed, unlisted);
+    Candidates two = all_pairs;
+    two.insert(two.end(), beside.begin(), beside.end());
+    SortByScore(&two);
+    for (const CandidatePtr& pair : Near(two, gap)) {
+      const auto earned = [&](const CandidatePtr& single) {
         return !Holds(pair->fit, single->fit.hypothesis.terms.back().form->effect) || Better(pair->fit, single->fit);
-      });
-      if (earned && Adequate(pair, gap)) good.push_back(pair);
+      };
+      // What is granted is not claimed: only the effect has to earn its name.
+      const bool all_earned =
+          pair->granted ? Better(pair->fit, pair->granted->without) : std::all_of(listed.begin(), listed.end(), earned);
+      if (all_earned && Adequate(pair, gap)) good.push_back(pair);
     }
-    top = good.empty() ? all_pairs.front() : good.front();
+    DropUnsure(&good);
+    // What leaves least tells the noise best.
+    top = good.empty() ? two.front() : good.front();
   }
   // A name is not given to what physics outside the catalogue explains better, or as well with one effect less.
   if (!unlisted.empty() && Gain(unlisted.front()) > limits_.min_gain &&
@@ -348,7 +400,13 @@ Finding Search::Run(bool pairs) const {
     good.clear();
     finding.unlisted = top = unlisted.front();
   }
+  if (const CandidatePtr law = good.empty() || gap > kLawMayFeign ? nullptr : LawError();
+      law && Outdone(good.front(), law) && Adequate(law, gap)) {
+    good.clear();
+    finding.unlisted = top = law;
+  }
   finding.tried.insert(finding.tried.end(), all_pairs.begin(), all_pairs.end());
+  finding.tried.insert(finding.tried.end(), beside.begin(), beside.end());
   SortByScore(&finding.tried);
   PreferCatalogue(&good);
   finding.set = OnePerName(good);
@@ -379,6 +437,7 @@ Finding Search::Run(bool pairs) const {
                   bootstrap_->ProbabilityAbove(Judge(finding.best).gain, 0.1 * limits_.min_gain * rows_)});
   AssignProbabilities(&finding);
   if (finding.verdict == Verdict::kNamed && !finding.approximate) Hedge(&finding);
+  TakeBack(&finding);
   return finding;
 }
 

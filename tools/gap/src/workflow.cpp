@@ -79,33 +79,39 @@ const Fitted* Control(const Finding& finding) {
 void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds& limits, Diagnosis* diagnosis,
              Result* result) {
   Finding& finding = diagnosis->finding;
-  const auto closed = [&](const Fitted& fit) {
-    return ShowGap(equation, heldout, *diagnosis->bootstrap, finding.base->fit, fit, nullptr);
+  const auto closed = [&](const CandidatePtr& c) {
+    const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
+    return ShowGap(equation, heldout, *diagnosis->bootstrap, before, c->granted ? c->granted->with : c->fit, nullptr);
   };
   const auto holds = [&](const GapSummary& gap) {
     if (gap.gap_ratio < kUnseenRatio) return gap.after.rmse < kWorse * gap.before.rmse;
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
-  const auto holds_elsewhere = [&](const Fitted& fit) {
-    return heldout.ClosedElsewhere(finding.base->fit, fit) > limits.confirmed_elsewhere;
+  const auto holds_elsewhere = [&](const CandidatePtr& c) {
+    const double share = c->granted ? heldout.ClosedElsewhere(c->granted->without, c->granted->with)
+                                    : heldout.ClosedElsewhere(finding.base->fit, c->fit);
+    return share > limits.confirmed_elsewhere;
   };
+  // Beside a grant a name is given to what is sure: what stays of such a set, once some of it is struck off, is not.
+  const bool granted = std::any_of(finding.set.begin(), finding.set.end(),
+                                   [](const CandidatePtr& member) { return member->granted != nullptr; });
   std::vector<CandidatePtr> kept;
   double lost = 0.0;
   for (const CandidatePtr& member : finding.set) {
-    if (holds(closed(member->fit))) {
+    if (holds(closed(member))) {
       kept.push_back(member);
       continue;
     }
     const auto other = std::find_if(finding.tried.begin(), finding.tried.end(), [&](const CandidatePtr& c) {
-      return c != member && c->names() == member->names() && holds(closed(c->fit));
+      return c != member && c->names() == member->names() && holds(closed(c));
     });
-    if (other == finding.tried.end() && holds_elsewhere(member->fit)) {
+    if (other == finding.tried.end() && holds_elsewhere(member)) {
       result->notes.push_back("the data kept apart hold something else besides, in a few stretches, that " +
                               Joined(Texts(member), " and ") + " does not explain and the first part does not show");
       kept.push_back(member);
       continue;
     }
-    if (other == finding.tried.end()) {
+    if (other == finding.tried.end() || granted) {
       result->notes.push_back(Joined(Texts(member), " and ") +
                               " explains the first part of the data but not the part kept apart: struck off");
       lost += member->probability;
@@ -119,7 +125,8 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     finding.approximate = true;
     kept.push_back(*other);
   }
-  if (kept.empty()) {
+  if (kept.empty() || (granted && kept.size() < finding.set.size())) {
+    kept.clear();
     finding.verdict = Verdict::kUnnamed;
     finding.p_unnamed = std::max(finding.p_unnamed, lost);
   } else {
@@ -179,7 +186,8 @@ Parts Divide(const WorkflowRequest& request) {
 bool RestContradicts(const EquationDiagnosis& one, const Parts& parts) {
   const HeldOut rest(*one.equation, *one.diagnosis.look, parts.shown, parts.first_shown);
   const Finding& finding = one.diagnosis.finding;
-  const Fit fit = rest.Judge(rest.Try(finding.set.empty() ? finding.base->fit : finding.best->fit));
+  const CandidatePtr& best = finding.set.empty() ? finding.base : finding.best;
+  const Fit fit = rest.Judge(rest.Try(best->granted ? best->granted->with : best->fit));
   return fit.coverage95 < kLeastCoverage || fit.whiteness > kMostWhiteness;
 }
 

@@ -20,6 +20,7 @@ struct Coordinate {
   bool event = false;  ///< A time at which something happens, or a state at the start: only the samples around it know
                        ///< it, and leaving them out would say nothing on the effect. Scores take it as known; another
                        ///< recording has its own.
+  bool nuisance = false;  ///< Of physics that is granted, not claimed. Scores take it as known.
   /// Resting on that bound, the effect has become another one (a very slow relaxation is a drift): it is not adequate.
   bool other_below = false, other_above = false;
 

@@ -44,8 +44,9 @@ struct EffectForm {
   std::string variant;  ///< Empty: the catalogue's own formula.
   std::string family;
   std::string formula;
-  bool listed = true;  ///< Of the catalogue. An unlisted effect is never named: it competes, so that no name is given
-                       ///< to what it explains better, and describes what is found.
+  bool listed = true;    ///< Of the catalogue. An unlisted effect is never named: it competes, so that no name is given
+                         ///< to what it explains better, and describes what is found.
+  bool regular = false;  ///< Many small amplitudes, which are fitted with what is known of them beforehand.
   Slot slot = Slot::kAdditive;
   std::vector<Coordinate> coordinates;      ///< Amplitudes first, then shapes.
   int num_amplitudes = 1;                   ///< Coordinates that multiply features.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "armcmc/gap/blocks.hpp"
@@ -56,8 +57,13 @@ class Fitter {
                            const CoordinatePrior* prior = nullptr) const;
   /// The best fit of `parent` with one more term: grid over the term's starts by projected score, then Fit.
   [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
+  /// Of the squares of `parent` what Add would take at the best of its starts: a bound from below of what it is worth,
+  /// for a fraction of the time.
+  [[nodiscard]] double Promise(const Fitted& parent, const Term& term) const;
 
  private:
+  /// Squares and coordinates at each of the term's starts, amplitudes fitted; the least squares first.
+  [[nodiscard]] std::vector<std::pair<double, Vector>> Starts(const Fitted& parent, const Term& term) const;
   /// Halves amplitudes [first, first + count) until the plant that they make does not run away.
   void Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const;
   /// Fills at_bound, heldout and log_evidence.

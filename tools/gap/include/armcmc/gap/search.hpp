@@ -14,12 +14,20 @@
 
 namespace armcmc::gap {
 
+/// What was granted to a hypothesis while it was judged: physics without a name, or that the law is not quite its
+/// formula. A name is then earned by what the effects add to that.
+struct Granted {
+  std::string what;
+  Fitted without, with;  ///< The grant alone, and with the effects of the hypothesis.
+};
+
 /// A fitted hypothesis with what the referee says of it, once asked.
 struct Candidate {
   Fitted fit;
   std::optional<Remainder> remainder;
   double probability = 0.0;
-  std::size_t num_known = 0;  ///< Leading terms that the model had before.
+  std::size_t num_known = 0;         ///< Leading terms that the model had before, or that are granted.
+  std::shared_ptr<Granted> granted;  ///< Null: nothing.
 
   /// Terms beyond those of the model.
   [[nodiscard]] std::vector<Term> added() const;
@@ -27,7 +35,7 @@ struct Candidate {
   [[nodiscard]] std::vector<std::string> names() const;
   /// Families of the added effects, sorted.
   [[nodiscard]] std::vector<std::string> families() const;
-  [[nodiscard]] bool exact() const;   ///< Every effect by the catalogue's own formula.
+  [[nodiscard]] bool exact() const;   ///< Every added effect by the catalogue's own formula.
   [[nodiscard]] bool always() const;  ///< Every effect from the first sample to the last, in every mode.
 };
 using CandidatePtr = std::shared_ptr<Candidate>;
@@ -71,7 +79,8 @@ class Search {
  private:
   using Candidates = std::vector<CandidatePtr>;
 
-  [[nodiscard]] CandidatePtr Make(Fitted fit) const;
+  /// @param parent  Whose known terms it shares; null: the base.
+  [[nodiscard]] CandidatePtr Make(Fitted fit, const CandidatePtr& parent = nullptr) const;
   [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
   /// Gated hypotheses whose gates leave at least so many blocks active and promise most over the ungated ones.
   [[nodiscard]] Candidates ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const;
@@ -86,6 +95,16 @@ class Search {
   void DoubtNothing(const Candidates& singles, Finding* finding) const;
   /// @param parent  One whose partners are known already, `extended`; may be null.
   [[nodiscard]] Candidates Pairs(const Candidates& order, const CandidatePtr& parent, const Candidates& extended) const;
+  /// Single effects beside physics without a name: that of `unlisted`, or the law's own error, which adds most to the
+  /// best of `listed`.
+  [[nodiscard]] Candidates Beside(const Candidates& listed, const Candidates& unlisted) const;
+  /// The law with a smooth error of its own; null: the equation knows none.
+  [[nodiscard]] CandidatePtr LawError() const;
+  /// Leaves out hypotheses with a grant unless all of the equally good ones hold their families.
+  static void DropUnsure(Candidates* good);
+  /// Of hypotheses with a grant those that a verdict tells of, fitted without it: that is the model that they add up
+  /// to.
+  void TakeBack(Finding* finding) const;
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
   [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;

@@ -1,0 +1,117 @@
+// A law that is not quite its formula: what it is granted, and what still earns a name beside it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/diagnose.hpp"
+#include "armcmc/gap/workflow.hpp"
+#include "tools/gap/gap_rig.hpp"
+
+namespace armcmc::gap::law_error_test {
+namespace {
+
+using armcmc::test::HiddenEffect;
+
+constexpr double kNoise = 0.02;  // N
+
+/// A recording whose contact force is off by a smooth factor of depth and speed.
+Recording OffBy(double share, const std::vector<HiddenEffect>& effects, int rows = 8000) {
+  Recording with = test::Measure(effects, rows, kNoise, 21).recording;
+  const Vector clean = test::Measure({}, rows, kNoise, 21).clean;
+  const Vector x = with.Column("x"), v = with.Column("v");
+  const double depth = x.maxCoeff(), speed = std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
+  for (Eigen::Index i = 0; i < clean.size(); ++i)
+    with.columns.back()[i] +=
+        share * clean[i] *
+        (std::cos(5.0 * x[i] / depth + 0.7 * v[i] / speed + 0.4) + std::sin(3.0 * x[i] / depth - 1.1 * v[i] / speed));
+  return with;
+}
+
+const EffectForm* FormOf(const std::vector<EffectForm>& catalogue) {
+  const auto it = std::find_if(catalogue.begin(), catalogue.end(), [](const EffectForm& f) { return f.regular; });
+  return it == catalogue.end() ? nullptr : &*it;
+}
+
+TEST(LawError, BendsWithDepthAndSpeedAndIsNothingInTheAir) {
+  const test::Bench bench(test::Measure({}, 4000, kNoise, 3).recording);
+  const EffectForm* form = FormOf(bench.catalogue);
+  ASSERT_NE(form, nullptr);
+  EXPECT_FALSE(form->listed);
+  const Fitter fitter(*bench.equation, bench.signals, test::White(kNoise));
+  const Fitted base = bench.Base(fitter), with = fitter.Add(base, {form, {}});
+  for (Eigen::Index i = 0; i < bench.signals.rows(); ++i)
+    if (bench.signals.active[i] == 0.0) {
+      ASSERT_EQ(with.predicted[i], 0.0);
+    }
+  // Of 25 bumps that nothing calls for a fit takes no more than their number of squares, times a chance of 5 sigma.
+  EXPECT_LT(base.squares - with.squares, (25.0 + 5.0 * std::sqrt(50.0)) * kNoise * kNoise);
+}
+
+TEST(LawError, TakesWhatTheFormulaLacks) {
+  const test::Bench bench(OffBy(0.03, {}));
+  const Fitter fitter(*bench.equation, bench.signals, test::White(kNoise));
+  const Fitted base = bench.Base(fitter), with = fitter.Add(base, {FormOf(bench.catalogue), {}});
+  const double noise = kNoise * kNoise * static_cast<double>(bench.signals.rows());
+  EXPECT_LT(with.squares - noise, 0.1 * (base.squares - noise));
+}
+
+TEST(LawError, CountsAsKnownWhereBlocksAreLeftOut) {
+  const test::Bench bench(OffBy(0.03, {}));
+  const Fitter fitter(*bench.equation, bench.signals, test::White(kNoise));
+  const Fitted with = fitter.Add(bench.Base(fitter), {FormOf(bench.catalogue), {}});
+  for (std::size_t i = 3; i < with.at_bound.size(); ++i) EXPECT_TRUE(with.at_bound[i]) << i;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(with.at_bound[i]) << i;
+}
+
+TEST(Promise, IsWhatAnEffectTakesAtLeast) {
+  const test::Bench bench(test::Measure({test::Hidden("coulomb_friction")}, 4000, kNoise, 3).recording);
+  const Fitter fitter(*bench.equation, bench.signals, test::White(kNoise));
+  const Fitted base = bench.Base(fitter);
+  for (const char* name : {"coulomb_friction", "force_bias", "stress_relaxation"}) {
+    const Term term{&bench.Form(name), {}};
+    EXPECT_LE(fitter.Promise(base, term), 1.001 * (base.squares - fitter.Add(base, term).squares)) << name;
+  }
+  EXPECT_GT(fitter.Promise(base, {&bench.Form("coulomb_friction"), {}}),
+            fitter.Promise(base, {&bench.Form("force_bias"), {}}));
+}
+
+TEST(Granted, AnEffectIsSureBesideALawThatIsNotQuiteItsFormula) {
+  WorkflowRequest request;
+  request.data = OffBy(0.03, {test::Hidden("force_bias")}, 5000);
+  const Result result = RunWorkflow(request).result;
+  // A second effect may stand for what the law errs by: then both are told, and the one of both is sure.
+  ASSERT_FALSE(result.ladder.empty()) << result.sentence;
+  EXPECT_EQ(result.ladder.front().effects, std::vector<std::string>{"force_bias"}) << result.sentence;
+  EXPECT_EQ(result.effects.front().name, "force_bias");
+  EXPECT_TRUE(result.effects.front().approximate);
+  EXPECT_FALSE(result.complete);
+}
+
+TEST(Granted, IsTakenBackFromWhatTheVerdictTellsOf) {
+  const auto equation = std::move(MakeEquations("hunt_crossley").front());
+  const Diagnosis diagnosis = Diagnose(*equation, OffBy(0.03, {test::Hidden("force_bias")}, 5000));
+  const auto& set = diagnosis.finding.set;
+  const auto granted =
+      std::find_if(set.begin(), set.end(), [](const CandidatePtr& member) { return member->granted != nullptr; });
+  ASSERT_NE(granted, set.end());
+  const Granted& grant = *(*granted)->granted;
+  EXPECT_EQ((*granted)->names(), std::vector<std::string>{"force_bias"});
+  EXPECT_EQ((*granted)->fit.hypothesis.terms.size(), 1U);
+  EXPECT_EQ(grant.with.hypothesis.terms.size(), 2U);
+  EXPECT_EQ(grant.without.hypothesis.terms.size(), 1U);
+  EXPECT_LT(grant.with.squares, (*granted)->fit.squares);
+}
+
+TEST(Granted, ALawThatIsOffByItselfGetsNoName) {
+  WorkflowRequest request;
+  request.data = OffBy(0.01, {}, 5000);
+  const Result result = RunWorkflow(request).result;
+  EXPECT_TRUE(result.effects.empty()) << result.sentence;
+}
+
+}  // namespace
+}  // namespace armcmc::gap::law_error_test

@@ -1,0 +1,52 @@
+#include "law_error.hpp"
+
+#include <string>
+
+#include "armcmc/gap/form_tools.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr int kPlaces = 5;                      // of bumps along each variable
+constexpr double kWidth = 1.2;                  // of a bump, in distances between places
+constexpr double kTypical = 0.05, kMost = 0.5;  // share of the law of a bump; their sum is twice as large
+
+/// Bumps over the range of a variable, [row][place].
+Matrix Bumps(const Signals& signals, const LawVariable& variable) {
+  const Eigen::ArrayXd value = signals.at(variable.role).array();
+  Eigen::ArrayXd place;  // 0 to 1
+  if (variable.saturates)
+    place = 0.5 + 0.5 * (value / variable.high).tanh();
+  else
+    place = (value - variable.low) / (variable.high - variable.low);
+  Matrix bumps(signals.rows(), kPlaces);
+  for (int k = 0; k < kPlaces; ++k) bumps.col(k) = (-0.5 * (((kPlaces - 1) * place - k) / kWidth).square()).exp();
+  return bumps;
+}
+
+/// One bump of both variables a column.
+Matrix BumpsOfBoth(const Signals& signals, const LawVariable& a, const LawVariable& b) {
+  const Matrix left = Bumps(signals, a), right = Bumps(signals, b);
+  Matrix both(signals.rows(), kPlaces * kPlaces);
+  for (int i = 0; i < kPlaces; ++i) both.middleCols(i * kPlaces, kPlaces) = left.col(i).asDiagonal() * right;
+  return both;
+}
+
+}  // namespace
+
+EffectForm LawErrorForm(const LawVariable& a, const LawVariable& b) {
+  EffectForm form = UnlistedForm("a law that is not quite its formula", "law error",
+                                 "law (1 + a smooth function of what it depends on)", Slot::kParameter);
+  form.regular = true;
+  form.num_amplitudes = kPlaces * kPlaces;
+  for (int k = 0; k < form.num_amplitudes; ++k) {
+    form.coordinates.push_back(
+        AmplitudeOf(("share_" + std::to_string(k + 1)).c_str(), "-", 1.0, false, kTypical, kMost));
+    form.coordinates.back().nuisance = true;
+  }
+  form.features = [a, b](const Signals& in, const double*) { return BumpsOfBoth(in, a, b); };
+  SetStarts(&form, {});
+  return form;
+}
+
+}  // namespace armcmc::gap
