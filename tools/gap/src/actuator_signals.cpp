@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "armcmc/effects/flow_law.hpp"
 #include "armcmc/gap/smoothing.hpp"
 #include "armcmc/scalar_ops.hpp"
+#include "plants/soft_actuator/flow_law.hpp"
 
 namespace armcmc::gap {
 namespace {

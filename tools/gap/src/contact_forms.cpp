@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "armcmc/effects/registry.hpp"
+#include "plants/hunt_crossley/effects.hpp"
 
 namespace armcmc::gap {
 namespace {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap/actuator_equation.hpp"
 #include "armcmc/gap/actuator_signals.hpp"
 #include "armcmc/gap/features.hpp"
@@ -9,6 +8,7 @@
 #include "armcmc/gap/sensor_forms.hpp"
 #include "armcmc/gap/smoothing.hpp"
 #include "armcmc/scalar_ops.hpp"
+#include "plants/soft_actuator/effects.hpp"
 
 namespace armcmc::gap {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap/equation.hpp"
 #include "armcmc/models/registry.hpp"
+#include "plants/hunt_crossley/effects.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -55,7 +55,7 @@ EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitt
                                     double noise_sd) {
   const Signals& signals = fitter.signals();
   EstimatorSettings settings = BuiltinSettings(model);
-  const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]->plant;
+  const ModelInfo& plant = *CompiledModels()[static_cast<std::size_t>(FindModel(settings.model))];
   const Matrix covariance = fitted.Covariance(fitter.whitener().s2);
   if (signals.law_seen)
     fitter.equation().SetPriors(fitter.equation().Report(signals, fitted.theta, covariance), &settings);

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "armcmc/effects/registry.hpp"
+#include "armcmc/models/registry.hpp"
+#include "plants/soft_actuator/effects.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -13,8 +14,8 @@ constexpr double kUnnoticed = 9.0;  // noise variances
 
 /// An effect of any plant's catalogue; null for what is in none.
 const EffectInfo* Listed(std::string_view name) {
-  for (const PlantKind plant : {PlantKind::kHuntCrossley, PlantKind::kSoftActuator})
-    if (const EffectInfo* info = FindEffect(plant, name)) return info;
+  for (const ModelInfo* model : CompiledModels())
+    if (const EffectInfo* info = FindEffect(*model, name)) return info;
   return nullptr;
 }
 
