@@ -9,11 +9,11 @@
 #include <memory>
 
 #include "armcmc/effects/composition.hpp"
-#include "armcmc/gap/actuator_equation.hpp"
 #include "armcmc/gap/model_writer.hpp"
 #include "armcmc/gap/workflow.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/model_file.hpp"
+#include "gap/plants/soft_actuator/actuator_equation.hpp"
 #include "plants/soft_actuator/model.hpp"
 #include "simd/kernels.hpp"
 #include "support/paths.hpp"

@@ -1,5 +1,5 @@
 #include "armcmc/gap/features.hpp"
-#include "contact_forms.hpp"
+#include "gap/plants/hunt_crossley/contact_forms.hpp"
 
 namespace armcmc::gap {
 

@@ -1,4 +1,4 @@
-#include "armcmc/gap/bend_simulation.hpp"
+#include "gap/plants/soft_actuator/bend_simulation.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>

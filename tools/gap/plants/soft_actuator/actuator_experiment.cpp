@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/gap/actuator_equation.hpp"
 #include "armcmc/gap/experiment.hpp"
 #include "armcmc/gap/search.hpp"
+#include "gap/plants/soft_actuator/actuator_equation.hpp"
 
 namespace armcmc::gap {
 namespace {

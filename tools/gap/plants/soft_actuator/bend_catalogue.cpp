@@ -2,10 +2,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "armcmc/gap/actuator_equation.hpp"
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/form_tools.hpp"
 #include "armcmc/gap/sensor_forms.hpp"
+#include "gap/plants/soft_actuator/actuator_equation.hpp"
 
 namespace armcmc::gap {
 namespace {

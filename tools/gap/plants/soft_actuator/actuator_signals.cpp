@@ -1,4 +1,4 @@
-#include "armcmc/gap/actuator_signals.hpp"
+#include "gap/plants/soft_actuator/actuator_signals.hpp"
 
 #include <algorithm>
 #include <cmath>

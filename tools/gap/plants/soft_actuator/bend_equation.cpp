@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "armcmc/gap/actuator_equation.hpp"
-#include "armcmc/gap/actuator_signals.hpp"
-#include "armcmc/gap/bend_simulation.hpp"
 #include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/smoothing.hpp"
+#include "gap/plants/soft_actuator/actuator_equation.hpp"
+#include "gap/plants/soft_actuator/actuator_signals.hpp"
+#include "gap/plants/soft_actuator/bend_simulation.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -26,6 +26,7 @@ class BendEquation final : public Equation {
   explicit BendEquation(const std::string& model) : constants_(BuiltinSettings(model).constants) {}
 
   std::string name() const override { return "bend equation"; }
+  [[nodiscard]] std::string plant() const override { return "soft_actuator"; }
   std::string output_name() const override { return "angle"; }
   std::string output_unit() const override { return "rad"; }
   std::vector<std::string> columns() const override { return {"t", "u_c", "u_d", "p", "pdot", "alpha"}; }

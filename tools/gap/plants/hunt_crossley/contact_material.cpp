@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "armcmc/gap/smoothing.hpp"
-#include "contact_forms.hpp"
+#include "gap/plants/hunt_crossley/contact_forms.hpp"
 
 namespace armcmc::gap {
 namespace {

@@ -9,7 +9,7 @@
 
 namespace armcmc::gap {
 
-/// Valve flow of the soft actuator, as the pressure rate that it predicts:
+/// Valve flow of the actuator, as the pressure rate that it predicts:
 ///
 ///   p' = v sign(dp) sqrt|dp| / (g + theta2 (p - p_atm)),   v = u_c, dp = p_s - p while filling,
 ///                                                          v = u_d, dp = p - p_atm while venting
@@ -20,7 +20,7 @@ namespace armcmc::gap {
 /// @param model  Built-in name: its constants p_atm and p_supply are known.
 [[nodiscard]] std::unique_ptr<Equation> MakeFlowEquation(const std::string& model);
 
-/// Angle of the soft actuator, simulated from the measured pressure:
+/// Angle of the actuator, simulated from the measured pressure:
 ///
 ///   alpha'' = q1 (p - p_atm) - q2 alpha' - q3 alpha
 ///

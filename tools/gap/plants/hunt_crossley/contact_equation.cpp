@@ -1,4 +1,4 @@
-#include "armcmc/gap/contact_equation.hpp"
+#include "gap/plants/hunt_crossley/contact_equation.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -61,6 +61,7 @@ bool Moves(const Vector& series) { return series.maxCoeff() - series.minCoeff() 
 
 class ContactEquation final : public Equation {
  public:
+  [[nodiscard]] std::string plant() const override { return "hunt_crossley"; }
   std::string output_name() const override { return "force"; }
   std::string output_unit() const override { return "N"; }
   std::vector<std::string> columns() const override { return {"t", "x", "v", "f"}; }

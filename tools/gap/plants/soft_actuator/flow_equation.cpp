@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "armcmc/gap/actuator_equation.hpp"
-#include "armcmc/gap/actuator_signals.hpp"
 #include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/smoothing.hpp"
+#include "gap/plants/soft_actuator/actuator_equation.hpp"
+#include "gap/plants/soft_actuator/actuator_signals.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -25,6 +25,7 @@ class FlowEquation final : public Equation {
   explicit FlowEquation(const std::string& model) : constants_(BuiltinSettings(model).constants) {}
 
   std::string name() const override { return "flow law"; }
+  [[nodiscard]] std::string plant() const override { return "soft_actuator"; }
   std::string output_name() const override { return "pressure rate"; }
   std::string output_unit() const override { return "Pa/s"; }
   std::vector<std::string> columns() const override { return {"t", "u_c", "u_d", "p", "pdot"}; }

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <vector>
 
-#include "armcmc/gap/contact_equation.hpp"
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/sensor_forms.hpp"
-#include "contact_forms.hpp"
+#include "gap/plants/hunt_crossley/contact_equation.hpp"
+#include "gap/plants/hunt_crossley/contact_forms.hpp"
 
 namespace armcmc::gap {
 namespace {

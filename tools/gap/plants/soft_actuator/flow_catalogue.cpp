@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "armcmc/gap/actuator_equation.hpp"
-#include "armcmc/gap/actuator_signals.hpp"
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/form_tools.hpp"
 #include "armcmc/gap/sensor_forms.hpp"
 #include "armcmc/gap/smoothing.hpp"
 #include "armcmc/scalar_ops.hpp"
+#include "gap/plants/soft_actuator/actuator_equation.hpp"
+#include "gap/plants/soft_actuator/actuator_signals.hpp"
 #include "plants/soft_actuator/effects.hpp"
 
 namespace armcmc::gap {

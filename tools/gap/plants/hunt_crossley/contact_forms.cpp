@@ -1,4 +1,4 @@
-#include "contact_forms.hpp"
+#include "gap/plants/hunt_crossley/contact_forms.hpp"
 
 #include <array>
 #include <utility>
