@@ -25,9 +25,15 @@ EstimatorSettings Regressed(EstimatorSettings settings) {
   return settings;
 }
 
-/// Of each watch: a soft actuator has two, which share the rate that is asked for.
+/// Of each watch: where a plant has two, they share the rate that is asked for.
 double FalseAlarmRate(const EstimatorSettings& settings, const ModelInfo& info) {
-  return settings.gap_watch.false_alarm_rate / (info.plant == PlantKind::kSoftActuator ? 2.0 : 1.0);
+  return settings.gap_watch.false_alarm_rate / (info.compiled != nullptr ? info.compiled->num_equations() : 1);
+}
+
+std::unique_ptr<OutputWatch> MakeOutputWatch(const EstimatorSettings& settings, const ModelInfo& info,
+                                             const OutputPredictor* predictor) {
+  if (info.compiled == nullptr || info.compiled->make_watch == nullptr) return nullptr;
+  return info.compiled->make_watch(settings, FalseAlarmRate(settings, info), *predictor);
 }
 
 }  // namespace
@@ -39,13 +45,12 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       info(composition.info()),
       kernels(simd::Best()),
       state_filter(info.described != nullptr ? &info.described->states() : nullptr),
-      predictor(info, s.constants, composition.flow()),
+      predictor(info.compiled != nullptr ? info.compiled->make_predictor(info, s.constants, composition.rows())
+                                         : nullptr),
       trajectory(info.described != nullptr ? info.described->prediction() : nullptr, kernels),
       summary(s.sampler.max_draws),
       gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
-      bend_watch(info.plant == PlantKind::kSoftActuator
-                     ? std::make_unique<BendWatch>(settings, FalseAlarmRate(settings, info))
-                     : nullptr) {
+      output_watch(MakeOutputWatch(settings, info, predictor.get())) {
   dim = info.num_parameters;
   samplers.reserve(static_cast<std::size_t>(info.num_modes));
   for (int m = 0; m < info.num_modes; ++m) {
@@ -88,7 +93,7 @@ void Estimator::Impl::ShowPrior() noexcept {
 void Estimator::Impl::PrepareMode(const DataPack& pack, const EffectPack& effects, int mode,
                                   ModeData* data) const noexcept {
   if (composition.empty()) {
-    AllModels::kPrepare[static_cast<std::size_t>(model)](pack, settings.constants, mode, data);
+    info.compiled->prepare(pack, settings.constants, mode, data);
   } else {
     composition.Fill(pack, effects, mode, data);
   }
@@ -104,7 +109,9 @@ Estimator::Estimator(const EstimatorSettings& settings) : impl_(std::make_unique
 Estimator::~Estimator() = default;
 
 std::unique_ptr<AdjustResult> Estimator::MakeResult() const {
-  return std::make_unique<AdjustResult>(impl_->info.num_modes, impl_->dim, impl_->settings.sampler.max_draws);
+  auto result = std::make_unique<AdjustResult>(impl_->info.num_modes, impl_->dim, impl_->settings.sampler.max_draws);
+  result->effects = impl_->composition.MakePack();
+  return result;
 }
 
 Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
@@ -252,18 +259,18 @@ void Estimator::Reset() noexcept {
   for (auto& estimate : s.last_estimates) estimate = ModeEstimate{};
   s.ShowPrior();
   s.known_draws.fill(false);
-  s.predictor.Reset();
+  if (s.predictor) s.predictor->Reset();
   s.trajectory.Reset();
   s.composition.Reset();
   s.ForgetStates();
   s.gap_watch.Reset();
-  if (s.bend_watch) s.bend_watch->Reset();
+  if (s.output_watch) s.output_watch->Reset();
   s.report_mode = 0;
 }
 
 const EstimatorSettings& Estimator::settings() const noexcept { return impl_->settings; }
 std::string_view Estimator::target_unit() const noexcept { return impl_->info.target_unit; }
-PlantKind Estimator::plant() const noexcept { return impl_->info.plant; }
+PlantNumber Estimator::plant() const noexcept { return impl_->info.plant; }
 int Estimator::num_modes() const noexcept { return impl_->info.num_modes; }
 std::string_view Estimator::mode_name(int mode) const noexcept {
   return impl_->info.modes[static_cast<std::size_t>(std::clamp(mode, 0, impl_->info.num_modes))];
@@ -279,7 +286,7 @@ bool Estimator::watches_gap() const noexcept { return impl_->gap_watch.enabled()
 
 std::string_view Estimator::gap_check_name(int check) const noexcept {
   const std::string_view fitted = impl_->gap_watch.CheckName(check);
-  return fitted.empty() && impl_->info.described == nullptr ? GapCheckName(impl_->info.plant, check) : fitted;
+  return fitted.empty() && impl_->output_watch ? impl_->output_watch->CheckName(check) : fitted;
 }
 
 int Estimator::num_inputs() const noexcept { return impl_->info.num_inputs; }

@@ -35,10 +35,10 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
     std::fill_n(e->y_shown_free_run.begin(), static_cast<std::size_t>(pack.num_samples), kUnknown);
   } else if (info.described != nullptr) {
     PredictDescribed(result, e);
-  } else if (contact_effects()) {
+  } else if (composition.effects_on_output()) {
     PredictShown(result, e);
   } else {
-    predictor.Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
+    predictor->Predict(pack, shown[1], &e->y_shown, &e->y_shown_free_run);
   }
   const auto last = static_cast<std::size_t>(pack.num_samples - 1);
   e->y_free_run = e->y_shown_free_run[last];
@@ -63,14 +63,14 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
       square += error * error;
       ++count;
     }
-    if (trajectory.empty() && (m == e->mode || contact_effects())) PredictLastSample(pack, m, e);
+    if (trajectory.empty() && (m == e->mode || composition.effects_on_output())) PredictLastSample(pack, m, e);
   }
   if (!trajectory.empty())
     PredictSimulated(pack, e);
   else if (info.described != nullptr && (!e->active || !info.described->LawIsOutput(e->mode)))
     e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
   e->y_rmse = count > 0 ? std::sqrt(square / count) : 0.0;
-  if (info.plant == PlantKind::kSoftActuator && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
+  if (simulates_output() && !e->active) e->y_pred = e->y_lo = e->y_hi = e->y_shown[last];
 }
 
 void Estimator::Impl::PredictShown(const AdjustResult& result, Estimate* e) noexcept {
@@ -154,11 +154,11 @@ void Estimator::Impl::PredictLastSample(const DataPack& pack, int mode, Estimate
   const auto i = static_cast<std::size_t>(mode);
   std::array<double, kBandDraws> outputs{};
   for (std::size_t lane = 0; lane < kBandDraws; ++lane) {
-    if (info.plant == PlantKind::kSoftActuator) {
+    if (simulates_output()) {
       std::array<double, kMaxParams> theta{};
       for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
         theta[d] = band_theta[i].value[d][lane];
-      outputs[lane] = predictor.LastAngle(pack, shown[0], mode, theta.data());
+      outputs[lane] = predictor->LastOutput(pack, shown[0], mode, theta.data());
     } else {
       outputs[lane] = band_prediction.value[static_cast<std::size_t>(execute_data.num_samples - 1)][lane];
     }
@@ -190,17 +190,17 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
   gap_watch.Step(pack, estimate, changed);
-  if (bend_watch) bend_watch->Step(pack, predictor, shown[0]);
+  if (output_watch) output_watch->Step(pack, shown[0]);
   e->gap = Gap();
 }
 
 const GapState& Estimator::Impl::Gap() const noexcept {
   const GapState& fitted = gap_watch.state();
-  if (!bend_watch) return fitted;
-  const GapState& bend = bend_watch->state();
-  if (fitted.suspected != bend.suspected) return bend.suspected ? bend : fitted;
-  if (fitted.num_blocks == 0 || bend.num_blocks == 0) return bend.num_blocks == 0 ? fitted : bend;
-  return bend.log_evidence - bend.log_threshold > fitted.log_evidence - fitted.log_threshold ? bend : fitted;
+  if (!output_watch) return fitted;
+  const GapState& output = output_watch->state();
+  if (fitted.suspected != output.suspected) return output.suspected ? output : fitted;
+  if (fitted.num_blocks == 0 || output.num_blocks == 0) return output.num_blocks == 0 ? fitted : output;
+  return output.log_evidence - output.log_threshold > fitted.log_evidence - fitted.log_threshold ? output : fitted;
 }
 
 void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
@@ -252,7 +252,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     const ModeEstimate& mode = e->modes[i];
     s.known_draws[i] = s.known_draws[i] || mode.updated;
     // A force can be predicted before its parameters are known: from their mean. The mode of a posterior that knows
-    // nothing is an accident. (The valves' gains cannot: their prior mean is zero flow.)
+    // nothing is an accident. (Gains of valves cannot: their prior mean is zero flow.)
     const bool from_prior = s.predicts_from_prior();
     s.shown[0].known[i] = mode.known || (from_prior && s.known_draws[i]) || (from_prior && s.shown[1].known[i]);
     if (!mode.known && !(from_prior && s.known_draws[i])) continue;

@@ -9,9 +9,10 @@
 #include "armcmc/baselines/pack_filter.hpp"
 #include "armcmc/effects/composition.hpp"
 #include "armcmc/estimator.hpp"
-#include "armcmc/gap_watch/bend_watch.hpp"
 #include "armcmc/gap_watch/gap_watch.hpp"
+#include "armcmc/gap_watch/output_watch.hpp"
 #include "armcmc/mode_sampler.hpp"
+#include "armcmc/models/compiled_plant.hpp"
 #include "armcmc/output_predictor.hpp"
 #include "armcmc/plant/output_trajectory.hpp"
 #include "armcmc/plant/state_filter.hpp"
@@ -31,7 +32,7 @@ struct Estimator::Impl {
   /// @throws std::invalid_argument from settings.Validate().
   explicit Impl(const EstimatorSettings& s);
 
-  /// What is on display before the first pack: of a contact the prior's mean, of the valves nothing.
+  /// What is on display before the first pack: where that predicts the output the prior's mean, else nothing.
   void ShowPrior() noexcept ARMCMC_NONBLOCKING;
   void PrepareMode(const DataPack& pack, const EffectPack& effects, int mode,
                    ModeData* data) const noexcept ARMCMC_NONBLOCKING;
@@ -74,7 +75,7 @@ struct Estimator::Impl {
   double state_noise = 1.0;                                 ///< Standard deviation of its noise.
 
   // Execute stage.
-  OutputPredictor predictor;
+  std::unique_ptr<OutputPredictor> predictor;  ///< Null of a described plant.
   OutputTrajectory trajectory;  ///< Of a described plant that predicts something else than its laws explain.
   SummaryWorkspace summary;
   ModeData execute_data;
@@ -86,23 +87,23 @@ struct Estimator::Impl {
   std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
   GapWatch gap_watch;
-  std::unique_ptr<BendWatch> bend_watch;  ///< Of a plant that has a second equation.
+  std::unique_ptr<OutputWatch> output_watch;  ///< Of a plant that has a second equation.
 
   [[nodiscard]] bool IsOfThisPlant(const DataPack& pack) const noexcept {
     return info.described == nullptr || pack.fingerprint == info.described->plant().fingerprint();
   }
-  /// The law is the output, so that the prior's mean predicts it. (The prior mean of the valves is no flow at all.)
+  /// The law is the output, so that the prior's mean predicts it. (That of valves is no flow at all.)
   [[nodiscard]] bool predicts_from_prior() const noexcept {
-    return info.plant == PlantKind::kHuntCrossley || (info.described != nullptr && trajectory.empty());
+    return info.described != nullptr ? trajectory.empty() : info.compiled->law_is_output;
   }
-  /// The effects of a contact act on the output that is predicted; those of the actuator on what bends it.
-  [[nodiscard]] bool contact_effects() const noexcept {
-    return !composition.empty() && composition.flow().empty && info.described == nullptr;
+  /// The output of a compiled plant is simulated from what its laws explain.
+  [[nodiscard]] bool simulates_output() const noexcept {
+    return info.compiled != nullptr && !info.compiled->law_is_output;
   }
   void WatchGap(const DataPack& pack, Estimate* e) noexcept;
   /// What is published: the watch that has an alarm, or the one that is closer to it.
   [[nodiscard]] const GapState& Gap() const noexcept;
-  /// Output at every sample of the pack with the estimates on display, for a contact with effects.
+  /// Output at every sample of the pack with the estimates on display, where effects act on it.
   void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
   /// The same of a described plant, mode by mode.
   void PredictDescribed(const AdjustResult& result, Estimate* e) noexcept;

@@ -32,7 +32,7 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
     }
   }
   s.gap_watch.Save(&out);
-  if (s.bend_watch) s.bend_watch->Save(&out);
+  if (s.output_watch) s.output_watch->Save(&out);
   return out.size();
 }
 
@@ -60,7 +60,7 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
   }
   // Snapshots of described plants end here that were written when those were not watched.
   if (s.info.described == nullptr || !display.finished()) s.gap_watch.Restore(&display);
-  if (s.bend_watch) s.bend_watch->Restore(&display);
+  if (s.output_watch) s.output_watch->Restore(&display);
   if (posterior.finished() && display.finished()) return true;
   Reset();
   return false;

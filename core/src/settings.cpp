@@ -4,7 +4,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/plant/program.hpp"
 #include "armcmc/sample_size.hpp"
@@ -54,21 +53,28 @@ void ValidateParameter(const std::string& key, const ParameterSettings& p) {
     throw std::invalid_argument(key + ": the bounds hold none of the prior's mass (mean more than 5 sd outside)");
 }
 
-std::string KnownEffects(PlantKind plant) {
+std::string KnownEffects(const ModelInfo& model) {
   std::string known;
-  for (const EffectInfo* info : EffectsOf(plant))
+  for (const EffectInfo* info : model.compiled->effects)
     if (info->online) known += (known.empty() ? "" : ", ") + std::string(info->name);
   return known;
 }
 
-void ValidateEffect(const EffectSettings& effect, const EffectInfo& info, PlantKind plant) {
+/// `text` with the formula where it says {}.
+std::string WithFormula(std::string_view text, const EffectInfo& info) {
+  std::string filled(text);
+  if (const std::size_t at = filled.find("{}"); at != std::string::npos) filled.replace(at, 2, info.formula);
+  return filled;
+}
+
+void ValidateEffect(const EffectSettings& effect, const EffectInfo& info, const ModelInfo& model) {
   const std::string key = "effect." + effect.name;
   if (!info.online)
-    throw std::invalid_argument(
-        key + " is for offline fits only: it acts on the bending angle (" + std::string(info.formula) +
-        "), and the estimator estimates the valve flow. Remove it; those that run are " + KnownEffects(plant));
-  if (plant == PlantKind::kSoftActuator && (effect.gate == EffectGate::kContact || effect.gate == EffectGate::kFree))
-    throw std::invalid_argument(key + ": an actuator has no contact; use when = \"always\", from_s or until_s");
+    throw std::invalid_argument(key + " is for offline fits only: " + WithFormula(model.compiled->offline_as, info) +
+                                ". Remove it; those that run are " + KnownEffects(model));
+  const std::string_view no_contact = model.compiled->no_contact_as;
+  if (!no_contact.empty() && (effect.gate == EffectGate::kContact || effect.gate == EffectGate::kFree))
+    throw std::invalid_argument(key + ": " + std::string(no_contact) + "; use when = \"always\", from_s or until_s");
   for (int i = 0; i < info.num_shapes; ++i) {
     const EffectShape& shape = info.shapes[static_cast<std::size_t>(i)];
     Closed(key + "." + std::string(shape.name), effect.shapes[static_cast<std::size_t>(i)], shape.lower, shape.upper);
@@ -96,14 +102,14 @@ void ValidateEffects(const EstimatorSettings& s, const ModelInfo& model) {
   coordinates += samples_noise ? 1 : 0;
   for (int e = 0; e < s.num_effects; ++e) {
     const EffectSettings& effect = s.effects[static_cast<std::size_t>(e)];
-    const EffectInfo* info = FindEffect(model.plant, effect.name);
+    const EffectInfo* info = FindEffect(model, effect.name);
     if (info == nullptr)
       throw std::invalid_argument("effect.name = '" + effect.name + "' is not an effect of " + s.model +
-                                  "; known are " + KnownEffects(model.plant));
+                                  "; known are " + KnownEffects(model));
     for (int other = 0; other < e; ++other)
       if (s.effects[static_cast<std::size_t>(other)].name == effect.name)
         throw std::invalid_argument("effect '" + effect.name + "' is named twice");
-    ValidateEffect(effect, *info, model.plant);
+    ValidateEffect(effect, *info, model);
     coordinates += info->num_amplitudes;
   }
   if (coordinates > kMaxParams)
@@ -112,11 +118,24 @@ void ValidateEffects(const EstimatorSettings& s, const ModelInfo& model) {
                                 " are possible: remove an effect or fix the noise scale");
 }
 
+EstimatorSettings DefaultsOf(const ModelInfo& info) {
+  EstimatorSettings s;
+  s.model = info.name;
+  s.num_parameters = info.num_parameters;
+  for (int d = 0; d < info.num_parameters; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const ParameterInfo& p = info.parameters[i];
+    s.parameters[i] = {std::string(p.name), PriorKind::kNormal, p.mean, p.sd, p.lower, p.upper};
+  }
+  for (auto& noise : s.noise) noise.std = info.default_noise_std;
+  return s;
+}
+
 }  // namespace
 
-EffectSettings MakeEffect(PlantKind plant, const std::string& name, const EffectScales& scales) {
-  const EffectInfo* found = FindEffect(plant, name);
-  if (found == nullptr) throw std::invalid_argument("unknown effect '" + name + "'; known are " + KnownEffects(plant));
+EffectSettings MakeEffect(const ModelInfo& model, const std::string& name, const EffectScales& scales) {
+  const EffectInfo* found = FindEffect(model, name);
+  if (found == nullptr) throw std::invalid_argument("unknown effect '" + name + "'; known are " + KnownEffects(model));
   const EffectInfo& info = *found;
   EffectSettings effect;
   effect.name = name;
@@ -131,15 +150,11 @@ EffectSettings MakeEffect(PlantKind plant, const std::string& name, const Effect
   return effect;
 }
 
-EffectSettings MakeEffect(const std::string& name, const EffectScales& scales) {
-  return MakeEffect(PlantKind::kHuntCrossley, name, scales);
-}
-
 void EstimatorSettings::Validate() const {
   const int index = FindModel(model);
   if (index < 0 && plant == nullptr)
     throw std::invalid_argument("model.name = '" + model + "' is not a built-in model");
-  const ModelInfo& info = plant != nullptr ? plant->info() : *AllModels::kInfos[static_cast<std::size_t>(index)];
+  const ModelInfo& info = plant != nullptr ? plant->info() : *CompiledModels()[static_cast<std::size_t>(index)];
   if (plant != nullptr && num_effects > 0)
     throw std::invalid_argument("model '" + model + "' takes no effects of the built-in catalogue");
   if (plant != nullptr && method == Method::kRls)
@@ -176,7 +191,7 @@ void EstimatorSettings::Validate() const {
     Closed("baseline.particles", baseline.particles, SamplerSettings::kMinDraws, sampler.max_draws);
   Closed("baseline.pf_updates", baseline.pf_updates, 1, kMaxPackSamples);
   Closed("baseline.pf_jitter", baseline.pf_jitter, 0.0, 1.0);
-  if (pressure_rate && info.plant != PlantKind::kSoftActuator)
+  if (pressure_rate && (info.compiled == nullptr || info.compiled->rate_unit.empty()))
     throw std::invalid_argument("model.pressure_rate: '" + model + "' has no pressure; remove it");
   if (num_effects > 0 && (method == Method::kRls || (method == Method::kParticleFilter && baseline.pf_updates > 1)))
     throw std::invalid_argument("this method takes no effects: remove them or choose method = \"armcmc\"");
@@ -218,36 +233,16 @@ EstimatorSettings DescribedSettings(std::shared_ptr<const PlantProgram> plant) {
 }
 
 EstimatorSettings BuiltinSettings(const std::string& model) {
-  EstimatorSettings s;
-  const bool excited = model == "soft_actuator_excited";
-  const int index = FindModel(excited ? "soft_actuator" : model);
-  if (index < 0) {
-    std::string known;
-    for (const ModelInfo* info : AllModels::kInfos) known += std::string(info->name) + ", ";
-    throw std::invalid_argument("unknown model '" + model + "'; built-in models are " + known +
-                                "soft_actuator_excited");
-  }
-  const ModelInfo& info = *AllModels::kInfos[static_cast<std::size_t>(index)];
-  s.model = info.name;
-  s.num_parameters = info.num_parameters;
-  for (int d = 0; d < info.num_parameters; ++d) {
-    const auto i = static_cast<std::size_t>(d);
-    const ParameterInfo& p = info.parameters[i];
-    s.parameters[i] = {std::string(p.name), PriorKind::kNormal, p.mean, p.sd, p.lower, p.upper};
-  }
-  for (auto& noise : s.noise) noise.std = info.default_noise_std;
-  if (excited) {
-    s.gap_watch.tolerance = 0.1;  // the noise of the measured inputs bends the flow a little
-    // While the pressure stands still, the noise of the measured pdot makes a pack prefer g = 0 by some 20 nats: that
-    // is no change of the valve.
-    s.forgetting.lambda_max = 1.0 - 1e-12;
-    s.constants.q1 = 0.0704;  // rad/s^2 per Pa, so that tens of kPa bend it by a radian
-    for (auto& noise : s.noise) {
-      noise.std = 0.25;  // sqrt(Pa): sensor noise of 500 Pa/s on pdot times a gain of 5e-4
-      noise.estimate_std = true;
+  for (const ModelInfo* info : CompiledModels()) {
+    if (info->name == model) return DefaultsOf(*info);
+    for (const ModelVariant& variant : info->compiled->variants) {
+      if (variant.name != model) continue;
+      EstimatorSettings settings = DefaultsOf(*info);
+      variant.apply(&settings);
+      return settings;
     }
   }
-  return s;
+  throw std::invalid_argument("unknown model '" + model + "'; built-in models are " + ModelNames());
 }
 
 }  // namespace armcmc

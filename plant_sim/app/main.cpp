@@ -31,9 +31,7 @@ constexpr const char* kDescription =
     "them against the parameters that it alone knows.";
 
 constexpr const char* kFooter =
-    "Examples:\n"
-    "  armcmc-plant --scenario hunt_crossley_paper --seed 7 --report score.json\n"
-    "  armcmc-plant --scenario hunt_crossley_step --csv step.csv      (no LCM, as fast as possible)\n"
+    "  armcmc-plant --scenario contact_rich --csv rich.csv      (no LCM, as fast as possible)\n"
     "  armcmc-plant --inject nan@30,late@60:150\n"
     "Stop with Ctrl-C: the score so far is printed.\n"
     "Faults of --inject, each KIND@PACK: nan (a NaN among the samples), size (more samples than a pack holds),\n"
@@ -63,7 +61,7 @@ constexpr const char* kFooter =
     "steps, or { expression }, or { state }), [start], [noise] (law, std) and [[hidden]] (slot, value): what the file "
     "does\n"
     "not know. Without a scenario the means of the priors are the truth, and multisines move the inputs.\n"
-    "  armcmc-plant --model servo_axis --csv axis.csv\n"
+    "  armcmc-plant --model my_axis.toml --csv axis.csv\n"
     "  armcmc-plant --model valve.toml --scenario valve_steps.toml --csv data.csv --log data.lcm\n"
     "Scenarios contact_* move another plant in another way for every seed; experiment_* are motions made to tell "
     "effects\n"
@@ -172,8 +170,9 @@ int Simulate(const CLI::App& app, const std::filesystem::path& plant_file, const
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription);
-  app.footer(kFooter);
-  std::string scenario_name = "hunt_crossley_paper", model_path, inject;
+  app.footer("Examples:\n  armcmc-plant --scenario " + armcmc::plant_sim::DefaultScenario() +
+             " --seed 7 --report score.json\n" + kFooter);
+  std::string scenario_name = armcmc::plant_sim::DefaultScenario(), model_path, inject;
   double duration_s = 0.0;
   PlantOptions options;
   HideOptions hide;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <armcmc/support/strict_toml.hpp>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "armcmc/plant_sim/effects/effect.hpp"
+#include "armcmc/plant_sim/effects/model_form.hpp"
 #include "noise_table.hpp"
 
 namespace armcmc::plant_sim {
@@ -20,68 +20,6 @@ using support::StrictTable;
 using Values = std::vector<double>;
 
 constexpr double kMax = 1e12;
-
-/// An effect of a model file in terms of the plant's.
-struct ModelEffect {
-  std::string name, variant;
-  std::vector<std::string> amplitudes, shapes;  ///< Keys of the file.
-  /// Parameters of the plant's effect from amplitudes and shapes; duration of the run in s.
-  Values (*values)(const Values& amplitudes, const Values& shapes, double duration_s);
-};
-
-Values Same(const Values& amplitudes, const Values& shapes, double /*duration_s*/) {
-  Values values = amplitudes;
-  values.insert(values.end(), shapes.begin(), shapes.end());
-  return values;
-}
-
-/// The plant gives a drift by what it comes to over the run.
-Values OverTheRun(const Values& amplitudes, const Values& shapes, double duration_s) {
-  return {amplitudes[0] * duration_s, shapes[0]};
-}
-
-Values AmplitudeOnly(const Values& amplitudes, const Values& /*shapes*/, double /*duration_s*/) { return amplitudes; }
-
-/// a sin(w t + phase) = cosine cos(w t) + sine sin(w t).
-Values Polar(const Values& amplitudes, const Values& shapes, double /*duration_s*/) {
-  return {std::hypot(amplitudes[0], amplitudes[1]), shapes[0], std::atan2(amplitudes[0], amplitudes[1])};
-}
-
-const std::vector<ModelEffect>& ModelsOfContact() {
-  static const std::vector<ModelEffect> effects = {
-      {"force_bias", "constant", {"force"}, {}, Same},
-      {"force_drift", "linear", {"rate"}, {"origin"}, OverTheRun},
-      {"coulomb_friction", "tanh", {"force"}, {"speed"}, Same},
-      {"presliding_friction", "dahl", {"force"}, {"distance"}, Same},
-      {"viscous_friction", "linear", {"coefficient"}, {}, Same},
-      {"inertia", "rigid", {"mass"}, {"smoothing"}, AmplitudeOnly},
-      {"sensor_delay", "dead_time", {"time"}, {}, Same},
-      {"sensor_lag", "first_order", {"time_constant"}, {}, Same},
-      {"stress_relaxation", "linear", {"stiffness"}, {"time_constant"}, Same},
-      {"adhesion", "exponential", {"force"}, {"distance"}, Same},
-      {"contact_offset", "shift", {"distance"}, {}, Same},
-      {"sensor_saturation", "clip", {"limit"}, {}, Same},
-      {"periodic_disturbance", "sine", {"cosine", "sine"}, {"frequency"}, Polar},
-      {"stiffness_drift", "linear", {"rate"}, {"origin"}, OverTheRun},
-  };
-  return effects;
-}
-
-/// In the order in which the estimator lets them act, which for the valves is that of the list.
-const std::vector<ModelEffect>& ModelsOfActuator() {
-  static const std::vector<ModelEffect> effects = {
-      {"pressure_bias", "constant", {"bias"}, {}, Same},
-      {"valve_lag", "spool", {"tau"}, {}, Same},
-      {"valve_dead_band", "rescaled", {"width"}, {}, Same},
-      {"supply_droop", "opening", {"droop"}, {}, Same},
-      {"leak", "linear", {"rate"}, {}, Same},
-  };
-  return effects;
-}
-
-const std::vector<ModelEffect>& ModelEffects(const Scenario& scenario) {
-  return scenario.family->name == "soft_actuator" ? ModelsOfActuator() : ModelsOfContact();
-}
 
 /// The mean of a prior or posterior; the rest of its table is the estimator's.
 double Mean(StrictTable table) {
@@ -119,15 +57,16 @@ Gate ReadGate(StrictTable* table, bool has_contact) {
 }
 
 HiddenEffect ReadEffect(StrictTable* table, const Scenario& scenario) {
-  const std::vector<ModelEffect>& known = ModelEffects(scenario);
+  const std::vector<ModelEffect>& known = scenario.family->model_form().effects;
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const ModelEffect& effect : known) names.push_back(effect.name);
   const std::string name = table->RequiredChoice("name", names);
   const ModelEffect& model =
       *std::find_if(known.begin(), known.end(), [&name](const ModelEffect& effect) { return effect.name == name; });
   HiddenEffect effect;
   effect.spec = FindEffectSpec(*scenario.family, model.name, model.variant);
-  effect.gate = ReadGate(table, scenario.family->name == "hunt_crossley");
+  effect.gate = ReadGate(table, scenario.family->makes_contact);
   Values amplitudes, shapes;
   for (const std::string& key : model.amplitudes) {
     if (!table->Has(key)) throw table->Error(key, "missing, and a plant needs its { mean = ... }");
@@ -147,16 +86,34 @@ HiddenEffect ReadEffect(StrictTable* table, const Scenario& scenario) {
   return effect;
 }
 
+/// The family that model files call by that name, or nullptr.
+const PlantFamily* FamilyOf(const std::string& base) {
+  for (const PlantFamily* family : PlantRegistry()) {
+    if (family->model_form == nullptr) continue;
+    const std::vector<std::string>& bases = family->model_form().bases;
+    if (std::find(bases.begin(), bases.end(), base) != bases.end()) return family;
+  }
+  return nullptr;
+}
+
+/// "\"a\" and \"b\"".
+std::string FamiliesWithForms() {
+  std::string names;
+  for (const PlantFamily* family : PlantRegistry())
+    if (family->model_form != nullptr) names += (names.empty() ? "\"" : " and \"") + family->name + "\"";
+  return names;
+}
+
 }  // namespace
 
 void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
   StrictTable root = StrictTable::FromFile(path);
   static_cast<void>(root.RequiredInteger("schema", 1, 1));
   const std::string base = root.RequiredText("base");
-  const std::string family = base == "soft_actuator_excited" ? "soft_actuator" : base;
-  if (family != "hunt_crossley" && family != "soft_actuator")
-    throw root.Error("base", "\"" + base + "\" cannot become a plant: \"hunt_crossley\" and \"soft_actuator\" can");
-  if (scenario->family->name != family)
+  const PlantFamily* family = FamilyOf(base);
+  if (family == nullptr)
+    throw root.Error("base", "\"" + base + "\" cannot become a plant: " + FamiliesWithForms() + " can");
+  if (scenario->family != family)
     throw root.Error("base", "\"" + base + "\" does not fit the scenario's plant, \"" + scenario->family->name + "\"");
   if (!scenario->schedule.changes().empty())
     throw ConfigError(scenario->name +
@@ -166,12 +123,10 @@ void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
                       " hides effects ([[hidden_effect]]): a model file needs a scenario that does not");
   root.LeaveToOthers("noise");
   Scenario changed = *scenario;
-  if (family == "soft_actuator") {
-    // One prior serves both valves: it says nothing on either.
-    for (const char* estimated : {"parameters", "constants", "pressure_rate"}) root.LeaveToOthers(estimated);
-  } else {
+  const ModelForm& form = family->model_form();
+  for (const std::string& table : form.ignored) root.LeaveToOthers(table);
+  if (std::find(form.ignored.begin(), form.ignored.end(), "parameters") == form.ignored.end())
     changed.schedule = ReadParameters(root.Table("parameters"), *scenario);
-  }
   for (StrictTable& table : root.Tables("effect")) {
     HiddenEffect effect = ReadEffect(&table, changed);
     for (const HiddenEffect& other : changed.hidden)
@@ -179,9 +134,9 @@ void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
     changed.hidden.push_back(std::move(effect));
   }
   root.Finish();
-  if (family == "soft_actuator") {
-    const auto place = [](const HiddenEffect& effect) {
-      return std::find_if(ModelsOfActuator().begin(), ModelsOfActuator().end(),
+  if (form.in_this_order) {
+    const auto place = [&form](const HiddenEffect& effect) {
+      return std::find_if(form.effects.begin(), form.effects.end(),
                           [&](const ModelEffect& one) { return one.name == effect.spec->name; });
     };
     std::sort(changed.hidden.begin(), changed.hidden.end(),

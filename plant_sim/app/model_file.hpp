@@ -9,7 +9,7 @@ namespace armcmc::plant_sim {
 /// Makes the plant of a model file the plant of the scenario: the means of its parameters, and its effects at the means
 /// of their amplitudes. Motion, sensors and duration stay the scenario's; its noise is left to the scenario, too.
 ///
-/// A model of the soft actuator has one prior for both valves, which says nothing on either: gains and constants stay
+/// A model of valves has one prior for both, which says nothing on either: gains and constants stay
 /// the scenario's, and the effects are added.
 ///
 /// The equations are the plant's own. They give what the estimator's composed model predicts but for

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "armcmc/models/registry.hpp"
 #include "armcmc/plant/program.hpp"
 
 namespace armcmc::app {
@@ -50,10 +51,14 @@ bool WriteWhole(const std::string& path, const std::string& text) {
 }  // namespace
 
 std::vector<std::string> ColumnsOf(const EstimatorSettings& settings) {
-  if (settings.plant == nullptr)
-    return settings.model == "hunt_crossley" ? std::vector<std::string>{"x", "v", "f"}
-                                             : std::vector<std::string>{"u_c", "u_d", "p", "pdot", "alpha"};
   std::vector<std::string> names;
+  if (settings.plant == nullptr) {
+    const ModelInfo& model = *CompiledModels()[static_cast<std::size_t>(FindModel(settings.model))];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(model.num_inputs); ++i)
+      names.emplace_back(model.compiled->inputs[i].name);
+    names.emplace_back(model.compiled->output.name);
+    return names;
+  }
   const PlantDescription& plant = settings.plant->plant().description();
   for (const SignalDescription& signal : plant.signals)
     if (signal.name != plant.output) names.push_back(signal.name);

@@ -14,6 +14,7 @@
 
 #include "armcmc/estimator.hpp"
 #include "armcmc/estimator_status_t.hpp"
+#include "armcmc/models/registry.hpp"
 #include "armcmc/rt/allocation_counter.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/disturbed_engine.hpp"
@@ -43,15 +44,18 @@ constexpr char kDescription[] =
     "Estimates the parameters of a plant in real time. Listens to packs of measurements on LCM, updates the posterior "
     "of\n"
     "the parameters within a deadline, and publishes the estimate, its marginals and the state of health.";
-constexpr char kFooter[] =
-    "Channels: listens to PLANT_PACK, or PLANT_PACK_V2 for a plant that a file describes; publishes EST_ESTIMATE,\n"
-    "EST_POSTERIOR, EST_STATUS (all behind the prefix).\n"
-    "Ctrl-C stops within one step, prints the summary and writes the report.\n\n"
-    "Example: two terminals on one computer\n"
-    "  armcmc-estimator --model hunt_crossley --report estimator.json\n"
-    "  armcmc-plant --scenario hunt_crossley_paper --duration 20\n"
-    "A plant of your own, from a file of 25 lines (armcmc-model new):\n"
-    "  armcmc-estimator --model my_axis.toml --report estimator.json\n";
+std::string Footer() {
+  return "Channels: listens to PLANT_PACK, or PLANT_PACK_V2 for a plant that a file describes; publishes "
+         "EST_ESTIMATE,\n"
+         "EST_POSTERIOR, EST_STATUS (all behind the prefix).\n"
+         "Ctrl-C stops within one step, prints the summary and writes the report.\n\n"
+         "Example: two terminals on one computer\n"
+         "  armcmc-estimator --model " +
+         DefaultModel() + " --report estimator.json\n  armcmc-plant --scenario " + DefaultModel() +
+         "_paper --duration 20\n"
+         "A plant of your own, from a file of 25 lines (armcmc-model new):\n"
+         "  armcmc-estimator --model my_axis.toml --report estimator.json\n";
+}
 
 struct Options {
   std::string config;
@@ -76,7 +80,7 @@ struct Configuration {
 /// --model replaces the model of the file.
 support::StrictTable OpenConfiguration(const Options& options, bool described) {
   // A wrong name or model file is told first: it is the model's fault, not the configuration's.
-  const std::string base = options.model.empty() || described ? "hunt_crossley" : support::BaseModel(options.model);
+  const std::string base = options.model.empty() || described ? DefaultModel() : support::BaseModel(options.model);
   if (described && options.config.empty())
     return support::StrictTable::FromText("schema = 1\n", "the default configuration");
   return support::StrictTable::FromFile(
@@ -245,14 +249,13 @@ int main(int argc, char** argv) {
   using namespace armcmc;
   app::Options options;
   CLI::App cli{app::kDescription};
-  cli.footer(app::kFooter);
+  cli.footer(app::Footer());
   cli.add_option("--config", options.config,
                  "Configuration: a file, or the name of one that came with the product. Default: that of the model")
       ->type_name("FILE");
-  cli.add_option(
-         "--model", options.model,
-         "Model: hunt_crossley, soft_actuator, soft_actuator_excited, a plant that came along (armcmc-model list),\n"
-         "a plant file or a model file (.toml)")
+  cli.add_option("--model", options.model,
+                 "Model: " + ModelNames() +
+                     ", a plant that came along (armcmc-model list),\na plant file or a model file (.toml)")
       ->type_name("NAME");
   cli.add_option("--lcm-url", options.lcm_url,
                  "LCM bus, for example udpm://239.255.76.67:7667?ttl=0. Default: the configuration's")

@@ -16,8 +16,6 @@ static_assert(std::extent_v<decltype(data_pack_v2_t::y)> == kMaxPackSamples);
 static_assert(std::extent_v<decltype(data_pack_v2_t::u)> == kMaxPackSamples);
 static_assert(std::extent_v<decltype(data_pack_v2_t::u), 1> == kMaxPackInputs);
 static_assert(data_pack_v2_t::MAX_SAMPLES == kMaxPackSamples && data_pack_v2_t::MAX_INPUTS == kMaxPackInputs);
-static_assert(data_pack_t::PLANT_HUNT_CROSSLEY == static_cast<std::int32_t>(PlantKind::kHuntCrossley));
-static_assert(data_pack_t::PLANT_SOFT_ACTUATOR == static_cast<std::int32_t>(PlantKind::kSoftActuator));
 
 namespace {
 
@@ -74,7 +72,7 @@ std::string_view ToString(RejectCause cause) noexcept {
     case RejectCause::kNone: return "none";
     case RejectCause::kFingerprint: return "fingerprint of another message type";
     case RejectCause::kLength: return "wrong message length";
-    case RejectCause::kPlantKind: return "pack of another plant";
+    case RejectCause::kOtherPlant: return "pack of another plant";
     case RejectCause::kSampleCount: return "n_samples out of range";
     case RejectCause::kInputCount: return "n_inputs is not that of the model";
     case RejectCause::kSampleInterval: return "dt out of range";
@@ -88,7 +86,7 @@ std::string_view ToString(RejectCause cause) noexcept {
 RejectGroup GroupOf(RejectCause cause) noexcept {
   switch (cause) {
     case RejectCause::kFingerprint:
-    case RejectCause::kPlantKind: return RejectGroup::kType;
+    case RejectCause::kOtherPlant: return RejectGroup::kType;
     case RejectCause::kNotFinite:
     case RejectCause::kAllZero:
     case RejectCause::kOutOfRange: return RejectGroup::kValue;
@@ -99,9 +97,9 @@ RejectGroup GroupOf(RejectCause cause) noexcept {
 // getHash() here, since its first call takes a lock.
 PackCodec::PackCodec(const PackFormat& format) noexcept
     : format_(format),
-      fingerprint_(format.plant == PlantKind::kDescribed ? data_pack_v2_t::getHash() : data_pack_t::getHash()),
-      encoded_size_(static_cast<std::size_t>(format.plant == PlantKind::kDescribed ? described_.getEncodedSize()
-                                                                                   : message_.getEncodedSize())) {
+      fingerprint_(format.plant == PlantNumber::kDescribed ? data_pack_v2_t::getHash() : data_pack_t::getHash()),
+      encoded_size_(static_cast<std::size_t>(format.plant == PlantNumber::kDescribed ? described_.getEncodedSize()
+                                                                                     : message_.getEncodedSize())) {
   std::transform(format.name.begin(),
                  format.name.begin() + static_cast<std::ptrdiff_t>(std::min(format.name.size(), name_.size())),
                  name_.begin(), [](char c) { return static_cast<std::uint8_t>(c); });
@@ -128,7 +126,7 @@ RejectCause PackCodec::Decode(std::span<const std::uint8_t> payload) noexcept {
   if (payload.size() != encoded_size_) return RejectCause::kLength;
   if (!DecodeMessage(payload)) return RejectCause::kLength;
   decoded_ = true;
-  if (!IsOfThePlant()) return RejectCause::kPlantKind;
+  if (!IsOfThePlant()) return RejectCause::kOtherPlant;
   return described() ? Check(described_, format_.num_inputs) : Check(message_, format_.num_inputs);
 }
 

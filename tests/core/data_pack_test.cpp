@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "plants/hunt_crossley/model.hpp"
 #include "support/packs.hpp"
 
 namespace armcmc::data_pack_test {
@@ -12,7 +13,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-DataPack Good() { return test::BlankPack(PlantKind::kHuntCrossley, 1); }
+DataPack Good() { return test::BlankPack(HuntCrossley::kInfo.plant, 1); }
 
 TEST(DataPack, AcceptsTheSmallestAndTheLargest) {
   DataPack pack = Good();

@@ -88,7 +88,7 @@ TEST(Allocation, ConstructionDoes) {
 void ExpectNoHeapCalls(const PlantDescription& description, std::vector<DataPack> packs) {
   const auto plant = test::Program(description);
   for (DataPack& pack : packs) {
-    pack.plant = PlantKind::kDescribed;
+    pack.plant = PlantNumber::kDescribed;
     pack.fingerprint = plant->plant().fingerprint();
   }
   for (const NoiseKind kind : kKinds) {

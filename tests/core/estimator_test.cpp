@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/estimator_rig.hpp"
+#include "plants/soft_actuator/model.hpp"
 
 namespace armcmc::estimator_test {
 namespace {
@@ -161,7 +162,7 @@ TEST(Estimator, BadPackChangesNothing) {
   bad[0].y[50] = kNan;
   bad[1].u[3][0] = HUGE_VAL;
   bad[2].num_samples = 257;
-  bad[3].plant = PlantKind::kSoftActuator;
+  bad[3].plant = SoftActuator::kInfo.plant;
   bad[4].num_inputs = 1;
   for (const DataPack& pack : bad) {
     Rig clean, disturbed;

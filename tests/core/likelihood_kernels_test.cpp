@@ -12,8 +12,8 @@
 namespace armcmc::likelihood_kernels_test {
 namespace {
 
-constexpr int kHuntCrossley = FindModel("hunt_crossley");
-constexpr int kSoftActuator = FindModel("soft_actuator");
+const int kHuntCrossley = FindModel("hunt_crossley");
+const int kSoftActuator = FindModel("soft_actuator");
 
 /// Samples, candidates and their predictions; large, so kept on the heap.
 struct Batch {

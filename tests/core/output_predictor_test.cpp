@@ -6,8 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "armcmc/models/hunt_crossley.hpp"
-#include "armcmc/models/soft_actuator.hpp"
+#include "armcmc/models/compiled_plant.hpp"
+#include "plants/hunt_crossley/model.hpp"
+#include "plants/soft_actuator/bend_predictor.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "support/packs.hpp"
 
 namespace armcmc::output_predictor_test {
@@ -37,7 +39,7 @@ ShownEstimates Truth() {
 class ReferenceActuator {
  public:
   DataPack NextPack(std::int64_t seq) {
-    DataPack pack = test::BlankPack(PlantKind::kSoftActuator, seq, kSamples, kDt);
+    DataPack pack = test::BlankPack(SoftActuator::kInfo.plant, seq, kSamples, kDt);
     for (std::size_t n = 0; n < kSamples; ++n) {
       const double t = kDt * static_cast<double>(sample_++);
       // Fill for 0.2 s, hold, vent; a ripple on top so that the opening is never constant.
@@ -80,19 +82,20 @@ class ReferenceActuator {
 };
 
 TEST(OutputPredictor, ContactForceIsUnknownBeforeAnEstimateAndZeroInFreeMotion) {
-  OutputPredictor predictor(HuntCrossley::kInfo, {});
+  const std::unique_ptr<OutputPredictor> predictor =
+      HuntCrossley::kInfo.compiled->make_predictor(HuntCrossley::kInfo, {}, nullptr);
   DataPack pack;
   pack.num_samples = 2;
   pack.u[0] = {-0.1, 0.0};
   pack.u[1] = {0.1, 0.0};
   Outputs output, free_run;
-  predictor.Predict(pack, {}, &output, &free_run);
+  predictor->Predict(pack, {}, &output, &free_run);
   EXPECT_EQ(output[0], 0.0);
   EXPECT_TRUE(std::isnan(output[1]));
 }
 
 TEST(OutputPredictor, AngleFollowsAFineReference) {
-  OutputPredictor predictor(SoftActuator::kInfo, Excited());
+  BendPredictor predictor(SoftActuator::kInfo, Excited());
   ReferenceActuator plant;
   double largest = 0.0;
   for (std::int64_t seq = 1; seq <= 4; ++seq) {
@@ -109,23 +112,23 @@ TEST(OutputPredictor, AngleFollowsAFineReference) {
   EXPECT_GT(largest, 0.1) << "the reference must move";
 }
 
-TEST(OutputPredictor, LastAngleEqualsThePredictionWithTheSameParameters) {
-  OutputPredictor predictor(SoftActuator::kInfo, Excited());
+TEST(OutputPredictor, LastOutputEqualsThePredictionWithTheSameParameters) {
+  BendPredictor predictor(SoftActuator::kInfo, Excited());
   ReferenceActuator plant;
   Outputs output, free_run;
   for (std::int64_t seq = 1; seq <= 2; ++seq) {
     const DataPack pack = plant.NextPack(seq);
     predictor.Predict(pack, Truth(), &output, &free_run);
     const ShownEstimates truth = Truth();
-    EXPECT_EQ(predictor.LastAngle(pack, truth, 0, truth.theta[0].data()), output[kSamples - 1]);
+    EXPECT_EQ(predictor.LastOutput(pack, truth, 0, truth.theta[0].data()), output[kSamples - 1]);
     std::array<double, kMaxParams> stiffer = truth.theta[0];
     stiffer[0] *= 1.5;  // more valve opening for the same rate: the pressure rises less
-    EXPECT_LT(predictor.LastAngle(pack, truth, 0, stiffer.data()), output[kSamples - 1]);
+    EXPECT_LT(predictor.LastOutput(pack, truth, 0, stiffer.data()), output[kSamples - 1]);
   }
 }
 
 TEST(OutputPredictor, InputsBeforeTheFirstEstimateAreCaughtUp) {
-  OutputPredictor informed(SoftActuator::kInfo, Excited()), late(SoftActuator::kInfo, Excited());
+  BendPredictor informed(SoftActuator::kInfo, Excited()), late(SoftActuator::kInfo, Excited());
   ReferenceActuator plant;
   Outputs output, informed_run, late_run;
   for (std::int64_t seq = 1; seq <= 4; ++seq) {
@@ -137,12 +140,12 @@ TEST(OutputPredictor, InputsBeforeTheFirstEstimateAreCaughtUp) {
 }
 
 TEST(OutputPredictor, AngleStaysFiniteWhenNothingIsEverKnown) {
-  OutputPredictor predictor(SoftActuator::kInfo, Excited());
+  BendPredictor predictor(SoftActuator::kInfo, Excited());
   ReferenceActuator plant;
   Outputs output, free_run;
   DataPack pack = plant.NextPack(1);
   pack.num_samples = kMaxPackSamples;
-  for (std::int64_t seq = 1; seq <= 3 * OutputPredictor::kBacklogPacks; ++seq) {
+  for (std::int64_t seq = 1; seq <= 3 * BendPredictor::kBacklogPacks; ++seq) {
     pack.seq = seq;
     for (std::size_t n = kSamples; n < kMaxPackSamples; ++n) pack.u[n] = pack.u[n - kSamples];
     predictor.Predict(pack, {}, &output, &free_run);
@@ -152,7 +155,7 @@ TEST(OutputPredictor, AngleStaysFiniteWhenNothingIsEverKnown) {
 }
 
 TEST(OutputPredictor, AGapAndAnotherRunRestartFromTheMeasurements) {
-  OutputPredictor predictor(SoftActuator::kInfo, Excited());
+  BendPredictor predictor(SoftActuator::kInfo, Excited());
   ReferenceActuator plant;
   Outputs output, free_run;
   predictor.Predict(plant.NextPack(1), Truth(), &output, &free_run);

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "plants/hunt_crossley/model.hpp"
+
 namespace armcmc::settings_test {
 namespace {
 
@@ -89,14 +91,14 @@ const std::vector<Wrong> kWrong{
     {"takes no effects", "",
      [](EstimatorSettings& s) {
        s.method = Method::kRls;
-       s.effects[0] = MakeEffect("coulomb_friction");
+       s.effects[0] = MakeEffect(HuntCrossley::kInfo, "coulomb_friction");
        s.num_effects = 1;
      }},
     {"takes no effects", "",
      [](EstimatorSettings& s) {
        s.method = Method::kParticleFilter;
        s.baseline.pf_updates = 2;
-       s.effects[0] = MakeEffect("coulomb_friction");
+       s.effects[0] = MakeEffect(HuntCrossley::kInfo, "coulomb_friction");
        s.num_effects = 1;
      }},
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/estimator_rig.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "support/alloc_counter.hpp"
 
 namespace armcmc::snapshot_test {
@@ -182,7 +183,7 @@ TEST(SnapshotIdentity, IsThatOfTheQuestionAndNotOfTheSampler) {
   EXPECT_NE(identity_with([](auto* s) { s->noise[0].estimate_std = !s->noise[0].estimate_std; }), same);
   EXPECT_NE(identity_with([](auto* s) { s->noise[0].kind = NoiseKind::kLaplace; }), same);
   EXPECT_NE(identity_with([](auto* s) {
-              s->effects[0] = MakeEffect("force_bias");
+              s->effects[0] = MakeEffect(HuntCrossley::kInfo, "force_bias");
               s->num_effects = 1;
             }),
             same);

@@ -6,11 +6,12 @@
 #include "armcmc/rt/lcm_receiver.hpp"
 #include "armcmc/rt/pack_codec.hpp"
 #include "armcmc/rt/sequence_tracker.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace armcmc;
   static const std::string channel = "PLANT_PACK";
-  static rt::PackCodec codec({PlantKind::kHuntCrossley, 2});
+  static rt::PackCodec codec({HuntCrossley::kInfo.plant, 2});
   static rt::SequenceTracker tracker;
   std::span<const std::uint8_t> payload;
   if (rt::ParseDatagram({data, size}, channel, &payload) != rt::DatagramKind::kOurs) return 0;

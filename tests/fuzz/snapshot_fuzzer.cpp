@@ -7,6 +7,7 @@
 #include "armcmc/estimator.hpp"
 #include "armcmc/rt/warm_up.hpp"
 #include "armcmc/snapshot.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "snapshot_file.hpp"
 
 namespace {
@@ -22,7 +23,7 @@ struct Bench {
   armcmc::Estimator estimator{Settings()};
   std::unique_ptr<armcmc::AdjustResult> result = estimator.MakeResult();
   armcmc::Estimate estimate;
-  armcmc::DataPack pack = armcmc::rt::SyntheticPack({armcmc::PlantKind::kHuntCrossley, 2}, 100);
+  armcmc::DataPack pack = armcmc::rt::SyntheticPack({armcmc::HuntCrossley::kInfo.plant, 2}, 100);
 };
 
 }  // namespace

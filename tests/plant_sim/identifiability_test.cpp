@@ -9,8 +9,8 @@
 #include <string>
 
 #include "armcmc/plant_sim/simulation.hpp"
-#include "armcmc/plant_sim/soft_actuator_plant.hpp"
 #include "builtin_scenario.hpp"
+#include "soft_actuator/plant.hpp"
 
 namespace armcmc::plant_sim::identifiability_test {
 namespace {

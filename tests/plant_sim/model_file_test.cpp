@@ -19,6 +19,10 @@
 #include "armcmc/effects/composition.hpp"
 #include "armcmc/models/registry.hpp"
 #include "builtin_scenario.hpp"
+#include "plants/hunt_crossley/effects.hpp"
+#include "plants/hunt_crossley/model.hpp"
+#include "plants/soft_actuator/effects.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "samples.hpp"
 #include "simd/kernels.hpp"
 #include "support/paths.hpp"
@@ -71,7 +75,7 @@ EstimatorSettings Model(const std::vector<Case>& cases) {
   for (std::size_t d = 0; d < 3; ++d) settings.parameters[d] = At(settings.parameters[d], base[d]);
   for (const Case& one : cases) {
     EffectSettings& effect = settings.effects[static_cast<std::size_t>(settings.num_effects++)];
-    effect = armcmc::MakeEffect(one.name);
+    effect = armcmc::MakeEffect(HuntCrossley::kInfo, one.name);
     effect.gate = one.gate;
     effect.from_s = effect.until_s = 1.2345;
     for (std::size_t a = 0; a < one.amplitudes.size(); ++a)
@@ -97,7 +101,7 @@ std::vector<PlantSample> Simulated(const EstimatorSettings& settings) {
 
 std::vector<double> Predict(const EstimatorSettings& settings, const std::vector<PlantSample>& samples) {
   Composition composition(settings);
-  const auto effects = std::make_unique<EffectPack>();
+  const auto effects = std::make_unique<EffectPack>(composition.MakePack());
   const auto data = std::make_unique<ModeData>();
   const auto tile = std::make_unique<PredictionTile>();
   ThetaTile theta{};
@@ -109,7 +113,7 @@ std::vector<double> Predict(const EstimatorSettings& settings, const std::vector
     pack.seq = static_cast<std::int64_t>(first / kPack) + 1;
     pack.run_id = 1;
     pack.dt = 1e-3;
-    pack.plant = PlantKind::kHuntCrossley;
+    pack.plant = HuntCrossley::kInfo.plant;
     pack.num_samples = kPack;
     pack.num_inputs = 2;
     for (std::size_t n = 0; n < kPack; ++n) pack.u[n] = {samples[first + n].inputs[0], samples[first + n].inputs[1]};
@@ -255,7 +259,7 @@ EstimatorSettings ActuatorModel(const std::vector<FlowCase>& cases, double from_
   EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
   for (const FlowCase& one : cases) {
     EffectSettings& effect = settings.effects[static_cast<std::size_t>(settings.num_effects++)];
-    effect = armcmc::MakeEffect(PlantKind::kSoftActuator, one.name);
+    effect = armcmc::MakeEffect(SoftActuator::kInfo, one.name);
     effect.amplitudes[0] = At(effect.amplitudes[0], one.amplitude);
     effect.amplitudes[0].upper = std::max(effect.amplitudes[0].mean * 2.0, 0.0) + 1e-6;
     effect.gate = from_s > 0.0 ? EffectGate::kFrom : EffectGate::kAlways;
@@ -274,7 +278,7 @@ double WorstFlow(const std::vector<FlowCase>& cases, double from_s) {
   EXPECT_EQ(scenario.hidden.size(), cases.size());
   const std::vector<PlantSample> samples = MeasuredSamples(scenario, kPack * kPacks);
   Composition composition(settings);
-  const auto effects = std::make_unique<EffectPack>();
+  const auto effects = std::make_unique<EffectPack>(composition.MakePack());
   const auto data = std::make_unique<ModeData>();
   const auto tile = std::make_unique<PredictionTile>();
   ThetaTile theta{};
@@ -287,7 +291,7 @@ double WorstFlow(const std::vector<FlowCase>& cases, double from_s) {
     pack.seq = static_cast<std::int64_t>(first / kPack) + 1;
     pack.run_id = 1;
     pack.dt = 1e-3;
-    pack.plant = PlantKind::kSoftActuator;
+    pack.plant = SoftActuator::kInfo.plant;
     pack.num_samples = kPack;
     pack.num_inputs = 4;
     for (std::size_t n = 0; n < kPack; ++n)

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/plant_sim/hunt_crossley_plant.hpp"
+#include "hunt_crossley/plant.hpp"
 
 namespace armcmc::plant_sim::motion_test {
 namespace {

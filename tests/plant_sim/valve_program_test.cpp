@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/plant_sim/soft_actuator_plant.hpp"
 #include "builtin_scenario.hpp"
 #include "samples.hpp"
+#include "soft_actuator/plant.hpp"
 
 namespace armcmc::plant_sim::valve_program_test {
 namespace {

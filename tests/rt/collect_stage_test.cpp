@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "armcmc/estimator_status_t.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "test_packs.hpp"
 
 namespace armcmc::rt::collect_stage_test {
@@ -32,7 +33,7 @@ class CollectStageTest : public ::testing::Test {
   std::unique_ptr<Counters> counters_ = std::make_unique<Counters>();
   EventLog events_;
   std::unique_ptr<CollectStage> stage_ = std::make_unique<CollectStage>(
-      RtSettings{}, PackFormat{PlantKind::kHuntCrossley, 2}, ring_.get(), counters_.get(), &events_);
+      RtSettings{}, PackFormat{HuntCrossley::kInfo.plant, 2}, ring_.get(), counters_.get(), &events_);
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -11,6 +11,7 @@
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/step_engine.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "test_threads.hpp"
 
 namespace armcmc::rt::test {
@@ -40,7 +41,7 @@ ARMCMC_TRUST_NONBLOCKING_END
 class FakeEngine : public StepEngine {
  public:
   [[nodiscard]] PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING override {
-    return {PlantKind::kHuntCrossley, 2};
+    return {HuntCrossley::kInfo.plant, 2};
   }
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override { return 1; }
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override { return 2; }

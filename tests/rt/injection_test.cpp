@@ -7,6 +7,7 @@
 #include "armcmc/rt/disturbed_engine.hpp"
 #include "armcmc/rt/warm_up.hpp"
 #include "fake_engine.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::rt::injection_test {
 namespace {
@@ -80,7 +81,7 @@ TEST(DisturbedEngine, TellsAWrongPlantAgainAndAgainToCollapseThePosterior) {
   EXPECT_GT(engine.adjusted.load(), 4);
   Estimate estimate;
   disturbed.Execute(0, &estimate);
-  const DataPack right = SyntheticPack({PlantKind::kHuntCrossley, 2}, 7);
+  const DataPack right = SyntheticPack({HuntCrossley::kInfo.plant, 2}, 7);
   EXPECT_DOUBLE_EQ(estimate.y_pred, 0.5 * right.y[static_cast<std::size_t>(right.num_samples - 1)]);
 }
 

@@ -13,6 +13,7 @@
 
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/pack_codec.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "support/paths.hpp"
 #include "test_bus.hpp"
 #include "test_packs.hpp"
@@ -89,7 +90,7 @@ TEST_F(LcmReceiverTest, HearsAPackThatLiblcmPublished) {
   Publish("PLANT_PACK", test::Encode(test::ValidPack(7)));
   Datagram datagram;
   ASSERT_TRUE(Receive(&datagram));
-  PackCodec codec({PlantKind::kHuntCrossley, 2});
+  PackCodec codec({HuntCrossley::kInfo.plant, 2});
   EXPECT_EQ(codec.Decode(datagram.payload), RejectCause::kNone);
   EXPECT_EQ(codec.seq(), 7);
   EXPECT_LE(datagram.arrival_ns, MonotonicNow());

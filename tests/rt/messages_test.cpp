@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "armcmc/effects/registry.hpp"
 #include "fake_engine.hpp"
+#include "plants/hunt_crossley/effects.hpp"
+#include "plants/soft_actuator/effects.hpp"
 
 namespace armcmc::rt::messages_test {
 namespace {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "armcmc/plant_truth_t.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "test_packs.hpp"
 
 namespace armcmc::rt::pack_codec_test {
@@ -18,12 +19,12 @@ using test::ValidPack;
 RejectCause DecodeWith(const std::function<void(data_pack_t*)>& change) {
   data_pack_t pack = ValidPack(7);
   change(&pack);
-  PackCodec codec({PlantKind::kHuntCrossley, 2});
+  PackCodec codec({HuntCrossley::kInfo.plant, 2});
   return codec.Decode(Encode(pack));
 }
 
 TEST(PackCodec, CopiesEveryFieldOfAValidPack) {
-  PackCodec codec({PlantKind::kHuntCrossley, 2});
+  PackCodec codec({HuntCrossley::kInfo.plant, 2});
   ASSERT_EQ(codec.Decode(Encode(ValidPack(7, 42))), RejectCause::kNone);
   EXPECT_EQ(codec.seq(), 7);
   EXPECT_EQ(codec.run_id(), 42);
@@ -43,12 +44,12 @@ TEST(PackCodec, CopiesEveryFieldOfAValidPack) {
 }
 
 TEST(PackCodec, RejectsAnotherTypeByItsFingerprint) {
-  PackCodec codec({PlantKind::kHuntCrossley, 2});
+  PackCodec codec({HuntCrossley::kInfo.plant, 2});
   EXPECT_EQ(codec.Decode(Encode(plant_truth_t{})), RejectCause::kFingerprint);
 }
 
 TEST(PackCodec, RejectsAWrongLength) {
-  PackCodec codec({PlantKind::kHuntCrossley, 2});
+  PackCodec codec({HuntCrossley::kInfo.plant, 2});
   auto bytes = Encode(ValidPack(1));
   bytes.push_back(0);
   EXPECT_EQ(codec.Decode(bytes), RejectCause::kLength) << "trailing byte";
@@ -61,7 +62,7 @@ TEST(PackCodec, RejectsAWrongLength) {
 
 TEST(PackCodec, RejectsWhatTheModelDoesNotExpect) {
   EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->plant_kind = data_pack_t::PLANT_SOFT_ACTUATOR; }),
-            RejectCause::kPlantKind);
+            RejectCause::kOtherPlant);
   EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->n_inputs = 4; }), RejectCause::kInputCount);
   EXPECT_EQ(DecodeWith([](data_pack_t* p) { p->n_inputs = -1; }), RejectCause::kInputCount);
 }
@@ -99,7 +100,7 @@ TEST(PackCodec, IgnoresValuesThatAreNotUsed) {
 
 // Packs of plants that files describe.
 
-constexpr PackFormat kAxis{PlantKind::kDescribed, 3, "axis", static_cast<std::uint64_t>(-7)};
+constexpr PackFormat kAxis{PlantNumber::kDescribed, 3, "axis", static_cast<std::uint64_t>(-7)};
 
 RejectCause DecodeDescribed(const std::function<void(data_pack_v2_t*)>& change) {
   data_pack_v2_t pack = test::ValidDescribedPack(7);
@@ -117,7 +118,7 @@ TEST(PackCodec, CopiesEveryFieldOfADescribedPack) {
   EXPECT_DOUBLE_EQ(codec.t_last_s(), 0.699);
   DataPack pack;
   codec.CopyTo(&pack);
-  EXPECT_EQ(pack.plant, PlantKind::kDescribed);
+  EXPECT_EQ(pack.plant, PlantNumber::kDescribed);
   EXPECT_EQ(pack.fingerprint, kAxis.fingerprint);
   EXPECT_EQ(pack.seq, 7);
   EXPECT_EQ(pack.run_id, 42);
@@ -129,15 +130,15 @@ TEST(PackCodec, CopiesEveryFieldOfADescribedPack) {
 }
 
 TEST(PackCodec, APackOfAnotherDescribedPlantIsRejectedByItsNameOrItsSignals) {
-  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->plant[4] = 's'; }), RejectCause::kPlantKind) << "axiss";
-  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->plant[3] = 0; }), RejectCause::kPlantKind) << "axi";
-  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->fingerprint = 7; }), RejectCause::kPlantKind);
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->plant[4] = 's'; }), RejectCause::kOtherPlant) << "axiss";
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->plant[3] = 0; }), RejectCause::kOtherPlant) << "axi";
+  EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->fingerprint = 7; }), RejectCause::kOtherPlant);
   EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->n_inputs = 2; }), RejectCause::kInputCount);
   EXPECT_EQ(DecodeDescribed([](data_pack_v2_t* p) { p->u[5][2] = std::nan(""); }), RejectCause::kNotFinite);
 }
 
 TEST(PackCodec, PacksOfBuiltInAndDescribedPlantsAreNotTakenForEachOther) {
-  PackCodec described(kAxis), contact({PlantKind::kHuntCrossley, 2});
+  PackCodec described(kAxis), contact({HuntCrossley::kInfo.plant, 2});
   EXPECT_EQ(described.Decode(Encode(ValidPack(1))), RejectCause::kFingerprint);
   EXPECT_EQ(contact.Decode(Encode(test::ValidDescribedPack(1))), RejectCause::kFingerprint);
   EXPECT_FALSE(described.decoded());

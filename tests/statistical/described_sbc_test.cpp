@@ -148,7 +148,7 @@ std::vector<Histogram> RankHistograms(const Case& c, int simulations, int packs,
     }
     const Plant run = c.start(&normal, c.dt);
     for (int k = 1; k <= packs; ++k) {
-      DataPack pack = test::BlankPack(PlantKind::kDescribed, sim * packs + k, kSamples, c.dt);
+      DataPack pack = test::BlankPack(PlantNumber::kDescribed, sim * packs + k, kSamples, c.dt);
       pack.num_inputs = plant->info().num_inputs;
       pack.fingerprint = plant->plant().fingerprint();
       pack.t_last_s = k * kSamples * c.dt;

@@ -32,7 +32,7 @@ GapState Watch(const plant_sim::Scenario& scenario, std::uint64_t seed, double s
     pack->run_id = sent.run_id;
     pack->dt = sent.dt;
     pack->t_last_s = sent.t_last_s;
-    pack->plant = static_cast<PlantKind>(sent.plant_kind);
+    pack->plant = static_cast<PlantNumber>(sent.plant_kind);
     pack->num_samples = sent.n_samples;
     pack->num_inputs = sent.n_inputs;
     std::copy_n(sent.y, sent.n_samples, pack->y.begin());

@@ -8,6 +8,7 @@
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/support/csv.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "support/packs.hpp"
 #include "support/paths.hpp"
 
@@ -30,7 +31,7 @@ TEST(PaperActuator, FindsBothGainsAndPredictsTheAngle) {
   double free_run = 0.0;
   const int packs = static_cast<int>(samples.num_rows() - 1) / kPackSamples;
   for (int k = 1; k <= packs; ++k) {
-    DataPack pack = test::BlankPack(PlantKind::kSoftActuator, k, kPackSamples);
+    DataPack pack = test::BlankPack(SoftActuator::kInfo.plant, k, kPackSamples);
     for (std::size_t n = 0; n < kPackSamples; ++n) {
       const std::size_t row = static_cast<std::size_t>(kPackSamples * (k - 1)) + 1 + n;
       for (std::size_t c = 0; c < 4; ++c) pack.u[n][c] = samples.columns[1 + c][row];

@@ -10,6 +10,7 @@
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/support/csv.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "support/packs.hpp"
 #include "support/paths.hpp"
 
@@ -47,7 +48,7 @@ Score Replay(const Recording& data, const std::vector<double>& force) {
   std::vector<ModeEstimate> estimates(static_cast<std::size_t>(packs) + 1);
   int known = 0;
   for (int k = 1; k <= packs; ++k) {
-    DataPack pack = test::BlankPack(PlantKind::kHuntCrossley, k, kPackSamples);
+    DataPack pack = test::BlankPack(HuntCrossley::kInfo.plant, k, kPackSamples);
     for (int n = 0; n < kPackSamples; ++n) {
       const auto row = static_cast<std::size_t>(kPackSamples * (k - 1) + 1 + n);
       pack.y[static_cast<std::size_t>(n)] = force[row];

@@ -8,6 +8,8 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/settings.hpp"
+#include "plants/hunt_crossley/model.hpp"
+#include "plants/soft_actuator/model.hpp"
 
 namespace armcmc::test {
 
@@ -15,7 +17,7 @@ inline constexpr int kPackSamples = 100;
 inline constexpr double kSampleInterval = 1e-3;  // s
 
 /// A pack of a plant whose samples are all zero.
-inline DataPack BlankPack(PlantKind plant, std::int64_t seq, int num_samples = kPackSamples,
+inline DataPack BlankPack(PlantNumber plant, std::int64_t seq, int num_samples = kPackSamples,
                           double dt = kSampleInterval) {
   DataPack pack;
   pack.seq = seq;
@@ -23,7 +25,7 @@ inline DataPack BlankPack(PlantKind plant, std::int64_t seq, int num_samples = k
   pack.dt = dt;
   pack.plant = plant;
   pack.num_samples = num_samples;
-  pack.num_inputs = plant == PlantKind::kHuntCrossley ? 2 : 4;
+  pack.num_inputs = plant == HuntCrossley::kInfo.plant ? 2 : 4;
   return pack;
 }
 
@@ -42,7 +44,7 @@ struct Place {
 template <class PlaceAt, class Measured>
 DataPack FillContactPack(std::int64_t seq, const PlaceAt& place_at, const Measured& measured,
                          int num_samples = kPackSamples, double dt = kSampleInterval) {
-  DataPack pack = BlankPack(PlantKind::kHuntCrossley, seq, num_samples, dt);
+  DataPack pack = BlankPack(HuntCrossley::kInfo.plant, seq, num_samples, dt);
   for (int n = 0; n < num_samples; ++n) {
     const auto i = static_cast<std::size_t>(n);
     const double t = static_cast<double>((seq - 1) * num_samples + n) * dt;
@@ -111,7 +113,7 @@ struct Actuator {
   std::uint64_t seed = 1;
 
   [[nodiscard]] DataPack Pack(std::int64_t seq, int filling) const {
-    DataPack pack = BlankPack(PlantKind::kSoftActuator, seq);
+    DataPack pack = BlankPack(SoftActuator::kInfo.plant, seq);
     std::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(seq));
     std::normal_distribution<double> noise(0.0, noise_std);
     const PlantConstants constants;

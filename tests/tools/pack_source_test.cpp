@@ -12,6 +12,7 @@
 
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/support/program.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "support/paths.hpp"
 #include "tools/replay_data.hpp"
 
@@ -47,11 +48,7 @@ class PackSourceTest : public ::testing::Test {
   }
 
   test::ScratchDir dir_;
-  SourceRequest request_ = [] {
-    SourceRequest request;
-    request.mode_names = {"contact"};
-    return request;
-  }();
+  SourceRequest request_ = ContactRequest();
   std::unique_ptr<PackSource> source_;
 };
 
@@ -155,7 +152,7 @@ TEST_F(PackSourceTest, AnActuatorPackWithAGapIsLostBecauseItsAngleIsIntegrated) 
     text += support::ExactNumber(t) + ",0.1,0," + support::ExactNumber(101325.0 + t) + ",0.5\n";
   }
   Csv(text);
-  request_.plant = PlantKind::kSoftActuator;
+  request_.plant = SoftActuator::kInfo.plant;
   const auto packs = ReadAll();
   ASSERT_EQ(packs.size(), 2u);
   EXPECT_EQ(packs[1].pack.seq, 3);

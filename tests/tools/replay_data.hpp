@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "armcmc/data_pack_t.hpp"
+#include "armcmc/replay/pack_source.hpp"
 #include "armcmc/support/csv.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::replay {
 
@@ -36,6 +38,15 @@ inline std::string ContactCsv(int rows) {
             ExactNumber(s.v) + "," + ExactNumber(s.f) + "\n";
   }
   return text;
+}
+
+/// Of contact packs, but for the file.
+inline SourceRequest ContactRequest() {
+  SourceRequest request;
+  request.plant = HuntCrossley::kInfo.plant;
+  request.num_inputs = HuntCrossley::kInfo.num_inputs;
+  request.mode_names = {"contact"};
+  return request;
 }
 
 /// Pack `seq` of the same contact, as the plant sends it.

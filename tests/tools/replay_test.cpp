@@ -25,7 +25,6 @@ class ReplayTest : public ::testing::Test {
   ReplayTest() {
     std::ofstream(dir_ / "contact.csv") << ContactCsv(1001);
     request_.data = dir_ / "contact.csv";
-    request_.mode_names = {"contact"};
   }
   /// The estimate CSV of one replay.
   std::string Run(const EstimatorSettings& settings) {
@@ -37,7 +36,7 @@ class ReplayTest : public ::testing::Test {
     return out.str();
   }
   test::ScratchDir dir_;
-  SourceRequest request_;
+  SourceRequest request_ = ContactRequest();
   ReplaySummary summary_;
 };
 

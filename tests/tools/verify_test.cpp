@@ -60,9 +60,8 @@ class VerifyTest : public ::testing::Test {
     log.Flush();
   }
   SourceRequest Request(const std::string& name) {
-    SourceRequest request;
+    SourceRequest request = ContactRequest();
     request.data = dir_ / name;
-    request.mode_names = {"contact"};
     return request;
   }
   Verification Verify() {

@@ -9,10 +9,10 @@
 
 namespace armcmc {
 
-/// Plant family of a pack: decides what its columns mean. Values equal data_pack_t.PLANT_*.
-enum class PlantKind : std::int32_t {
-  kHuntCrossley = 1,
-  kSoftActuator = 2,
+/// By which number a pack says whose it is, which decides what its columns mean. A compiled plant has one of its own,
+/// which its slice chooses and data_pack_t.PLANT_* repeats.
+enum class PlantNumber : std::int32_t {
+  kNone = 0,
   kDescribed = 3,  ///< By a plant file; `fingerprint` says which.
 };
 
@@ -23,13 +23,13 @@ struct DataPack {
   Nanos t_last_ns = 0;      ///< Sender's CLOCK_MONOTONIC at the last sample.
   double t_last_s = 0.0;    ///< Plant time of the last sample, s.
   double dt = 0.0;          ///< Sample interval T, s, > 0.
-  PlantKind plant = PlantKind::kHuntCrossley;
+  PlantNumber plant = PlantNumber::kNone;
   std::uint64_t fingerprint = 0;            ///< Of a described plant: Plant::fingerprint().
   int num_samples = 0;                      ///< [1, kMaxPackSamples].
   int num_inputs = 0;                       ///< [1, kMaxPackInputs].
-  std::array<double, kMaxPackSamples> y{};  ///< Output: force N (Hunt-Crossley), angle rad (actuator).
+  std::array<double, kMaxPackSamples> y{};  ///< Output, in its unit.
   std::array<std::array<double, kMaxPackInputs>, kMaxPackSamples>
-      u{};  ///< x m, v m/s; or u_c, u_d, p Pa, pdot Pa/s; or a described plant's signals without its output.
+      u{};  ///< The plant's signals without its output, in their order and units.
 
   /// kOk, or kBadPack when seq or a count is out of range, dt is not positive, or a used value is not finite.
   /// @rt No heap, no lock, no throw. O(n).

@@ -74,8 +74,8 @@ class Estimator {
   static constexpr std::size_t kSnapshotBytes = 256 * 1024;
   /// What Adjust() carries from pack to pack, the posteriors of all modes, and what Execute() carries: the estimates on
   /// display and the evidence of the gap watch. Each is called by the thread of its stage, the first after Remember().
-  /// Restored, an estimator goes on to the bit; what only spans neighbouring packs (memory of effects, free run of the
-  /// actuator, the unfinished block of the gap watch) starts afresh, as after a lost pack.
+  /// Restored, an estimator goes on to the bit; what only spans neighbouring packs (memory of effects, a free
+  /// run, the unfinished block of the gap watch) starts afresh, as after a lost pack.
   /// @param out  At least kSnapshotBytes. @return bytes written, 0 when they did not fit.
   /// @rt No heap, no lock, no throw. O(kSnapshotBytes).
   [[nodiscard]] std::size_t SaveAdjusted(std::span<std::byte> out) const noexcept ARMCMC_NONBLOCKING;
@@ -89,7 +89,7 @@ class Estimator {
   [[nodiscard]] const EstimatorSettings& settings() const noexcept ARMCMC_NONBLOCKING;
   /// Unit of what is regressed, and so of the noise.
   [[nodiscard]] std::string_view target_unit() const noexcept ARMCMC_NONBLOCKING;
-  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] PlantNumber plant() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING;
   /// mode == num_modes(): the passive one.
   [[nodiscard]] std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING;

@@ -11,8 +11,7 @@ namespace expression {
 struct Tape;
 struct TapeScalars;
 }  // namespace expression
-struct ContactPack;
-struct FlowPack;
+struct CompiledPack;
 struct StateRun;
 struct StartFit;
 
@@ -30,10 +29,9 @@ struct alignas(64) ModeData {
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
   bool weighted = true;  ///< false: every weight is 1, and is not read for scoring.
-  // Of a model with effects one is not null: the prediction comes from there, features are not read.
-  const ContactPack* contact = nullptr;
-  const FlowPack* flow = nullptr;
-  int mode = 0;  ///< Of the flow.
+  // Of a compiled plant with effects, else null: the prediction comes from there, features are not read.
+  const CompiledPack* compiled = nullptr;
+  int mode = 0;  ///< Of `compiled`.
   // Of a described plant: its law, law - target, and what no parameter changes, a row a sample of the pack.
   const expression::Tape* tape = nullptr;
   const expression::Tape* error_tape = nullptr;
@@ -41,7 +39,7 @@ struct alignas(64) ModeData {
   const StateRun* states = nullptr;  ///< Of a plant that has some: what they do over the pack.
   const StartFit* start_fit =
       nullptr;  ///< Errors are those that remain beside an uncertain start; null: it is certain.
-  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of flow and tape: where in the pack it stands.
+  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of `compiled` and tape: where in the pack it stands.
 };
 
 /// Predictions of kTileLanes candidates: value[n][lane].

@@ -11,6 +11,7 @@
 namespace armcmc {
 
 class PlantProgram;
+struct CompiledPlant;
 
 /// One parameter of a model with its built-in prior.
 struct ParameterInfo {
@@ -26,16 +27,11 @@ struct ReportedInfo {
   std::string_view unit;
 };
 
-/// What the estimator has to know of a forward model F_j(X, theta_j), shared by all its modes.
-///
-/// A model is one header in models/ with a struct that has
-///   static constexpr ModelInfo kInfo;
-///   static void Prepare(const DataPack&, const PlantConstants&, int mode, ModeData*) noexcept;
-///   template <class S> static typename S::V Predict(const typename S::V* theta, const ModeData&, int n) noexcept;
-/// and one entry in models/registry.hpp. Nothing else changes.
+/// What the estimator has to know of a forward model F_j(X, theta_j), shared by all its modes. A plant file makes one
+/// (PlantProgram), and so does the slice of a compiled plant (CompiledPlant).
 struct ModelInfo {
   std::string_view name;
-  PlantKind plant;
+  PlantNumber plant;
   std::string_view target_unit;  ///< Unit of what is regressed.
   int num_parameters;
   std::array<ParameterInfo, kMaxParams> parameters;
@@ -49,6 +45,7 @@ struct ModelInfo {
   int (*mode_of)(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING;
   /// Of the model's own parameters. Null: what is reported are the parameters themselves.
   void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept ARMCMC_NONBLOCKING;
+  const CompiledPlant* compiled = nullptr;  ///< What else a compiled plant can do; null: a file describes it.
   const PlantProgram* described = nullptr;  ///< Of a plant file: reports, and has no mode_of.
   int num_added = 0;  ///< Amplitudes of effects: the last of the parameters, and reported as they are, last.
 

@@ -13,6 +13,7 @@
 namespace armcmc {
 
 class PlantProgram;
+struct ModelInfo;
 
 /// Initial prior P_0 of one parameter, before truncation to its bounds.
 enum class PriorKind : std::uint8_t { kNormal, kUniform };
@@ -34,8 +35,7 @@ enum class NoiseKind : std::uint8_t { kGaussian, kStudentT, kLaplace, kMixture }
 /// t law, the mean absolute deviation b (Laplace), the standard deviation of the inlier part (mixture).
 struct NoiseSettings {
   NoiseKind kind = NoiseKind::kGaussian;
-  /// > 0, unit of the regression target: N for a contact; sqrt(Pa) for the actuator, Pa/s for the actuator whose
-  /// pressure rate is regressed.
+  /// > 0, unit of the regression target: that of the output for a law of the output, of a rate where that is regressed.
   double std = 1.0;
   double mean = 0.0;             ///< mu_nu, same unit.
   bool estimate_std = false;     ///< Sample the scale with theta, log-normal prior around `std`.
@@ -111,15 +111,15 @@ struct PlantConstants {
 /// When an effect acts.
 enum class EffectGate : std::uint8_t {
   kAlways,
-  kContact,  ///< While the measured x >= 0; contact plant only.
-  kFree,     ///< While it is not; contact plant only.
+  kContact,  ///< While the measured x >= 0; of a plant that has contact only.
+  kFree,     ///< While it is not; of a plant that has contact only.
   kFrom,     ///< From plant time from_s on.
   kUntil,    ///< Before plant time until_s.
 };
 
 /// One effect added to the model: its amplitudes are estimated with the parameters, its shapes are frozen.
 struct EffectSettings {
-  std::string name;  ///< Of the catalogue; see effects/registry.hpp.
+  std::string name;  ///< Of the catalogue of the plant; see CompiledPlant.
   EffectGate gate = EffectGate::kAlways;
   double from_s = 0.0;                                             ///< For kFrom, s.
   double until_s = 0.0;                                            ///< For kUntil, s.
@@ -130,7 +130,7 @@ struct EffectSettings {
 /// Everything that decides what the estimator computes. Build it by hand, from a built-in model
 /// (BuiltinSettings), or from a configuration file.
 struct EstimatorSettings {
-  std::string model;  ///< "hunt_crossley", "soft_actuator" or "soft_actuator_excited"; of a described plant its name.
+  std::string model;                                     ///< See CompiledModels(); of a described plant its name.
   std::shared_ptr<const PlantProgram> plant;             ///< Described by a file; null: built in.
   std::array<ParameterSettings, kMaxParams> parameters;  ///< Shared by all modes; the first num_parameters count.
   int num_parameters = 0;
@@ -140,8 +140,8 @@ struct EstimatorSettings {
   Method method = Method::kArmcmc;
   BaselineSettings baseline;
   PlantConstants constants;
-  /// Soft actuator: what is regressed is the pressure rate (see FlowLaw) and not the valve flow, for data whose noise
-  /// is that of the pressure rate's sensor: in the flow it multiplies the parameters that are sought, which biases them
+  /// Of a plant with a valve flow: what is regressed is the pressure rate and not the flow, for data whose noise is
+  /// that of the pressure rate's sensor: in the flow it multiplies the parameters that are sought, which biases them
   /// and tells nothing of how precise a sample is. Effects of the valve flow are always estimated so.
   bool pressure_rate = false;
   std::array<EffectSettings, kMaxEffects> effects;  ///< Each at most once.
@@ -159,10 +159,9 @@ struct EstimatorSettings {
 /// Settings of a described plant with the priors and the noise of its file.
 [[nodiscard]] EstimatorSettings DescribedSettings(std::shared_ptr<const PlantProgram> plant);
 
-/// An effect with the priors and typical shapes of the plant's catalogue, for signals of these sizes, always on.
+/// An effect with the priors and typical shapes of a compiled plant's catalogue, for signals of these sizes, always on.
 /// @throws std::invalid_argument listing the known names.
-[[nodiscard]] EffectSettings MakeEffect(PlantKind plant, const std::string& name, const EffectScales& scales = {});
-/// The same of the contact plant.
-[[nodiscard]] EffectSettings MakeEffect(const std::string& name, const EffectScales& scales = {});
+[[nodiscard]] EffectSettings MakeEffect(const ModelInfo& model, const std::string& name,
+                                        const EffectScales& scales = {});
 
 }  // namespace armcmc

@@ -211,7 +211,7 @@ Status ParticleFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64
     chunk_.pack_share = data.pack_share;
     std::copy(data.target.begin() + from, data.target.begin() + to, chunk_.target.begin());
     std::copy(data.weight.begin() + from, data.weight.begin() + to, chunk_.weight.begin());
-    chunk_.flow = data.flow;
+    chunk_.compiled = data.compiled;
     chunk_.mode = data.mode;
     chunk_.tape = data.tape;
     chunk_.error_tape = data.error_tape;

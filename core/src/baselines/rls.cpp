@@ -14,17 +14,13 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN
 
 RlsFilter::RlsFilter(const FilterParts& parts)
     : parts_(parts),
-      contact_(AllModels::kInfos[static_cast<std::size_t>(parts.model)]->plant == PlantKind::kHuntCrossley),
+      form_(CompiledModels()[static_cast<std::size_t>(parts.model)]->compiled->regression),
+      several_modes_(CompiledModels()[static_cast<std::size_t>(parts.model)]->num_modes > 1),
       normal_table_(MarginalTable::Normal()),
       dim_(parts.space.num_parameters) {
   prior_mean_ = ParamVector::Zero(dim_);
   prior_ = ParamMatrix::Identity(dim_, dim_);
-  if (contact_) {
-    const ParameterSpace& s = parts_.space;
-    const double k = std::fmax(s.offset[0], 1e-3);
-    prior_mean_ << std::log(k), s.offset[1] / k, s.offset[2];
-    prior_.diagonal() << std::pow(s.scale[0] / k, 2), std::pow(s.scale[1] / k, 2), std::pow(s.scale[2], 2);
-  }
+  if (form_ != nullptr) form_->start(parts_.space, &prior_mean_, &prior_);
   Reset();
 }
 
@@ -35,9 +31,9 @@ void RlsFilter::Reset() noexcept {
 }
 
 void RlsFilter::Resume() noexcept {
-  if (!contact_ && !parts_.settings.baseline.recall) {
+  if (several_modes_ && !parts_.settings.baseline.recall) {
     Reset();
-  } else if (contact_ && parts_.settings.baseline.rls_reset) {
+  } else if (!several_modes_ && parts_.settings.baseline.rls_reset) {
     p_ = prior_;
   }
 }
@@ -76,29 +72,21 @@ double RlsFilter::SquareGain(const ModeData& data, std::size_t sample, const Par
 
 void RlsFilter::Saturate() noexcept {
   const ParameterSpace& s = parts_.space;
-  if (!contact_) {
-    for (int d = 0; d < dim_; ++d)
-      z_[d] = std::clamp(z_[d], s.lower[static_cast<std::size_t>(d)], s.upper[static_cast<std::size_t>(d)]);
+  if (form_ != nullptr) {
+    form_->saturate(s, &z_);
     return;
   }
-  const double k = std::clamp(std::exp(std::clamp(z_[0], -20.0, 20.0)), std::fmax(s.Theta(0, s.lower[0]), 1e-3),
-                              s.Theta(0, s.upper[0]));
-  z_[0] = std::log(k);
-  z_[1] = std::clamp(z_[1] * k, s.Theta(1, s.lower[1]), s.Theta(1, s.upper[1])) / k;
-  z_[2] = std::clamp(z_[2], s.Theta(2, s.lower[2]), s.Theta(2, s.upper[2]));
+  for (int d = 0; d < dim_; ++d)
+    z_[d] = std::clamp(z_[d], s.lower[static_cast<std::size_t>(d)], s.upper[static_cast<std::size_t>(d)]);
 }
 
 void RlsFilter::ToDraw(const ParamVector& z, double* u) const noexcept {
   const ParameterSpace& s = parts_.space;
   std::array<double, kMaxParams> theta{};
-  if (contact_) {
-    theta[0] = std::exp(std::clamp(z[0], -20.0, 20.0));
-    theta[1] = theta[0] * z[1];
-    theta[2] = z[2];
-  }
+  if (form_ != nullptr) form_->to_theta(z, theta.data());
   for (int d = 0; d < dim_; ++d) {
     const auto i = static_cast<std::size_t>(d);
-    const double value = contact_ ? (theta[i] - s.offset[i]) / s.scale[i] : z[d];
+    const double value = form_ != nullptr ? (theta[i] - s.offset[i]) / s.scale[i] : z[d];
     u[d] = std::clamp(value, s.lower[i], s.upper[i]);
   }
   for (int d = dim_; d < s.dim; ++d) u[d] = 0.0;  // the noise scale as it is believed to be
@@ -113,11 +101,8 @@ void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const Para
     const auto i = static_cast<std::size_t>(n);
     double y = data.target[i] - (of_rate ? 0.0 : mean);
     double r = noise * noise;
-    if (contact_) {
-      if (y < kLeastForce * noise) continue;
-      r /= y * y;
-      y = std::log(y);
-      phi << 1.0, data.feature[1][i], data.feature[0][i] / 1.4426950408889634;  // log2 x to log x
+    if (form_ != nullptr) {
+      if (!form_->row(data, i, noise, &phi, &y, &r)) continue;
     } else {
       // The noise of a pressure rate, its mean included, is in what is measured of it and not in the valve flow.
       const double share = of_rate && data.feature[0][i] != 0.0 ? 1.0 - mean / data.feature[0][i] : 1.0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "armcmc/models/registry.hpp"
+#include "armcmc/models/compiled_plant.hpp"
 #include "gap_tools.hpp"
 #include "simd/kernels.hpp"
 
@@ -16,7 +16,9 @@ constexpr double kRelativeStep = 1e-4;  // of a difference quotient, relative to
 
 GapLineariser::GapLineariser(const EstimatorSettings& settings, int model, const simd::Kernels& kernels,
                              bool judges_passive)
-    : settings_(settings), model_(model), kernels_(kernels), judges_passive_(judges_passive), composition_(settings) {}
+    : settings_(settings), model_(model), kernels_(kernels), judges_passive_(judges_passive), composition_(settings) {
+  effects_ = composition_.MakePack();
+}
 
 const ParameterSettings& GapLineariser::parameter(int column) const noexcept {
   return composition_.sampled().parameters[At(column % info().num_parameters)];
@@ -47,11 +49,10 @@ void GapLineariser::FillTheta(const std::array<double, kMaxParams>& theta) noexc
 bool GapLineariser::FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
                              GapRows* rows) noexcept {
   kernels_.predict(model_, data_, theta_, &prediction_);
-  const bool all = data_.contact != nullptr;
   bool finite = true;
   int row = 0;
   for (std::size_t n = 0; n < At(rows->num_samples) && row < data_.num_samples; ++n) {
-    if (data_.flow != nullptr ? At(data_.sample[At(row)]) != n : !all && modes[n] != mode) continue;
+    if (data_.compiled != nullptr ? At(data_.sample[At(row)]) != n : modes[n] != mode) continue;
     const auto& value = prediction_.value[At(row)];
     rows->used[n] = true;
     rows->output[n] = value[0] / noise_std;
@@ -83,7 +84,7 @@ bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapR
     if (!at.known[At(m)]) continue;
     FillTheta(at.theta[At(m)]);
     if (composition_.empty()) {
-      AllModels::kPrepare[At(model_)](pack, settings_.constants, m, &data_);
+      info().compiled->prepare(pack, settings_.constants, m, &data_);
     } else {
       composition_.Fill(pack, effects_, m, &data_);
     }
@@ -96,7 +97,7 @@ bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapR
 void GapLineariser::FillPassive(const DataPack& pack, double noise_std, const std::array<int, kMaxPackSamples>& modes,
                                 GapRows* rows) const noexcept {
   const bool described = info().described != nullptr;
-  if (!described && !composition_.empty()) return;  // with effects every sample is one of the contact's
+  if (!described && !composition_.empty()) return;  // with effects every sample is one of the law's
   for (std::size_t i = 0; i < At(rows->num_samples); ++i) {
     if (modes[i] != info().num_modes || (described && !effects_.described.passive_given[i])) continue;
     rows->used[i] = true;

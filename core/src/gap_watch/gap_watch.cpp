@@ -21,7 +21,7 @@ bool CanWatch(const EstimatorSettings& settings, int num_columns) {
 GapWatch::GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels, double rate)
     : settings_(settings.gap_watch),
       described_(settings.plant != nullptr ? std::make_unique<const DescribedFamily>(*settings.plant) : nullptr),
-      family_(described_ != nullptr ? *described_ : FamilyOf(AllModels::kInfos[At(model)]->plant)),
+      family_(described_ != nullptr ? *described_ : CompiledModels()[At(model)]->compiled->gap_family()),
       first_(settings, model, kernels, family_.judges_passive()),
       second_(settings, model, kernels, family_.judges_passive()),
       enabled_(settings.gap_watch.enabled && CanWatch(settings, first_.num_columns())),

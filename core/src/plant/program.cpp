@@ -225,7 +225,7 @@ void PlantProgram::FillInfo() {
   for (const SignalDescription& signal : description.signals)
     if (signal.name == description.output && description.modes[active_[0]].target.empty()) target_unit_ = signal.unit;
   info_.name = description.name;
-  info_.plant = PlantKind::kDescribed;
+  info_.plant = PlantNumber::kDescribed;
   info_.described = this;
   info_.target_unit = target_unit_;
   info_.num_parameters = static_cast<int>(sampled_.size());

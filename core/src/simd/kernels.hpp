@@ -26,8 +26,8 @@ struct PriorTerms {
 struct Kernels {
   std::string_view name;
 
-  /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes AllModels; effects, and
-  /// the law of a described plant, come with `data`.
+  /// tile[n][lane] = F(x_n, theta[., lane]) for all samples of `data`. `model` indexes CompiledModels(); effects,
+  /// and the law of a described plant, come with `data`.
   void (*predict)(int model, const ModeData& data, const ThetaTile& theta,
                   PredictionTile* tile) noexcept ARMCMC_NONBLOCKING;
 

@@ -1,13 +1,7 @@
 // Compiled once per instruction set; see vector.hpp. Everything lives in the instruction set's own namespace so that
 // no other translation unit can pick up code that its CPU cannot run.
 
-// The effects are written in the terms of vector.hpp.
-// clang-format off
 #include "simd/vector.hpp"
-#include "simd/effects.inl"
-#include "simd/flow.inl"
-#include "simd/described.inl"
-// clang-format on
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
@@ -16,6 +10,24 @@ using V = Simd::V;
 constexpr int kVectors = kTileLanes / Simd::kLanes;
 constexpr double kLn2 = 0.69314718055994530942;
 constexpr double kLog2E = 1.44269504088896340736;
+
+/// The loops of a compiled plant with effects, whose slice specialises this in its kernels.inl:
+///   Predict(data, theta, tile)   predictions from data.compiled
+///   Squares(data)                the loop that sums squared errors; null where that takes the predictions
+template <class Model>
+struct PlantKernels;
+
+}  // namespace
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
+
+// clang-format off
+#include "simd/described.inl"
+#include "simd/squares.inl"
+#include "plants/kernels.inl"
+// clang-format on
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+namespace {
 
 template <class Model>
 void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
@@ -30,29 +42,27 @@ void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* t
   }
 }
 
+/// By index of the model: its loops without effects, then those with.
 template <class List>
-struct PredictTable;
+struct PlantTable;
 template <class... Models>
-struct PredictTable<ModelList<Models...>> {
-  using Fn = void (*)(const ModeData&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
-  static constexpr Fn kOf[] = {&PredictTile<Models>...};
+struct PlantTable<ModelList<Models...>> {
+  using PredictFn = void (*)(const ModeData&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
+  using SquaresFn = SumSquaresFn (*)(const ModeData&) noexcept ARMCMC_NONBLOCKING;
+  static constexpr PredictFn kPlain[] = {&PredictTile<Models>...};
+  static constexpr SumSquaresFn kPlainSquares[] = {&SumSquaresPlain<Models>...};
+  static constexpr PredictFn kPredict[] = {&PlantKernels<Models>::Predict...};
+  static constexpr SquaresFn kSquares[] = {&PlantKernels<Models>::Squares...};
 };
 
 void Predict(int model, const ModeData& data, const ThetaTile& theta,
              PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  if (data.contact != nullptr) {
-    PredictComposed(*data.contact, theta, tile);
-    return;
-  }
-  if (data.flow != nullptr) {
-    PredictFlow(data, theta, tile);
-    return;
-  }
   if (data.tape != nullptr) {
     PredictTape(data, theta, tile);
-    return;
+  } else {
+    (data.compiled != nullptr ? PlantTable<AllModels>::kPredict : PlantTable<AllModels>::kPlain)[model](data, theta,
+                                                                                                        tile);
   }
-  PredictTable<AllModels>::kOf[model](data, theta, tile);
 }
 
 /// Standardised, weighted errors of one vector of lanes at sample n.

@@ -1,6 +1,5 @@
-#include "armcmc/effects/registry.hpp"
-#include "armcmc/models/registry.hpp"
 #include "armcmc/rng.hpp"
+#include "plants/registry.hpp"
 #include "simd/kernels.hpp"
 
 #define ARMCMC_SIMD_NAMESPACE avx2

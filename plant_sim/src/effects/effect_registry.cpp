@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iterator>
 
 #include "armcmc/plant_sim/effects/effect.hpp"
 
@@ -15,15 +14,8 @@ const char* FormulaKindName(FormulaKind kind) noexcept {
 }
 
 const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family) {
-  static const std::vector<EffectSpec> none, actuator = ActuatorEffects();
-  static const std::vector<EffectSpec> contact = [] {
-    std::vector<EffectSpec> all;
-    for (std::vector<EffectSpec> part : {ForceEffects(), FrictionEffects(), MaterialEffects(), SensorEffects()})
-      std::move(part.begin(), part.end(), std::back_inserter(all));
-    return all;
-  }();
-  if (family.name == "hunt_crossley") return contact;
-  return family.name == "soft_actuator" ? actuator : none;
+  static const std::vector<EffectSpec> none;
+  return family.effects != nullptr ? family.effects() : none;
 }
 
 const EffectSpec* FindEffectSpec(const PlantFamily& family, const std::string& name, const std::string& variant) {

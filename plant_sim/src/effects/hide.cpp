@@ -158,7 +158,7 @@ std::vector<HiddenEffect> DecideEffects(const Scenario& scenario, const std::vec
     effect.spec = &ChooseSpec(*scenario.family, request, &rng);
     effect.values = DrawValues(*effect.spec, meter->scales(), &rng);
     effect.gate = request.gate;
-    if (scenario.family->name != "hunt_crossley" &&
+    if (!scenario.family->makes_contact &&
         (effect.gate.kind == Gate::Kind::kContact || effect.gate.kind == Gate::Kind::kFree))
       throw std::invalid_argument("a plant of the family " + scenario.family->name + " makes no contact: no gate " +
                                   effect.gate.Text());
@@ -181,7 +181,7 @@ std::vector<HiddenEffect> DrawEffects(const Scenario& scenario, double gap_ratio
   const auto kind = static_cast<HiddenKind>(Pick(4, &rng));
   if (kind == HiddenKind::kNone) return {};
   const std::unique_ptr<GapMeter> meter = MakeGapMeter(scenario);
-  if (gate && scenario.family->name != "hunt_crossley" &&
+  if (gate && !scenario.family->makes_contact &&
       (gate->kind == Gate::Kind::kContact || gate->kind == Gate::Kind::kFree))
     throw std::invalid_argument("no gate " + gate->Text() + " without contact");
   const bool outside = kind == HiddenKind::kOutside;

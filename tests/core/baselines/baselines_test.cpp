@@ -6,6 +6,7 @@
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "support/alloc_counter.hpp"
 #include "support/packs.hpp"
 
@@ -121,7 +122,7 @@ TEST(Rls, FindsTheContactWhereItsLinearisationHolds) {
 }
 
 DataPack ValvePack(int seq, int mode, double gain) {
-  DataPack pack = test::BlankPack(PlantKind::kSoftActuator, seq);
+  DataPack pack = test::BlankPack(SoftActuator::kInfo.plant, seq);
   for (std::size_t n = 0; n < 100; ++n) {
     const double p = 101'325.0 + 1.0 + 0.01 * static_cast<double>(n), pdot = 10.0;
     const double head = mode == 0 ? std::sqrt(800e3 - p) : std::sqrt(p - 101'325.0);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "armcmc/data_pack.hpp"
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/settings.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::test {
 
@@ -38,7 +38,7 @@ struct Series {
     pack.seq = seq;
     pack.run_id = 1;
     pack.dt = dt;
-    pack.plant = PlantKind::kHuntCrossley;
+    pack.plant = HuntCrossley::kInfo.plant;
     pack.num_samples = static_cast<int>(count);
     pack.num_inputs = 2;
     for (std::size_t n = 0; n < count; ++n) {
@@ -179,7 +179,8 @@ inline std::vector<HiddenEffect> Catalogue() {
 
 /// The settings of an estimator that knows the effect, with a prior that does not know its size.
 inline EffectSettings SettingsOf(const HiddenEffect& hidden) {
-  EffectSettings effect = MakeEffect(hidden.name, {.force = 5.0, .length = 1.0, .speed = 2.0, .acceleration = 8.0});
+  EffectSettings effect =
+      MakeEffect(HuntCrossley::kInfo, hidden.name, {.force = 5.0, .length = 1.0, .speed = 2.0, .acceleration = 8.0});
   effect.gate = hidden.gate;
   effect.from_s = hidden.from_s;
   effect.until_s = hidden.until_s;

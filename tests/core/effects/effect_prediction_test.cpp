@@ -6,6 +6,9 @@
 #include "armcmc/models/registry.hpp"
 #include "core/effects/contact_series.hpp"
 #include "core/kernel_sets.hpp"
+#include "plants/hunt_crossley/contact_pack.hpp"
+#include "plants/hunt_crossley/effects.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::effect_prediction_test {
 namespace {
@@ -48,10 +51,15 @@ class Predictor {
   Composition composition_;
   const simd::Kernels& kernels_;
   ThetaTile theta_{};
-  std::unique_ptr<EffectPack> pack_ = std::make_unique<EffectPack>();
+  std::unique_ptr<EffectPack> pack_ = std::make_unique<EffectPack>(composition_.MakePack());
   std::unique_ptr<ModeData> data_ = std::make_unique<ModeData>();
   std::unique_ptr<PredictionTile> tile_ = std::make_unique<PredictionTile>();
 };
+
+/// Of the first additive effect.
+double FeatureAt(const EffectPack& pack, std::size_t n) {
+  return static_cast<const ContactPack&>(*pack.compiled).feature[0][n];
+}
 
 void ExpectEqualsReference(const std::vector<HiddenEffect>& effects, const std::string& what) {
   Series series(2000);
@@ -166,18 +174,20 @@ TEST(EffectPrediction, AGapStartsTheMemoryAnew) {
   const HiddenEffect relaxation{"stress_relaxation", {2.0}, {0.2}};
   Series series(400);
   Composition composition(test::WithEffects({relaxation})), fresh(test::WithEffects({relaxation}));
-  auto pack = std::make_unique<EffectPack>(), other = std::make_unique<EffectPack>();
+  auto pack = std::make_unique<EffectPack>(composition.MakePack()),
+       other = std::make_unique<EffectPack>(fresh.MakePack());
   ASSERT_TRUE(composition.Prepare(series.Pack(1, 0, 100), pack.get()));
   ASSERT_TRUE(composition.Prepare(series.Pack(3, 200, 100), pack.get())) << "pack 2 is lost";
   ASSERT_TRUE(fresh.Prepare(series.Pack(3, 200, 100), other.get()));
-  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->contact.feature[0][n], other->contact.feature[0][n]);
+  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(FeatureAt(*pack, n), FeatureAt(*other, n));
 }
 
 TEST(EffectPrediction, APackThatOverflowsIsRefusedAndForgotten) {
   const HiddenEffect inertia{"inertia", {0.3}, {0.0}};
   Series series(400);
   Composition composition(test::WithEffects({inertia})), fresh(test::WithEffects({inertia}));
-  auto pack = std::make_unique<EffectPack>(), other = std::make_unique<EffectPack>();
+  auto pack = std::make_unique<EffectPack>(composition.MakePack()),
+       other = std::make_unique<EffectPack>(fresh.MakePack());
   ASSERT_TRUE(composition.Prepare(series.Pack(1, 0, 100), pack.get()));
   ASSERT_TRUE(fresh.Prepare(series.Pack(1, 0, 100), other.get()));
   DataPack broken = series.Pack(2, 100, 100);
@@ -185,7 +195,7 @@ TEST(EffectPrediction, APackThatOverflowsIsRefusedAndForgotten) {
   ASSERT_FALSE(composition.Prepare(broken, pack.get()));
   ASSERT_TRUE(composition.Prepare(series.Pack(2, 100, 100), pack.get()));
   ASSERT_TRUE(fresh.Prepare(series.Pack(2, 100, 100), other.get()));
-  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(pack->contact.feature[0][n], other->contact.feature[0][n]);
+  for (std::size_t n = 0; n < 100; ++n) ASSERT_EQ(FeatureAt(*pack, n), FeatureAt(*other, n));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "core/effects/contact_series.hpp"
+#include "plants/hunt_crossley/effects.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::effect_settings_test {
 namespace {
@@ -22,7 +24,8 @@ std::string ErrorOf(const EstimatorSettings& settings) {
 
 EstimatorSettings With(std::initializer_list<const char*> names) {
   EstimatorSettings settings = BuiltinSettings("hunt_crossley");
-  for (const char* name : names) settings.effects[static_cast<std::size_t>(settings.num_effects++)] = MakeEffect(name);
+  for (const char* name : names)
+    settings.effects[static_cast<std::size_t>(settings.num_effects++)] = MakeEffect(HuntCrossley::kInfo, name);
   return settings;
 }
 
@@ -30,7 +33,7 @@ TEST(EffectSettings, TheCatalogueIsValidAtAnyScale) {
   for (const EffectInfo* info : ContactEffects::kInfos)
     for (const EffectScales& scales : {EffectScales{}, EffectScales{5.0, 2e-3, 0.01, 0.3, 10.0}}) {
       EstimatorSettings settings = BuiltinSettings("hunt_crossley");
-      settings.effects[0] = MakeEffect(std::string(info->name), scales);
+      settings.effects[0] = MakeEffect(HuntCrossley::kInfo, std::string(info->name), scales);
       settings.num_effects = 1;
       EXPECT_EQ(ErrorOf(settings), "") << info->name;
       EXPECT_FALSE(info->family.empty());
@@ -39,15 +42,15 @@ TEST(EffectSettings, TheCatalogueIsValidAtAnyScale) {
 }
 
 TEST(EffectSettings, PriorsFollowTheSizeOfTheData) {
-  const EffectSettings small = MakeEffect("viscous_friction", {.force = 2.0, .speed = 0.01});
+  const EffectSettings small = MakeEffect(HuntCrossley::kInfo, "viscous_friction", {.force = 2.0, .speed = 0.01});
   EXPECT_DOUBLE_EQ(small.amplitudes[0].sd, 0.2 * 2.0 / 0.01);
   EXPECT_EQ(small.amplitudes[0].lower, 0.0);
-  EXPECT_DOUBLE_EQ(MakeEffect("adhesion", {.length = 1e-3}).shapes[0], 0.2e-3);
+  EXPECT_DOUBLE_EQ(MakeEffect(HuntCrossley::kInfo, "adhesion", {.length = 1e-3}).shapes[0], 0.2e-3);
 }
 
 TEST(EffectSettings, UnknownNameListsTheCatalogue) {
   try {
-    (void)MakeEffect("stiction");
+    (void)MakeEffect(HuntCrossley::kInfo, "stiction");
     ADD_FAILURE();
   } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("stiction"), HasSubstr("coulomb_friction, presliding_friction")));
@@ -82,7 +85,7 @@ TEST(EffectSettings, NamesTheKeyThatIsWrong) {
   s.effects[0].name = "bias";
   EXPECT_THAT(ErrorOf(s), HasSubstr("effect.name = 'bias'"));
   EstimatorSettings actuator = BuiltinSettings("soft_actuator");
-  actuator.effects[0] = MakeEffect("force_bias");
+  actuator.effects[0] = MakeEffect(HuntCrossley::kInfo, "force_bias");
   actuator.num_effects = 1;
   EXPECT_THAT(ErrorOf(actuator), AllOf(HasSubstr("'force_bias' is not an effect of soft_actuator"), HasSubstr("leak")));
 }

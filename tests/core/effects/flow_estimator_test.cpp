@@ -4,9 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "armcmc/effects/registry.hpp"
 #include "core/effects/valve_series.hpp"
 #include "core/estimator_rig.hpp"
+#include "plants/hunt_crossley/model.hpp"
+#include "plants/soft_actuator/effects.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "support/alloc_counter.hpp"
 
 namespace armcmc::flow_estimator_test {
@@ -249,7 +251,7 @@ TEST(FlowEstimator, StepsDoNotTouchTheHeap) {
 TEST(FlowSettings, SayWhyAnEffectDoesNotRun) {
   const auto problem = [](const std::string& name, EffectGate gate = EffectGate::kAlways) -> std::string {
     EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
-    settings.effects[0] = MakeEffect(PlantKind::kSoftActuator, name);
+    settings.effects[0] = MakeEffect(SoftActuator::kInfo, name);
     settings.effects[0].gate = gate;
     settings.num_effects = 1;
     try {
@@ -269,7 +271,7 @@ TEST(FlowSettings, SayWhyAnEffectDoesNotRun) {
                                        HasSubstr("valve_dead_band")));
     }
   }
-  EXPECT_THROW((void)MakeEffect("leak"), std::invalid_argument) << "of the contact plant";
+  EXPECT_THROW((void)MakeEffect(HuntCrossley::kInfo, "leak"), std::invalid_argument) << "of the contact plant";
 }
 
 // A new effect of the flow is one header and one entry.

@@ -50,7 +50,7 @@ class Predictor {
  private:
   Composition composition_;
   std::vector<double> amplitude_;
-  std::unique_ptr<EffectPack> effects_ = std::make_unique<EffectPack>();
+  std::unique_ptr<EffectPack> effects_ = std::make_unique<EffectPack>(composition_.MakePack());
   std::unique_ptr<ModeData> data_ = std::make_unique<ModeData>();
   std::unique_ptr<ThetaTile> theta_ = std::make_unique<ThetaTile>();
   std::unique_ptr<PredictionTile> tile_ = std::make_unique<PredictionTile>();

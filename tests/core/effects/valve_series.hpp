@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "armcmc/settings.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "support/packs.hpp"
 
 namespace armcmc::test {
@@ -65,7 +66,7 @@ struct ValveSeries {
 
   /// Samples [first, first + count) as pack number seq.
   [[nodiscard]] DataPack Pack(std::int64_t seq, std::size_t first, std::size_t count) const {
-    DataPack pack = BlankPack(PlantKind::kSoftActuator, seq, static_cast<int>(count), dt);
+    DataPack pack = BlankPack(SoftActuator::kInfo.plant, seq, static_cast<int>(count), dt);
     for (std::size_t n = 0; n < count; ++n) pack.u[n] = {u_c[first + n], u_d[first + n], p[first + n], pdot[first + n]};
     pack.t_last_s = t[first + count - 1];
     pack.t_last_ns = static_cast<Nanos>(pack.t_last_s * 1e9);
@@ -109,7 +110,7 @@ inline EstimatorSettings WithFlowEffects(const std::vector<FlowCase>& cases) {
   for (NoiseSettings& noise : settings.noise) noise.std = 500.0;
   for (const FlowCase& one : cases)
     settings.effects[static_cast<std::size_t>(settings.num_effects++)] = MakeEffect(
-        PlantKind::kSoftActuator, one.name, {.pressure = 5e4, .pressure_rate = 3e4, .opening = 0.03, .supply = 7e5});
+        SoftActuator::kInfo, one.name, {.pressure = 5e4, .pressure_rate = 3e4, .opening = 0.03, .supply = 7e5});
   return settings;
 }
 

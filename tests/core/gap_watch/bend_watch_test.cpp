@@ -1,4 +1,4 @@
-#include "armcmc/gap_watch/bend_watch.hpp"
+#include "plants/soft_actuator/bend_watch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/models/soft_actuator.hpp"
+#include "armcmc/estimator.hpp"
 #include "armcmc/snapshot.hpp"
+#include "plants/hunt_crossley/model.hpp"
+#include "plants/soft_actuator/gap_family.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "support/alloc_counter.hpp"
 #include "support/packs.hpp"
 
@@ -28,10 +31,10 @@ class BendRig {
   explicit BendRig(double rate = 0.01)
       : settings_(BuiltinSettings("soft_actuator_excited")),
         predictor_(SoftActuator::kInfo, settings_.constants),
-        watch_(settings_, rate) {}
+        watch_(settings_, rate, predictor_) {}
 
   DataPack Next() {
-    DataPack pack = test::BlankPack(PlantKind::kSoftActuator, ++seq, samples);
+    DataPack pack = test::BlankPack(SoftActuator::kInfo.plant, ++seq, samples);
     pack.run_id = run_id;
     for (std::size_t n = 0; n < static_cast<std::size_t>(samples); ++n) {
       pack.t_last_s = t_;
@@ -41,7 +44,7 @@ class BendRig {
     }
     return pack;
   }
-  void Give(const DataPack& pack) { watch_.Step(pack, predictor_, {}); }
+  void Give(const DataPack& pack) { watch_.Step(pack, {}); }
   /// @return time of the alarm, s; 0: none.
   double Run(double seconds) {
     for (double end = t_ + seconds; t_ < end;) Give(Next());
@@ -77,7 +80,7 @@ class BendRig {
   }
 
   EstimatorSettings settings_;
-  OutputPredictor predictor_;
+  BendPredictor predictor_;
   BendWatch watch_;
   double t_ = 0.0;
   BendMotion::State state_{0.9, 0.0};
@@ -135,7 +138,7 @@ TEST(BendWatch, FindsWhatTheEquationLacks) {
     const std::string where(rig.watch().state().where.view());
     EXPECT_TRUE(std::find(missing.where.begin(), missing.where.end(), where) != missing.where.end())
         << missing.name << ": " << where;
-    EXPECT_EQ(GapCheckName(PlantKind::kSoftActuator, rig.watch().state().check), where);
+    EXPECT_EQ(rig.watch().CheckName(rig.watch().state().check), where);
   }
 }
 
@@ -204,12 +207,13 @@ TEST(BendWatch, AllocatesNothing) {
 }
 
 TEST(GapCheckName, IsOfEitherEquation) {
-  EXPECT_EQ(GapCheckName(PlantKind::kSoftActuator, 0), "any_valve");
-  EXPECT_EQ(GapCheckName(PlantKind::kSoftActuator, BendChecks().first + kBendDirection), "bend_direction");
-  EXPECT_EQ(GapCheckName(PlantKind::kSoftActuator, BendChecks().first - 1), "wander_after_two_packs");
-  EXPECT_EQ(GapCheckName(PlantKind::kSoftActuator, BendChecks().first + BendChecks().size()), "");
-  EXPECT_EQ(GapCheckName(PlantKind::kHuntCrossley, BendChecks().first + BendChecks().size() - 1), "");
-  EXPECT_EQ(GapCheckName(PlantKind::kHuntCrossley, -1), "");
+  const Estimator actuator(BuiltinSettings("soft_actuator")), contact(BuiltinSettings("hunt_crossley"));
+  EXPECT_EQ(actuator.gap_check_name(0), "any_valve");
+  EXPECT_EQ(actuator.gap_check_name(BendChecks().first + kBendDirection), "bend_direction");
+  EXPECT_EQ(actuator.gap_check_name(BendChecks().first - 1), "wander_after_two_packs");
+  EXPECT_EQ(actuator.gap_check_name(BendChecks().first + BendChecks().size()), "");
+  EXPECT_EQ(contact.gap_check_name(BendChecks().first + BendChecks().size() - 1), "");
+  EXPECT_EQ(contact.gap_check_name(-1), "");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core/estimator_rig.hpp"
 #include "core/plant/described_packs.hpp"
 #include "core/plant/plants.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::described_estimator_test {
 namespace {
@@ -30,7 +31,7 @@ TEST(DescribedEstimator, ContactIsThatOfTheBuiltInModel) {
       return s;
     });
     const Estimate& tape = described.Step(pack);
-    pack.plant = PlantKind::kHuntCrossley;
+    pack.plant = HuntCrossley::kInfo.plant;
     const Estimate& kernel = compiled.Step(pack);
     ASSERT_EQ(described.status, compiled.status);
     EXPECT_EQ(tape.mode, kernel.mode);
@@ -238,7 +239,7 @@ TEST(DescribedEstimator, PacksOfAnotherPlantAreRejected) {
   (void)rig.Step(pack);
   EXPECT_EQ(rig.status, Status::kBadPack);
   pack = blank();
-  pack.plant = PlantKind::kHuntCrossley;
+  pack.plant = HuntCrossley::kInfo.plant;
   (void)rig.Step(pack);
   EXPECT_EQ(rig.status, Status::kBadPack);
   pack = blank();

@@ -18,7 +18,7 @@ struct PlantSample {
 template <class SampleAt>
 DataPack DescribedPack(const PlantProgram& plant, std::int64_t seq, const SampleAt& sample_at, int num_samples = 100,
                        double dt = 1e-3) {
-  DataPack pack = BlankPack(PlantKind::kDescribed, seq, num_samples, dt);
+  DataPack pack = BlankPack(PlantNumber::kDescribed, seq, num_samples, dt);
   pack.num_inputs = plant.info().num_inputs;
   pack.fingerprint = plant.plant().fingerprint();
   pack.t_last_s = static_cast<double>(seq * num_samples) * dt;

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "armcmc/compare/trace.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "tools/replay_data.hpp"
 
 namespace armcmc::compare {
@@ -18,13 +19,12 @@ inline EstimatorSettings FastSettings() {
 /// One run over 20 packs of the deterministic contact; writes its recording into `csv`.
 inline RunTrace TraceOf(const EstimatorSettings& settings, const std::filesystem::path& csv, const char* label) {
   std::ofstream(csv) << replay::ContactCsv(2001);
-  replay::SourceRequest request;
+  replay::SourceRequest request = replay::ContactRequest();
   request.data = csv;
-  request.mode_names = {"contact"};
   const auto source = replay::OpenSource(request);
   return TraceRun(settings, source.get(), label, [](double) {});
 }
 
-inline EffectSettings Friction() { return MakeEffect("coulomb_friction"); }
+inline EffectSettings Friction() { return MakeEffect(HuntCrossley::kInfo, "coulomb_friction"); }
 
 }  // namespace armcmc::compare

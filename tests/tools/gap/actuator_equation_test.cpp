@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "armcmc/gap/actuator_signals.hpp"
-#include "armcmc/gap/bend_simulation.hpp"
 #include "armcmc/gap/hypothesis.hpp"
+#include "gap/plants/soft_actuator/actuator_signals.hpp"
+#include "gap/plants/soft_actuator/bend_simulation.hpp"
 #include "tools/gap/actuator_rig.hpp"
 
 namespace armcmc::gap::test::actuator_equation_test {

@@ -9,11 +9,12 @@
 #include <memory>
 
 #include "armcmc/effects/composition.hpp"
-#include "armcmc/gap/actuator_equation.hpp"
 #include "armcmc/gap/model_writer.hpp"
 #include "armcmc/gap/workflow.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/model_file.hpp"
+#include "gap/plants/soft_actuator/actuator_equation.hpp"
+#include "plants/soft_actuator/model.hpp"
 #include "simd/kernels.hpp"
 #include "support/paths.hpp"
 #include "tools/gap/actuator_rig.hpp"
@@ -55,7 +56,7 @@ double WorstDifference(const Named& named, const EstimatorSettings& settings, do
   const Matrix covariance = named.fit.Covariance(kNoise * kNoise);
   const std::vector<ParameterEstimate> gains = named.equation->Report(s, named.fit.theta, covariance);
   Composition composition(settings);
-  const auto effects = std::make_unique<EffectPack>();
+  const auto effects = std::make_unique<EffectPack>(composition.MakePack());
   const auto data = std::make_unique<ModeData>();
   const auto tile = std::make_unique<PredictionTile>();
   const auto theta = std::make_unique<ThetaTile>();
@@ -67,7 +68,7 @@ double WorstDifference(const Named& named, const EstimatorSettings& settings, do
     pack.seq = first / kPack + 1;
     pack.run_id = 1;
     pack.dt = s.dt;
-    pack.plant = PlantKind::kSoftActuator;
+    pack.plant = SoftActuator::kInfo.plant;
     pack.num_samples = static_cast<int>(kPack);
     pack.num_inputs = 4;
     for (Eigen::Index n = 0; n < kPack; ++n) {

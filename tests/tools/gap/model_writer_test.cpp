@@ -9,6 +9,7 @@
 
 #include "armcmc/effects/composition.hpp"
 #include "armcmc/models/registry.hpp"
+#include "plants/hunt_crossley/model.hpp"
 #include "simd/kernels.hpp"
 #include "tools/gap/gap_rig.hpp"
 
@@ -26,7 +27,7 @@ constexpr double kNoise = 0.05;
 Vector EstimatorSays(const EstimatorSettings& settings, const Signals& s) {
   constexpr Eigen::Index kPack = 100;
   Composition composition(settings);
-  auto effects = std::make_unique<EffectPack>();
+  auto effects = std::make_unique<EffectPack>(composition.MakePack());
   auto data = std::make_unique<ModeData>();
   auto tile = std::make_unique<PredictionTile>();
   auto theta = std::make_unique<ThetaTile>();
@@ -39,7 +40,7 @@ Vector EstimatorSays(const EstimatorSettings& settings, const Signals& s) {
     pack.seq = first / kPack + 1;
     pack.run_id = 1;
     pack.dt = s.dt;
-    pack.plant = PlantKind::kHuntCrossley;
+    pack.plant = HuntCrossley::kInfo.plant;
     pack.num_samples = static_cast<int>(std::min(kPack, s.rows() - first));
     pack.num_inputs = 2;
     for (int n = 0; n < pack.num_samples; ++n) {

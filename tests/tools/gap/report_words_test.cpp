@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "armcmc/effects/registry.hpp"
+#include "armcmc/models/registry.hpp"
 
 namespace armcmc::gap::report_words_test {
 namespace {
@@ -19,8 +19,9 @@ TEST(EffectTitle, ReadsAsAPersonWouldSayIt) {
 }
 
 TEST(WordsOf, KnowsEveryEffectOfTheCatalogues) {
-  for (const PlantKind plant : {PlantKind::kHuntCrossley, PlantKind::kSoftActuator})
-    for (const EffectInfo* info : EffectsOf(plant)) EXPECT_FALSE(WordsOf(info->name).formula.empty()) << info->name;
+  for (const ModelInfo* model : CompiledModels())
+    for (const EffectInfo* info : model->compiled->effects)
+      EXPECT_FALSE(WordsOf(info->name).formula.empty()) << info->name;
   EXPECT_TRUE(WordsOf("not_there").formula.empty());
 }
 

@@ -9,6 +9,7 @@
 
 #include "armcmc/tables/experiment.hpp"
 #include "armcmc/tables/report.hpp"
+#include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::tables::coverage_test {
 namespace {
@@ -67,7 +68,7 @@ TEST(NullCoverageVariance, PosteriorsWithoutWidthAreOneDecision) {
 /// Four runs of one pack each, at rest with K = 4, that all cover K: the spread between the runs is zero.
 Experiment RunsThatAllCover() {
   Recording r;
-  r.plant = PlantKind::kHuntCrossley;
+  r.plant = HuntCrossley::kInfo.plant;
   for (int i = 0; i <= 300; ++i) {
     const double t = 1e-3 * i, x = 0.8 + 0.6 * std::sin(12.0 * t), v = 7.2 * std::cos(12.0 * t);
     r.u[0].push_back(x);

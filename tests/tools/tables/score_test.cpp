@@ -4,13 +4,16 @@
 
 #include <cmath>
 
+#include "plants/hunt_crossley/model.hpp"
+#include "plants/soft_actuator/model.hpp"
+
 namespace armcmc::tables::score_test {
 namespace {
 
 /// 501 samples at x = 1 m at rest, so that the force is K; truth 4, 2.3, 1.7.
 Recording AtRest() {
   Recording r;
-  r.plant = PlantKind::kHuntCrossley;
+  r.plant = HuntCrossley::kInfo.plant;
   r.u[0].assign(501, 1.0);
   r.u[1].assign(501, 0.0);
   r.y.assign(501, 4.1);
@@ -65,7 +68,7 @@ TEST(ScoreContact, TellsTheTwoPointEstimatesApart) {
 TEST(ScoreActuator, ComparesGainAndFlow) {
   const EstimatorSettings settings = BuiltinSettings("soft_actuator");
   Recording r;
-  r.plant = PlantKind::kSoftActuator;
+  r.plant = SoftActuator::kInfo.plant;
   r.u[0].assign(501, 1e-6);
   r.u[1].assign(501, 0.0);
   r.u[2].assign(501, settings.constants.p_atm);
@@ -90,7 +93,7 @@ TEST(ScoreActuator, ComparesGainAndFlow) {
 
 TEST(RunBatch, FindsNoiselessParameters) {
   Recording r;
-  r.plant = PlantKind::kHuntCrossley;
+  r.plant = HuntCrossley::kInfo.plant;
   for (int i = 0; i <= 500; ++i) {
     const double t = 1e-3 * i, x = 0.8 + 0.6 * std::sin(12.0 * t), v = 7.2 * std::cos(12.0 * t);
     r.u[0].push_back(x);

@@ -6,6 +6,7 @@
 #include "armcmc/data_pack.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/mode_data.hpp"
+#include "armcmc/model.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc::calibrate {
@@ -23,11 +24,11 @@ class ModelErrors {
             std::vector<double>* errors);
 
  private:
-  /// The same where the pressure rate of the actuator is what is regressed.
+  /// The same where the pressure rate is what is regressed.
   double OfPressureRate(const DataPack& pack, const double* theta, int mode, std::vector<double>* errors);
 
   EstimatorSettings settings_;
-  int model_;
+  const ModelInfo& model_;
   ModeData data_;
 };
 

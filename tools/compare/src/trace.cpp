@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "armcmc/models/registry.hpp"
 #include "armcmc/plant/program.hpp"
 
 namespace armcmc::compare {
@@ -25,9 +26,9 @@ void NameOutput(const Estimator& estimator, RunTrace* trace) {
     trace->output_unit = output.unit;
     return;
   }
-  const bool contact = estimator.plant() == PlantKind::kHuntCrossley;
-  trace->output_name = contact ? "force" : "angle";
-  trace->output_unit = contact ? "N" : "rad";
+  const CompiledPlant& plant = *ModelOf(estimator.plant())->compiled;
+  trace->output_name = plant.output_word;
+  trace->output_unit = plant.output.unit;
 }
 
 void AddMode(const Estimate& e, const Estimator& estimator, int m, RunTrace* trace) {

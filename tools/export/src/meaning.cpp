@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "armcmc/models/registry.hpp"
 #include "armcmc/support/strict_toml.hpp"
 
 namespace armcmc::embedded {
@@ -44,18 +45,24 @@ FieldMeaning ReadField(support::StrictTable& fields, const std::string& name) {
   return meaning;
 }
 
-const PlantWords kContact = {
-    "f", "N", "N", {"x", "v"}, {"m", "m/s"}, {"K", "B", "p"}, {"N/m^p", "N s/m^(p+1)", "-"}, {"contact"}, ""};
-const PlantWords kActuator = {"alpha",
-                              "rad",
-                              "sqrt(Pa)",
-                              {"u_c", "u_d", "p", "pdot"},
-                              {"-", "-", "Pa", "Pa/s"},
-                              {"g", "theta2", "theta1"},
-                              {"sqrt(Pa) s/Pa", "sqrt(Pa) s/Pa^2", "sqrt(Pa) s/Pa"},
-                              {"u_c", "u_d"},
-                              "Pa/s"};
-const PlantWords kUnknownPlant = {"y", "", "", {}, {}, {}, {}, {}, ""};
+PlantWords WordsOf(const ModelInfo& model) {
+  const CompiledPlant& plant = *model.compiled;
+  PlantWords words;
+  words.output = plant.output.name;
+  words.output_unit = plant.output.unit;
+  words.target_unit = model.target_unit;
+  words.extended_target_unit = plant.rate_unit;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.num_inputs); ++i) {
+    words.inputs.emplace_back(plant.inputs[i].name);
+    words.input_units.emplace_back(plant.inputs[i].unit);
+  }
+  for (std::size_t r = 0; r < static_cast<std::size_t>(model.num_reported); ++r) {
+    words.parameters.emplace_back(model.reported[r].name);
+    words.parameter_units.emplace_back(model.reported[r].unit);
+  }
+  for (std::size_t m = 0; m < static_cast<std::size_t>(model.num_modes); ++m) words.modes.emplace_back(model.modes[m]);
+  return words;
+}
 
 }  // namespace
 
@@ -82,12 +89,9 @@ const std::map<std::string, TypeMeaning>& Meanings() {
   return meanings;
 }
 
-const PlantWords& WordsOf(int plant_kind) {
-  switch (plant_kind) {
-    case 1: return kContact;
-    case 2: return kActuator;
-    default: return kUnknownPlant;
-  }
+PlantWords WordsOf(int plant_kind) {
+  const ModelInfo* model = ModelOf(PlantNumber{plant_kind});
+  return model != nullptr ? WordsOf(*model) : PlantWords{"y", "", "", {}, {}, {}, {}, {}, ""};
 }
 
 std::string ColumnUnit(std::string_view unit) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap/equation.hpp"
 #include "armcmc/gap/report.hpp"
 #include "armcmc/gap/result_json.hpp"
@@ -29,7 +28,7 @@ namespace armcmc::gap {
 namespace {
 
 struct Arguments {
-  std::string model = "hunt_crossley", data, recording, data_dir, heldout, earlier, out, gallery, steps = "show";
+  std::string model = DefaultModel(), data, recording, data_dir, heldout, earlier, out, gallery, steps = "show";
   std::vector<std::string> without;
   std::uint64_t seed = 1;
   double period_ms = 100.0;
@@ -41,7 +40,7 @@ void Declare(CLI::App* app, Arguments* a) {
                   "Plant file, or name of one that came along; or a model file (.toml) whose effects are already known")
       ->capture_default_str();
   auto* data =
-      app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (hunt_crossley: t,x,v,f)");
+      app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (see armcmc-model check)");
   auto* recording =
       app->add_option("--recording", a->recording, "Recording file: which columns of which CSV are the plant's signals")
           ->excludes(data);
@@ -71,14 +70,20 @@ void Declare(CLI::App* app, Arguments* a) {
       "it, and shows on data kept apart how much of the gap is closed. It says so when it does not know.\n\n"
       "Example:\n"
       "  armcmc-plant --scenario contact_rich --hide-effect random --seed 5 --sealed truth.json --csv run.csv\n"
-      "  armcmc-gap --model hunt_crossley --data run.csv --out gap\n"
-      "  armcmc-estimator --config hunt_crossley --model gap/model.toml\n"
+      "  armcmc-gap --model " +
+      a->model +
+      " --data run.csv --out gap\n"
+      "  armcmc-estimator --config " +
+      a->model +
+      " --model gap/model.toml\n"
       "  armcmc-gap --model valve.toml --data valve.csv --out gap\n"
       "  armcmc-gap --recording tools/gap/recordings/emps_estimation.toml --data-dir data --out gaps/emps\n"
       "  armcmc-gap --gallery gaps\n"
       "Where several names remain, gap/experiment.toml is the motion that separates them. Make it, and let both runs "
       "speak:\n"
-      "  armcmc-gap --model hunt_crossley --data experiment.csv --earlier run.csv --out gap2\n"
+      "  armcmc-gap --model " +
+      a->model +
+      " --data experiment.csv --earlier run.csv --out gap2\n"
       "Exit status: 0 whatever the verdict, 2 bad usage or input, 1 any other failure.");
 }
 
@@ -184,11 +189,11 @@ std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& 
 /// A name that no effect has would leave out nothing, silently.
 void CheckWithout(const std::string& model, const std::vector<std::string>& without) {
   const int base = FindModel(BuiltinSettings(model).model);
-  const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(base)]->plant;
+  const ModelInfo& plant = *CompiledModels()[static_cast<std::size_t>(base)];
   for (const std::string& name : without) {
     if (FindEffect(plant, name) != nullptr) continue;
     std::string there;
-    for (const EffectInfo* effect : EffectsOf(plant)) {
+    for (const EffectInfo* effect : plant.compiled->effects) {
       if (!there.empty()) there += ", ";
       there += effect->name;
     }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "armcmc/gap/actuator_equation.hpp"
-#include "armcmc/gap/contact_equation.hpp"
 #include "armcmc/gap/experiment.hpp"
 
 namespace armcmc::gap {
@@ -34,21 +32,6 @@ Experiment Equation::Separate(const Look& look, const std::vector<CandidatePtr>&
   Experiment experiment = SeparatingExperiment(*this, look, candidates);
   experiment.scenario_text = ScenarioText(*this, look, experiment);
   return experiment;
-}
-
-// Every plant that the workflow knows: a new one is one line here.
-std::vector<std::unique_ptr<Equation>> MakeEquations(const std::string& model) {
-  std::vector<std::unique_ptr<Equation>> equations;
-  if (model == "hunt_crossley") {
-    equations.push_back(MakeContactEquation());
-  } else if (model == "soft_actuator" || model == "soft_actuator_excited") {
-    equations.push_back(MakeFlowEquation(model));
-    equations.push_back(MakeBendEquation(model));
-  } else {
-    throw std::invalid_argument("the workflow knows no equation of '" + model +
-                                "'; known are hunt_crossley, soft_actuator, soft_actuator_excited");
-  }
-  return equations;
 }
 
 std::unique_ptr<Equation> MakeEquation(const std::string& model) {

@@ -177,9 +177,9 @@ std::string ScenarioText(const Equation& equation, const Look& look, const Exper
   const auto base = equation.Report(look.signals, fit.theta, fit.Covariance(whitener.s2));
   std::ostringstream out;
   out.precision(10);
-  out << "# " << experiment.words << "\nschema = 1\nplant = \"hunt_crossley\"\nduration_s = 10.0\nsample_interval_s = "
-      << experiment.sample_interval_s << "\npack_period_s = " << 100.0 * experiment.sample_interval_s
-      << "\n\n[parameters]\n";
+  out << "# " << experiment.words << "\nschema = 1\nplant = \"" << equation.plant()
+      << "\"\nduration_s = 10.0\nsample_interval_s = " << experiment.sample_interval_s
+      << "\npack_period_s = " << 100.0 * experiment.sample_interval_s << "\n\n[parameters]\n";
   for (const ParameterEstimate& parameter : base)
     out << parameter.name << " = " << parameter.mean << "   # " << parameter.unit << '\n';
   out << "\n[motion]\ntracking = \"prescribed\"\nprogram = \"" << experiment.program

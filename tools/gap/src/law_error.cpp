@@ -1,4 +1,4 @@
-#include "law_error.hpp"
+#include "armcmc/gap/law_error.hpp"
 
 #include <string>
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap/equation.hpp"
 #include "armcmc/models/registry.hpp"
 
@@ -34,11 +33,11 @@ EffectGate GateOf(const When& when) {
 }
 
 /// Time constant that keeps the noise of a differentiated velocity below that of the force, or the longest allowed.
-double InertiaSmoothing(const Signals& s, double mass, double noise_sd) {
+double InertiaSmoothing(const Signals& s, double mass, double noise_sd, double longest) {
   const double added = mass * s.velocity_noise * std::sqrt(2.0) / s.dt;
   const double ratio = added / (kUsefulNoiseShare * noise_sd);
   // A first-order low pass of n samples divides the noise of a difference by about sqrt(2) n.
-  return ratio > 1.0 ? std::min(ratio * s.dt / std::sqrt(2.0), Inertia::kInfo.shapes[0].upper) : 0.0;
+  return ratio > 1.0 ? std::min(ratio * s.dt / std::sqrt(2.0), longest) : 0.0;
 }
 
 }  // namespace
@@ -55,7 +54,7 @@ EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitt
                                     double noise_sd) {
   const Signals& signals = fitter.signals();
   EstimatorSettings settings = BuiltinSettings(model);
-  const PlantKind plant = AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))]->plant;
+  const ModelInfo& plant = *CompiledModels()[static_cast<std::size_t>(FindModel(settings.model))];
   const Matrix covariance = fitted.Covariance(fitter.whitener().s2);
   if (signals.law_seen)
     fitter.equation().SetPriors(fitter.equation().Report(signals, fitted.theta, covariance), &settings);
@@ -93,7 +92,8 @@ EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitt
     if (written != info.num_amplitudes)
       throw std::logic_error(form.effect + ": workflow and estimator name its amplitudes differently");
     if (form.effect == "force_drift" || form.effect == "stiffness_drift") effect.shapes[0] = signals.origin;
-    if (form.effect == "inertia") effect.shapes[0] = InertiaSmoothing(signals, effect.amplitudes[0].mean, noise_sd);
+    if (form.effect == "inertia")
+      effect.shapes[0] = InertiaSmoothing(signals, effect.amplitudes[0].mean, noise_sd, info.shapes[0].upper);
     settings.effects[static_cast<std::size_t>(settings.num_effects++)] = effect;
     at += form.size();
   }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "armcmc/models/registry.hpp"
 #include "armcmc/replay/lcm_source.hpp"
 #include "armcmc/support/model_file.hpp"
 #include "armcmc/support/program.hpp"
@@ -12,13 +13,30 @@ namespace armcmc::replay {
 
 using support::InputError;
 
+namespace {
+
+/// "NAME: t,INPUT,..,OUTPUT; ..." of every plant that is compiled in.
+std::string ColumnsOfModels() {
+  std::string text;
+  for (const ModelInfo* model : CompiledModels()) {
+    text += (text.empty() ? "" : "; ") + std::string(model->name) + ": t,";
+    for (std::size_t i = 0; i < static_cast<std::size_t>(model->num_inputs); ++i)
+      text += std::string(model->compiled->inputs[i].name) + ",";
+    text += model->compiled->output.name;
+  }
+  return text;
+}
+
+}  // namespace
+
 void Declare(CLI::App* app, Arguments* a) {
-  app->add_option("--config", a->config,
-                  "Configuration, by path or by name (hunt_crossley); for an LCM log, left out: that of its plant");
+  const std::string plant = DefaultModel();
+  app->add_option(
+      "--config", a->config,
+      "Configuration, by path or by name (" + DefaultModel() + "); for an LCM log, left out: that of its plant");
   app->add_option(
       "--data", a->data,
-      "Recording: a CSV of samples (hunt_crossley: t,x,v,f; soft_actuator: t,u_c,u_d,p,pdot,alpha; a plant file: t and "
-      "its signals) or an LCM log");
+      "Recording: a CSV of samples (" + ColumnsOfModels() + "; a plant file: t and its signals) or an LCM log");
   app->add_option("--recording", a->recording,
                   "Instead of --data: a recording file, which says what the columns of a CSV are and which plant they "
                   "belong to (--model: another one)");
@@ -55,13 +73,21 @@ void Declare(CLI::App* app, Arguments* a) {
       "to\n"
       "the bit for the same packs, seed and numbers of draws.\n\n"
       "Example:\n"
-      "  armcmc-plant --scenario hunt_crossley_paper --duration 20 --csv contact.csv\n"
-      "  armcmc-replay --config hunt_crossley --data contact.csv --out estimates.csv\n"
+      "  armcmc-plant --scenario " +
+      plant +
+      "_paper --duration 20 --csv contact.csv\n"
+      "  armcmc-replay --config " +
+      plant +
+      " --data contact.csv --out estimates.csv\n"
       "  armcmc-replay --model axis.toml --data axis.csv --out estimates.csv\n"
       "  armcmc-replay --recording axis_recording.toml --out estimates.csv\n"
       "  armcmc-replay --data run.lcm --verify\n"
-      "  armcmc-replay --data run.lcm --config hunt_crossley --compare other.toml --out report.html\n"
-      "  armcmc-replay --data normal.lcm --config hunt_crossley --calibrate calibrated.toml\n"
+      "  armcmc-replay --data run.lcm --config " +
+      plant +
+      " --compare other.toml --out report.html\n"
+      "  armcmc-replay --data normal.lcm --config " +
+      plant +
+      " --calibrate calibrated.toml\n"
       "Exit status: 0 ok, 1 the runs differ (--verify) or another failure, 2 bad usage or input.");
 }
 
@@ -86,7 +112,7 @@ void Complete(Arguments* a) {
   if (described && is_log) throw InputError("--model " + a->model + ": a log holds no packs of such a plant");
   if (a->config.empty() && !described) {
     if (!is_log) throw InputError("--config is required for a CSV: which plant is it?");
-    a->config = PlantOfLog(a->data, a->prefix) == PlantKind::kHuntCrossley ? "hunt_crossley" : "soft_actuator";
+    a->config = ModelOfLog(a->data, a->prefix).name;
     std::cout << "configuration: " << a->config << ", by the plant of the log\n";
   }
   if (!a->calibrate.empty() && a->config.empty())

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "armcmc/models/registry.hpp"
 #include "armcmc/support/pack_length.hpp"
 #include "armcmc/support/program.hpp"
 
@@ -27,8 +28,16 @@ support::CsvRequest Columns(const SourceRequest& request) {
     columns.columns.push_back(plant.output);
     return columns;
   }
-  if (request.plant == PlantKind::kHuntCrossley) return {{"t", "x", "v", "f"}, {{"v", "x"}}, request.skip_bad};
-  return {{"t", "u_c", "u_d", "p", "pdot", "alpha"}, {{"pdot", "p"}}, request.skip_bad};
+  const ModelInfo& model = *ModelOf(request.plant);
+  support::CsvRequest columns{{"t"}, {}, request.skip_bad};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.num_inputs); ++i) {
+    const SignalInfo& signal = model.compiled->inputs[i];
+    columns.columns.emplace_back(signal.name);
+    if (!signal.derivative_of.empty())
+      columns.derived.push_back({std::string(signal.name), std::string(signal.derivative_of)});
+  }
+  columns.columns.emplace_back(model.compiled->output.name);
+  return columns;
 }
 
 /// The decimal number that was meant: times are written in decimals, and their differences are not.
@@ -50,9 +59,9 @@ double MedianStep(const std::vector<double>& t) {
 
 CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> record)
     : plant_(request.plant),
-      // The angle of the actuator is integrated over time; the contact force is not.
+      // An output that is simulated over time needs every sample before it; one that is the law does not.
       takes_gaps_(request.described != nullptr ? !request.described->has_memory()
-                                               : request.plant == PlantKind::kHuntCrossley),
+                                               : ModelOf(request.plant)->compiled->law_is_output),
       samples_(support::ReadCsv(request.data, Columns(request))),
       record_(std::move(record)) {
   if (samples_.num_rows() < 2)

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "armcmc/data_pack_t.hpp"
+#include "armcmc/models/registry.hpp"
 #include "armcmc/rt/pack_codec.hpp"
 #include "armcmc/rt/sequence_tracker.hpp"
 #include "armcmc/support/program.hpp"
@@ -35,7 +36,7 @@ void RequireChannel(const std::filesystem::path& path, const std::string& channe
 
 }  // namespace
 
-PlantKind PlantOfLog(const std::filesystem::path& path, const std::string& prefix) {
+const ModelInfo& ModelOfLog(const std::filesystem::path& path, const std::string& prefix) {
   const std::string channel = prefix + "PLANT_PACK";
   RequireChannel(path, channel);
   support::LcmLogReader log(path);
@@ -44,8 +45,7 @@ PlantKind PlantOfLog(const std::filesystem::path& path, const std::string& prefi
   while (log.Next(&event)) {
     if (event.channel != channel) continue;
     if (pack.decode(event.data.data(), 0, static_cast<int>(event.data.size())) < 0) continue;
-    if (pack.plant_kind == data_pack_t::PLANT_HUNT_CROSSLEY) return PlantKind::kHuntCrossley;
-    if (pack.plant_kind == data_pack_t::PLANT_SOFT_ACTUATOR) return PlantKind::kSoftActuator;
+    if (const ModelInfo* model = ModelOf(PlantNumber{pack.plant_kind}); model != nullptr) return *model;
   }
   throw support::InputError(path.string() + ": no event of " + channel + " is a pack of a known type and plant");
 }

@@ -37,7 +37,7 @@ void RecordingSource::Fill(RecordedPack* next) const {
   pack.seq = pack_;
   pack.run_id = static_cast<std::int64_t>(run_) + 1;
   pack.dt = r.dt;
-  pack.plant = PlantKind::kDescribed;
+  pack.plant = PlantNumber::kDescribed;
   pack.fingerprint = r.fingerprint;
   pack.num_samples = static_cast<int>(samples_per_pack_);
   pack.num_inputs = static_cast<int>(r.signals.size()) - 1;

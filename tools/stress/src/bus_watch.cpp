@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "armcmc/data_pack_t.hpp"
+#include "armcmc/stress/stressed_plant.hpp"
 
 namespace armcmc::stress {
 namespace {
@@ -38,7 +39,7 @@ void BusWatch::OnPack(const lcm::ReceiveBuffer* buffer, const std::string& /*cha
   // Decoded by hand, since many are damaged on purpose.
   data_pack_t pack{};
   if (pack.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return;
-  if (pack.plant_kind != data_pack_t::PLANT_HUNT_CROSSLEY) return;
+  if (pack.plant_kind != PlantUnderStress().number) return;
   self->newest_pack_ = std::max(self->newest_pack_, pack.seq);
 }
 

@@ -5,21 +5,18 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "armcmc/stress/stressed_plant.hpp"
+
 namespace armcmc::stress {
-namespace {
-
-constexpr double kNoiseStd = 0.1;  // N, of the plant and of the estimator's belief
-
-}  // namespace
 
 std::string ScenarioText(const StressOptions& options) {
   std::ostringstream text;
   text.precision(12);
-  text << std::showpoint << "schema = 1\nplant = \"hunt_crossley\"\nduration_s = 3600.0\nsample_interval_s = "
-       << options.period_ms * 1e-3 / options.samples << "\npack_period_s = " << options.period_ms * 1e-3
-       << "\n[parameters]\nK = 4.0\nB = 2.3\np = 1.7\n[motion]\ntracking = \"prescribed\"\nprogram = \"sine\"\n"
-          "depth = 3.0\npace = 1.0\n[noise.f]\nkind = \"gaussian\"\nstd = "
-       << kNoiseStd << '\n';
+  const StressedPlant& plant = PlantUnderStress();
+  text << std::showpoint << "schema = 1\nplant = \"" << plant.name
+       << "\"\nduration_s = 3600.0\nsample_interval_s = " << options.period_ms * 1e-3 / options.samples
+       << "\npack_period_s = " << options.period_ms * 1e-3 << '\n'
+       << plant.scenario << "kind = \"gaussian\"\nstd = " << plant.noise_std << '\n';
   return text.str();
 }
 
@@ -29,11 +26,10 @@ std::string EstimatorConfigText(const StressOptions& options, const std::string&
   const std::string draws = is_word ? "\"" + options.draws + "\"" : options.draws;
   std::ostringstream text;
   text.precision(12);
-  text << std::showpoint
-       << "schema = 1\n[model]\nname = \"hunt_crossley\"\n[noise]\nkind = \"gaussian\"\nstd = " << kNoiseStd
-       << "\n[sampler]\ndraws = " << draws << "\n[timing]\nperiod_ms = " << options.period_ms
-       << "\ndeadline_ms = " << options.DeadlineMs() << "\nadjust_budget_ms = " << 0.8 * most
-       << "\n[gap_log]\ndirectory = \"\"\n";
+  text << std::showpoint << "schema = 1\n[model]\nname = \"" << PlantUnderStress().name
+       << "\"\n[noise]\nkind = \"gaussian\"\nstd = " << PlantUnderStress().noise_std << "\n[sampler]\ndraws = " << draws
+       << "\n[timing]\nperiod_ms = " << options.period_ms << "\ndeadline_ms = " << options.DeadlineMs()
+       << "\nadjust_budget_ms = " << 0.8 * most << "\n[gap_log]\ndirectory = \"\"\n";
   if (!plan.empty()) text << "[inject]\nplan = \"" << plan << "\"\n";
   return text.str();
 }

@@ -92,10 +92,10 @@ void ReadDescribed(StrictTable& root, StrictTable& model, const ModelFacts& fact
 
 void ReadBuiltin(StrictTable& root, StrictTable& model, const ModelFacts& facts, EstimatorSettings* settings) {
   ReadParameters(model.Table("parameters"), settings);
-  ReadConstants(model, facts.plant, settings);
-  ReadPressureRate(model, facts.plant, settings);
+  ReadConstants(model, *facts.model, settings);
+  ReadPressureRate(model, *facts.model, settings);
   ReadNoise(root.Table("noise"), facts.modes, settings);
-  ReadEffects(root, facts.plant, settings);
+  ReadEffects(root, *facts.model, settings);
 }
 
 }  // namespace

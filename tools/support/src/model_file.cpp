@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "armcmc/effects/registry.hpp"
+#include "armcmc/models/registry.hpp"
 #include "armcmc/support/plant_file.hpp"
 #include "armcmc/support/plant_library.hpp"
 #include "model_tables.hpp"
@@ -45,8 +45,8 @@ void WriteNoise(const std::string& mode, const NoiseSettings& noise, std::ostrea
       << "\noutlier_scale = " << Text(noise.outlier_scale) << '\n';
 }
 
-void WriteEffect(const EffectSettings& effect, PlantKind plant, std::ostream& out) {
-  const EffectInfo& info = *FindEffect(plant, effect.name);
+void WriteEffect(const EffectSettings& effect, const ModelInfo& model, std::ostream& out) {
+  const EffectInfo& info = *FindEffect(model, effect.name);
   out << "\n[[effect]]\nname = \"" << effect.name << "\"\n";
   switch (effect.gate) {
     case EffectGate::kAlways: out << "when = \"always\"\n"; break;
@@ -98,7 +98,7 @@ std::string BaseModel(const std::string& model) {
   if (DescribedPlant(model) != nullptr)
     throw ConfigError("--model " + model +
                       ": is a plant file, which armcmc-replay runs; expected a built-in model or a " +
-                      "model file (base = \"hunt_crossley\")");
+                      "model file (base = \"" + DefaultModel() + "\")");
   if (!IsModelFile(model)) {
     (void)Builtin(model, "--model " + model);
     return model;
@@ -120,10 +120,10 @@ void ApplyModelFile(const std::string& path, EstimatorSettings* settings) {
   (void)root.RequiredText("base");
   const ModelFacts facts = FactsOf(*settings);
   ReadParameters(root.Table("parameters"), settings);
-  ReadConstants(root, facts.plant, settings);
-  ReadPressureRate(root, facts.plant, settings);
+  ReadConstants(root, *facts.model, settings);
+  ReadPressureRate(root, *facts.model, settings);
   ReadNoise(root.Table("noise"), facts.modes, settings);
-  ReadEffects(root, facts.plant, settings);
+  ReadEffects(root, *facts.model, settings);
   root.Finish();
 }
 
@@ -143,7 +143,7 @@ std::string ModelFileText(const EstimatorSettings& settings, const std::string& 
   const ModelFacts facts = FactsOf(settings);
   std::ostringstream out;
   out << "schema = 1\nbase = \"" << (base.empty() ? settings.model : base) << "\"\n";
-  if (facts.plant == PlantKind::kSoftActuator)
+  if (facts.model->compiled != nullptr && facts.model->compiled->uses_constants)
     out << "pressure_rate = " << (settings.pressure_rate ? "true" : "false") << '\n';
   for (int d = 0; d < settings.num_parameters; ++d) {
     const ParameterSettings& p = settings.parameters[static_cast<std::size_t>(d)];
@@ -151,14 +151,14 @@ std::string ModelFileText(const EstimatorSettings& settings, const std::string& 
     WritePrior(p, "\n", out);
     out << '\n';
   }
-  if (facts.plant == PlantKind::kSoftActuator) {
+  if (facts.model->compiled != nullptr && facts.model->compiled->uses_constants) {
     const PlantConstants& c = settings.constants;
     out << "\n[constants]\np_atm = " << Text(c.p_atm) << "\np_supply = " << Text(c.p_supply) << "\nq1 = " << Text(c.q1)
         << "\nq2 = " << Text(c.q2) << "\nq3 = " << Text(c.q3) << '\n';
   }
   for (std::size_t m = 0; m < facts.modes.size(); ++m) WriteNoise(facts.modes[m], settings.noise[m], out);
   for (int e = 0; e < settings.num_effects; ++e)
-    WriteEffect(settings.effects[static_cast<std::size_t>(e)], facts.plant, out);
+    WriteEffect(settings.effects[static_cast<std::size_t>(e)], *facts.model, out);
   return out.str();
 }
 

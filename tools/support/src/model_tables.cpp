@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "armcmc/effects/registry.hpp"
-#include "armcmc/estimator.hpp"
+#include "armcmc/models/registry.hpp"
 #include "armcmc/plant/program.hpp"
 #include "read_word.hpp"
 
@@ -43,8 +42,8 @@ void ReadNoiseLaw(StrictTable& table, NoiseSettings* noise) {
   noise->outlier_scale = table.Number("outlier_scale", noise->outlier_scale, std::nextafter(1.0, 2.0), kMax);
 }
 
-void ReadEffect(StrictTable& table, PlantKind plant, EffectSettings* effect) {
-  const EffectInfo& info = *FindEffect(plant, effect->name);
+void ReadEffect(StrictTable& table, const ModelInfo& model, EffectSettings* effect) {
+  const EffectInfo& info = *FindEffect(model, effect->name);
   effect->gate = ReadWord<EffectGate>(
       table, "when", effect->gate,
       {{"always", EffectGate::kAlways}, {"contact", EffectGate::kContact}, {"free", EffectGate::kFree}});
@@ -71,20 +70,12 @@ void ReadEffect(StrictTable& table, PlantKind plant, EffectSettings* effect) {
 }  // namespace
 
 ModelFacts FactsOf(const EstimatorSettings& settings) {
-  if (settings.plant != nullptr) {
-    const ModelInfo& info = settings.plant->info();
-    ModelFacts facts{.plant = info.plant, .modes = {}};
-    for (int mode = 0; mode < info.num_modes; ++mode)
-      facts.modes.emplace_back(info.modes[static_cast<std::size_t>(mode)]);
-    return facts;
-  }
-  // They belong to the model; an estimator with few draws is the way to ask for them.
-  EstimatorSettings small = BuiltinSettings(settings.model);
-  small.sampler.rule = DrawRule::kFixed;
-  small.sampler.fixed_draws = small.sampler.max_draws = SamplerSettings::kMinDraws;
-  const Estimator probe(small);
-  ModelFacts facts{.plant = probe.plant(), .modes = {}};
-  for (int mode = 0; mode < probe.num_modes(); ++mode) facts.modes.emplace_back(probe.mode_name(mode));
+  const ModelInfo& info = settings.plant != nullptr
+                              ? settings.plant->info()
+                              : *CompiledModels()[static_cast<std::size_t>(FindModel(settings.model))];
+  ModelFacts facts{.model = &info, .modes = {}};
+  for (int mode = 0; mode < info.num_modes; ++mode)
+    facts.modes.emplace_back(info.modes[static_cast<std::size_t>(mode)]);
   return facts;
 }
 
@@ -103,8 +94,8 @@ void ReadNoise(StrictTable noise, const std::vector<std::string>& modes, Estimat
   }
 }
 
-void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* settings) {
-  if (plant != PlantKind::kSoftActuator) {
+void ReadConstants(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings) {
+  if (model.compiled == nullptr || !model.compiled->uses_constants) {
     if (holder.Has("constants")) throw holder.Error("constants", settings->model + " has no constants");
     return;
   }
@@ -117,25 +108,25 @@ void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* sett
   c.q3 = table.Number("q3", c.q3, 0.0, kMax);
 }
 
-void ReadPressureRate(StrictTable& holder, PlantKind plant, EstimatorSettings* settings) {
-  if (plant != PlantKind::kSoftActuator && holder.Has("pressure_rate"))
+void ReadPressureRate(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings) {
+  if ((model.compiled == nullptr || model.compiled->rate_unit.empty()) && holder.Has("pressure_rate"))
     throw holder.Error("pressure_rate", settings->model + " has no pressure");
   settings->pressure_rate = holder.Boolean("pressure_rate", settings->pressure_rate);
 }
 
-void ReadEffects(StrictTable& root, PlantKind plant, EstimatorSettings* settings) {
+void ReadEffects(StrictTable& root, const ModelInfo& model, EstimatorSettings* settings) {
   std::vector<StrictTable> tables = root.Tables("effect");
   if (tables.empty()) return;
   if (tables.size() > static_cast<std::size_t>(kMaxEffects))
     throw root.Error("effect", "a model takes at most " + std::to_string(kMaxEffects) + " effects, there are " +
                                    std::to_string(tables.size()));
   std::vector<std::string> names;
-  for (const EffectInfo* info : EffectsOf(plant)) names.emplace_back(info->name);
+  for (const EffectInfo* info : model.compiled->effects) names.emplace_back(info->name);
   settings->num_effects = 0;
   for (StrictTable& table : tables) {
     EffectSettings& effect = settings->effects[static_cast<std::size_t>(settings->num_effects++)];
-    effect = MakeEffect(plant, table.RequiredChoice("name", names));
-    ReadEffect(table, plant, &effect);
+    effect = MakeEffect(model, table.RequiredChoice("name", names));
+    ReadEffect(table, model, &effect);
   }
 }
 

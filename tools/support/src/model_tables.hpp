@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/data_pack.hpp"
+#include "armcmc/model.hpp"
 #include "armcmc/settings.hpp"
 #include "armcmc/support/strict_toml.hpp"
 
@@ -12,7 +12,7 @@ namespace armcmc::support {
 
 /// What the readers must know of a model besides its settings.
 struct ModelFacts {
-  PlantKind plant{};
+  const ModelInfo* model = nullptr;  ///< Lives as long as the settings that it was made from.
   std::vector<std::string> modes;
 };
 
@@ -22,12 +22,12 @@ struct ModelFacts {
 void ReadParameters(StrictTable parameters, EstimatorSettings* settings);
 /// [noise] for every mode, [noise.MODE] for one.
 void ReadNoise(StrictTable noise, const std::vector<std::string>& modes, EstimatorSettings* settings);
-/// [.constants] of the actuator, where `holder` is the table that it is in.
-void ReadConstants(StrictTable& holder, PlantKind plant, EstimatorSettings* settings);
-/// `pressure_rate` of the actuator, beside its constants.
-void ReadPressureRate(StrictTable& holder, PlantKind plant, EstimatorSettings* settings);
+/// [.constants] of a plant that has some, where `holder` is the table that it is in.
+void ReadConstants(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings);
+/// `pressure_rate` of a plant that has one, beside its constants.
+void ReadPressureRate(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings);
 /// [[effect]]: name, when, from_s or until_s, the shapes as numbers, the priors of the amplitudes as tables. Replaces
 /// the effects of the settings when there is one.
-void ReadEffects(StrictTable& root, PlantKind plant, EstimatorSettings* settings);
+void ReadEffects(StrictTable& root, const ModelInfo& model, EstimatorSettings* settings);
 
 }  // namespace armcmc::support

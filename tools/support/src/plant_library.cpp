@@ -20,7 +20,7 @@ fs::path FindPlantFile(const std::string& model) {
   std::error_code error;
   if (fs::is_regular_file(model, error)) return model;
   const fs::path shared = SharedFolder("plants");
-  // A path is not looked for among names: "../servo_axis" is none.
+  // A path is not looked for among names: "../my_axis" is none.
   const bool is_name = model.find('/') == std::string::npos;
   if (is_name && fs::is_regular_file(shared / model / kFile, error)) return shared / model / kFile;
   std::string known;

@@ -12,6 +12,7 @@
 
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
+#include "armcmc/tables/plants/registry.hpp"
 #include "armcmc/tables/report.hpp"
 
 namespace armcmc::tables {
@@ -38,7 +39,7 @@ class ScratchFolder {
   }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] Recording Simulated(const std::string& scenario, PlantKind plant, double p_atm, int seed) const {
+  [[nodiscard]] Recording Simulated(const std::string& scenario, PlantNumber plant, double p_atm, int seed) const {
     const std::filesystem::path csv = Simulate(scenario, first_seed_ + static_cast<std::uint64_t>(seed), path_);
     Recording r = ReadRecording(csv, plant, p_atm);
     std::filesystem::remove(csv);
@@ -54,23 +55,25 @@ struct Plan {
   std::string key, title, scenario, file;  // file: of --data, which replaces the scenario
 };
 const std::vector<Plan> kPlans = {
-    {"hunt_crossley", "Hunt-Crossley contact, the paper's experiment", "hunt_crossley_paper", "hunt_crossley.csv"},
-    {"soft_actuator", "Soft bending actuator, the paper's experiment", "soft_actuator_paper", "soft_actuator.csv"},
-    {"soft_actuator_excited", "Soft bending actuator, excited", "soft_actuator_excited", ""},
-    {"hunt_crossley_step", "Contact: K halves at 8 s and recovers at 14.5 s", "hunt_crossley_step", ""},
-    {"hunt_crossley_drift", "Contact: K, B and p drift from 2 s to 18 s", "hunt_crossley_drift", ""},
-    {"hunt_crossley_heavy_tailed", "Contact: Student-t noise of three degrees of freedom", "hunt_crossley_heavy_tailed",
-     ""},
-    {"hunt_crossley_impulsive", "Contact: impulsive noise, one sample in twenty", "hunt_crossley_impulsive", ""},
-    {"hunt_crossley_chatter", "Contact that chatters", "hunt_crossley_chatter", ""}};
+    {kContact.key(), std::string(kContact.experiment) + ", the paper's experiment", kContact.key("_paper"),
+     kContact.key(".csv")},
+    {kActuator.key(), std::string(kActuator.experiment) + ", the paper's experiment", kActuator.key("_paper"),
+     kActuator.key(".csv")},
+    {kActuator.key("_excited"), std::string(kActuator.experiment) + ", excited", kActuator.key("_excited"), ""},
+    {kContact.key("_step"), "Contact: K halves at 8 s and recovers at 14.5 s", kContact.key("_step"), ""},
+    {kContact.key("_drift"), "Contact: K, B and p drift from 2 s to 18 s", kContact.key("_drift"), ""},
+    {kContact.key("_heavy_tailed"), "Contact: Student-t noise of three degrees of freedom",
+     kContact.key("_heavy_tailed"), ""},
+    {kContact.key("_impulsive"), "Contact: impulsive noise, one sample in twenty", kContact.key("_impulsive"), ""},
+    {kContact.key("_chatter"), "Contact that chatters", kContact.key("_chatter"), ""}};
 
 Experiment RunPlan(const Plan& plan, const Arguments& a, const ScratchFolder& scratch, Result* result) {
   const EstimatorSettings settings = ScenarioSettings(plan.scenario);
-  const PlantKind plant = settings.model == "hunt_crossley" ? PlantKind::kHuntCrossley : PlantKind::kSoftActuator;
+  const PlantNumber plant = kContact.Is(settings) ? kContact.model.plant : kActuator.model.plant;
   const double p_atm = settings.constants.p_atm;
   const bool recorded = !a.data.empty() && !plan.file.empty();
   if (!plan.file.empty())
-    (plant == PlantKind::kHuntCrossley ? result->contact_data : result->actuator_data) =
+    (kContact.Is(plant) ? result->contact_data : result->actuator_data) =
         recorded ? plan.file + " of --data" : "the plant's own scenario " + plan.scenario;
   return RunExperiment(
       plan.key, plan.title, recorded ? 1 : a.seeds,
@@ -101,8 +104,8 @@ int Run(const Arguments& a) {
     // The paper's scenario on fresh noise, when --data gave the one realisation and more seeds are asked for.
     if (!a.data.empty() && a.seeds > 1 && !a.coverage)
       plans.insert(plans.begin() + 1,
-                   {"hunt_crossley_seeds", "Hunt-Crossley contact, the paper's scenario, fresh noise",
-                    "hunt_crossley_paper", ""});
+                   {kContact.key("_seeds"), std::string(kContact.experiment) + ", the paper's scenario, fresh noise",
+                    kContact.key("_paper"), ""});
     if (a.paper_only) std::erase_if(plans, [](const Plan& p) { return p.file.empty(); });
     const int cells = a.likelihoods ? 16 : a.coverage ? 4 : 0;
     constexpr double kPlansPerCell = 0.25;  // a plan runs every method, a cell one
@@ -116,7 +119,7 @@ int Run(const Arguments& a) {
       result.likelihoods = RunLikelihoods(
           a.seeds, a.likelihoods ? Believed::kAll : Believed::kOwn,
           [&](const std::string& scenario, int seed) {
-            return scratch.Simulated(scenario, PlantKind::kHuntCrossley, 0.0, seed);
+            return scratch.Simulated(scenario, kContact.model.plant, 0.0, seed);
           },
           [&] { progress.Update((done += kPlansPerCell) / all); });
   }
@@ -137,8 +140,10 @@ int main(int argc, char** argv) {
   armcmc::tables::Arguments a;
   CLI::Option* data =
       app.add_option("--data", a.data,
-                     "Folder with hunt_crossley.csv (t,x,v,f,f_true) and soft_actuator.csv "
-                     "(t,u_c,u_d,p,pdot,alpha,flow,theta1_true,theta2_true). Default: armcmc-plant simulates them");
+                     "Folder with " + armcmc::tables::kContact.key(".csv") + " (t,x,v,f,f_true) and " +
+                         armcmc::tables::kActuator.key(".csv") +
+                         " "
+                         "(t,u_c,u_d,p,pdot,alpha,flow,theta1_true,theta2_true). Default: armcmc-plant simulates them");
   app.add_option("--out", a.out, "Folder for the results")->required();
   app.add_option("--seeds", a.seeds, "Noise realisations of every simulated scenario; tables show means")
       ->check(CLI::Range(1, 1000));

@@ -1,4 +1,5 @@
 #include "armcmc/tables/experiment.hpp"
+#include "armcmc/tables/plants/registry.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -91,7 +92,7 @@ Experiment RunExperiment(const std::string& key, const std::string& title, int s
           const std::string label = !two ? spec.label : point == Point::kAp ? "AR-AP" : "AR-MAP";
           scores.push_back({{spec.key + suffix, label, trace.online, trace.has_intervals, {}, {}, {}}, point, {}, {}});
         }
-        if (recording.plant == PlantKind::kHuntCrossley)
+        if (kContact.Is(recording.plant))
           scores[at].contact.push_back(ScoreContact(recording, trace, point, spec.settings));
         else
           scores[at].actuator.push_back(ScoreActuator(recording, trace, point, spec.settings));
@@ -111,10 +112,10 @@ Experiment RunExperiment(const std::string& key, const std::string& title, int s
 std::vector<LikelihoodCell> RunLikelihoods(int seeds, Believed which,
                                            const std::function<Recording(const std::string&, int)>& source,
                                            const std::function<void()>& done) {
-  const std::vector<std::pair<std::string, std::string>> noises = {{"gaussian", "hunt_crossley_paper"},
-                                                                   {"student_t", "hunt_crossley_heavy_tailed"},
-                                                                   {"laplace", "hunt_crossley_laplace"},
-                                                                   {"mixture", "hunt_crossley_impulsive"}};
+  const std::vector<std::pair<std::string, std::string>> noises = {{"gaussian", kContact.key("_paper")},
+                                                                   {"student_t", kContact.key("_heavy_tailed")},
+                                                                   {"laplace", kContact.key("_laplace")},
+                                                                   {"mixture", kContact.key("_impulsive")}};
   std::vector<LikelihoodCell> cells;
   for (const auto& [noise, scenario] : noises) {
     for (const auto& [believed, other] : noises) {

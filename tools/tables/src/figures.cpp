@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "armcmc/sample_size.hpp"
+#include "armcmc/tables/plants/registry.hpp"
 
 namespace armcmc::tables {
 namespace {
@@ -16,7 +17,7 @@ struct Quantity {
   const char* unit;
   double lower, upper;  // of the density map
 };
-constexpr std::array<Quantity, 3> kContact{
+constexpr std::array<Quantity, 3> kQuantities{
     {{"K", "N/m^p", 0.0, 8.0}, {"B", "N s/m^(p+1)", 0.0, 8.0}, {"p", "", 1.0, 2.5}}};
 
 double TimeOf(const Recording& r, std::size_t sample) { return static_cast<double>(sample) * r.dt; }
@@ -24,7 +25,7 @@ double TimeOf(const Recording& r, std::size_t sample) { return static_cast<doubl
 plots::Series TruthSeries(const Recording& r, std::size_t d) {
   plots::Series s{.label = "truth", .role = plots::Role::kEffect, .x = {}, .y = {}, .low = {}, .high = {}};
   for (std::size_t i = 0; i < r.size(); i += 10) {
-    const bool acts = r.plant != PlantKind::kHuntCrossley || r.u[0][i] >= 0.0;
+    const bool acts = !kContact.Is(r.plant) || r.u[0][i] >= 0.0;
     s.x.push_back(TimeOf(r, i));
     s.y.push_back(acts ? r.truth[d][i] : kNone);
   }
@@ -39,12 +40,13 @@ void DensityMap(const Experiment& e, const Trace& trace, std::size_t d, plots::P
   plots::HeatMap map;
   map.height = 240;
   map.x_title = "t, s";
-  map.y_title = std::string(kContact[d].name) + (*kContact[d].unit != '\0' ? std::string(", ") + kContact[d].unit : "");
+  map.y_title =
+      std::string(kQuantities[d].name) + (*kQuantities[d].unit != '\0' ? std::string(", ") + kQuantities[d].unit : "");
   map.value_title = "density / max";
-  const double span = kContact[d].upper - kContact[d].lower;
+  const double span = kQuantities[d].upper - kQuantities[d].lower;
   for (std::size_t c = 0; c <= columns; ++c) map.x_edges.push_back(step * static_cast<double>(c));
   for (std::size_t r = 0; r <= kRows; ++r)
-    map.y_edges.push_back(kContact[d].lower + span * static_cast<double>(r) / static_cast<double>(kRows));
+    map.y_edges.push_back(kQuantities[d].lower + span * static_cast<double>(r) / static_cast<double>(kRows));
   map.value.assign(columns * kRows, kNone);
   for (std::size_t c = 0; c < columns; ++c) {
     const PackTrace& pack = trace.packs[2 * c + 1];
@@ -54,7 +56,7 @@ void DensityMap(const Experiment& e, const Trace& trace, std::size_t d, plots::P
     const double width = (m.histogram_hi - m.histogram_lo) / kHistogramBins;
     for (std::size_t b = 0; b < m.density.size(); ++b) {
       const double at = m.histogram_lo + (static_cast<double>(b) + 0.5) * width;
-      const double row = std::clamp((at - kContact[d].lower) / span, 0.0, 1.0 - 1e-9) * static_cast<double>(kRows);
+      const double row = std::clamp((at - kQuantities[d].lower) / span, 0.0, 1.0 - 1e-9) * static_cast<double>(kRows);
       mass[static_cast<std::size_t>(row)] += m.density[b];
     }
     const double most = std::max(*std::max_element(mass.begin(), mass.end()), 1e-300);
@@ -64,7 +66,7 @@ void DensityMap(const Experiment& e, const Trace& trace, std::size_t d, plots::P
   map.line_x = truth.x;
   map.line_y = truth.y;
   page->Chart(
-      map, std::string("Posterior of ") + kContact[d].name +
+      map, std::string("Posterior of ") + kQuantities[d].name +
                " over time (dark: probable), the truth as a dashed line. Hatched: no contact, nothing new is learnt.");
 }
 
@@ -80,7 +82,7 @@ plots::Series PointSeries(const Experiment& e, const Trace& trace, std::size_t m
   const Recording& r = e.recording;
   for (std::size_t i = 0; i < r.size(); i += 20) {
     const PackTrace* shown = trace.ShownAt(i);
-    const bool contact = r.plant != PlantKind::kHuntCrossley || r.u[0][i] >= 0.0;
+    const bool contact = !kContact.Is(r.plant) || r.u[0][i] >= 0.0;
     const bool known = contact && shown != nullptr && shown->modes[mode].known;
     s.x.push_back(TimeOf(r, i));
     s.y.push_back(known ? shown->modes[mode].map[d] : kNone);
@@ -95,7 +97,7 @@ void PointCharts(const Experiment& e, const Trace& ours, plots::Page* page) {
   for (std::size_t d = 0; d < 3; ++d) {
     plots::XyChart chart;
     chart.x_title = "t, s";
-    chart.y_title = kContact[d].name;
+    chart.y_title = kQuantities[d].name;
     chart.sync = e.key;
     chart.height = 220;
     if (const Trace* rls = TraceOf(e, "rls"))
@@ -105,7 +107,7 @@ void PointCharts(const Experiment& e, const Trace& ours, plots::Page* page) {
     chart.series.push_back(PointSeries(e, ours, 0, d, plots::Role::kAfter, true));
     chart.series.push_back(TruthSeries(e.recording, d));
     page->Chart(chart,
-                std::string("Point estimates of ") + kContact[d].name + " as shown, with the 95 % band of ARMCMC.");
+                std::string("Point estimates of ") + kQuantities[d].name + " as shown, with the 95 % band of ARMCMC.");
   }
 }
 
@@ -183,11 +185,11 @@ void GainCharts(const Experiment& e, const Trace& ours, plots::Page* page) {
 void AddFigures(const Experiment& e, plots::Page* page) {
   const Trace* ours = TraceOf(e, "armcmc");
   if (ours == nullptr) return;
-  if (e.plant == PlantKind::kHuntCrossley) {
-    const bool paper = e.key == "hunt_crossley";
+  if (kContact.Is(e.plant)) {
+    const bool paper = e.key == kContact.key();
     if (paper)
       for (std::size_t d = 0; d < 3; ++d) DensityMap(e, *ours, d, page);
-    if (paper || e.key == "hunt_crossley_step" || e.key == "hunt_crossley_drift") PointCharts(e, *ours, page);
+    if (paper || e.key == kContact.key("_step") || e.key == kContact.key("_drift")) PointCharts(e, *ours, page);
     ForceChart(e, page);
     return;
   }

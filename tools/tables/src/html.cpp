@@ -3,6 +3,7 @@
 
 #include "armcmc/plots/html.hpp"
 #include "armcmc/plots/page.hpp"
+#include "armcmc/tables/plants/registry.hpp"
 #include "armcmc/tables/report.hpp"
 #include "figures.hpp"
 
@@ -91,14 +92,14 @@ std::string PaperTable(const std::vector<std::string>& header, const std::vector
 }
 
 void PaperBlocks(const Experiment& e, plots::Page* page) {
-  if (e.key == "hunt_crossley") {
+  if (e.key == kContact.key()) {
     page->Html("<div class=\"grid\"><div class=\"card\"><h3>Printed in the paper</h3>" +
                PaperTable({"method", "K", "B", "p", "\"F_e, mN\""}, PublishedContact()) +
                "</div><div class=\"card\"><h3>What the authors' stored results are</h3>" +
                PaperTable({"method", "K", "B", "p", "force in contact, mN", "overall, mN", "noisy, L2 in N"},
                           StoredContact()) +
                "</div></div>\n");
-  } else if (e.key == "soft_actuator") {
+  } else if (e.key == kActuator.key()) {
     page->Html(
         "<div class=\"grid\"><div class=\"card\"><h3>Printed in the paper</h3>" +
         PaperTable({"method", "theta1, L2", "theta2, L2 in 1e-6", "angle, L2"}, PublishedActuator()) +
@@ -164,15 +165,12 @@ std::string ToHtml(const Result& result) {
   for (const Experiment& e : result.experiments) {
     page.Html("<section class=\"card\"><h2>" + EscapeHtml(e.title) + "</h2>\n");
     PaperBlocks(e, &page);
-    page.Html(
-        "<h3>Ours" + std::string(e.seeds > 1 ? ", mean over " + std::to_string(e.seeds) + " noise seeds" : "") +
-        (e.plant == PlantKind::kHuntCrossley ? ": mean absolute errors in contact while an estimate is shown" : "") +
-        "</h3>\n");
-    page.Html(e.plant == PlantKind::kHuntCrossley ? ContactTable(e) : ActuatorTable(e));
-    if (e.plant == PlantKind::kHuntCrossley)
-      page.Html("<p>" + EscapeHtml(CoverageSentence(e.Find("armcmc_map"))) + "</p>\n");
-    if (e.key == "hunt_crossley") page.Html("<p class=\"soft\">" + EscapeHtml(ContactNote()) + "</p>\n");
-    if (e.key == "soft_actuator") page.Html("<p class=\"soft\">" + EscapeHtml(ActuatorNote()) + "</p>\n");
+    page.Html("<h3>Ours" + std::string(e.seeds > 1 ? ", mean over " + std::to_string(e.seeds) + " noise seeds" : "") +
+              (kContact.Is(e.plant) ? ": mean absolute errors in contact while an estimate is shown" : "") + "</h3>\n");
+    page.Html(kContact.Is(e.plant) ? ContactTable(e) : ActuatorTable(e));
+    if (kContact.Is(e.plant)) page.Html("<p>" + EscapeHtml(CoverageSentence(e.Find("armcmc_map"))) + "</p>\n");
+    if (e.key == kContact.key()) page.Html("<p class=\"soft\">" + EscapeHtml(ContactNote()) + "</p>\n");
+    if (e.key == kActuator.key()) page.Html("<p class=\"soft\">" + EscapeHtml(ActuatorNote()) + "</p>\n");
     AddFigures(e, &page);
     page.Html("</section>\n");
   }

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "armcmc/tables/plants/registry.hpp"
 #include "armcmc/tables/report.hpp"
 
 namespace armcmc::tables {
@@ -71,19 +72,19 @@ ordered_json PaperJson(const std::vector<PaperRow>& rows, const std::vector<cons
 ordered_json ToJson(const Result& result) {
   ordered_json out;
   out["schema"] = 1;
-  out["data"] = {{"hunt_crossley", result.contact_data}, {"soft_actuator", result.actuator_data}};
+  out["data"] = {{kContact.key(), result.contact_data}, {kActuator.key(), result.actuator_data}};
   for (const Experiment& e : result.experiments) {
     ordered_json& entry = out[e.key];
     entry["title"] = e.title;
     entry["seeds"] = e.seeds;
     for (const Row& row : e.rows)
-      entry["methods"][row.key] = e.plant == PlantKind::kHuntCrossley ? ContactJson(row) : ActuatorJson(row);
-    if (e.key == "hunt_crossley") {
+      entry["methods"][row.key] = kContact.Is(e.plant) ? ContactJson(row) : ActuatorJson(row);
+    if (e.key == kContact.key()) {
       entry["published"] = PaperJson(PublishedContact(), {"mae_K", "mae_B", "mae_p", "printed_F_e_mN"});
       entry["authors_stored"] = PaperJson(StoredContact(), {"mae_K", "mae_B", "mae_p", "clean_force_mae_mN_contact",
                                                             "clean_force_mae_mN_overall", "noisy_force_l2_N"});
       entry["note"] = ContactNote();
-    } else if (e.key == "soft_actuator") {
+    } else if (e.key == kActuator.key()) {
       entry["published"] = PaperJson(PublishedActuator(), {"theta1_l2", "theta2_l2_1e-6", "alpha_l2"});
       entry["authors_stored"] =
           PaperJson(StoredActuator(), {"theta1_l2", "theta2_l2_1e-6", "alpha_l2", "flow_rel_error"});

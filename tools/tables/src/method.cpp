@@ -1,10 +1,11 @@
 #include "armcmc/tables/method.hpp"
+#include "armcmc/tables/plants/registry.hpp"
 
 namespace armcmc::tables {
 
 std::vector<MethodSpec> PaperMethods(const EstimatorSettings& base) {
   std::vector<MethodSpec> methods;
-  const bool contact = base.model == "hunt_crossley";
+  const bool contact = kContact.Is(base);
   const auto add = [&](const char* key, const char* label, Method method) -> MethodSpec& {
     MethodSpec spec{key, label, base, 100, true};
     spec.settings.method = method;
@@ -51,23 +52,23 @@ std::vector<MethodSpec> PaperMethods(const EstimatorSettings& base) {
 }
 
 EstimatorSettings ScenarioSettings(const std::string& scenario) {
-  if (scenario == "soft_actuator_paper") return BuiltinSettings("soft_actuator");
-  if (scenario == "soft_actuator_excited") {
-    EstimatorSettings excited = BuiltinSettings("soft_actuator_excited");
+  if (scenario == kActuator.key("_paper")) return BuiltinSettings(kActuator.key());
+  if (scenario == kActuator.key("_excited")) {
+    EstimatorSettings excited = BuiltinSettings(kActuator.key("_excited"));
     excited.pressure_rate = true;  // the noise of the scenario is that of its sensors
     for (NoiseSettings& noise : excited.noise) noise.std = 500.0;
     return excited;
   }
-  EstimatorSettings s = BuiltinSettings("hunt_crossley");
+  EstimatorSettings s = BuiltinSettings(kContact.key());
   NoiseSettings& noise = s.noise[0];
-  if (scenario == "hunt_crossley_heavy_tailed") {
+  if (scenario == kContact.key("_heavy_tailed")) {
     noise.kind = NoiseKind::kStudentT;
     noise.dof = 3.0;
-  } else if (scenario == "hunt_crossley_laplace") {
+  } else if (scenario == kContact.key("_laplace")) {
     noise.kind = NoiseKind::kLaplace;
-  } else if (scenario == "hunt_crossley_impulsive") {
+  } else if (scenario == kContact.key("_impulsive")) {
     noise.kind = NoiseKind::kMixture;
-  } else if (scenario == "hunt_crossley_chatter") {
+  } else if (scenario == kContact.key("_chatter")) {
     noise.std = 0.02;
   }
   return s;

@@ -7,6 +7,7 @@
 #include "armcmc/support/csv.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/subprocess.hpp"
+#include "armcmc/tables/plants/registry.hpp"
 
 namespace armcmc::tables {
 namespace {
@@ -35,8 +36,8 @@ bool Has(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-Recording ReadRecording(const std::filesystem::path& path, PlantKind plant, double p_atm) {
-  const bool contact = plant == PlantKind::kHuntCrossley;
+Recording ReadRecording(const std::filesystem::path& path, PlantNumber plant, double p_atm) {
+  const bool contact = kContact.Is(plant);
   const std::vector<std::string> names = Header(path);
   support::CsvRequest request;
   request.columns = contact ? std::vector<std::string>{"t", "x", "v", "f", "f_true"}
@@ -80,7 +81,7 @@ void FillPack(const Recording& recording, int k, int samples, DataPack* pack) {
   pack->dt = recording.dt;
   pack->plant = recording.plant;
   pack->num_samples = samples;
-  pack->num_inputs = recording.plant == PlantKind::kHuntCrossley ? 2 : 4;
+  pack->num_inputs = kContact.Is(recording.plant) ? 2 : 4;
   for (std::size_t n = 0; n < static_cast<std::size_t>(samples); ++n) {
     const std::size_t row = static_cast<std::size_t>(samples * (k - 1)) + 1 + n;
     pack->y[n] = recording.y[row];

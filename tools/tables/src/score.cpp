@@ -97,8 +97,8 @@ ContactScore ScoreContact(const Recording& r, const Trace& trace, Point point, c
 
 std::vector<double> ShownAngle(const Recording& r, const Trace& trace, Point point, const EstimatorSettings& settings,
                                bool restarted) {
-  const ModelInfo& info = *AllModels::kInfos[static_cast<std::size_t>(FindModel(settings.model))];
-  OutputPredictor predictor(info, settings.constants);
+  const ModelInfo& info = *CompiledModels()[static_cast<std::size_t>(FindModel(settings.model))];
+  const std::unique_ptr<OutputPredictor> predictor = info.compiled->make_predictor(info, settings.constants, nullptr);
   const auto pack = std::make_unique<DataPack>();
   std::vector<double> angle(r.size(), r.y[0]);
   std::array<double, kMaxPackSamples> output{}, free_run{};
@@ -112,7 +112,7 @@ std::vector<double> ShownAngle(const Recording& r, const Trace& trace, Point poi
         for (std::size_t d = 0; d < 3; ++d) shown.theta[m][d] = PointOf(mode, point)[d];
       }
     }
-    predictor.Predict(*pack, shown, &output, &free_run);
+    predictor->Predict(*pack, shown, &output, &free_run);
     for (std::size_t n = 0; n < static_cast<std::size_t>(trace.pack_samples); ++n)
       angle[static_cast<std::size_t>(trace.pack_samples * (k - 1)) + 1 + n] = restarted ? output[n] : free_run[n];
   }

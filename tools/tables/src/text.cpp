@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "armcmc/support/text_table.hpp"
+#include "armcmc/tables/plants/registry.hpp"
 #include "armcmc/tables/report.hpp"
 
 namespace armcmc::tables {
@@ -78,23 +79,23 @@ void LikelihoodTable(const Result& result, std::ostringstream* out) {
 std::string ToText(const Result& result) {
   std::ostringstream out;
   for (const Experiment& e : result.experiments) {
-    if (e.key == "hunt_crossley") {
-      PaperTable("Hunt-Crossley, printed in the paper", {"printed", "K", "B", "p", "\"F_e mN\""}, PublishedContact(),
-                 &out);
-      PaperTable("Hunt-Crossley, what the authors' stored results are",
+    if (e.key == kContact.key()) {
+      PaperTable(std::string(kContact.title) + ", printed in the paper", {"printed", "K", "B", "p", "\"F_e mN\""},
+                 PublishedContact(), &out);
+      PaperTable(std::string(kContact.title) + ", what the authors' stored results are",
                  {"stored", "K", "B", "p", "force mN, contact", "overall", "noisy L2 N"}, StoredContact(), &out);
-    } else if (e.key == "soft_actuator") {
-      PaperTable("Soft actuator, printed in the paper", {"printed", "theta1 L2", "theta2 L2 1e-6", "angle L2"},
-                 PublishedActuator(), &out);
-      PaperTable("Soft actuator, what the authors' stored results are",
+    } else if (e.key == kActuator.key()) {
+      PaperTable(std::string(kActuator.title) + ", printed in the paper",
+                 {"printed", "theta1 L2", "theta2 L2 1e-6", "angle L2"}, PublishedActuator(), &out);
+      PaperTable(std::string(kActuator.title) + ", what the authors' stored results are",
                  {"stored", "theta1 L2", "theta2 L2 1e-6", "angle L2", "flow, rel"}, StoredActuator(), &out);
     }
-    if (e.plant == PlantKind::kHuntCrossley)
+    if (kContact.Is(e.plant))
       ContactTable(e, &out);
     else
       ActuatorTable(e, &out);
-    if (e.key == "hunt_crossley") out << ContactNote() << "\n\n";
-    if (e.key == "soft_actuator") out << ActuatorNote() << "\n\n";
+    if (e.key == kContact.key()) out << ContactNote() << "\n\n";
+    if (e.key == kActuator.key()) out << ActuatorNote() << "\n\n";
   }
   if (!result.likelihoods.empty()) LikelihoodTable(result, &out);
   if (result.experiments.empty()) return out.str();
@@ -126,7 +127,7 @@ std::string CoverageSentence(const Row& row) {
 std::vector<std::string> LostRows(const Result& result) {
   std::vector<std::string> lost;
   for (const Experiment& e : result.experiments) {
-    const bool contact = e.plant == PlantKind::kHuntCrossley;
+    const bool contact = kContact.Is(e.plant);
     const auto values = [contact](const Row& row) {
       const ContactScore& c = row.contact;
       const ActuatorScore& a = row.actuator;

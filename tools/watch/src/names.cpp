@@ -27,11 +27,9 @@ std::vector<std::string> Words(int flags, const std::array<Flag, kSize>& known) 
 }  // namespace
 
 std::string ModeName(int plant_kind, int mode) {
-  for (const ModelInfo* info : AllModels::kInfos) {
-    if (static_cast<int>(info->plant) == plant_kind && mode >= 0 && mode <= info->num_modes) {
-      return std::string(info->modes[static_cast<std::size_t>(mode)]);
-    }
-  }
+  const ModelInfo* info = ModelOf(PlantNumber{plant_kind});
+  if (info != nullptr && mode >= 0 && mode <= info->num_modes)
+    return std::string(info->modes[static_cast<std::size_t>(mode)]);
   return "mode " + std::to_string(mode);
 }
 
@@ -79,9 +77,10 @@ std::string FieldText(const std::uint8_t* field, int size) {
 }
 
 double TrueValue(const plant_truth_t& truth, const estimate_t& estimate, int parameter) noexcept {
-  // The parameters of the actuator belong to the mode that acts; those of the contact are the same in all.
-  const bool same = truth.plant_kind == data_pack_t::PLANT_HUNT_CROSSLEY ||
-                    (truth.true_mode == estimate.mode && estimate.in_contact != 0);
+  // Where there are several modes, the parameters belong to the one that acts.
+  const ModelInfo* info = ModelOf(PlantNumber{truth.plant_kind});
+  const bool same =
+      (info != nullptr && info->num_modes == 1) || (truth.true_mode == estimate.mode && estimate.in_contact != 0);
   if (!same || truth.plant_kind != estimate.plant_kind || parameter < 0 || parameter >= truth.n_params ||
       parameter >= plant_truth_t::MAX_PARAMS) {
     return std::numeric_limits<double>::quiet_NaN();

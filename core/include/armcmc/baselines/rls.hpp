@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/baselines/pack_filter.hpp"
+#include "armcmc/baselines/regression_form.hpp"
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/marginal_table.hpp"
 
@@ -10,22 +11,15 @@ namespace armcmc {
 ///
 ///   P <- P / mu,   k = P phi / (r + phi' P phi),   z <- z + k (y - phi' z),   P <- P - k phi' P
 ///
-/// Actuator: linear as it stands in (g, theta2). The inputs are scaled by the prior's standard deviations, which does
-/// for each of them what the paper's common factor of 1e7 does for both; r = s^2. Where the noise is that of the
-/// pressure rate (settings.pressure_rate) the law is still that of the flow, the pressure rate's being no linear one,
-/// and r = s^2 E[gain^2], gain = g + theta2 (p - p_atm) by a first pass over the pack.
+/// A law that is linear in its parameters is taken as it stands. The inputs are scaled by the prior's standard
+/// deviations, which does for each of them what the paper's common factor of 1e7 does for both; r = s^2. Where the
+/// noise is that of a rate (settings.pressure_rate) the law is still that of the flow, the rate's being no linear one,
+/// and r = s^2 E[gain^2], gain = flow / rate by a first pass over the pack. Any other law comes with a RegressionForm.
 ///
-/// Contact: the paper's log-linearisation (equations `hnt`, `hnt3`, `hnt44`),
-///
-///   log f = log K + (B/K) v + p log x,   z = (log K, B/K, p),
-///
-/// which drops the second and higher powers of (B/K) v. Better than published: a sample has r = (s / f)^2, the variance
-/// that force noise has in log f, and samples below kLeastForce noise scales, whose logarithm says nothing, are left
-/// out. Saturation: after every sample (K, B, p) is held inside the bounds. Noise is taken as Gaussian, whatever its
+/// Saturation: after every sample the parameters are held inside the bounds. Noise is taken as Gaussian, whatever its
 /// law. The covariance never grows beyond the prior's. Draws: Gaussian with the final mean and covariance.
 class RlsFilter final : public PackFilter {
  public:
-  static constexpr double kLeastForce = 5.0;
   static constexpr int kDraws = 2048;
 
   explicit RlsFilter(const FilterParts& parts);
@@ -38,7 +32,7 @@ class RlsFilter final : public PackFilter {
   void Update(const ParamVector& phi, double y, double r) noexcept ARMCMC_NONBLOCKING;
   /// Updates by all samples. Of a pressure rate: weighted by the gains of a state (gain_z, gain_p).
   void Pass(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept ARMCMC_NONBLOCKING;
-  /// Expected square of g + theta2 (p - p_atm) at a sample: it turns a variance of pdot into one of the flow.
+  /// Expected square of flow / rate at a sample: it turns a variance of the rate into one of the flow.
   [[nodiscard]] double SquareGain(const ModeData& data, std::size_t sample, const ParamVector& z,
                                   const ParamMatrix& p) const noexcept ARMCMC_NONBLOCKING;
   void Saturate() noexcept ARMCMC_NONBLOCKING;
@@ -46,7 +40,8 @@ class RlsFilter final : public PackFilter {
   void ToDraw(const ParamVector& z, double* u) const noexcept ARMCMC_NONBLOCKING;
 
   FilterParts parts_;
-  bool contact_;
+  const RegressionForm* form_;  ///< Null: linear as it stands.
+  bool several_modes_;
   MarginalTable normal_table_;
   int dim_;
   ParamVector prior_mean_, z_;

@@ -34,7 +34,7 @@ struct EffectNeeds {
 };
 
 /// The sizes that make priors free of units: of a contact, rms force in contact, depth, speed and acceleration of the
-/// motion; of the soft actuator, rms pressure above the atmosphere, pressure rate, opening, angle and its rate and
+/// motion; of a driven joint, rms pressure above the atmosphere, pressure rate, opening, angle and its rate and
 /// acceleration, and the supply above the atmosphere; of both the length of the record. SI units.
 struct EffectScales {
   double force = 1.0;              ///< N
@@ -69,16 +69,8 @@ struct EffectShape {
   double lower, upper;  ///< Allowed values, in the parameter's unit.
 };
 
-/// One physical effect of a plant's catalogue.
-///
-/// An effect is one header in effects/ with a struct that has `static constexpr EffectInfo kInfo` and one entry in the
-/// list of its plant in effects/registry.hpp. If it runs online it has besides, on the contact plant and by slot:
-///   additive          static void Feature(const EffectInput&, const double* shape, double* memory, double* feature)
-///   constitutive law  static double Elapsed(const EffectInput&, const double* shape)
-///   any other slot    template <class S> static typename S::V ..., per candidate (see its header)
-/// and on the valve flow of the soft actuator, whatever the slot, per candidate and sample:
-///   template <class S> static void Apply(typename S::V amplitude, FlowPoint<S>* point)
-/// which changes nothing for an amplitude of zero.
+/// One physical effect of the catalogue of a compiled plant. What else an effect has, is up to the plant: see
+/// effects.hpp of its slice.
 struct EffectInfo {
   std::string_view name;
   std::string_view family;
@@ -90,15 +82,6 @@ struct EffectInfo {
   std::array<EffectAmplitude, kMaxEffectAmplitudes> amplitudes;
   int num_shapes;
   std::array<EffectShape, kMaxEffectShapes> shapes;
-};
-
-/// What an additive effect of the contact plant sees of one sample.
-struct EffectInput {
-  double t;    ///< Plant time, s.
-  double dt;   ///< Sample interval, s.
-  double x;    ///< Penetration, m; negative in free motion.
-  double v;    ///< Its rate, m/s.
-  bool first;  ///< No sample before it: memory starts here, at rest.
 };
 
 namespace effect_unit {

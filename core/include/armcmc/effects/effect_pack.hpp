@@ -1,15 +1,15 @@
 #pragma once
 
-#include "armcmc/effects/contact_pack.hpp"
-#include "armcmc/effects/flow_pack.hpp"
+#include <memory>
+
+#include "armcmc/effects/effect_rows.hpp"
 #include "armcmc/plant/program.hpp"
 
 namespace armcmc {
 
-/// One pack with what the model of its plant needs; that of the others is unused.
+/// One pack with what the model of its plant needs; that of the other kind of plant is unused.
 struct EffectPack {
-  ContactPack contact;
-  FlowPack flow;
+  std::unique_ptr<CompiledPack> compiled;  ///< Of a compiled plant with effects, else null; see Composition.
   PlantPack described;
 };
 

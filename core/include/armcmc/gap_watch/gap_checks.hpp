@@ -83,23 +83,4 @@ class GapFamily {
 inline constexpr std::array<std::string_view, kNumSerialChecks> kSerialChecks{
     "repeats_after_a_pack", "repeats_after_two_packs", "slow_wander", "wander_after_two_packs"};
 
-/// Of a plant that is built in; of a described one see DescribedFamily.
-[[nodiscard]] const GapFamily& FamilyOf(PlantKind plant) noexcept ARMCMC_NONBLOCKING;
-
-/// Regions of the bend equation of the soft actuator, in the order of BendChecks().
-enum BendRegion : std::uint8_t {
-  kBending,
-  kBendDirection,
-  kBendSpeed,
-  kBendAngle,
-  kBendLargeAngle,
-  kBendAcceleration,
-  kNumBendRegions
-};
-/// The checks of the bend equation of the soft actuator.
-[[nodiscard]] const GapChecks& BendChecks() noexcept ARMCMC_NONBLOCKING;
-
-/// Name of a check of a built-in plant by its index in GapState; empty for none.
-[[nodiscard]] std::string_view GapCheckName(PlantKind plant, int check) noexcept ARMCMC_NONBLOCKING;
-
 }  // namespace armcmc

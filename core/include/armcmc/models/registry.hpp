@@ -1,29 +1,31 @@
 #pragma once
 
-#include <array>
+#include <span>
+#include <string>
+#include <string_view>
 
-#include "armcmc/models/hunt_crossley.hpp"
-#include "armcmc/models/soft_actuator.hpp"
-#include "armcmc/nonblocking.hpp"
+#include "armcmc/data_pack.hpp"
+#include "armcmc/model.hpp"
+#include "armcmc/models/compiled_plant.hpp"
 
 namespace armcmc {
 
-template <class... Models>
-struct ModelList {
-  static constexpr int kSize = sizeof...(Models);
-  static constexpr std::array<const ModelInfo*, sizeof...(Models)> kInfos{&Models::kInfo...};
-  using PrepareFn = void (*)(const DataPack&, const PlantConstants&, int, ModeData*) noexcept ARMCMC_NONBLOCKING;
-  static constexpr std::array<PrepareFn, sizeof...(Models)> kPrepare{&Models::Prepare...};
-};
+/// Every plant that is compiled in. The index into this list identifies its model inside the estimator.
+[[nodiscard]] std::span<const ModelInfo* const> CompiledModels() noexcept ARMCMC_NONBLOCKING;
 
-/// Every forward model. The index into this list identifies a model inside the estimator.
-using AllModels = ModelList<HuntCrossley, SoftActuator>;
+/// The name of the first of them: what programs show in examples, and take where nobody says anything else.
+[[nodiscard]] std::string DefaultModel();
+
+/// Every name that BuiltinSettings() takes, separated by ", ".
+[[nodiscard]] std::string ModelNames();
 
 /// Index of the model with that name, -1 if there is none.
-[[nodiscard]] constexpr int FindModel(std::string_view name) noexcept {
-  for (int i = 0; i < AllModels::kSize; ++i)
-    if (AllModels::kInfos[static_cast<std::size_t>(i)]->name == name) return i;
-  return -1;
-}
+[[nodiscard]] int FindModel(std::string_view name) noexcept;
+
+/// The model whose packs have that number, null if there is none.
+[[nodiscard]] const ModelInfo* ModelOf(PlantNumber number) noexcept ARMCMC_NONBLOCKING;
+
+/// The effect with that name in the catalogue of a compiled plant, null if there is none.
+[[nodiscard]] const EffectInfo* FindEffect(const ModelInfo& model, std::string_view name) noexcept;
 
 }  // namespace armcmc

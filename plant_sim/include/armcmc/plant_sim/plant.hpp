@@ -26,8 +26,12 @@ struct PlantSample {
 /// Parameters as an estimator reports them for one mode, order of PlantFamily::truth_names.
 using Theta = std::array<double, kMaxTruth>;
 
-struct HiddenEffect;
+class GapMeter;
+struct EffectSpec;
 struct EffectTiming;
+struct HiddenEffect;
+struct ModelForm;
+struct Scenario;
 
 /// A plant with its own equations. It knows its parameters; nobody else does.
 class Plant {
@@ -95,6 +99,12 @@ struct PlantFamily {
   TargetSpec target;
   /// @throws std::invalid_argument when options contradict each other.
   std::unique_ptr<Plant> (*make)(const PlantSetup& setup) = nullptr;
+  bool makes_contact = false;  ///< Effects may act in contact only, or in free motion only.
+  /// What can be hidden in it, in a fixed order; null: nothing.
+  const std::vector<EffectSpec>& (*effects)() = nullptr;
+  /// See MakeGapMeter(); of a family that has effects.
+  std::unique_ptr<GapMeter> (*make_gap_meter)(const Scenario& scenario) = nullptr;
+  const ModelForm& (*model_form)() = nullptr;  ///< Null: no model file becomes one.
 
   [[nodiscard]] int num_inputs() const noexcept { return static_cast<int>(inputs.size()); }
   [[nodiscard]] int num_modes() const noexcept { return static_cast<int>(modes.size()); }
@@ -103,6 +113,8 @@ struct PlantFamily {
 
 /// All families, in the order in which messages list them.
 [[nodiscard]] const std::vector<const PlantFamily*>& PlantRegistry();
+/// The scenario that runs where nobody asks for another one.
+[[nodiscard]] std::string DefaultScenario();
 /// The family of that name, or nullptr.
 [[nodiscard]] const PlantFamily* FindPlantFamily(const std::string& name);
 

@@ -19,7 +19,7 @@ enum class RejectCause : std::uint8_t {
   kNone = 0,
   kFingerprint,     ///< Another type, or another version of ours.
   kLength,          ///< Truncated, or with trailing bytes.
-  kPlantKind,       ///< Pack of another plant.
+  kOtherPlant,      ///< Pack of another plant.
   kSampleCount,     ///< n_samples outside [1, kMaxPackSamples].
   kInputCount,      ///< n_inputs is not that of the model.
   kSampleInterval,  ///< dt outside (0, kMaxSampleInterval] or not finite.
@@ -62,7 +62,7 @@ class PackCodec {
   void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
 
  private:
-  [[nodiscard]] bool described() const noexcept { return format_.plant == PlantKind::kDescribed; }
+  [[nodiscard]] bool described() const noexcept { return format_.plant == PlantNumber::kDescribed; }
   [[nodiscard]] bool DecodeMessage(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool IsOfThePlant() const noexcept ARMCMC_NONBLOCKING;
 

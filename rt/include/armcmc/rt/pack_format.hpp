@@ -7,17 +7,17 @@
 
 namespace armcmc::rt {
 
-/// What the packs of a plant look like on the bus: data_pack_t of a built-in plant, data_pack_v2_t of one that a file
+/// What the packs of a plant look like on the bus: data_pack_t of a compiled plant, data_pack_v2_t of one that a file
 /// describes.
 struct PackFormat {
-  PlantKind plant = PlantKind::kHuntCrossley;
+  PlantNumber plant = PlantNumber::kNone;
   int num_inputs = 0;
   std::string_view name = {};     ///< Of a described plant; outlives whoever is given the format.
   std::uint64_t fingerprint = 0;  ///< Of a described plant's signals.
 
   /// The channel behind the prefix.
   [[nodiscard]] const char* channel() const noexcept {
-    return plant == PlantKind::kDescribed ? "PLANT_PACK_V2" : "PLANT_PACK";
+    return plant == PlantNumber::kDescribed ? "PLANT_PACK_V2" : "PLANT_PACK";
   }
 };
 

@@ -28,7 +28,7 @@ class StepEngine {
 
   /// What it computes from. Its name lives as long as the engine.
   [[nodiscard]] virtual PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING = 0;
-  [[nodiscard]] PlantKind plant() const noexcept ARMCMC_NONBLOCKING { return pack_format().plant; }
+  [[nodiscard]] PlantNumber plant() const noexcept ARMCMC_NONBLOCKING { return pack_format().plant; }
   [[nodiscard]] virtual int num_modes() const noexcept ARMCMC_NONBLOCKING = 0;
   [[nodiscard]] virtual int num_reported() const noexcept ARMCMC_NONBLOCKING = 0;
   [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING = 0;

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "effect_lists.hpp"
+#include "plants/registry.hpp"
 
 namespace armcmc::gap_bench {
 namespace {

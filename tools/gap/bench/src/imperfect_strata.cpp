@@ -5,7 +5,7 @@
 #include <random>
 
 #include "armcmc/gap_bench/scenario_text.hpp"
-#include "effect_lists.hpp"
+#include "plants/registry.hpp"
 
 namespace armcmc::gap_bench {
 namespace {

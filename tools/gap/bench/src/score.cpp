@@ -4,8 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap_bench/strata.hpp"
+#include "armcmc/models/registry.hpp"
+#include "plants/soft_actuator/effects.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -14,8 +15,8 @@ constexpr double kUnnoticed = 9.0;  // noise variances
 
 /// An effect of any plant's catalogue; null for what is in none.
 const EffectInfo* Listed(std::string_view name) {
-  for (const PlantKind plant : {PlantKind::kHuntCrossley, PlantKind::kSoftActuator})
-    if (const EffectInfo* info = FindEffect(plant, name)) return info;
+  for (const ModelInfo* model : CompiledModels())
+    if (const EffectInfo* info = FindEffect(*model, name)) return info;
   return nullptr;
 }
 

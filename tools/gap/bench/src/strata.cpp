@@ -7,16 +7,16 @@
 
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "case_builder.hpp"
-#include "effect_lists.hpp"
 #include "imperfect_strata.hpp"
+#include "plants/registry.hpp"
 #include "recorded.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
 
-const Words kActingInOneMode = {"coulomb_friction:tanh", "presliding_friction:dahl", "viscous_friction:linear",
-                                "inertia:rigid", "periodic_disturbance:sine"};
-const Words kActuatorOutside = {"quadratic_drag", "obstacle"};
+const std::vector<std::string> kActingInOneMode = {"coulomb_friction:tanh", "presliding_friction:dahl",
+                                                   "viscous_friction:linear", "inertia:rigid",
+                                                   "periodic_disturbance:sine"};
 constexpr int kPairCells = 10, kUnequalPairCells = 3, kActuatorNullCells = 5;
 
 struct NoiseVariant {
@@ -39,7 +39,7 @@ void Null(CaseBuilder* b) {
     }
 }
 
-void Each(CaseBuilder* b, const Words& effects, const std::vector<double>& strengths) {
+void Each(CaseBuilder* b, const std::vector<std::string>& effects, const std::vector<double>& strengths) {
   for (const double strength : strengths)
     for (const std::string& effect : effects) b->Cell(Like(GroupOf(strength), kRich, effect, strength), effect);
 }
@@ -88,7 +88,7 @@ void Poor(CaseBuilder* b) {
     for (const std::string& effect : kCatalogue) b->Cell(Like(scenario, scenario, effect, 1.0), effect);
 }
 
-/// The soft actuator, excited: nothing hidden, one effect of either equation, and what its catalogue lacks.
+/// The actuator, excited: nothing hidden, one effect of either equation, and what its catalogue lacks.
 void Actuator(CaseBuilder* b) {
   const auto like = [](const std::string& group, const std::string& effect, double strength) {
     Case one = Like(group, kExcited, effect, strength);
@@ -129,7 +129,7 @@ const std::vector<std::pair<std::string, Fill>>& Strata() {
        }},
       {"poor", Poor},
       {"actuator", Actuator},
-      {"paper", [](CaseBuilder* b) { OneScenario(b, "hunt_crossley_paper"); }}};
+      {"paper", [](CaseBuilder* b) { OneScenario(b, kPaper); }}};
   return strata;
 }
 

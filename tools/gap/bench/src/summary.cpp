@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include "armcmc/effects/registry.hpp"
 #include "armcmc/gap_bench/score.hpp"
 #include "armcmc/gap_bench/strata.hpp"
+#include "plants/hunt_crossley/effects.hpp"
 
 namespace armcmc::gap_bench {
 namespace {

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "armcmc/plant_sim/effects/actuator_effect.hpp"
 #include "armcmc/plant_sim/plant.hpp"
 
 namespace armcmc::plant_sim {
@@ -27,6 +26,12 @@ class Effect {
   virtual ~Effect() = default;
   /// One sample. Called at every sample, in order, whether the gate is open or not. @rt No heap, no lock, no throw.
   virtual void Apply(EffectSignal* signal) noexcept = 0;
+};
+
+/// An effect inside the equations of a plant, which knows what it is: see Plant::Hide.
+class InnerEffect {
+ public:
+  virtual ~InnerEffect() = default;
 };
 
 /// An effect from a function object; what it captures is the effect's parameters and memory.
@@ -96,18 +101,9 @@ struct EffectSpec {
   /// The first is the strength; its range runs from the weakest to the strongest, which may be the smaller value.
   std::vector<EffectParameter> parameters;
   std::unique_ptr<Effect> (*make)(const std::vector<double>& values, const EffectTiming& timing) = nullptr;
-  /// Instead of make, for an effect inside the soft actuator\'s equations.
-  std::unique_ptr<ActuatorEffect> (*make_inner)(const std::vector<double>& values,
-                                                const EffectTiming& timing) = nullptr;
+  /// Instead of make, for an effect inside the plant's equations.
+  std::unique_ptr<InnerEffect> (*make_inner)(const std::vector<double>& values, const EffectTiming& timing) = nullptr;
 };
-
-/// Effects of the contact plant by kind of physics.
-[[nodiscard]] std::vector<EffectSpec> ForceEffects();
-[[nodiscard]] std::vector<EffectSpec> FrictionEffects();
-[[nodiscard]] std::vector<EffectSpec> MaterialEffects();
-[[nodiscard]] std::vector<EffectSpec> SensorEffects();
-/// Effects of the soft actuator.
-[[nodiscard]] std::vector<EffectSpec> ActuatorEffects();
 
 /// All effects of a family of plants, in a fixed order; none for a family that offers none.
 [[nodiscard]] const std::vector<EffectSpec>& EffectRegistry(const PlantFamily& family);

@@ -12,7 +12,7 @@ namespace armcmc::plant_sim {
 ///
 ///   R = rms over the run of (output with the effects - base law refitted to it) / sd of the output's noise
 ///
-/// Refitted means a constant correction of every base parameter, by least squares. What K, B, p can absorb is no gap,
+/// Refitted means a constant correction of every base parameter, by least squares. What the base can absorb is no gap,
 /// and neither is what the law itself errs by: an effect is as strong in a plant with a LawError as in one without.
 class GapMeter {
  public:
@@ -27,9 +27,6 @@ inline constexpr long long kMaxGapSamples = 200'000;
 /// @throws std::invalid_argument when the family offers no effects, its output has no noise to compare with, or the
 ///         run stands still or leaves the finite range.
 [[nodiscard]] std::unique_ptr<GapMeter> MakeGapMeter(const Scenario& scenario);
-
-/// What MakeGapMeter gives for the soft actuator: R of the flow equation or of the bend equation, whichever is larger.
-[[nodiscard]] std::unique_ptr<GapMeter> MakeActuatorGapMeter(const Scenario& scenario);
 
 /// Sets the strength of an effect, its first parameter, such that its gap ratio is `gap_ratio` to 1 %: upwards from the
 /// weakest end of its range to a crossing, then secants, both in logarithms. At most 81 refits, usually 4 to 8.

@@ -36,7 +36,7 @@ struct PlantWords {
   std::vector<std::string> inputs, input_units, parameters, parameter_units, modes;
   std::string extended_target_unit;  ///< Where a model has other parameters besides; empty: the same.
 };
-[[nodiscard]] const PlantWords& WordsOf(int plant_kind);
+[[nodiscard]] PlantWords WordsOf(int plant_kind);
 
 /// A unit without "/", which PlotJuggler takes for a folder: "N s/m^(p+1)" becomes "N s m^-(p+1)", "-" becomes "".
 [[nodiscard]] std::string ColumnUnit(std::string_view unit);

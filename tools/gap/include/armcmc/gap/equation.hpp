@@ -57,6 +57,8 @@ class Equation {
   Equation& operator=(const Equation&) = delete;
   virtual ~Equation() = default;
 
+  /// As scenario files call it.
+  [[nodiscard]] virtual std::string plant() const = 0;
   /// "flow law": where a plant has several equations. Empty: it has one.
   [[nodiscard]] virtual std::string name() const { return {}; }
   [[nodiscard]] virtual std::string output_name() const = 0;           ///< "force"

@@ -9,6 +9,7 @@
 #include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/recording.hpp"
 #include "armcmc/gap/result.hpp"
+#include "armcmc/models/registry.hpp"
 #include "armcmc/settings.hpp"
 
 namespace armcmc::gap {
@@ -17,10 +18,10 @@ namespace armcmc::gap {
 enum class Step { kCompare, kFind, kName, kAdd, kShow };
 
 struct WorkflowRequest {
-  std::string model = "hunt_crossley";  ///< Built-in name.
-  Recording data;                       ///< To diagnose; without `heldout`, its end is kept sealed.
-  std::optional<Recording> heldout;     ///< To show the gap on.
-  std::optional<Recording> earlier;     ///< What its verdict left open is judged by both recordings, see Join.
+  std::string model = DefaultModel();  ///< Built-in name.
+  Recording data;                      ///< To diagnose; without `heldout`, its end is kept sealed.
+  std::optional<Recording> heldout;    ///< To show the gap on.
+  std::optional<Recording> earlier;    ///< What its verdict left open is judged by both recordings, see Join.
   Step until = Step::kShow;
   DiagnoseOptions diagnose;
   /// Called with the name of each step as it begins, and the share of the work before it.

@@ -32,7 +32,7 @@ class CsvSource final : public PackSource {
   void SkipEmptyPacks();
   void Fill(std::size_t end_row, DataPack* pack, std::array<double, kMaxPackSamples>* t) const;
 
-  PlantKind plant_;
+  PlantNumber plant_;
   std::uint64_t fingerprint_ = 0;
   bool takes_gaps_ = false;  // no sample needs those before it
   support::CsvSamples samples_;

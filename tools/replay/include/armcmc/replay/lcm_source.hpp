@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "armcmc/model.hpp"
 #include "armcmc/replay/draw_record.hpp"
 #include "armcmc/replay/pack_source.hpp"
 #include "armcmc/support/lcm_log.hpp"
@@ -10,7 +11,7 @@
 namespace armcmc::replay {
 
 /// Plant of the first pack of an LCM log. @throws support::InputError when it holds no pack.
-[[nodiscard]] PlantKind PlantOfLog(const std::filesystem::path& path, const std::string& prefix);
+[[nodiscard]] const ModelInfo& ModelOfLog(const std::filesystem::path& path, const std::string& prefix);
 
 /// Packs from the PLANT_PACK events of an LCM log, checked and sequenced by the code of the real-time process.
 ///

@@ -49,7 +49,7 @@ class PackSource {
 /// What to replay.
 struct SourceRequest {
   std::filesystem::path data;  ///< CSV of samples, or LCM log: told apart by content.
-  PlantKind plant = PlantKind::kHuntCrossley;
+  PlantNumber plant = PlantNumber::kNone;
   int num_inputs = 2;
   std::shared_ptr<const PlantProgram> described;        ///< Of a plant that a file describes.
   std::shared_ptr<const support::Recording> recording;  ///< Of such a plant, instead of `data`; null: none.

@@ -12,7 +12,7 @@ namespace armcmc::support {
 // A model file says what a plant is, without saying how the estimator is run:
 //
 //   schema = 1
-//   base = "hunt_crossley"             built-in model
+//   base = "NAME"                      built-in model
 //   [parameters.K]                     priors and bounds of its parameters, as in a configuration
 //   [constants]                        of the actuator
 //   [noise]  [noise.contact]           as in a configuration

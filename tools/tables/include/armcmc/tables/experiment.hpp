@@ -21,9 +21,9 @@ struct Row {
 
 /// A recording, or the mean over several with other noise, estimated by every method.
 struct Experiment {
-  std::string key;  ///< In tables.json: "hunt_crossley", "hunt_crossley_step", ...
+  std::string key;  ///< In tables.json: see PaperPlant::key().
   std::string title;
-  PlantKind plant = PlantKind::kHuntCrossley;
+  PlantNumber plant = PlantNumber::kNone;
   int seeds = 1;
   std::vector<Row> rows;
   Recording recording;                      ///< The first seed's.

@@ -13,7 +13,7 @@ namespace armcmc::tables {
 /// A recording with its truth: sample i at t = i T, the first row is sample 0.
 struct Recording {
   std::string name;
-  PlantKind plant = PlantKind::kHuntCrossley;
+  PlantNumber plant = PlantNumber::kNone;
   double dt = 1e-3;
   std::array<std::vector<double>, 4> u;  ///< x, v; or u_c, u_d, p, pdot.
   std::vector<double> y;                 ///< Measured force or angle.
@@ -25,7 +25,7 @@ struct Recording {
 
 /// Reads a recording of the plant, or the authors' (their truth is constant, or written as theta1).
 /// @throws support::InputError naming the file and what was expected.
-[[nodiscard]] Recording ReadRecording(const std::filesystem::path& path, PlantKind plant, double p_atm);
+[[nodiscard]] Recording ReadRecording(const std::filesystem::path& path, PlantNumber plant, double p_atm);
 
 /// Samples (k-1) N + 1 .. k N as pack k. @pre They exist.
 void FillPack(const Recording& recording, int k, int samples, DataPack* pack);

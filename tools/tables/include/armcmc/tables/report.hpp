@@ -21,7 +21,7 @@ struct PaperRow {
   std::string key, label;
   std::vector<double> values;
 };
-/// Parameter MAEs of K, B, p and the column "F_e (mN)" of the paper's Hunt-Crossley table.
+/// Parameter MAEs of K, B, p and the column "F_e (mN)" of the paper's table.
 [[nodiscard]] const std::vector<PaperRow>& PublishedContact();
 /// From the authors' stored results: MAE of K, B, p active and in contact, clean force MAE in contact and overall in
 /// mN, and the L2 norm against the noisy force in N.
@@ -42,7 +42,7 @@ struct PaperRow {
 /// Which intervals of a contact row cover as stated, and which do not.
 [[nodiscard]] std::string CoverageSentence(const Row& row);
 
-/// Rows that an online baseline wins against AR-MAP, "soft_actuator: alpha_l2: rls_per_mode 0.1 < 0.2".
+/// Rows that an online baseline wins against AR-MAP, "PLANT: alpha_l2: rls_per_mode 0.1 < 0.2".
 [[nodiscard]] std::vector<std::string> LostRows(const Result& result);
 /// Why the rows of the actuator are lost.
 [[nodiscard]] const char* LostRowsNote();

@@ -1,0 +1,250 @@
+#include "gap/plants/hunt_crossley/contact_equation.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "armcmc/gap/features.hpp"
+#include "armcmc/gap/smoothing.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+enum Base { kStiffness = 0, kDamping = 1, kExponent = 2, kNumBase = 3 };
+constexpr double kMinContactShare = 0.02;      // of the samples, below which a law of contact cannot be fitted
+constexpr Eigen::Index kMinContactRows = 400;  // ten samples a block
+constexpr int kAccelerationExtra = 26;         // samples by which the window of a derivative is wider
+constexpr double kPeakQuantile = 0.9995;
+
+double Rms(const Vector& series, const Vector& weight) {
+  return std::sqrt((series.array().square() * weight.array()).sum() / std::max(weight.sum(), 1.0));
+}
+
+double Quantile(const Vector& series, double q) {
+  std::vector<double> sorted(series.data(), series.data() + series.size());
+  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
+  return sorted[static_cast<std::size_t>(at)];
+}
+
+/// Standard deviation of the noise that smoothing leaves: the cubic of a window passes 9 / (4 window) of the variance.
+double LeftOfNoise(double noise_sd, int window) { return noise_sd * std::sqrt(2.25 / std::max(window, 3)); }
+
+/// Where noise hides on which side of the surface a sample lies, the force says it: it belongs to the side whose
+/// nearest sample it resembles. A force that jumps there (adhesion) would otherwise be wrong by the whole jump, and
+/// that one sample would outweigh thousands.
+void SettleSides(const Vector& force, double position_noise, Vector* position) {
+  constexpr double kSure = 3.0;  // standard deviations
+  const auto sure = [&](Eigen::Index i) { return std::abs((*position)[i]) > kSure * position_noise; };
+  const Eigen::Index rows = position->size();
+  for (Eigen::Index first = 0; first < rows;) {
+    if (sure(first)) {
+      ++first;
+      continue;
+    }
+    Eigen::Index end = first + 1;
+    while (end < rows && !sure(end)) ++end;
+    const double before = first > 0 ? (*position)[first - 1] : 0.0, after = end < rows ? (*position)[end] : 0.0;
+    for (Eigen::Index i = first; i < end && before * after < 0.0; ++i) {
+      const bool as_before = std::abs(force[i] - force[first - 1]) < std::abs(force[i] - force[end]);
+      const double depth = std::max(std::abs((*position)[i]), std::numeric_limits<double>::min());
+      (*position)[i] = std::copysign(depth, as_before ? before : after);
+    }
+    first = end;
+  }
+}
+
+bool Moves(const Vector& series) { return series.maxCoeff() - series.minCoeff() > 1e-9 * series.cwiseAbs().maxCoeff(); }
+
+class ContactEquation final : public Equation {
+ public:
+  [[nodiscard]] std::string plant() const override { return "hunt_crossley"; }
+  std::string output_name() const override { return "force"; }
+  std::string output_unit() const override { return "N"; }
+  std::vector<std::string> columns() const override { return {"t", "x", "v", "f"}; }
+  std::vector<std::string> smoothed_columns() const override { return {"x", "v"}; }
+  std::string active_name() const override { return "contact"; }
+  std::string passive_name() const override { return "free motion"; }
+
+  Signals Prepare(const Recording& recording, int window) const override {
+    Signals s = Smooth(recording, window);
+    if (s.rows() < kMinContactRows)
+      throw std::invalid_argument(recording.source + ": holds " + std::to_string(s.rows()) + " samples; at least " +
+                                  std::to_string(kMinContactRows) + " are needed to judge a model");
+    // Without contact the law says nothing, but what acts in free motion can still be told apart.
+    s.law_seen = s.active.mean() >= kMinContactShare;
+    const Vector all = Vector::Ones(s.rows());
+    const Vector& weight = s.law_seen ? s.active : all;
+    s.scale[static_cast<std::size_t>(Role::kPosition)] = Rms(s.at(Role::kPosition), weight);
+    s.scale[static_cast<std::size_t>(Role::kVelocity)] = Rms(s.at(Role::kVelocity), all);
+    s.scale[static_cast<std::size_t>(Role::kAcceleration)] = Rms(s.at(Role::kAcceleration), all);
+    s.output_scale = Rms(s.output, weight);
+    s.output_peak = Quantile(s.law_seen ? s.output : Vector(s.output.cwiseAbs()), kPeakQuantile);
+    if (!Moves(recording.Column("x")) || !Moves(recording.Column("v")))
+      throw std::invalid_argument(recording.source + ": x or v does not move: a law of both cannot be told");
+    if (!(s.output_scale > 0.0) || !(s.output_peak > 0.0))
+      throw std::invalid_argument(recording.source + ": f is not positive anywhere" +
+                                  (s.law_seen ? " in contact: push must count as positive" : ": it does not change"));
+    if (!Moves(s.output)) throw std::invalid_argument(recording.source + ": f does not change: nothing was measured");
+    return s;
+  }
+
+  Signals PrepareLike(const Recording& recording, int window, const Signals& like) const override {
+    Signals s = Smooth(recording, window);
+    s.MeasureLike(like);
+    return s;
+  }
+
+  std::vector<Coordinate> base(const Signals& s) const override {
+    (void)s;
+    return {{"K", "N/m^p", 1e-6, 100.0, 1.0, 2.0, 1.0, false},
+            {"B", "N s/m^(p+1)", -20.0, 20.0, 0.0, 1.0, 1.0, false},
+            {"p", "-", 0.3, 4.5, 1.5, 0.5, 1.0, false}};
+  }
+
+  Vector Start(const Signals& s) const override {
+    (void)s;
+    return Vector{{1.0, 0.05, 1.5}};
+  }
+
+  void Law(const Signals& s, const double* theta, const LawInput& input, Prediction* out) const override {
+    const double k = theta[kStiffness], b = theta[kDamping], p = theta[kExponent];
+    const double depth_scale = s.scale_of(Role::kPosition), speed_scale = s.scale_of(Role::kVelocity);
+    const Vector& position = s.at(Role::kPosition);
+    const Vector& velocity = s.at(Role::kVelocity);
+    out->y = Vector::Zero(s.rows());
+    out->elastic = Vector::Zero(s.rows());
+    Vector slope_by_position = Vector::Zero(s.rows()), elastic_slope = Vector::Zero(s.rows());
+    Vector slope_by_gain = Vector::Zero(s.rows());
+    for (Eigen::Index i = 0; i < s.rows(); ++i) {
+      const double shift = input.shift.size() > 0 ? input.shift[i] : 0.0;
+      const double u = (position[i] - shift) / depth_scale;
+      if (!(u > 0.0)) continue;
+      const double log_u = std::log(u);
+      const double power = s.output_scale * std::exp(p * log_u);
+      const double rate = velocity[i] / speed_scale;
+      const double gain = input.gain.size() > 0 ? input.gain[i] : 1.0;
+      const double elastic = power * k * gain;
+      const double force = elastic + power * b * rate;
+      out->y[i] = force;
+      out->elastic[i] = elastic;
+      out->jacobian(i, kStiffness) = out->elastic_jacobian(i, kStiffness) = power * gain;
+      out->jacobian(i, kDamping) = power * rate;
+      out->jacobian(i, kExponent) = force * log_u;
+      out->elastic_jacobian(i, kExponent) = elastic * log_u;
+      const double per_position = p / (u * depth_scale);
+      slope_by_position[i] = force * per_position;
+      elastic_slope[i] = elastic * per_position;
+      slope_by_gain[i] = power * k;
+    }
+    for (const LawInput::Slope& slope : input.shift_slopes) {
+      out->jacobian.col(slope.coordinate) -= slope_by_position.cwiseProduct(slope.rows);
+      out->elastic_jacobian.col(slope.coordinate) -= elastic_slope.cwiseProduct(slope.rows);
+    }
+    for (const LawInput::Slope& slope : input.gain_slopes) {
+      out->jacobian.col(slope.coordinate) += slope_by_gain.cwiseProduct(slope.rows);
+      out->elastic_jacobian.col(slope.coordinate) += slope_by_gain.cwiseProduct(slope.rows);
+    }
+  }
+
+  std::vector<ParameterEstimate> Report(const Signals& s, const Vector& theta,
+                                        const Matrix& covariance) const override {
+    const double force = s.output_scale, depth = s.scale_of(Role::kPosition), speed = s.scale_of(Role::kVelocity);
+    const double p = theta[kExponent];
+    const double stiffness = force * theta[kStiffness] * std::pow(depth, -p);
+    const double damping = force * theta[kDamping] * std::pow(depth, -p) / speed;
+    Matrix slopes = Matrix::Zero(3, 3);
+    slopes(0, kStiffness) = stiffness / theta[kStiffness];
+    slopes(0, kExponent) = -stiffness * std::log(depth);
+    slopes(1, kDamping) = force * std::pow(depth, -p) / speed;
+    slopes(1, kExponent) = -damping * std::log(depth);
+    slopes(2, kExponent) = 1.0;
+    const Matrix reported = slopes * covariance.topLeftCorner(3, 3) * slopes.transpose();
+    const auto sd = [&](int i) { return std::sqrt(std::max(reported(i, i), 0.0)); };
+    return {{"K", "N/m^p", stiffness, sd(0)}, {"B", "N s/m^(p+1)", damping, sd(1)}, {"p", "-", p, sd(2)}};
+  }
+
+  std::vector<EffectForm> Catalogue(const Signals& s) const override { return ContactCatalogue(s); }
+
+  std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
+
+  std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
+    return {{"depth x, m", s.at(Role::kPosition), "x"},
+            {"speed v, m/s", s.at(Role::kVelocity), "v"},
+            {"acceleration, m/s^2", s.at(Role::kAcceleration), "a"},
+            {"time, s", s.t, "t"}};
+  }
+
+ private:
+  static Signals Smooth(const Recording& recording, int window) {
+    Signals s;
+    s.dt = recording.dt;
+    s.t = recording.t;
+    s.output = recording.Column("f");
+    s.origin = s.t[0];
+    s.duration = std::max(s.t[s.rows() - 1] - s.t[0], s.dt);
+    const Vector& v = recording.Column("v");
+    const Vector& x = recording.Column("x");
+    const Vector all = Vector::Ones(s.rows());
+    s.at(Role::kPosition) = SavitzkyGolay(x, window, 0);
+    SettleSides(s.output, LeftOfNoise(Rms(x - s.at(Role::kPosition), all), window), &s.at(Role::kPosition));
+    s.at(Role::kVelocity) = SavitzkyGolay(v, window, 0);
+    s.velocity_noise = Rms(v - s.at(Role::kVelocity), all);
+    s.smoothed_velocity_noise = LeftOfNoise(s.velocity_noise, window);
+    const int wide = window < 5 ? window : window + kAccelerationExtra;
+    s.at(Role::kAcceleration) = SavitzkyGolay(v, wide, 1) / s.dt;
+    s.active = (s.at(Role::kPosition).array() > 0.0).cast<double>();
+    return s;
+  }
+};
+
+// Hats over quantiles: where the data are, there are the knots.
+std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector& predicted) const {
+  const Vector& x = s.at(Role::kPosition);
+  const Vector& v = s.at(Role::kVelocity);
+  const Vector& a = s.at(Role::kAcceleration);
+  const Vector all = Vector::Ones(s.rows());
+  const Vector free = 1.0 - s.active.array();
+  const Vector depth = x.cwiseMax(0.0);
+  const Vector time = s.Elapsed();
+  const Vector direction = (v / (0.05 * s.scale_of(Role::kVelocity))).array().tanh();
+  const double samples = s.duration / s.dt;
+
+  std::vector<FeatureGroup> groups;
+  groups.push_back({"depth", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 8)), s.active), free)});
+  groups.push_back({"speed", Hats(v, QuantileKnots(v, all, 9))});
+  groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v, s.active, 5)), s.active)});
+  groups.push_back({"time", Hats(time, EvenKnots(9))});
+  groups.push_back({"time x force", Gated(Hats(time, EvenKnots(4)), predicted)});
+  groups.push_back({"acceleration", Hats(a, QuantileKnots(a, all, 6))});
+  groups.push_back(
+      {"direction of motion", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 5)), direction.cwiseProduct(s.active)),
+                                     direction.cwiseProduct(free))});
+  Matrix memory(s.rows(), 4);
+  for (int i = 0; i < 4; ++i) memory.col(i) = depth - Leaky(depth, 30.0 * std::pow(samples / 300.0, i / 3.0));
+  groups.push_back({"memory of the past", memory});
+  Matrix reversals(s.rows(), 2);
+  reversals.col(0) = Bristle(v, 0.025 * s.scale_of(Role::kPosition), s.dt);
+  reversals.col(1) = Bristle(v, 0.1 * s.scale_of(Role::kPosition), s.dt);
+  groups.push_back({"distance since reversal", reversals});
+  const Vector rate = SavitzkyGolay(predicted, 3, 1);
+  Matrix change(s.rows(), 3);
+  change.col(0) = rate;
+  change.col(1) = SavitzkyGolay(rate, 3, 1);
+  change.col(2) = predicted - Leaky(predicted, 20.0);
+  groups.push_back({"rate of force", change});
+  groups.push_back({"force", Gated(Hats(predicted, QuantileKnots(predicted, s.active, 6)), s.active)});
+  groups.push_back(
+      {"depth x speed",
+       Gated(Products(Hats(x, QuantileKnots(x, s.active, 4)), Hats(v, QuantileKnots(v, s.active, 4))), s.active)});
+  return groups;
+}
+
+}  // namespace
+
+std::unique_ptr<Equation> MakeContactEquation() { return std::make_unique<ContactEquation>(); }
+
+}  // namespace armcmc::gap

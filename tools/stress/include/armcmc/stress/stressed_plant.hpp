@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace armcmc::stress {
+
+/// The plant that both programs run under stress.
+struct StressedPlant {
+  std::int32_t number;   ///< Of its packs, data_pack_t.PLANT_*.
+  std::string name;      ///< For scenario and configuration.
+  std::string scenario;  ///< [parameters], [motion] and the head of the table of the output's noise.
+  double noise_std;      ///< Unit of the output, of the plant and of the estimator's belief.
+};
+
+/// One plant; which it is, its slice says.
+[[nodiscard]] const StressedPlant& PlantUnderStress();
+
+}  // namespace armcmc::stress
