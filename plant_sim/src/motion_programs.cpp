@@ -159,7 +159,7 @@ class StrokesPath final : public Path {
     legs_[0] = {at += way / speed(), depth};
     legs_[1] = {at += Between(0.02, 0.2), depth};
     legs_[2] = {at += way / speed(), kAir};
-    legs_[3] = {at += Between(0.02, 0.2), kAir};
+    legs_[3] = {at + Between(0.02, 0.2), kAir};
   }
 
   Rng rng_;
