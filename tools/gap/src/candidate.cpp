@@ -34,4 +34,9 @@ bool Candidate::always() const {
                      [](const Term& term) { return term.when.kind == When::Kind::kAlways; });
 }
 
+void SortByScore(std::vector<CandidatePtr>* candidates) {
+  std::stable_sort(candidates->begin(), candidates->end(),
+                   [](const auto& a, const auto& b) { return a->fit.score() > b->fit.score(); });
+}
+
 }  // namespace armcmc::gap

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/gate_scan.hpp"
@@ -11,25 +10,15 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr std::size_t kMaxGated = 4;      // gated hypotheses that are fitted, by what the scan promises
-constexpr std::size_t kPairBeam = 4;      // singles that get partners
-constexpr std::size_t kRefinedPairs = 3;  // pairs whose formulas and gates are tried anew
-constexpr std::size_t kBesideGrant = 6;   // effects that are fitted beside a grant, by what they promise
+constexpr std::size_t kMaxGated = 4;  // gated hypotheses that are fitted, by what the scan promises
 constexpr std::size_t kJudged = 6;
 constexpr double kUnnamedAtLeast = 0.5;  // where the verdict is that
 constexpr double kLawMayFeign = 1.5;     // gap up to which a law that is not quite its formula is asked, too
-
-void SortByScore(std::vector<CandidatePtr>* candidates) {
-  std::stable_sort(candidates->begin(), candidates->end(),
-                   [](const auto& a, const auto& b) { return a->fit.score() > b->fit.score(); });
-}
 
 bool Holds(const Fitted& fit, const std::string& effect) {
   return std::any_of(fit.hypothesis.terms.begin(), fit.hypothesis.terms.end(),
                      [&](const Term& term) { return term.form->effect == effect; });
 }
-
-bool GatedBy(const Term& term) { return term.when.kind != When::Kind::kAlways; }
 
 }  // namespace
 
@@ -169,24 +158,6 @@ void Search::ShareOnset(int min_active, Candidates* gated) const {
   }
 }
 
-Search::Candidates Search::GatedAlone(const Candidates& pairs, const Candidates& singles) const {
-  Candidates alone;
-  const auto same = [](const CandidatePtr& candidate, const Term& term) {
-    const Term& other = candidate->fit.hypothesis.terms.back();
-    return other.form == term.form && other.when.kind == term.when.kind && other.when.time_s == term.when.time_s;
-  };
-  for (std::size_t i = 0; i < std::min(kRefinedPairs, pairs.size()); ++i) {
-    for (const Term& term : pairs[i]->added()) {
-      const auto known = [&](const CandidatePtr& candidate) { return same(candidate, term); };
-      if (!GatedBy(term) || std::any_of(singles.begin(), singles.end(), known) ||
-          std::any_of(alone.begin(), alone.end(), known))
-        continue;
-      alone.push_back(Make(fitter_->Add(base_->fit, term)));
-    }
-  }
-  return alone;
-}
-
 Search::Candidates Search::OnePerName(const Candidates& candidates) const {
   // Of the formulas of the same effects the catalogue's is reported, unless another is clearly better.
   std::map<std::vector<std::string>, CandidatePtr> best;
@@ -207,120 +178,11 @@ Search::Candidates Search::OnePerName(const Candidates& candidates) const {
   return result;
 }
 
-CandidatePtr Search::Ungated(const CandidatePtr& pair) const {
-  CandidatePtr ungated = base_;
-  for (const Term& term : pair->added())
-    for (const EffectForm& form : *catalogue_)
-      if (form.exact() && form.effect == term.form->effect) ungated = Make(fitter_->Add(ungated->fit, {&form, {}}));
-  return ungated;
-}
-
-CandidatePtr Search::Refined(const CandidatePtr& pair) const {
-  CandidatePtr best = pair;
-  // Two gates may hold each other up: a bias and a drift that cancel half-way seem to end there, both of them.
-  if (!pair->always()) {
-    const CandidatePtr ungated = Ungated(pair);
-    if (ungated->names() == pair->names() && !Better(pair->fit, ungated->fit)) best = ungated;
-  }
-  // Each member anew, given the other: any formula of the same effect, any gate.
-  for (std::size_t member = pair->num_known; member < pair->fit.hypothesis.terms.size(); ++member) {
-    Hypothesis others;
-    std::vector<double> theta;
-    const std::vector<Term> terms = best->fit.hypothesis.terms;
-    int num_terms = 0;
-    for (const Term& term : terms) num_terms += term.form->size();
-    const auto num_base = static_cast<int>(best->fit.theta.size()) - num_terms;
-    theta.assign(best->fit.theta.data(), best->fit.theta.data() + num_base);
-    int at = num_base;
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-      if (i != member) {
-        others.terms.push_back(terms[i]);
-        theta.insert(theta.end(), best->fit.theta.data() + at, best->fit.theta.data() + at + terms[i].form->size());
-      }
-      at += terms[i].form->size();
-    }
-    const CandidatePtr parent =
-        Make(fitter_->Fit(others, Eigen::Map<Vector>(theta.data(), static_cast<Eigen::Index>(theta.size()))));
-    for (const EffectForm& form : *catalogue_) {
-      if (form.effect != terms[member].form->effect) continue;
-      std::vector<Term> tries{{&form, {}}};
-      if (form.exact())
-        for (const GateCandidate& gate :
-             ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, nullptr),
-                       limits_.min_active_blocks))
-          if (gate.gain - gate.always_gain > limits_.min_gain * rows_ * fitter_->whitener().s2)
-            tries.push_back(gate.term);
-      for (const Term& term : tries) {
-        CandidatePtr other = Make(fitter_->Add(parent->fit, term));
-        const bool simpler = !GatedBy(term) && form.exact();
-        const double lead = other->fit.score() - best->fit.score();
-        const bool drops_gate =
-            simpler && GatedBy(best->fit.hypothesis.terms[member]) && !Better(best->fit, other->fit);
-        if (drops_gate || (simpler ? lead > 0.0 : Better(other->fit, best->fit))) best = other;
-      }
-    }
-  }
-  return best;
-}
-
-Search::Candidates Search::Pairs(const Candidates& order, const CandidatePtr& parent,
-                                 const Candidates& extended) const {
-  Candidates pairs;
-  std::set<std::vector<std::string>> beam;
-  for (const CandidatePtr& first : order) {
-    if (beam.size() >= kPairBeam) break;
-    if (Gain(first) < limits_.min_gain || !beam.insert(first->names()).second) continue;
-    const Candidates partners = first == parent ? extended : Extend(first, false);
-    pairs.insert(pairs.end(), partners.begin(), partners.end());
-  }
-  SortByScore(&pairs);
-  pairs = OnePerName(pairs);
-  for (std::size_t i = 0; i < std::min(kRefinedPairs, pairs.size()); ++i) pairs[i] = Refined(pairs[i]);
-  SortByScore(&pairs);
-  return pairs;
-}
-
 Search::Candidates Search::Listed(const Candidates& candidates, bool listed) const {
   Candidates some;
   std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(some),
                [&](const CandidatePtr& c) { return c->fit.hypothesis.terms.back().form->listed == listed; });
   return some;
-}
-
-Search::Candidates Search::Beside(const Candidates& listed, const Candidates& unlisted) const {
-  std::vector<Term> grants;
-  for (const CandidatePtr& physics : unlisted) grants.push_back(physics->fit.hypothesis.terms.back());
-  for (const EffectForm& form : *catalogue_)
-    if (form.regular) grants.push_back({&form, {}});
-  const Term* best = nullptr;
-  double most = listed.front()->fit.score();
-  for (const Term& grant : grants) {
-    const double score = fitter_->Add(listed.front()->fit, grant).score();
-    if (!(score > most)) continue;
-    best = &grant;
-    most = score;
-  }
-  if (best == nullptr) return {};
-  const CandidatePtr parent = Make(fitter_->Add(base_->fit, *best));
-  ++parent->num_known;
-  parent->granted = std::make_shared<Granted>();
-  parent->granted->what = best->form->effect;
-  parent->granted->without = parent->fit;
-  std::vector<std::pair<double, Term>> promises;
-  for (const EffectForm& form : *catalogue_)
-    if (form.exact()) promises.emplace_back(fitter_->Promise(parent->fit, {&form, {}}), Term{&form, {}});
-  std::stable_sort(promises.begin(), promises.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  Candidates beside;
-  for (std::size_t i = 0; i < std::min(kBesideGrant, promises.size()); ++i)
-    beside.push_back(Make(fitter_->Add(parent->fit, promises[i].second), parent));
-  SortByScore(&beside);
-  return beside;
-}
-
-CandidatePtr Search::LawError() const {
-  for (const EffectForm& form : *catalogue_)
-    if (form.regular) return Make(fitter_->Add(base_->fit, {&form, {}}));
-  return nullptr;
 }
 
 Finding Search::Run(bool pairs) const {

@@ -118,47 +118,6 @@ void Search::Hedge(Finding* finding) const {
   }
 }
 
-void Search::DropUnsure(Candidates* good) {
-  // Where other physics does as well beside the same grant, the grant did the work.
-  const auto holds = [](const CandidatePtr& all, const CandidatePtr& some) {
-    const std::vector<std::string> families = all->families(), asked = some->families();
-    return std::includes(families.begin(), families.end(), asked.begin(), asked.end());
-  };
-  const bool sure = std::all_of(good->begin(), good->end(), [&](const CandidatePtr& granted) {
-    return !granted->granted ||
-           std::all_of(good->begin(), good->end(), [&](const CandidatePtr& c) { return holds(c, granted); });
-  });
-  if (!sure) std::erase_if(*good, [](const CandidatePtr& c) { return c->granted != nullptr; });
-}
-
-void Search::TakeBack(Finding* finding) const {
-  constexpr double kWorthTelling = 0.01;
-  const auto told = [&](const CandidatePtr& c) {
-    return c == finding->best || c->probability >= kWorthTelling ||
-           std::find(finding->set.begin(), finding->set.end(), c) != finding->set.end();
-  };
-  std::erase_if(finding->tried, [&](const CandidatePtr& c) { return c->granted && !told(c); });
-  for (const CandidatePtr& candidate : finding->tried) {
-    if (!candidate->granted) continue;
-    // Coordinates: base, what the model had before, the grant, the effects.
-    const Fitted& with = candidate->granted->with;
-    const auto& terms = with.hypothesis.terms;
-    const std::size_t grant = candidate->num_known - 1;
-    Eigen::Index after = 0;
-    for (std::size_t i = grant + 1; i < terms.size(); ++i) after += terms[i].form->size();
-    const Eigen::Index before = with.theta.size() - after - terms[grant].form->size();
-    Vector start(before + after);
-    start << with.theta.head(before), with.theta.tail(after);
-    Hypothesis plain = with.hypothesis;
-    plain.terms.erase(plain.terms.begin() + static_cast<std::ptrdiff_t>(grant));
-    candidate->fit = fitter_->Fit(plain, start);
-    candidate->num_known = base_->num_known;
-  }
-  if (finding->set.empty() || !finding->best->granted) return;
-  finding->approximate = true;
-  finding->remainder = std::max(2.0 * referee_->Judge(finding->best->fit).total() / rows_, 0.0);
-}
-
 void Search::AssignProbabilities(Finding* finding) const {
   // One candidate a name; differences that do not decide a verdict do not decide a probability either.
   constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth

@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "comparison.hpp"
 #include "held_out.hpp"
 
 namespace armcmc::ladder {
@@ -18,7 +19,6 @@ namespace {
 
 constexpr std::size_t kMostJudged = 8;  // of a rung, by closing: what is far behind is not named anyway
 constexpr int kBootstrap = 400;
-constexpr double kLeastGain = 0.1;     // of the squared error: what a name has to take
 constexpr double kSure = 0.99;         // share of bootstrap samples in which it does
 constexpr double kLikely = 0.95;       // the same where few events show it: named, provisionally
 constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effect is named first
@@ -42,58 +42,6 @@ void InParallel(std::size_t count, const std::function<void(std::size_t)>& work)
 }
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Whether a group holds so much of what shows an effect that its absence says nothing: without it the fit gains less
-/// than half of what it gains with it.
-bool HoldsTheEvidence(const Contender& c, const Trial& base, std::size_t group) {
-  return 1.0 - c.trial.rest[group] / (base.rest[group] + 1e-300) < 0.5 * c.closed;
-}
-
-Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool beside) {
-  const std::vector<double>& mine = beside ? c.trial.beside : c.trial.alone;
-  const std::vector<double>& base = beside ? base_trial.beside : base_trial.alone;
-  std::map<GroupKind, double> sum, sum_base;
-  std::map<GroupKind, std::vector<double>> ratios;
-  for (std::size_t g = 0; g < mine.size(); ++g) {
-    const GroupKind kind = view.groups[g].kind;
-    if (kind != GroupKind::kFold && HoldsTheEvidence(c, base_trial, g)) continue;
-    sum[kind] += mine[g];
-    sum_base[kind] += base[g];
-    ratios[kind].push_back(mine[g] / (base[g] + 1e-300));
-  }
-  const auto ratio = [&](GroupKind kind) {
-    if (ratios[kind].empty()) return 1.0;
-    const double of_sums = sum[kind] / (sum_base[kind] + 1e-300);
-    return kind == GroupKind::kFold ? of_sums : std::min(of_sums, Median(ratios[kind]));
-  };
-  return {ratio(GroupKind::kFold), ratio(GroupKind::kBlock), ratio(GroupKind::kRegion)};
-}
-
-/// Of the rows of all folds together.
-double FoldSquares(const View& view, const std::vector<double>& squares) {
-  double sum = 0.0;
-  for (std::size_t g = 0; g < squares.size(); ++g)
-    if (view.groups[g].kind == GroupKind::kFold) sum += squares[g];
-  return sum;
-}
-
-/// Share of the squared error that is left which a flexible function takes, in folds.
-double FlexibleGain(const View& view, const Trial& trial) {
-  return 1.0 - FoldSquares(view, trial.beside) / (FoldSquares(view, trial.alone) + 1e-300);
-}
-
-/// Whether a trial leaves more than noise: what a flexible function takes, or what is rough at the sampling rate.
-/// @param floor  Standard deviation of the noise; 0: nobody knows.
-bool LeavesMore(const View& view, const Trial& trial, double floor) {
-  constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.2;
-  return FlexibleGain(view, trial) > kMore || (floor > 0.0 && trial.fit.error_sd > kRougher * floor);
-}
 
 bool Kin(const EffectEntry& a, const EffectEntry& b) {
   const auto lists = [](const EffectEntry& x, const EffectEntry& y) {

@@ -40,6 +40,9 @@ struct Candidate {
 };
 using CandidatePtr = std::shared_ptr<Candidate>;
 
+/// Best score first; equal ones as they come.
+void SortByScore(std::vector<CandidatePtr>* candidates);
+
 /// What the search finds in one recording with one noise model.
 struct Finding {
   Verdict verdict = Verdict::kNone;

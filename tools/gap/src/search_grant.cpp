@@ -1,0 +1,93 @@
+// What a model is granted beside an effect: an error of the law itself, or physics without a name. It is not claimed,
+// and taken back before anything is told.
+
+#include <algorithm>
+#include <utility>
+
+#include "armcmc/gap/search.hpp"
+
+namespace armcmc::gap {
+namespace {
+
+constexpr std::size_t kBesideGrant = 6;  // effects that are fitted beside a grant, by what they promise
+
+}  // namespace
+
+Search::Candidates Search::Beside(const Candidates& listed, const Candidates& unlisted) const {
+  std::vector<Term> grants;
+  for (const CandidatePtr& physics : unlisted) grants.push_back(physics->fit.hypothesis.terms.back());
+  for (const EffectForm& form : *catalogue_)
+    if (form.regular) grants.push_back({&form, {}});
+  const Term* best = nullptr;
+  double most = listed.front()->fit.score();
+  for (const Term& grant : grants) {
+    const double score = fitter_->Add(listed.front()->fit, grant).score();
+    if (!(score > most)) continue;
+    best = &grant;
+    most = score;
+  }
+  if (best == nullptr) return {};
+  const CandidatePtr parent = Make(fitter_->Add(base_->fit, *best));
+  ++parent->num_known;
+  parent->granted = std::make_shared<Granted>();
+  parent->granted->what = best->form->effect;
+  parent->granted->without = parent->fit;
+  std::vector<std::pair<double, Term>> promises;
+  for (const EffectForm& form : *catalogue_)
+    if (form.exact()) promises.emplace_back(fitter_->Promise(parent->fit, {&form, {}}), Term{&form, {}});
+  std::stable_sort(promises.begin(), promises.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  Candidates beside;
+  for (std::size_t i = 0; i < std::min(kBesideGrant, promises.size()); ++i)
+    beside.push_back(Make(fitter_->Add(parent->fit, promises[i].second), parent));
+  SortByScore(&beside);
+  return beside;
+}
+
+CandidatePtr Search::LawError() const {
+  for (const EffectForm& form : *catalogue_)
+    if (form.regular) return Make(fitter_->Add(base_->fit, {&form, {}}));
+  return nullptr;
+}
+
+void Search::DropUnsure(Candidates* good) {
+  // Where other physics does as well beside the same grant, the grant did the work.
+  const auto holds = [](const CandidatePtr& all, const CandidatePtr& some) {
+    const std::vector<std::string> families = all->families(), asked = some->families();
+    return std::includes(families.begin(), families.end(), asked.begin(), asked.end());
+  };
+  const bool sure = std::all_of(good->begin(), good->end(), [&](const CandidatePtr& granted) {
+    return !granted->granted ||
+           std::all_of(good->begin(), good->end(), [&](const CandidatePtr& c) { return holds(c, granted); });
+  });
+  if (!sure) std::erase_if(*good, [](const CandidatePtr& c) { return c->granted != nullptr; });
+}
+
+void Search::TakeBack(Finding* finding) const {
+  constexpr double kWorthTelling = 0.01;
+  const auto told = [&](const CandidatePtr& c) {
+    return c == finding->best || c->probability >= kWorthTelling ||
+           std::find(finding->set.begin(), finding->set.end(), c) != finding->set.end();
+  };
+  std::erase_if(finding->tried, [&](const CandidatePtr& c) { return c->granted && !told(c); });
+  for (const CandidatePtr& candidate : finding->tried) {
+    if (!candidate->granted) continue;
+    // Coordinates: base, what the model had before, the grant, the effects.
+    const Fitted& with = candidate->granted->with;
+    const auto& terms = with.hypothesis.terms;
+    const std::size_t grant = candidate->num_known - 1;
+    Eigen::Index after = 0;
+    for (std::size_t i = grant + 1; i < terms.size(); ++i) after += terms[i].form->size();
+    const Eigen::Index before = with.theta.size() - after - terms[grant].form->size();
+    Vector start(before + after);
+    start << with.theta.head(before), with.theta.tail(after);
+    Hypothesis plain = with.hypothesis;
+    plain.terms.erase(plain.terms.begin() + static_cast<std::ptrdiff_t>(grant));
+    candidate->fit = fitter_->Fit(plain, start);
+    candidate->num_known = base_->num_known;
+  }
+  if (finding->set.empty() || !finding->best->granted) return;
+  finding->approximate = true;
+  finding->remainder = std::max(2.0 * referee_->Judge(finding->best->fit).total() / rows_, 0.0);
+}
+
+}  // namespace armcmc::gap
