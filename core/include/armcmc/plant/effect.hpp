@@ -105,9 +105,10 @@ void CheckEffect(const EffectEntry& entry);
 
 /// The plant with the effect in it: an ordinary plant description.
 ///
-/// New names are EFFECT_NAME (coulomb_friction_Fc), with a number where that is taken. Where the effect acts in every
-/// mode, passive ones become active: they show it. Modes become one law where memory or a moved condition goes through
-/// them.
+/// New names are EFFECT_NAME (coulomb_friction_Fc), with a number where that is taken. A rate that an effect wraps
+/// becomes the let EFFECT_rate_of_STATE: what is added to that rate later is added there, inside the wrap. Where the
+/// effect acts in every mode, passive ones become active: they show it. Modes become one law where memory or a moved
+/// condition goes through them.
 ///
 /// @param scales  Sizes of the data; DefaultScales(plant) where there are none.
 /// @return A description that Plant() takes.
