@@ -15,14 +15,16 @@ int ActiveBlocks(const Vector& block_energy) {
   return static_cast<int>((block_energy.array() > kActiveShare * block_energy.maxCoeff()).count());
 }
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// c'r, |c|^2 and |Q'c|^2 of a template.
 struct Sums {
-  double cross = 0.0, energy = 0.0;
-  Vector basis;
+  double cross = 0.0, energy = 0.0, dependent = 0.0;
 };
 
 /// Decrease of the squares by the best amplitude; 0 where the sign is wrong or nothing is left of the template.
 double GainOf(const Sums& s, bool positive) {
-  const double independent = s.energy - s.basis.squaredNorm();
+  const double independent = s.energy - s.dependent;
   if (independent < kMinIndependent * s.energy || !(s.energy > 0.0)) return 0.0;
   if (positive && s.cross <= 0.0) return 0.0;
   return s.cross * s.cross / independent;
@@ -33,13 +35,13 @@ class Scan {
   Scan(const Fitter& fitter, const Fitted& parent, const EffectForm& form, int min_active)
       : signals_(fitter.signals()),
         residual_(parent.whitened_residual),
-        basis_(OrthonormalBasis(parent.whitened_jacobian)),
+        basis_(parent.basis()),
         positive_(form.linear ? form.num_amplitudes == 1 && form.coordinates[0].lower >= 0.0 : true),
         min_active_(min_active) {}
 
   void Consider(const EffectForm& form, const Vector& c, std::vector<GateCandidate>* best) const {
     const Eigen::Index n = c.size();
-    Sums total = Sum(c);
+    const Sums total = Sum(c);
     const double always = GainOf(total, positive_);
     if (form.gates_by_mode) {
       for (const When::Kind kind : {When::Kind::kContact, When::Kind::kFree}) {
@@ -53,13 +55,17 @@ class Scan {
     const auto edges = BlockEdges(n);
     const Vector energy = BlockSquares(c);
     const auto edge = static_cast<Eigen::Index>(kEdgeShare * static_cast<double>(n));
-    Sums until;
-    until.basis = Vector::Zero(basis_.cols());
+    const Vector all = basis_.transpose() * c;
+    Sums until, from;
+    Vector so_far = Vector::Zero(basis_.cols());
     GateCandidate from_best{{&form, {When::Kind::kFrom, 0.0}}, 0.0, always};
     GateCandidate until_best{{&form, {When::Kind::kUntil, 0.0}}, 0.0, always};
     for (Eigen::Index i = 0; i < n; ++i) {
       if (i >= edge && i < n - edge) {
-        const Sums from{total.cross - until.cross, total.energy - until.energy, total.basis - until.basis};
+        from.cross = total.cross - until.cross;
+        from.energy = total.energy - until.energy;
+        from.dependent = (all - so_far).squaredNorm();
+        until.dependent = so_far.squaredNorm();
         const double from_gain = GainOf(from, positive_), until_gain = GainOf(until, positive_);
         if (from_gain > from_best.gain) from_best = {{&form, {When::Kind::kFrom, signals_.t[i]}}, from_gain, always};
         if (until_gain > until_best.gain)
@@ -67,7 +73,7 @@ class Scan {
       }
       until.cross += c[i] * residual_[i];
       until.energy += c[i] * c[i];
-      if (basis_.cols() > 0) until.basis += c[i] * basis_.row(i).transpose();
+      so_far += c[i] * basis_.row(i).transpose();
     }
     for (const GateCandidate& candidate : {from_best, until_best}) {
       const bool from = candidate.term.when.kind == When::Kind::kFrom;
@@ -81,7 +87,9 @@ class Scan {
   }
 
  private:
-  [[nodiscard]] Sums Sum(const Vector& c) const { return {c.dot(residual_), c.squaredNorm(), basis_.transpose() * c}; }
+  [[nodiscard]] Sums Sum(const Vector& c) const {
+    return {c.dot(residual_), c.squaredNorm(), (basis_.transpose() * c).squaredNorm()};
+  }
   static void Keep(const GateCandidate& candidate, std::vector<GateCandidate>* best) {
     for (GateCandidate& kept : *best) {
       if (kept.term.when.kind != candidate.term.when.kind) continue;
@@ -97,7 +105,7 @@ class Scan {
 
   const Signals& signals_;
   const Vector& residual_;
-  Matrix basis_;
+  RowMajor basis_;  // a row is read at a time
   bool positive_;
   int min_active_;
 };

@@ -12,6 +12,7 @@ namespace {
 struct Placed {
   const EffectForm* form;
   Vector gate;
+  bool always;  ///< The gate is one everywhere.
   int first;
   const double* theta;
   [[nodiscard]] const double* shapes() const { return theta + form->num_amplitudes; }
@@ -24,7 +25,8 @@ std::vector<Placed> Place(const Signals& signals, const Hypothesis& hypothesis, 
   std::vector<Placed> placed;
   int first = num_base;
   for (const Term& term : hypothesis.terms) {
-    placed.push_back({term.form, GateOf(term.when, signals), first, theta.data() + first});
+    placed.push_back(
+        {term.form, GateOf(term.when, signals), term.when.kind == When::Kind::kAlways, first, theta.data() + first});
     first += term.form->size();
   }
   return placed;
@@ -38,7 +40,12 @@ struct Sum {
 
 Sum Evaluate(const Signals& signals, const Placed& term, Slopes wanted) {
   const EffectForm& form = *term.form;
-  const Matrix columns = term.gate.asDiagonal() * form.features(signals, term.shapes());
+  const auto features = [&](const double* shapes) -> Matrix {
+    Matrix columns = form.features(signals, shapes);
+    if (!term.always) columns = term.gate.asDiagonal() * columns;
+    return columns;
+  };
+  const Matrix columns = features(term.shapes());
   const Vector amplitudes = form.num_amplitudes == 0
                                 ? Vector(Vector::Ones(1))
                                 : Vector(Eigen::Map<const Vector>(term.theta, form.num_amplitudes));
@@ -49,7 +56,7 @@ Sum Evaluate(const Signals& signals, const Placed& term, Slopes wanted) {
     if (!wanted.Has(term.first + form.num_amplitudes + static_cast<int>(s))) continue;
     const double at = shape[s];
     shape[s] = at + kShapeStep;
-    const Vector moved = term.gate.asDiagonal() * form.features(signals, shape.data()) * amplitudes;
+    const Vector moved = features(shape.data()) * amplitudes;
     sum.slopes.col(form.num_amplitudes + static_cast<Eigen::Index>(s)) = (moved - sum.value) / kShapeStep;
     shape[s] = at;
   }
@@ -109,7 +116,7 @@ void AddMemory(const Signals& signals, const Placed& term, Prediction* out) {
 }
 
 void Sense(const Signals& signals, const Placed& term, Prediction* out) {
-  if ((term.gate.array() == 1.0).all()) {
+  if (term.always) {
     term.form->sense(signals, term.theta, term.first, out);
     return;
   }
@@ -171,7 +178,9 @@ Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypo
   Prediction out;
   out.wanted = wanted;
   out.jacobian = Matrix::Zero(signals.rows(), theta.size());
-  out.elastic_jacobian = Matrix::Zero(signals.rows(), theta.size());
+  const bool remembers =
+      std::any_of(terms.begin(), terms.end(), [](const Placed& term) { return term.form->slot == Slot::kMemory; });
+  out.elastic_jacobian = Matrix::Zero(signals.rows(), remembers ? theta.size() : 0);
   equation.Law(signals, theta.data(), input, &out);
   for (const Placed& term : terms) {
     if (term.form->slot == Slot::kMemory) AddMemory(signals, term, &out);

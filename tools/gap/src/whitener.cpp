@@ -51,14 +51,13 @@ Matrix StartFactor(const Vector& phi) {
   return factor.matrixL();
 }
 
-}  // namespace
-
-Vector Whitener::Apply(const Vector& series) const { return Apply(Matrix(series)); }
-
-Matrix Whitener::Apply(const Matrix& columns) const {
+/// Of every column.
+template <typename Columns>
+Columns Whitened(const Whitener& noise, const Columns& columns) {
+  const Vector& phi = noise.phi;
   const Eigen::Index n = columns.rows(), order = std::min(phi.size(), n);
-  if (phi.size() == 0 || columns.size() == 0) return columns;
-  Matrix out = columns;
+  Columns out = columns;
+  if (order == 0 || columns.size() == 0) return out;
   for (Eigen::Index c = 0; c < columns.cols(); ++c)
     for (Eigen::Index k = 0; k < order; ++k)
       out.col(c).tail(n - order) -= phi[k] * columns.col(c).segment(order - k - 1, n - order);
@@ -66,6 +65,12 @@ Matrix Whitener::Apply(const Matrix& columns) const {
   out.topRows(order) = start.triangularView<Eigen::Lower>().solve(columns.topRows(order));
   return out;
 }
+
+}  // namespace
+
+Vector Whitener::Apply(const Vector& series) const { return Whitened(*this, series); }
+
+Matrix Whitener::Apply(const Matrix& columns) const { return Whitened(*this, columns); }
 
 Vector Whitener::Colour(const Vector& white) const {
   Vector out = white;

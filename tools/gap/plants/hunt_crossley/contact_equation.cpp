@@ -119,6 +119,7 @@ class ContactEquation final : public Equation {
     out->elastic = Vector::Zero(s.rows());
     Vector slope_by_position = Vector::Zero(s.rows()), elastic_slope = Vector::Zero(s.rows());
     Vector slope_by_gain = Vector::Zero(s.rows());
+    const bool remembered = out->elastic_jacobian.cols() > 0;
     for (Eigen::Index i = 0; i < s.rows(); ++i) {
       const double shift = input.shift.size() > 0 ? input.shift[i] : 0.0;
       const double u = (position[i] - shift) / depth_scale;
@@ -131,10 +132,13 @@ class ContactEquation final : public Equation {
       const double force = elastic + power * b * rate;
       out->y[i] = force;
       out->elastic[i] = elastic;
-      out->jacobian(i, kStiffness) = out->elastic_jacobian(i, kStiffness) = power * gain;
+      out->jacobian(i, kStiffness) = power * gain;
       out->jacobian(i, kDamping) = power * rate;
       out->jacobian(i, kExponent) = force * log_u;
-      out->elastic_jacobian(i, kExponent) = elastic * log_u;
+      if (remembered) {
+        out->elastic_jacobian(i, kStiffness) = power * gain;
+        out->elastic_jacobian(i, kExponent) = elastic * log_u;
+      }
       const double per_position = p / (u * depth_scale);
       slope_by_position[i] = force * per_position;
       elastic_slope[i] = elastic * per_position;
@@ -142,11 +146,11 @@ class ContactEquation final : public Equation {
     }
     for (const LawInput::Slope& slope : input.shift_slopes) {
       out->jacobian.col(slope.coordinate) -= slope_by_position.cwiseProduct(slope.rows);
-      out->elastic_jacobian.col(slope.coordinate) -= elastic_slope.cwiseProduct(slope.rows);
+      if (remembered) out->elastic_jacobian.col(slope.coordinate) -= elastic_slope.cwiseProduct(slope.rows);
     }
     for (const LawInput::Slope& slope : input.gain_slopes) {
       out->jacobian.col(slope.coordinate) += slope_by_gain.cwiseProduct(slope.rows);
-      out->elastic_jacobian.col(slope.coordinate) += slope_by_gain.cwiseProduct(slope.rows);
+      if (remembered) out->elastic_jacobian.col(slope.coordinate) += slope_by_gain.cwiseProduct(slope.rows);
     }
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -32,8 +33,13 @@ struct Fitted {
   [[nodiscard]] bool on_edge() const;
   /// Nats that a coordinate's way to its prior mean would cost, the others following it; of the linearised fit.
   [[nodiscard]] double CostOfLeaving(Eigen::Index coordinate) const;
+  /// Orthonormal basis of whitened_jacobian. Made once: what extends a fit projects it out again and again.
+  [[nodiscard]] const Matrix& basis() const;
   /// s2 H^-1 of the whitened fit, zero for coordinates at a bound. Events count: they are fitted, too.
   [[nodiscard]] Matrix Covariance(double s2) const;
+
+ private:
+  mutable std::shared_ptr<const Matrix> basis_;
 };
 
 /// What another recording says of the coordinates: Gaussian, log p = -(theta - mean)' precision (theta - mean) / 2.
@@ -45,6 +51,8 @@ struct CoordinatePrior {
 /// Fits hypotheses to one recording with one noise model.
 class Fitter {
  public:
+  static constexpr int kMaxSteps = 12;
+
   Fitter(const Equation& equation, const Signals& signals, Whitener whitener);
 
   [[nodiscard]] const Equation& equation() const { return *equation_; }
@@ -53,7 +61,7 @@ class Fitter {
 
   /// Bounded Levenberg-Marquardt from `start`, then scores.
   /// @param prior  Of every coordinate; may be null.
-  [[nodiscard]] Fitted Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps = 12,
+  [[nodiscard]] Fitted Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps = kMaxSteps,
                            const CoordinatePrior* prior = nullptr) const;
   /// The best fit of `parent` with one more term: grid over the term's starts by projected score, then Fit.
   [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
@@ -62,6 +70,12 @@ class Fitter {
   [[nodiscard]] double Promise(const Fitted& parent, const Term& term) const;
 
  private:
+  struct Descent;
+  /// @param rival  A fit of the same hypothesis from elsewhere; may be null. The descent is given up where it comes to
+  ///               the same minimum, or where it cannot get below.
+  [[nodiscard]] Descent Descend(const Hypothesis& hypothesis, const Vector& start, int max_steps,
+                                const CoordinatePrior* prior, const Fitted* rival) const;
+  [[nodiscard]] Fitted Finish(const Hypothesis& hypothesis, Descent at) const;
   /// Squares and coordinates at each of the term's starts, amplitudes fitted; the least squares first.
   [[nodiscard]] std::vector<std::pair<double, Vector>> Starts(const Fitted& parent, const Term& term) const;
   /// Halves amplitudes [first, first + count) until the plant that they make does not run away.

@@ -23,7 +23,7 @@ struct Prediction {
   Matrix jacobian;  ///< [row][coordinate]
   /// The part of the law that does not depend on rates (the elastic force of a contact), for effects that remember it.
   Vector elastic;
-  Matrix elastic_jacobian;
+  Matrix elastic_jacobian;  ///< Of no columns where no effect remembers.
 };
 
 struct EffectForm;
