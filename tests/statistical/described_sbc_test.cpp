@@ -188,15 +188,28 @@ constexpr double kPass = 55.6;
 class DescribedCalibration : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(DescribedCalibration, RanksOfTheFirstPackAreUniform) {
-  for (const Histogram& h : RankHistograms(kCases[GetParam()], 400, 1, 21)) EXPECT_LT(ChiSquare(h), kPass);
+  for (const Histogram& h : RankHistograms(kCases[GetParam()], 200, 1, 21)) EXPECT_LT(ChiSquare(h), kPass);
 }
 
-TEST_P(DescribedCalibration, RanksAfterThreePacksOfTheRecursionAreUniform) {
+class DescribedRecursion : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(DescribedRecursion, RanksAfterThreePacksAreUniform) {
   for (const Histogram& h : RankHistograms(kCases[GetParam()], 250, 3, 22)) EXPECT_LT(ChiSquare(h), kPass);
 }
 
-INSTANTIATE_TEST_SUITE_P(Plants, DescribedCalibration, ::testing::Range<std::size_t>(0, kCases.size()),
-                         [](const auto& info) { return std::string(kCases[info.param].name); });
+class LongDescribedCalibration : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(LongDescribedCalibration, RanksOfTheFirstPackAreUniform) {
+  for (const Histogram& h : RankHistograms(kCases[GetParam()], 1000, 1, 23)) EXPECT_LT(ChiSquare(h), kPass);
+}
+
+std::string NameOf(const ::testing::TestParamInfo<std::size_t>& info) { return kCases[info.param].name; }
+
+INSTANTIATE_TEST_SUITE_P(Plants, DescribedCalibration, ::testing::Range<std::size_t>(0, kCases.size()), NameOf);
+INSTANTIATE_TEST_SUITE_P(Plants, LongDescribedCalibration, ::testing::Range<std::size_t>(0, kCases.size()), NameOf);
+// The recursion is the same for all; one that is linear is sampled in a tenth of the time.
+INSTANTIATE_TEST_SUITE_P(Linear, DescribedRecursion, ::testing::Values<std::size_t>(0), NameOf);
+INSTANTIATE_TEST_SUITE_P(LongWithStates, DescribedRecursion, ::testing::Range<std::size_t>(1, kCases.size()), NameOf);
 
 }  // namespace
 }  // namespace armcmc::described_sbc_test

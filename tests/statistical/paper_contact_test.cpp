@@ -104,7 +104,7 @@ TEST(PaperContact, TracksTheAuthorsRecording) {
   EXPECT_EQ(score.modifications, 1);  // the first pack, and no false alarm after it
 }
 
-TEST(PaperContact, CoversTheTruthOverTwentyNoiseSeeds) {
+TEST(LongPaperContact, CoversTheTruthOverTwentyNoiseSeeds) {
   ARMCMC_REQUIRE_DATA("paper/hunt_crossley.csv");
   const Recording data = Load();
   constexpr int kSeeds = 20;

@@ -26,7 +26,8 @@ using test::MarginalTruth;
 using test::Motion;
 using test::Normal;
 
-constexpr int kPacks = 32;  // whose motions begin 0.2 rad apart: once round
+constexpr int kPacks = 16;  // whose motions begin 0.4 rad apart: once round
+constexpr double kTurn = 0.4;
 
 /// Root mean squares over packs and parameters of the sampler's error against quadrature.
 struct Agreement {
@@ -70,7 +71,7 @@ Agreement ColdPacks(const Motion& base, std::uint64_t seed) {
     Estimator estimator(settings);
     const auto result = estimator.MakeResult();
     Motion motion = base;
-    motion.phase += 0.2 * i;
+    motion.phase += kTurn * i;
     const DataPack pack = MakeContactPack(1, motion, {}, s.noise[0].std, &normal);
     estimator.Adjust(pack, 0, {}, result.get());
     Estimate e;
@@ -126,7 +127,7 @@ Agreement WarmPacks(const ContactTruth& after, std::uint64_t seed, int packs, in
     PosteriorMemory none, first, second;
     AdjustResult result(1, 3, capacity);
     ModeDraws& draws = result.modes[0];
-    const Motion motion{1.0, 0.5, 5.0, 0.2 * i};
+    const Motion motion{1.0, 0.5, 5.0, kTurn * i};
     const auto run = [&](const DataPack& pack, const PosteriorMemory& previous, PosteriorMemory* next) {
       ModeData data;
       HuntCrossley::Prepare(pack, s.constants, 0, &data);
@@ -194,7 +195,7 @@ TEST(Quadrature, AgreesAfterAnAbruptChange) {
 TEST(Quadrature, AgreesWhenAChangeIsTooSmallForAModification) {
   // The memory and the initial prior both have a say: the posterior may have two parts.
   int modifications = 0;
-  constexpr int kChanges = 50;
+  constexpr int kChanges = 24;
   WarmPacks({3.95, 2.3, 1.7}, 25, kChanges, &modifications).Check(1.0);
   EXPECT_LT(modifications, kChanges / 4);
 }

@@ -1,5 +1,5 @@
 # armcmc_add_tests(ROOM source... [LIBS target...] [INCLUDES folder...] [PROGRAMS target...] [KERNELS] [TIMEOUT seconds]
-#                  [COST seconds] [THREADS] [REALTIME] [DEADLINES] [BROWSER] [NATIVE] [LONG])
+#                  [COST seconds] [THREADS] [REALTIME] [DEADLINES] [BROWSER] [SCREEN] [NATIVE] [LONG])
 #
 # Adds test sources to the one GoogleTest executable of a room, ROOM_test; every TEST is a test of ctest with the label
 # ROOM. Tests find recordings and programs through "support/paths.hpp", under ctest as well as by hand. Tests with
@@ -14,14 +14,17 @@
 #   REALTIME        part of the build with RealtimeSanitizer
 #   DEADLINES       runs programs that have deadlines, in real time: one such test at a time, as two would make each
 #                   other miss; not instrumented, as instrumented code is too slow for deadlines
-#   BROWSER         opens pages in a browser, which is not ours to instrument
+#   BROWSER         opens pages in a browser, which is not ours to instrument: run by `tools/test --all`
+#   SCREEN          draws on a screen without a monitor: run by `tools/test --all`
 #   NATIVE          what runs is not ours, or runs under AddressSanitizer in other tests
-#   LONG            shows what only chance or a long load can show: run by `tools/test --long` alone
+#   LONG            shows what only chance or a long load can show: run by `tools/test --long` alone. So does a single
+#                   suite, or an instantiation of one, whose name begins with Long
 #
 # A build with a sanitizer compiles only what it runs, and runs each executable as a whole, as one test of ctest (two for
 # a room that armcmc_split_room names): starting an instrumented program a thousand times takes longer than what most
 # tests do.
 add_custom_target(all_tests)
+set(armcmc_not_long "GTEST_FILTER=-Long*:*/Long*")  # of a room that runs as a whole
 
 # What the sources of all tests include. One for all: it takes longer to make than any test takes to compile.
 function(armcmc_make_test_headers)
@@ -45,7 +48,7 @@ endfunction()
 # armcmc_is_admitted(VARIABLE option...): whether tests with these options are part of this build.
 function(armcmc_is_admitted variable)
   set(admitted TRUE)
-  if(ARMCMC_SANITIZER STREQUAL "address" AND ARGN MATCHES "DEADLINES|BROWSER|NATIVE|LONG")
+  if(ARMCMC_SANITIZER STREQUAL "address" AND ARGN MATCHES "DEADLINES|BROWSER|SCREEN|NATIVE|LONG")
     set(admitted FALSE)
   elseif(ARMCMC_SANITIZER STREQUAL "thread" AND NOT "THREADS" IN_LIST ARGN)
     set(admitted FALSE)
@@ -70,11 +73,12 @@ function(armcmc_add_room room)
   if(ARMCMC_SANITIZER)
     add_test(NAME ${room} COMMAND ${target})
     # The whole room, at a tenth of the speed, on a machine that may be busy.
-    set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 3600 COST 100)
+    set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 3600 COST 100
+      ENVIRONMENT "${armcmc_not_long}")
     # What a test runs as a process writes to the same file, and the room over it, at its end.
     if(ARMCMC_COVERAGE)
       set_tests_properties(${room} PROPERTIES
-        ENVIRONMENT "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${room}.profraw")
+        ENVIRONMENT "${armcmc_not_long};LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${room}.profraw")
     endif()
   endif()
 endfunction()
@@ -94,7 +98,7 @@ function(armcmc_split_room room)
   endforeach()
   set(index 0)
   foreach(test IN ITEMS ${room} ${room}_2)
-    set(environment "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${index}")
+    set(environment "${armcmc_not_long};GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${index}")
     if(ARMCMC_COVERAGE)
       list(APPEND environment "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${test}.profraw")
     endif()
@@ -121,7 +125,7 @@ function(armcmc_filter_of_sources variable)
 endfunction()
 
 function(armcmc_add_tests room)
-  set(marks THREADS REALTIME DEADLINES BROWSER NATIVE LONG)
+  set(marks THREADS REALTIME DEADLINES BROWSER SCREEN NATIVE LONG)
   cmake_parse_arguments(PARSE_ARGV 1 arg "KERNELS;${marks}" "TIMEOUT;COST" "LIBS;INCLUDES;PROGRAMS")
   set(sources "${arg_UNPARSED_ARGUMENTS}")
   set(has "")
@@ -187,6 +191,9 @@ function(armcmc_add_tests room)
     PROPERTIES ${properties})
   set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/labels_${id}.cmake")
   file(WRITE "${labels_file}" "if(${list_name})\n"
-    "  set_tests_properties(\${${list_name}} PROPERTIES LABELS \"${labels}\")\nendif()\n")
+    "  set_tests_properties(\${${list_name}} PROPERTIES LABELS \"${labels}\")\n"
+    "  set(long \${${list_name}})\n"
+    "  list(FILTER long INCLUDE REGEX \"^Long|/Long\")\n"
+    "  if(long)\n    set_tests_properties(\${long} PROPERTIES LABELS \"${labels};long\")\n  endif()\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${labels_file}")
 endfunction()

@@ -111,7 +111,7 @@ TEST(ActuatorWorkflow, FindsAPayloadThatComesAfterThePartThatIsDiagnosed) {
                           [](const std::string& note) { return note.find("sealed") != std::string::npos; }));
 }
 
-TEST(ActuatorWorkflow, FindsAPayloadOfWhichThePartThatIsDiagnosedShowsTheBeginningOnly) {
+TEST(LongActuatorWorkflow, FindsAPayloadOfWhichThePartThatIsDiagnosedShowsTheBeginningOnly) {
   WorkflowRequest request;
   request.model = kModel;
   request.data = RecordPlant(kModel, {{"payload_step", 1.0, {3.0, 0.68 * kSeconds}}}, 68, kSeconds);

@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"sensor_delay", "bend equation", true}, Case{"periodic_disturbance", "bend equation", true}),
     [](const auto& at) { return std::string(at.param.effect); });
 
-TEST(ActuatorRecovery, LetsTheFlowLawDecideBetweenTheTwoBiases) {
+TEST(LongActuatorRecovery, LetsTheFlowLawDecideBetweenTheTwoBiases) {
   // A constant bias of either sensor bends the actuator alike: only the vent flow tells them apart. 1500 Pa change it
   // at 15 kPa by 5 %; the same offset of the angle leaves it alone.
   const Recording pressure = RecordPlant(kModel, {{"pressure_bias", 1.0, {1500.0}}}, 63, kSeconds);

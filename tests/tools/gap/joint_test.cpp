@@ -82,7 +82,9 @@ TEST_F(JoinTest, ARecordingOfAnotherEffectKeepsItsOwnVerdict) {
   EXPECT_NE(notes_[0].find("disagree"), std::string::npos) << notes_[0];
 }
 
-TEST_F(JoinTest, ALatencyIsJudgedByARecordingSampledMoreOften) {
+class LongJoinTest : public JoinTest {};
+
+TEST_F(LongJoinTest, ALatencyIsJudgedByARecordingSampledMoreOften) {
   HiddenEffect delay = test::Hidden("sensor_delay"), lag = test::Hidden("sensor_lag");
   for (const bool delayed : {true, false}) {
     const HiddenEffect& truth = delayed ? delay : lag;

@@ -15,7 +15,7 @@ namespace {
 
 using test::Json;
 
-TEST(TablesProgram, ShowsTheCoverageAloneOfSeedsThatAreAskedFor) {
+TEST(LongTablesProgram, ShowsTheCoverageAloneOfSeedsThatAreAskedFor) {
   const test::ScratchDir folder;
   const auto run = [&](const char* first_seed) {
     const test::Outcome outcome = test::RunProgram(

@@ -169,6 +169,10 @@ Matrix Fitted::Covariance(double s2) const {
 Fitter::Fitter(const Equation& equation, const Signals& signals, Whitener whitener)
     : equation_(&equation), signals_(&signals), whitener_(std::move(whitener)) {}
 
+Prediction Fitter::Predict(const Hypothesis& hypothesis, const Vector& theta, Slopes wanted) const {
+  return Evaluate(*equation_, *signals_, hypothesis, theta, wanted, &memo_);
+}
+
 /// A descent: where it is, and what is known there.
 struct Fitter::Descent {
   std::vector<Coordinate> coordinates;
@@ -188,7 +192,7 @@ Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& star
     regular = {Vector::Zero(at.theta.size()), RegularPrecision(hypothesis, at.coordinates).asDiagonal()};
     prior = &regular;
   }
-  at.prediction = Evaluate(*equation_, *signals_, hypothesis, at.theta);
+  at.prediction = Predict(hypothesis, at.theta);
   at.residual = whitener_.Apply(Vector(signals_->output - at.prediction.y));
   const auto penalty = [&](const Vector& theta) {
     return prior == nullptr ? 0.0 : whitener_.s2 * (theta - prior->mean).dot(prior->precision * (theta - prior->mean));
@@ -217,7 +221,7 @@ Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& star
     for (int i = 0; i < kMaxDampings && !improved; ++i) {
       Vector tried = at.theta + BoundedStep(gram, ascent, damping, at.coordinates, at.theta, free);
       Clamp(at.coordinates, &tried);
-      Prediction next = Evaluate(*equation_, *signals_, hypothesis, tried);
+      Prediction next = Predict(hypothesis, tried);
       Vector next_residual = whitener_.Apply(Vector(signals_->output - next.y));
       const double next_squares = next_residual.squaredNorm() + penalty(tried);
       if (!(next_squares < squares)) {
@@ -287,7 +291,7 @@ void Fitter::Score(Fitted* fitted) const {
 void Fitter::Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const {
   constexpr int kMostHalvings = 20;
   for (int i = 0; i < kMostHalvings; ++i) {
-    if (Evaluate(*equation_, *signals_, hypothesis, *theta, Slopes::None()).y.allFinite()) return;
+    if (Predict(hypothesis, *theta, Slopes::None()).y.allFinite()) return;
     theta->segment(first, count) *= 0.5;
   }
 }
@@ -311,8 +315,7 @@ std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, cons
     const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
     if (form.linear) theta.segment(first, form.num_amplitudes).setZero();
     const Slopes amplitudes_only{static_cast<int>(first), static_cast<int>(first) + form.num_amplitudes};
-    const Prediction prediction =
-        Evaluate(*equation_, *signals_, hypothesis, theta, form.linear ? amplitudes_only : Slopes::None());
+    const Prediction prediction = Predict(hypothesis, theta, form.linear ? amplitudes_only : Slopes::None());
     double squares = 0.0;
     if (form.linear) {
       const Matrix columns =

@@ -144,11 +144,11 @@ std::vector<Vector> Templates(const Fitter& fitter, const Fitted& parent, const 
       Vector alone = theta;
       alone.segment(first, form.num_amplitudes).setZero();
       alone[first + a] = kUnit;
-      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, alone, Slopes::None());
+      const Prediction p = fitter.Predict(hypothesis, alone, Slopes::None());
       templates.push_back(fitter.whitener().Apply(Vector(p.y - parent.predicted)));
     }
     if (!form.linear) {
-      const Prediction p = Evaluate(fitter.equation(), fitter.signals(), hypothesis, theta, Slopes::None());
+      const Prediction p = fitter.Predict(hypothesis, theta, Slopes::None());
       templates.push_back(fitter.whitener().Apply(Vector(p.y - parent.predicted)));
     }
   }

@@ -128,6 +128,32 @@ void Sense(const Signals& signals, const Placed& term, Prediction* out) {
   out->jacobian += shut.asDiagonal() * before.jacobian;
 }
 
+/// The law that no effect reaches into.
+void PlainLaw(const Equation& equation, const Signals& signals, const Vector& theta, int num_base, LawMemo* memo,
+              Prediction* out) {
+  const Slopes wanted = out->wanted;
+  const bool all = wanted.first == 0 && wanted.end >= num_base, none = wanted.first >= num_base || wanted.end == 0;
+  if (memo == nullptr || !(all || none)) {
+    equation.Law(signals, theta.data(), {}, out);
+    return;
+  }
+  const bool remembers = out->elastic_jacobian.cols() > 0;
+  Prediction& law = memo->law;
+  if (memo->theta.size() != num_base || memo->theta != theta.head(num_base) || memo->with_slopes != all ||
+      (remembers && law.elastic_jacobian.cols() == 0)) {
+    law.wanted = all ? Slopes{0, num_base} : Slopes::None();
+    law.jacobian = Matrix::Zero(signals.rows(), num_base);
+    law.elastic_jacobian = Matrix::Zero(signals.rows(), remembers ? num_base : 0);
+    equation.Law(signals, theta.data(), {}, &law);
+    memo->theta = theta.head(num_base);
+    memo->with_slopes = all;
+  }
+  out->y = law.y;
+  out->elastic = law.elastic;
+  out->jacobian.leftCols(num_base) = law.jacobian;
+  if (remembers) out->elastic_jacobian.leftCols(num_base) = law.elastic_jacobian;
+}
+
 }  // namespace
 
 Vector GateOf(const When& when, const Signals& signals) {
@@ -162,10 +188,10 @@ std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& s
 }
 
 Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis, const Vector& theta,
-                    Slopes wanted) {
-  int num_terms = 0;
-  for (const Term& term : hypothesis.terms) num_terms += term.form->size();
-  const std::vector<Placed> terms = Place(signals, hypothesis, static_cast<int>(theta.size()) - num_terms, theta);
+                    Slopes wanted, LawMemo* memo) {
+  int num_base = static_cast<int>(theta.size());
+  for (const Term& term : hypothesis.terms) num_base -= term.form->size();
+  const std::vector<Placed> terms = Place(signals, hypothesis, num_base, theta);
   LawInput input;
   for (const Placed& term : terms) {
     const auto sum = [&] { return Evaluate(signals, term, wanted); };
@@ -181,7 +207,10 @@ Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypo
   const bool remembers =
       std::any_of(terms.begin(), terms.end(), [](const Placed& term) { return term.form->slot == Slot::kMemory; });
   out.elastic_jacobian = Matrix::Zero(signals.rows(), remembers ? theta.size() : 0);
-  equation.Law(signals, theta.data(), input, &out);
+  if (input.shift.size() == 0 && input.gain.size() == 0 && input.drive.size() == 0 && input.forces.empty())
+    PlainLaw(equation, signals, theta, num_base, memo, &out);
+  else
+    equation.Law(signals, theta.data(), input, &out);
   for (const Placed& term : terms) {
     if (term.form->slot == Slot::kMemory) AddMemory(signals, term, &out);
     if (term.form->slot == Slot::kAdditive) AddFeatures(signals, term, input, &out);

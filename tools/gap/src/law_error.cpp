@@ -1,5 +1,6 @@
 #include "armcmc/gap/law_error.hpp"
 
+#include <memory>
 #include <string>
 
 #include "armcmc/gap/form_tools.hpp"
@@ -24,13 +25,27 @@ Matrix Bumps(const Signals& signals, const LawVariable& variable) {
   return bumps;
 }
 
-/// One bump of both variables a column.
-Matrix BumpsOfBoth(const Signals& signals, const LawVariable& a, const LawVariable& b) {
-  const Matrix left = Bumps(signals, a), right = Bumps(signals, b);
-  Matrix both(signals.rows(), kPlaces * kPlaces);
-  for (int i = 0; i < kPlaces; ++i) both.middleCols(i * kPlaces, kPlaces) = left.col(i).asDiagonal() * right;
-  return both;
-}
+/// One bump of both variables a column. They depend on nothing that is fitted, so that the last are kept.
+class BumpsOfBoth {
+ public:
+  BumpsOfBoth(const LawVariable& a, const LawVariable& b) : a_(a), b_(b) {}
+
+  const Matrix& Of(const Signals& signals) {
+    const Vector &first = signals.at(a_.role), &second = signals.at(b_.role);
+    if (first.size() == first_.size() && first == first_ && second == second_) return bumps_;
+    first_ = first;
+    second_ = second;
+    const Matrix left = Bumps(signals, a_), right = Bumps(signals, b_);
+    bumps_.resize(signals.rows(), kPlaces * kPlaces);
+    for (int i = 0; i < kPlaces; ++i) bumps_.middleCols(i * kPlaces, kPlaces) = left.col(i).asDiagonal() * right;
+    return bumps_;
+  }
+
+ private:
+  LawVariable a_, b_;
+  Vector first_, second_;
+  Matrix bumps_;
+};
 
 }  // namespace
 
@@ -44,7 +59,9 @@ EffectForm LawErrorForm(const LawVariable& a, const LawVariable& b) {
         AmplitudeOf(("share_" + std::to_string(k + 1)).c_str(), "-", 1.0, false, kTypical, kMost));
     form.coordinates.back().nuisance = true;
   }
-  form.features = [a, b](const Signals& in, const double*) { return BumpsOfBoth(in, a, b); };
+  form.features = [bumps = std::make_shared<BumpsOfBoth>(a, b)](const Signals& in, const double*) -> Matrix {
+    return bumps->Of(in);
+  };
   SetStarts(&form, {});
   return form;
 }

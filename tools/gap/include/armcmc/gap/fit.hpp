@@ -59,6 +59,7 @@ class Fitter {
   [[nodiscard]] const Signals& signals() const { return *signals_; }
   [[nodiscard]] const Whitener& whitener() const { return whitener_; }
 
+  [[nodiscard]] Prediction Predict(const Hypothesis& hypothesis, const Vector& theta, Slopes wanted = {}) const;
   /// Bounded Levenberg-Marquardt from `start`, then scores.
   /// @param prior  Of every coordinate; may be null.
   [[nodiscard]] Fitted Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps = kMaxSteps,
@@ -86,6 +87,7 @@ class Fitter {
   const Equation* equation_;
   const Signals* signals_;
   Whitener whitener_;
+  mutable LawMemo memo_;
 };
 
 }  // namespace armcmc::gap

@@ -26,9 +26,17 @@ struct Hypothesis {
 [[nodiscard]] std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& signals,
                                                     const Hypothesis& hypothesis);
 
+/// What the law by itself said last. A grid over an effect asks it again and again for one set of its coordinates.
+struct LawMemo {
+  Vector theta;              ///< Of the law alone. Empty: nothing is known.
+  bool with_slopes = false;  ///< Whether its derivatives were asked for.
+  Prediction law;
+};
+
 /// Prediction and exact derivatives: law and effects pass the columns of the slots before them on.
 /// @param wanted  Derivatives that are asked for; every one of the others may be left out.
+/// @param memo    Of this equation and these signals; may be null.
 [[nodiscard]] Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis,
-                                  const Vector& theta, Slopes wanted = {});
+                                  const Vector& theta, Slopes wanted = {}, LawMemo* memo = nullptr);
 
 }  // namespace armcmc::gap
