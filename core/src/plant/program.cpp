@@ -98,8 +98,11 @@ void PlantProgram::CompileLaw(const std::string& name, int law, int target, cons
     // law - target: squares do not mind the sign, and a product is added to minus the target in one instruction.
     for (const bool error : {false, true}) {
       const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
-      const expression::CompiledTape tape = CompileTape(&graph_, {node}, static_cast<int>(sampled_.size()),
-                                                        static_cast<int>(plant_->states().size()), std::move(*scalars));
+      const expression::CompiledTape tape = CompileTape(&graph_, {node},
+                                                        {.num_parameters = static_cast<int>(sampled_.size()),
+                                                         .num_states = states_.size(),
+                                                         .first_free = states_.step().num_registers},
+                                                        std::move(*scalars));
       *scalars = tape.scalars;
       (error ? mode.error : mode.law) = tape.tape;
     }
@@ -130,6 +133,7 @@ void PlantProgram::CompileModes() {
     return plant_->description().law.empty() ? "mode[" + std::to_string(active_[a]) + "].law" : std::string("law");
   };
   std::vector<int> scalars;
+  if (part_ == Part::kPrediction || LawsNeedStates()) CompileStates(&scalars);
   if (part_ == Part::kPrediction) {
     const int law = OfActingMode([&](std::size_t a) { return InMode(plant_->predicts(), a); });
     CompileLaw("prediction", law, output, "predicts", &scalars);
@@ -146,7 +150,6 @@ void PlantProgram::CompileModes() {
       modes_.back().law_is_output = mode.target == output;
     }
   }
-  if (part_ == Part::kPrediction || LawsNeedStates()) CompileStates(&scalars);
   CompileFeatures(scalars);
 }
 
@@ -287,7 +290,7 @@ void PlantProgram::Fill(const PlantPack& pack, int num_samples, int mode, ModeDa
   data->tape = &modes_[static_cast<std::size_t>(mode)].law;
   data->error_tape = &modes_[static_cast<std::size_t>(mode)].error;
   data->scalars = &pack.scalars;
-  data->states = pack.states.rate != nullptr ? &pack.states : nullptr;
+  data->states = pack.states.step != nullptr ? &pack.states : nullptr;
   data->start_fit = nullptr;
 }
 

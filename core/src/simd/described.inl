@@ -7,27 +7,32 @@ namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
 /// Runs a tape at the samples of `data`, in their order: take(n, result), result[lane].
+/// @param offset, end  Of the states of a plant that has some: added to their starts, and them at the end of the pack;
+///                     null: neither.
 template <class Take>
-[[gnu::always_inline]] inline void RunTape(const Tape& tape, const ModeData& data, const ThetaTile& theta,
-                                           Take take) noexcept {
+[[gnu::always_inline]] inline void RunSamples(const Tape& tape, const ModeData& data, const ThetaTile& theta, Take take,
+                                              const StateTile* offset = nullptr, StateTile* end = nullptr) noexcept {
   TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
-  StartTape(tape, theta, data.scalars->Row(0), &registers);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(tape.num_parameters); ++d) registers.value[d] = theta.value[d];
   const auto one = [&](std::size_t n) {
-    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
-        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
+    RunTape(tape, data.scalars->Row(data.sample[n]), &registers);
     take(n, registers.value[tape.result[0]].data());
   };
   const auto samples = static_cast<std::size_t>(data.num_samples);
   if (data.states == nullptr) {
+    StartTape(tape, data.scalars->Row(0), &registers);
     for (std::size_t n = 0; n < samples; ++n) one(n);
     return;
   }
-  StateIntegrator states(*data.states, theta, data.scalars->Row(0));
+  StateIntegrator states(*data.states, data.scalars->Row(0), &registers, offset);
+  StartTape(tape, data.scalars->Row(0), &registers);
   for (std::size_t n = 0; n < samples; ++n) {
     states.AdvanceTo(data.sample[n]);
-    states.CopyTo(tape, &registers);
     one(n);
   }
+  if (end == nullptr) return;
+  states.AdvanceTo(data.states->num_samples - 1);
+  states.CopyTo(end);
 }
 
 /// Adds to the law what makes its errors independent beside an uncertain start.
@@ -53,26 +58,16 @@ void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) n
 }
 
 void PredictTape(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  RunTape(*data.tape, data, theta,
-          [&](std::size_t n, const double* law) { std::copy_n(law, kTileLanes, tile->value[n].data()); });
+  RunSamples(*data.tape, data, theta,
+             [&](std::size_t n, const double* law) { std::copy_n(law, kTileLanes, tile->value[n].data()); });
   if (data.start_fit != nullptr) FitStart(*data.start_fit, data, tile);
 }
 
 void RunStates(const ModeData& data, const ThetaTile& theta, const StateTile& offset, StateTile* end,
                PredictionTile* law) noexcept ARMCMC_NONBLOCKING {
-  const Tape& tape = *data.tape;
-  TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
-  StartTape(tape, theta, data.scalars->Row(0), &registers);
-  StateIntegrator states(*data.states, theta, data.scalars->Row(0), &offset);
-  for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
-    states.AdvanceTo(data.sample[n]);
-    states.CopyTo(tape, &registers);
-    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
-        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
-    law->value[n] = registers.value[tape.result[0]];
-  }
-  states.AdvanceTo(data.states->num_samples - 1);
-  *end = states.state();
+  RunSamples(
+      *data.tape, data, theta,
+      [&](std::size_t n, const double* value) { std::copy_n(value, kTileLanes, law->value[n].data()); }, &offset, end);
 }
 
 /// out[lane] = sum of the squares of law - target, weighted.
@@ -82,7 +77,7 @@ void SumTapeSquares(const ModeData& data, const ThetaTile& theta, double* out) n
   Simd::V along[kMaxStates][kTapeVectors] = {};
   const StartFit* fit = data.start_fit;
   const std::size_t count = fit != nullptr ? static_cast<std::size_t>(fit->count) : 0;
-  RunTape(*data.error_tape, data, theta, [&](std::size_t n, const double* error) {
+  RunSamples(*data.error_tape, data, theta, [&](std::size_t n, const double* error) {
     for (int v = 0; v < kTapeVectors; ++v) {
       Simd::V e = Simd::Load(error + v * Simd::kLanes);
       if constexpr (kWeighted) e = e * Simd::Set(data.weight[n]);
