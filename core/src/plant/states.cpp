@@ -90,18 +90,19 @@ bool PlantStates::Prepare(const DataPack& pack, const StateMemory* before, State
   out->num_samples = pack.num_samples;
   out->substeps = substeps_;
   out->stride = step_.num_scalars;
-  out->carried = before != nullptr && before->known && !all_measured_;
-  const int intervals = pack.num_samples - 1 + (out->carried ? 1 : 0);
+  const bool carried = before != nullptr && before->known && !all_measured_;
+  out->carried = carried;
+  const int intervals = pack.num_samples - 1 + (carried ? 1 : 0);
   if (intervals * substeps_ * out->stride > kMaxStateCells) return false;
 
   PlantSignals from{}, to{}, between{};
   SignalsAt(pack, 0, output_, &to);
-  from = out->carried ? before->signals : to;
+  from = carried ? before->signals : to;
   bool finite = true;
   for (std::size_t s = 0; s < static_cast<std::size_t>(size_); ++s) {
     const int signal = measured_by_[s];
-    out->given[s] = out->carried || signal >= 0;
-    out->value[s] = signal >= 0 ? from[static_cast<std::size_t>(signal)] : out->carried ? before->state[s] : 0.0;
+    out->given[s] = carried || signal >= 0;
+    out->value[s] = signal >= 0 ? from[static_cast<std::size_t>(signal)] : carried ? before->state[s] : 0.0;
     finite = finite && std::isfinite(out->value[s]);
   }
   const double first_t = pack.t_last_s - intervals * pack.dt;
@@ -110,7 +111,7 @@ bool PlantStates::Prepare(const DataPack& pack, const StateMemory* before, State
   std::array<double, 1 + 3 * kMaxStepInputs> given{};  // h, then the inputs at the three points
   given[0] = pack.dt / substeps_;
   for (int i = 0; i < intervals; ++i) {
-    SignalsAt(pack, i + (out->carried ? 0 : 1), output_, &to);  // at the end of the interval
+    SignalsAt(pack, i + (carried ? 0 : 1), output_, &to);  // at the end of the interval
     for (int p = 0; p <= points; ++p) {
       const double part = static_cast<double>(p) / points;
       for (std::size_t s = 0; s < between.size(); ++s) between[s] = from[s] + part * (to[s] - from[s]);
