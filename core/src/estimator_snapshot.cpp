@@ -13,6 +13,11 @@ std::size_t Estimator::SaveAdjusted(std::span<std::byte> bytes) const noexcept {
     memory.slot[memory.current].Save(&out);
     impl_->samplers[m]->transition().Save(&out);
   }
+  if (!impl_->state_filter.empty()) {
+    out.PutRow(impl_->state_mean.data(), impl_->state_mean.size());
+    out.PutRow(impl_->state_sd.data(), impl_->state_sd.size());
+    out.Put(impl_->state_noise);
+  }
   return out.size();
 }
 
@@ -45,6 +50,13 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
     s.memories[m]->current = 0;
     s.memories[m]->slot[0].Restore(s.samplers[m]->space().dim, s.samplers[m]->shared_table(), &posterior);
     s.samplers[m]->transition().Restore(&posterior);
+  }
+  // Snapshots that are older end here: states are then linearised about the prior's mean once more.
+  if (!s.state_filter.empty() && !posterior.finished()) {
+    posterior.Row(s.state_mean.data(), s.state_mean.size());
+    posterior.Row(s.state_sd.data(), s.state_sd.size());
+    s.state_noise = posterior.Number();
+    posterior.Require(s.state_noise > 0.0);
   }
   SnapshotReader display(executed);
   s.report_mode = static_cast<int>(display.Integer(0, s.info.num_modes - 1));

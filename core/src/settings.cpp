@@ -157,8 +157,6 @@ void EstimatorSettings::Validate() const {
   const ModelInfo& info = plant != nullptr ? plant->info() : *CompiledModels()[static_cast<std::size_t>(index)];
   if (plant != nullptr && num_effects > 0)
     throw std::invalid_argument("model '" + model + "' takes no effects of the built-in catalogue");
-  if (plant != nullptr && method == Method::kRls)
-    throw std::invalid_argument("method = \"rls\" knows the built-in models only: choose another");
   if (num_parameters != info.num_parameters)
     throw std::invalid_argument("model '" + model + "' has " + std::to_string(info.num_parameters) +
                                 " parameters, settings have " + std::to_string(num_parameters));

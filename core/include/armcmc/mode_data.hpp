@@ -32,9 +32,12 @@ struct alignas(64) ModeData {
   // Of a compiled plant with effects, else null: the prediction comes from there, features are not read.
   const CompiledPack* compiled = nullptr;
   int mode = 0;  ///< Of `compiled`.
-  // Of a described plant: its law, law - target, and what no parameter changes, a row a sample of the pack.
+  // Of a described plant: its law, law - target, and what no parameter changes, a row a sample of the pack. Modes that
+  // are sampled together have a law each.
   const expression::Tape* tape = nullptr;
   const expression::Tape* error_tape = nullptr;
+  int num_tapes = 1;
+  const std::uint8_t* law = nullptr;  ///< Of several: which one acts, a number a sample of the pack.
   const expression::TapeScalars* scalars = nullptr;
   const StateRun* states = nullptr;  ///< Of a plant that has some: what they do over the pack.
   const StartFit* start_fit =

@@ -82,7 +82,7 @@ struct SamplerSettings {
 /// Who turns packs into a posterior.
 enum class Method : std::uint8_t {
   kArmcmc,
-  kRls,             ///< Recursive least squares; the contact law is log-linearised.
+  kRls,             ///< Recursive least squares; the built-in contact law is log-linearised, described ones linearised.
   kParticleFilter,  ///< Random-walk state, tempered updates, systematic resampling.
   kMetropolis,      ///< Plain random-walk Metropolis-Hastings on each pack alone.
 };

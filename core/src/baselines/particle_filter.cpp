@@ -215,6 +215,8 @@ Status ParticleFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64
     chunk_.mode = data.mode;
     chunk_.tape = data.tape;
     chunk_.error_tape = data.error_tape;
+    chunk_.num_tapes = data.num_tapes;
+    chunk_.law = data.law;
     chunk_.scalars = data.scalars;
     chunk_.states = data.states;
     chunk_.start_fit = nullptr;  // its directions are those of the whole pack

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "armcmc/models/registry.hpp"
+#include "armcmc/plant/program.hpp"
 #include "armcmc/rng.hpp"
+#include "simd/kernels.hpp"
 
 namespace armcmc {
 
@@ -13,13 +15,17 @@ namespace armcmc {
 ARMCMC_TRUST_NONBLOCKING_BEGIN
 
 RlsFilter::RlsFilter(const FilterParts& parts)
-    : parts_(parts),
-      form_(CompiledModels()[static_cast<std::size_t>(parts.model)]->compiled->regression),
-      several_modes_(CompiledModels()[static_cast<std::size_t>(parts.model)]->num_modes > 1),
-      normal_table_(MarginalTable::Normal()),
-      dim_(parts.space.num_parameters) {
+    : parts_(parts), normal_table_(MarginalTable::Normal()), dim_(parts.space.num_parameters) {
   prior_mean_ = ParamVector::Zero(dim_);
   prior_ = ParamMatrix::Identity(dim_, dim_);
+  if (const PlantProgram* plant = parts.settings.plant.get(); plant != nullptr) {
+    several_modes_ = plant->info().num_modes > 1;
+    prediction_ = std::make_unique<PredictionTile>();
+  } else {
+    const ModelInfo& info = *CompiledModels()[static_cast<std::size_t>(parts.model)];
+    several_modes_ = info.num_modes > 1;
+    form_ = info.compiled->regression;
+  }
   if (form_ != nullptr) form_->start(parts_.space, &prior_mean_, &prior_);
   Reset();
 }
@@ -119,20 +125,60 @@ void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const Para
   }
 }
 
+ParamVector RlsFilter::Linearise(const ModeData& data, const ParamVector& z, const ParamMatrix& p) noexcept {
+  constexpr double kSmallest = 1e-5;  // prior standard deviations: what rounding leaves of a difference
+  const ParameterSpace& s = parts_.space;
+  ParamVector apart(dim_);
+  for (int d = 0; d < dim_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const double sd = std::fmax(std::sqrt(p(d, d)), kSmallest);
+    const double high = std::fmin(z[d] + sd, s.upper[i]), low = std::fmax(z[d] - sd, s.lower[i]);
+    apart[d] = high - low;
+    theta_.value[i].fill(s.Theta(d, z[d]));
+    theta_.value[i][1 + 2 * i] = s.Theta(d, high);
+    theta_.value[i][2 + 2 * i] = s.Theta(d, low);
+  }
+  parts_.kernels.predict(parts_.model, data, theta_, prediction_.get());
+  return apart;
+}
+
+void RlsFilter::PassLinearised(const ModeData& data, const ParamVector& z, const ParamMatrix& p) noexcept {
+  static_assert(1 + 2 * kMaxParams <= kTileLanes);
+  const ParamVector apart = Linearise(data, z, p);
+  const double variance = std::exp(2.0 * parts_.space.log_noise_scale);
+  ParamVector phi(dim_);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+    const auto& law = prediction_->value[n];
+    double y = data.target[n] - parts_.noise.settings().mean - law[0];
+    for (int d = 0; d < dim_; ++d) {
+      const auto high = 1 + 2 * static_cast<std::size_t>(d);
+      phi[d] = apart[d] > 0.0 ? (law[high] - law[high + 1]) / apart[d] : 0.0;
+      y += phi[d] * z[d];
+    }
+    if (!phi.allFinite() || !std::isfinite(y)) continue;  // the law has no value there
+    Update(phi, y, variance);
+    Saturate();
+  }
+}
+
+void RlsFilter::Again(const ModeData& data, const ParamVector& before_z, const ParamMatrix& before_p) noexcept {
+  const ParamVector z = z_;
+  const ParamMatrix p = p_;
+  z_ = before_z;
+  p_ = before_p;
+  prediction_ != nullptr ? PassLinearised(data, z, p) : Pass(data, z, p);
+}
+
 Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos, ClockRef, int,
                       ModeDraws* out) noexcept {
+  constexpr int kLinearisations = 3;
   const ParameterSpace& s = parts_.space;
   const ParamVector old_z = z_;
   const ParamMatrix old_p = p_;
-  Pass(data, old_z, old_p);
-  if (parts_.settings.pressure_rate && z_.allFinite() && p_.allFinite()) {
-    // Once more, with the weights that the pack's own gains give: before the first pack nothing is known of them.
-    const ParamVector gain_z = z_;
-    const ParamMatrix gain_p = p_;
-    z_ = old_z;
-    p_ = old_p;
-    Pass(data, gain_z, gain_p);
-  }
+  // Of a pressure rate once more, with the weights that the pack's own gains give: before the first pack nothing is
+  // known of them.
+  const int passes = prediction_ != nullptr ? kLinearisations : parts_.settings.pressure_rate ? 2 : 1;
+  for (int pass = 0; pass < passes && z_.allFinite() && p_.allFinite(); ++pass) Again(data, old_z, old_p);
   if (!z_.allFinite() || !p_.allFinite()) {
     z_ = old_z;
     p_ = old_p;

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "expression/virtual_code.hpp"
 
@@ -51,8 +52,6 @@ TapeOp TapeOpOf(Op op) {
     case Op::kAcos: return TapeOp::kAcos;
     case Op::kAtan: return TapeOp::kAtan;
     case Op::kTanh: return TapeOp::kTanh;
-    case Op::kMin: return TapeOp::kMin;
-    case Op::kMax: return TapeOp::kMax;
     case Op::kStep: return TapeOp::kStep;
     case Op::kIf: return TapeOp::kSelect;
     default:
@@ -64,13 +63,13 @@ TapeOp TapeOpOf(Op op) {
 /// From values to instructions on as many registers as there are values.
 class Builder {
  public:
-  Builder(Graph* graph, int num_parameters, int num_states, std::vector<int> scalars)
+  Builder(Graph* graph, const TapeLayout& layout, std::vector<int> scalars)
       : graph_(*graph),
-        num_parameters_(num_parameters),
-        num_fixed_(num_parameters + num_states),
+        num_parameters_(layout.num_parameters),
+        advances_(layout.advances),
         scalars_(std::move(scalars)) {
     for (std::size_t s = 0; s < scalars_.size(); ++s) scalar_of_.emplace(scalars_[s], static_cast<int>(s));
-    for (int r = 0; r < num_fixed_; ++r) once_.push_back(r < num_parameters);
+    for (int r = 0; r < layout.num_parameters + layout.num_states; ++r) once_.push_back(r < num_parameters_);
   }
 
   /// How often each value is asked for: what is asked for twice is computed into a register.
@@ -90,13 +89,14 @@ class Builder {
   }
 
   int Register(int node) { return Materialise(Value(node)); }
-  [[nodiscard]] VirtualCode Code(std::vector<int> results) const {
-    return {code_, once_, num_fixed_, std::move(results)};
-  }
+  /// All that the node needs.
+  void Prepare(int node) { (void)Value(node); }
+  [[nodiscard]] VirtualCode Code(std::vector<int> results) const { return {code_, once_, std::move(results)}; }
   [[nodiscard]] const std::vector<int>& scalars() const noexcept { return scalars_; }
 
  private:
   [[nodiscard]] bool once(int value) const { return once_[static_cast<std::size_t>(value)]; }
+  [[nodiscard]] int num_values() const { return static_cast<int>(once_.size()); }
 
   int Scalar(int node) {
     const auto [at, is_new] = scalar_of_.try_emplace(node, static_cast<int>(scalars_.size()));
@@ -104,8 +104,11 @@ class Builder {
     return at->second;
   }
 
+  /// What is there already is not computed again.
   int Emit(Virtual v) {
-    v.to = static_cast<int>(once_.size());
+    const auto [at, is_new] = emitted_.try_emplace({v.op, v.number, v.registers, v.scalars}, num_values());
+    if (!is_new) return at->second;
+    v.to = num_values();
     v.once = std::all_of(v.registers.begin(), v.registers.end(), [&](int r) { return once(r); });
     for (const int s : v.scalars) v.once = v.once && !graph_.at(scalars_[static_cast<std::size_t>(s)]).varies;
     once_.push_back(v.once);
@@ -145,7 +148,8 @@ class Builder {
 
   Linear Product(const Linear& a, const Linear& b) {
     if (a.terms.empty())
-      return b.terms.size() <= kMaxTermsToScale ? Scaled(b, a.constant) : ScaledRegister(b, a.constant);
+      return b.terms.size() <= kMaxTermsToScale && !IsCoefficient(b) ? Scaled(b, a.constant)
+                                                                     : ScaledRegister(b, a.constant);
     if (b.terms.empty()) return Product(b, a);
     // Factors of lone registers go before the product, where they may meet others.
     if (IsLone(a) && IsLone(b)) {
@@ -159,6 +163,13 @@ class Builder {
     return {graph_.Number(0.0), {{graph_.Number(1.0), std::min(x, y), std::max(x, y)}}};
   }
   Linear ScaledRegister(const Linear& value, int factor) { return Scaled(OfRegister(Materialise(value)), factor); }
+  /// Of a step: a sum that no sample changes; it is computed once, and scaled as a whole.
+  [[nodiscard]] bool IsCoefficient(const Linear& value) const {
+    return advances_ && value.terms.size() > 1 && !graph_.at(value.constant).varies &&
+           std::all_of(value.terms.begin(), value.terms.end(), [this](const Term& t) {
+             return once(t.reg) && (t.other < 0 || once(t.other)) && !graph_.at(t.factor).varies;
+           });
+  }
   [[nodiscard]] bool IsLone(const Linear& value) const {
     return value.terms.size() == 1 && value.terms[0].other < 0 && graph_.IsNumber(value.constant, 0.0);
   }
@@ -205,10 +216,10 @@ class Builder {
         return OfRegister(Emit(TapeOp::kDivide, {Materialise(above), divisor}));
       }
       case Op::kPower: return OfRegister(Power(a, b));
-      case Op::kClamp: {
-        const int floor = Emit(TapeOp::kMax, {Register(a), Register(b)});
-        return OfRegister(Emit(TapeOp::kMin, {floor, Register(n.argument[2])}));
-      }
+      case Op::kMin:
+      case Op::kMax:
+        return OfRegister(graph_.IsNumber(a) ? Bounded(n.op, Register(b), a) : Bounded(n.op, Register(a), b));
+      case Op::kClamp: return OfRegister(Bounded(Op::kMin, Bounded(Op::kMax, Register(a), b), n.argument[2]));
       default: {
         std::vector<int> arguments;
         for (int i = 0; i < InfoOf(n.op).arguments; ++i) {
@@ -220,9 +231,21 @@ class Builder {
     }
   }
 
+  /// min or max; of a number nobody has to ask whether it is one.
+  int Bounded(Op op, int reg, int bound) {  // NOLINT(misc-no-recursion)
+    const bool smaller = op == Op::kMin;
+    if (graph_.IsNumber(bound) && !std::isnan(graph_.at(bound).value))
+      return Emit(smaller ? TapeOp::kMinS : TapeOp::kMaxS, {reg}, {Scalar(bound)});
+    return Emit(smaller ? TapeOp::kMin : TapeOp::kMax, {reg, Register(bound)});
+  }
+
   int Power(int base, int exponent) {  // NOLINT(misc-no-recursion)
     if (graph_.IsNumber(exponent)) {
       const double p = graph_.at(exponent).value;
+      if (p == 2.0) {
+        const int reg = Register(base);
+        return Emit(TapeOp::kMultiply, {reg, reg});
+      }
       if (std::floor(p) == p && std::fabs(p) <= kMaxWholeExponent) {
         Virtual v;
         v.op = TapeOp::kPowerInt;
@@ -251,17 +274,18 @@ class Builder {
     for (const Term& term : value.terms) (term.other < 0 ? plain : products).push_back(term);
     if (products.empty() && plain.size() == 1 && no_constant && graph_.IsNumber(plain[0].factor, 1.0))
       return plain[0].reg;
+    // Factors before the sum that takes them up, so that nothing stands between its parts.
+    for (Term& term : products)
+      if (!graph_.IsNumber(term.factor, 1.0)) term.reg = LinearOf(graph_.Number(0.0), {{term.factor, term.reg, -1}});
     int sum = -1;
     if (!plain.empty()) sum = LinearOf(value.constant, plain);
     for (const Term& term : products) {
-      const int left =
-          graph_.IsNumber(term.factor, 1.0) ? term.reg : LinearOf(graph_.Number(0.0), {{term.factor, term.reg, -1}});
       if (sum >= 0) {
-        sum = Emit(TapeOp::kMultiplyAdd, {left, term.other, sum});
+        sum = Emit(TapeOp::kMultiplyAdd, {term.reg, term.other, sum});
       } else if (no_constant) {
-        sum = Emit(TapeOp::kMultiply, {left, term.other});
+        sum = Emit(TapeOp::kMultiply, {term.reg, term.other});
       } else {
-        sum = Emit(TapeOp::kMultiplyAddS, {left, term.other}, {Scalar(value.constant)});
+        sum = Emit(TapeOp::kMultiplyAddS, {term.reg, term.other}, {Scalar(value.constant)});
       }
     }
     return sum;
@@ -275,8 +299,7 @@ class Builder {
     const bool constant_moves = graph_.at(constant).varies;
     const bool lone = fixed.size() == 1 && graph_.IsNumber(fixed[0].factor, 1.0);
     // A lone parameter is best added where it is.
-    if (moving.empty() || fixed.empty() || (constant_moves && lone))
-      return LinearInstruction(TapeOp::kLinear, {}, {Scalar(constant)}, terms);
+    if (moving.empty() || fixed.empty() || (constant_moves && lone)) return Added(constant, terms);
     if (lone && graph_.IsNumber(constant, 0.0))
       return LinearInstruction(TapeOp::kAddLinear, {fixed[0].reg}, {}, moving);
     const int first =
@@ -284,6 +307,20 @@ class Builder {
     if (!constant_moves) return LinearInstruction(TapeOp::kAddLinear, {first}, {}, moving);
     moving.push_back({graph_.Number(1.0), first, -1});
     return LinearInstruction(TapeOp::kLinear, {}, {Scalar(constant)}, moving);
+  }
+
+  /// constant + terms, from one of them where that saves a product.
+  int Added(int constant, std::vector<Term> terms) {
+    const bool no_constant = graph_.IsNumber(constant, 0.0);
+    if (terms.size() == 1 && no_constant)
+      return graph_.IsNumber(terms[0].factor, 1.0) ? terms[0].reg
+                                                   : Emit(TapeOp::kScale, {terms[0].reg}, {Scalar(terms[0].factor)});
+    const auto whole =
+        std::find_if(terms.begin(), terms.end(), [&](const Term& t) { return graph_.IsNumber(t.factor, 1.0); });
+    if (!no_constant || whole == terms.end()) return LinearInstruction(TapeOp::kLinear, {}, {Scalar(constant)}, terms);
+    const int reg = whole->reg;
+    terms.erase(whole);
+    return LinearInstruction(TapeOp::kAddLinear, {reg}, {}, terms);
   }
 
   int LinearInstruction(TapeOp op, std::vector<int> registers, std::vector<int> scalars,
@@ -297,38 +334,41 @@ class Builder {
 
   Graph& graph_;
   int num_parameters_;
-  int num_fixed_;
+  bool advances_;
   std::vector<int> scalars_;
   std::map<int, int> scalar_of_;
   std::map<int, int> uses_;
   std::map<int, bool> visited_;
   std::map<int, int> known_;  ///< Register of a node.
-  std::vector<bool> once_;    ///< Of a value: known before the first sample.
+  std::map<std::tuple<TapeOp, int, std::vector<int>, std::vector<int>>, int> emitted_;
+  std::vector<bool> once_;  ///< Of a value: known before the first sample.
   std::vector<Virtual> code_;
 };
 
 }  // namespace
 
-CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, int num_parameters, int num_states,
+CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, const TapeLayout& layout,
                          std::vector<int> scalars) {
   if (static_cast<int>(results.size()) > kMaxTapeResults)
     throw std::length_error("more than " + std::to_string(kMaxTapeResults) + " results");
-  Builder builder(graph, num_parameters, num_states, std::move(scalars));
+  Builder builder(graph, layout, std::move(scalars));
   builder.CountUses(results);
   std::vector<int> values;
   values.reserve(results.size());
+  for (const int node : layout.first) builder.Prepare(node);
   for (const int result : results) values.push_back(builder.Register(result));
   CompiledTape compiled;
   compiled.scalars = builder.scalars();
-  if (compiled.scalars.size() > static_cast<std::size_t>(kMaxTapeScalars))
-    throw std::length_error("needs more than " + std::to_string(kMaxTapeScalars) +
+  if (compiled.scalars.size() > static_cast<std::size_t>(layout.most_scalars))
+    throw std::length_error("needs more than " + std::to_string(layout.most_scalars) +
                             " different quantities that depend on no parameter");
   Tape& tape = compiled.tape;
-  tape.num_parameters = num_parameters;
-  tape.num_states = num_states;
-  Assemble(builder.Code(std::move(values)), &tape);
+  tape.num_parameters = layout.num_parameters;
+  tape.num_states = layout.num_states;
+  const VirtualCode code = builder.Code(std::move(values));
+  Assemble(code, layout, &tape);
   tape.num_scalars = static_cast<int>(compiled.scalars.size());
-  RecogniseShape(&tape);
+  RecogniseShape(code, layout.num_parameters, &tape);
   return compiled;
 }
 

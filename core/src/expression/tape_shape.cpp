@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 
 #include "expression/virtual_code.hpp"
@@ -5,80 +6,71 @@
 namespace armcmc::expression {
 namespace {
 
-/// The sum that the instruction at `at` computes from parameters; none where it is something else.
-std::optional<TapeSum> SumAt(const Tape& tape, int at) {
-  const TapeInstruction& i = tape.code[static_cast<std::size_t>(at)];
-  const bool from_register = i.op == TapeOp::kAddLinear;
-  if ((i.op != TapeOp::kLinear && !from_register) || i.b + (from_register ? 1 : 0) > kMaxShapeTerms)
-    return std::nullopt;
+TapeSum Parameter(int parameter) {
   TapeSum sum;
-  if (from_register) {
-    sum.parameter[sum.count] = i.a;
-    sum.scalar[sum.count++] = TapeSum::kNone;
-  } else {
-    sum.constant = i.a;
-  }
-  for (std::size_t t = 0; t < i.b; ++t) {
-    const TapeInstruction& pair = tape.code[static_cast<std::size_t>(at) + 1 + t / 2];
-    sum.parameter[sum.count] = t % 2 == 0 ? pair.to : pair.b;
-    sum.scalar[sum.count++] = t % 2 == 0 ? pair.a : pair.c;
-  }
-  for (std::size_t t = 0; t < sum.count; ++t)
-    if (sum.parameter[t] >= tape.num_parameters) return std::nullopt;
+  sum.count = 1;
+  sum.parameter[0] = static_cast<std::uint8_t>(parameter);
+  sum.scalar[0] = TapeSum::kNone;
   return sum;
 }
 
-int LengthAt(const Tape& tape, int at) {
-  const TapeInstruction& i = tape.code[static_cast<std::size_t>(at)];
-  return i.op == TapeOp::kLinear || i.op == TapeOp::kAddLinear ? 1 + (i.b + 1) / 2 : 1;
+/// The sum that an instruction computes from parameters; none where it is something else.
+std::optional<TapeSum> SumOf(const Virtual& v, int num_parameters) {
+  if (v.op == TapeOp::kScale && v.registers[0] < num_parameters) {
+    TapeSum sum = Parameter(v.registers[0]);
+    sum.scalar[0] = static_cast<std::uint8_t>(v.scalars[0]);
+    return sum;
+  }
+  if ((v.op != TapeOp::kLinear && v.op != TapeOp::kAddLinear) || v.registers.size() > kMaxShapeTerms)
+    return std::nullopt;
+  TapeSum sum;
+  const bool from_register = v.op == TapeOp::kAddLinear;
+  if (!from_register) sum.constant = static_cast<std::uint8_t>(v.scalars[0]);
+  for (std::size_t t = 0; t < v.registers.size(); ++t) {
+    if (v.registers[t] >= num_parameters) return std::nullopt;
+    const std::size_t scalar = from_register ? t - 1 : t + 1;
+    sum.parameter[t] = static_cast<std::uint8_t>(v.registers[t]);
+    sum.scalar[t] = from_register && t == 0 ? TapeSum::kNone : static_cast<std::uint8_t>(v.scalars[scalar]);
+  }
+  sum.count = static_cast<std::uint8_t>(v.registers.size());
+  return sum;
 }
 
 }  // namespace
 
-void RecogniseShape(Tape* tape) {
-  if (tape->once != 0 || tape->num_results != 1 || tape->num_states != 0) return;
-  std::array<int, 4> start{};
-  int count = 0;
-  for (int at = 0; at < tape->size; at += LengthAt(*tape, at)) {
-    if (count == static_cast<int>(start.size())) return;
-    start[static_cast<std::size_t>(count++)] = at;
-  }
-  const auto code = [&](int n) -> const TapeInstruction& {
-    return tape->code[static_cast<std::size_t>(start[static_cast<std::size_t>(n)])];
-  };
-  if (count == 1) {
-    const std::optional<TapeSum> sum = SumAt(*tape, 0);
+void RecogniseShape(const VirtualCode& code, int num_parameters, Tape* tape) {
+  if (code.results.size() != 1 || code.code.empty() || code.code.size() > 4) return;
+  if (std::any_of(code.code.begin(), code.code.end(), [](const Virtual& v) { return v.once; })) return;
+  const Virtual& last = code.code.back();
+  if (last.to != code.results[0]) return;
+  if (code.code.size() == 1) {
+    const std::optional<TapeSum> sum = SumOf(last, num_parameters);
     if (!sum) return;
     tape->rest = *sum;
     tape->shape = TapeShape::kLinear;
     return;
   }
   // A power, its factor (a sum or a parameter), and their product, added to a scalar or a sum; in any order.
-  if (count < 2) return;
-  const TapeInstruction& last = code(count - 1);
   const bool adds_scalar = last.op == TapeOp::kMultiplyAddS;
   if (!adds_scalar && last.op != TapeOp::kMultiplyAdd) return;
-  const TapeInstruction* power = nullptr;
-  for (int n = 0; n + 1 < count; ++n)
-    if (code(n).op == TapeOp::kExp2S && power == nullptr) power = &code(n);
-  if (power == nullptr || power->a >= tape->num_parameters || (last.a != power->to && last.b != power->to)) return;
-  const std::uint8_t other = last.a == power->to ? last.b : last.a;
+  const auto power =
+      std::find_if(code.code.begin(), code.code.end() - 1, [](const Virtual& v) { return v.op == TapeOp::kExp2S; });
+  if (power == code.code.end() - 1 || power->registers[0] >= num_parameters) return;
+  const int x = last.registers[0];
+  const int y = last.registers[1];
+  if (x != power->to && y != power->to) return;
+  const int other = x == power->to ? y : x;
   std::optional<TapeSum> factor;
   std::optional<TapeSum> rest;
-  if (other < tape->num_parameters) {
-    factor.emplace();
-    factor->count = 1;
-    factor->parameter[0] = other;
-    factor->scalar[0] = TapeSum::kNone;
-  }
-  if (adds_scalar) rest.emplace().constant = last.c;
-  for (int n = 0; n + 1 < count; ++n) {
-    if (&code(n) == power) continue;
-    const std::optional<TapeSum> sum = SumAt(*tape, start[static_cast<std::size_t>(n)]);
+  if (other < num_parameters) factor = Parameter(other);
+  if (adds_scalar) rest.emplace().constant = static_cast<std::uint8_t>(last.scalars[0]);
+  for (auto v = code.code.begin(); v != code.code.end() - 1; ++v) {
+    if (v == power) continue;
+    const std::optional<TapeSum> sum = SumOf(*v, num_parameters);
     if (!sum) return;
-    if (code(n).to == other && !factor) {
+    if (v->to == other && !factor) {
       factor = sum;
-    } else if (!adds_scalar && code(n).to == last.c && !rest) {
+    } else if (!adds_scalar && v->to == last.registers[2] && !rest) {
       rest = sum;
     } else {
       return;
@@ -87,8 +79,8 @@ void RecogniseShape(Tape* tape) {
   if (!factor || !rest) return;
   tape->factor = *factor;
   tape->rest = *rest;
-  tape->exponent = power->a;
-  tape->log2 = power->b;
+  tape->exponent = static_cast<std::uint8_t>(power->registers[0]);
+  tape->log2 = static_cast<std::uint8_t>(power->scalars[0]);
   tape->shape = TapeShape::kPower;
 }
 

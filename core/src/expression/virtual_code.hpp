@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "armcmc/expression/compile.hpp"
 #include "armcmc/expression/tape.hpp"
 
 namespace armcmc::expression {
@@ -21,7 +22,6 @@ struct Virtual {
 struct VirtualCode {
   std::vector<Virtual> code;
   std::vector<bool> once;  ///< Of a value: known before the first sample.
-  int num_fixed = 0;       ///< Parameters and states.
   std::vector<int> results;
 
   [[nodiscard]] int num_values() const noexcept { return static_cast<int>(once.size()); }
@@ -29,9 +29,9 @@ struct VirtualCode {
 
 /// Gives values that are alive at the same time registers of their own, and writes the code down.
 /// @throws std::length_error naming the limit that is passed.
-void Assemble(const VirtualCode& code, Tape* tape);
+void Assemble(const VirtualCode& code, const TapeLayout& layout, Tape* tape);
 
-/// Finds out whether the tape has a form with a loop of its own.
-void RecogniseShape(Tape* tape);
+/// Finds out whether the code has a form with a loop of its own.
+void RecogniseShape(const VirtualCode& code, int num_parameters, Tape* tape);
 
 }  // namespace armcmc::expression

@@ -90,25 +90,25 @@ int PlantProgram::InMode(int node, std::size_t active) {
   return graph_.Substitute(node, by);
 }
 
-void PlantProgram::CompileLaw(const std::string& name, int law, int target, const std::string& key,
-                              std::vector<int>* scalars) {
+void PlantProgram::CompileLaw(int law, int target, const std::string& key, std::vector<int>* scalars) {
   try {
-    SampledMode mode;
-    mode.name = name;
+    SampledMode& mode = modes_.back();
     // law - target: squares do not mind the sign, and a product is added to minus the target in one instruction.
     for (const bool error : {false, true}) {
+      std::vector<expression::Tape>& tapes = error ? mode.errors : mode.laws;
       const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
-      const expression::CompiledTape tape = CompileTape(&graph_, {node}, static_cast<int>(sampled_.size()),
-                                                        static_cast<int>(plant_->states().size()), std::move(*scalars));
-      *scalars = tape.scalars;
-      (error ? mode.error : mode.law) = tape.tape;
+      expression::CompiledTape compiled =
+          CompileTape(&graph_, {node},
+                      {.num_parameters = static_cast<int>(sampled_.size()),
+                       .num_states = states_.size(),
+                       .first_free = tapes.empty() ? states_.step().num_registers : tapes.back().num_registers},
+                      std::move(*scalars));
+      *scalars = std::move(compiled.scalars);
+      expression::Tape& tape = tapes.emplace_back(std::move(compiled.tape));
+      const ParameterDescription& exponent = sampled_[tape.exponent];
+      if (tape.shape == expression::TapeShape::kPower && !IsLognormal(exponent))
+        tape.largest_exponent = std::fmax(std::fabs(*exponent.lower), std::fabs(*exponent.upper));
     }
-    for (expression::Tape* tape : {&mode.law, &mode.error}) {
-      const ParameterDescription& exponent = sampled_[tape->exponent];
-      if (tape->shape == expression::TapeShape::kPower && !IsLognormal(exponent))
-        tape->largest_exponent = std::fmax(std::fabs(*exponent.lower), std::fabs(*exponent.upper));
-    }
-    modes_.push_back(std::move(mode));
   } catch (const std::logic_error& error) {  // length_error, invalid_argument
     throw PlantError(key, 0, std::string("the law ") + error.what());
   }
@@ -130,23 +130,18 @@ void PlantProgram::CompileModes() {
     return plant_->description().law.empty() ? "mode[" + std::to_string(active_[a]) + "].law" : std::string("law");
   };
   std::vector<int> scalars;
+  if (part_ == Part::kPrediction || LawsNeedStates()) CompileStates(&scalars);
   if (part_ == Part::kPrediction) {
     const int law = OfActingMode([&](std::size_t a) { return InMode(plant_->predicts(), a); });
-    CompileLaw("prediction", law, output, "predicts", &scalars);
-  } else if (merged_) {
-    const int law = OfActingMode([&](std::size_t a) { return InMode(modes[active_[a]].law, a); });
-    const int target = OfActingMode([&](std::size_t a) { return modes[active_[a]].target; });
-    CompileLaw("active", law, target, key_of(0), &scalars);
-    for (const std::size_t m : active_)
-      modes_.back().law_is_output = modes_.back().law_is_output && modes[m].target == output;
-  } else {
-    for (std::size_t a = 0; a < active_.size(); ++a) {
-      const PlantMode& mode = modes[active_[a]];
-      CompileLaw(described[active_[a]].name, InMode(mode.law, a), mode.target, key_of(a), &scalars);
-      modes_.back().law_is_output = mode.target == output;
-    }
+    modes_.push_back({.name = "prediction"});
+    CompileLaw(law, output, "predicts", &scalars);
   }
-  if (part_ == Part::kPrediction || LawsNeedStates()) CompileStates(&scalars);
+  for (std::size_t a = 0; a < active_.size() && part_ == Part::kLaws; ++a) {
+    const PlantMode& mode = modes[active_[a]];
+    if (a == 0 || !merged_) modes_.push_back({.name = merged_ ? "active" : described[active_[a]].name});
+    CompileLaw(InMode(mode.law, a), mode.target, key_of(a), &scalars);
+    modes_.back().law_is_output = modes_.back().law_is_output && mode.target == output;
+  }
   CompileFeatures(scalars);
 }
 
@@ -158,7 +153,7 @@ void PlantProgram::CompileFeatures(const std::vector<int>& scalars) {
     features.push_back(node);
     return static_cast<int>(features.size()) - 1;
   };
-  std::size_t next = 0;
+  int next = 0;
   for (std::size_t m = 0; m < modes.size() && part_ == Part::kLaws; ++m) {
     Outputs out;
     if (modes[m].when >= 0) out.when = feature(modes[m].when);
@@ -168,14 +163,16 @@ void PlantProgram::CompileFeatures(const std::vector<int>& scalars) {
       out.passive = feature(modes[m].law);
       out.passive_given = !plant_->description().modes[m].law.empty();
     } else {
-      out.sampled = merged_ ? 0 : static_cast<int>(next++);
+      const int active = next++;
+      (merged_ ? out.law : out.sampled) = active;
+      if (merged_) out.sampled = 0;
       out.target = feature(modes[m].target);
     }
     outputs_.push_back(out);
   }
   // What is shown is shown at every sample, whatever mode acts.
   if (part_ == Part::kPrediction)
-    outputs_.push_back({-1, feature(plant_->NodeOf(SymbolKind::kSignal, plant_->output())), -1, 0});
+    outputs_.push_back({.target = feature(plant_->NodeOf(SymbolKind::kSignal, plant_->output())), .sampled = 0});
   try {
     features_ = expression::FeatureProgram(graph_, features);
   } catch (const std::length_error& error) {
@@ -262,6 +259,7 @@ bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memo
       if (mode.when >= 0 && value[static_cast<std::size_t>(mode.when)] == 0.0) continue;
       if (mode.sampled >= 0) {
         out->mode[in] = static_cast<std::int8_t>(mode.sampled);
+        out->law[in] = static_cast<std::uint8_t>(mode.law);
         out->target[in] = value[static_cast<std::size_t>(mode.target)];
         finite = finite && std::isfinite(out->target[in]);
       } else {
@@ -284,10 +282,13 @@ void PlantProgram::Fill(const PlantPack& pack, int num_samples, int mode, ModeDa
     data->target[im] = pack.target[static_cast<std::size_t>(n)];
   }
   data->num_samples = m;
-  data->tape = &modes_[static_cast<std::size_t>(mode)].law;
-  data->error_tape = &modes_[static_cast<std::size_t>(mode)].error;
+  const SampledMode& sampled = modes_[static_cast<std::size_t>(mode)];
+  data->tape = sampled.laws.data();
+  data->error_tape = sampled.errors.data();
+  data->num_tapes = static_cast<int>(sampled.laws.size());
+  data->law = data->num_tapes > 1 ? pack.law.data() : nullptr;
   data->scalars = &pack.scalars;
-  data->states = pack.states.rate != nullptr ? &pack.states : nullptr;
+  data->states = pack.states.step != nullptr ? &pack.states : nullptr;
   data->start_fit = nullptr;
 }
 

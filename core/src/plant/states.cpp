@@ -6,13 +6,19 @@
 #include <string>
 
 #include "armcmc/expression/compile.hpp"
+#include "plant/runge_kutta.hpp"
 
 namespace armcmc {
 namespace {
 
+using expression::Graph;
+
 static_assert(Plant::kMaxStates == kMaxStates);
 
 constexpr int kSmallestPack = 64;  ///< Samples for which a plant with states must have room.
+constexpr int kMaxStepInstructions = 2048;
+constexpr int kMaxStepScalars = 200;
+constexpr int kMaxStepInputs = 64;  ///< Of the rates, at one point.
 
 }  // namespace
 
@@ -39,57 +45,81 @@ PlantStates::PlantStates(const Plant& plant, expression::Graph* graph, const std
     }
   };
   guarded("the start of the states ", [&] {
-    const expression::CompiledTape tape = CompileTape(graph, starts, num_parameters, 0, std::move(*scalars));
+    const expression::CompiledTape tape = CompileTape(graph, starts, {.num_parameters = num_parameters});
     *scalars = tape.scalars;
     start_ = tape.tape;
   });
-  guarded("the rates of the states ", [&] {
-    const expression::CompiledTape tape = CompileTape(graph, rates, num_parameters, size_);
-    for (const int node : tape.scalars)
-      if (graph->at(node).memory) throw std::invalid_argument("depend on samples before, through their modes");
-    rate_ = tape.tape;
-    features_ = expression::FeatureProgram(*graph, tape.scalars);
-  });
-  if ((2 * substeps_ * kSmallestPack + 1) * rate_.num_scalars > kMaxStateCells)
+  guarded("the rates of the states ", [&] { CompileStep(graph, rates, num_parameters); });
+  if (substeps_ * kSmallestPack * step_.num_scalars > kMaxStateCells)
     throw PlantError("states", 0,
-                     "the rates need " + std::to_string(rate_.num_scalars) + " quantities of signals at " +
-                         std::to_string(2 * substeps_) +
-                         " points a sample, more than there is room for: use fewer substeps");
+                     "a step of their rates needs " + std::to_string(step_.num_scalars) +
+                         " quantities of signals, and " + std::to_string(substeps_) +
+                         " steps a sample are more than there is room for: use fewer substeps");
+}
+
+void PlantStates::CompileStep(Graph* graph, const std::vector<int>& rates, int num_parameters) {
+  RungeKutta method(graph, rates);
+  if (method.inputs().size() > kMaxStepInputs)
+    throw std::length_error("need more than " + std::to_string(kMaxStepInputs) +
+                            " different quantities that depend on no parameter");
+  for (const int node : method.inputs())
+    if (graph->at(node).memory) throw std::invalid_argument("depend on samples before, through their modes");
+  inputs_ = expression::FeatureProgram(*graph, method.inputs());
+  expression::TapeLayout layout{.num_parameters = num_parameters,
+                                .num_states = size_,
+                                .advances = true,
+                                .most_instructions = kMaxStepInstructions,
+                                .most_scalars = kMaxStepScalars};
+  const std::vector<int> results = method.Staged();
+  layout.first = method.stages();
+  expression::CompiledTape tape = CompileTape(graph, results, layout);
+  if (const std::vector<int> linear = method.Linear(); !linear.empty()) {
+    layout.first.clear();
+    expression::CompiledTape short_tape = CompileTape(graph, linear, layout);
+    if (short_tape.tape.size() < tape.tape.size()) tape = std::move(short_tape);
+  }
+  step_ = tape.tape;
+  scalars_ = expression::FeatureProgram(*graph, tape.scalars);
 }
 
 bool PlantStates::Prepare(const DataPack& pack, const StateMemory* before, StateRun* out) const noexcept {
-  out->rate = size_ > 0 ? &rate_ : nullptr;
+  out->step = size_ > 0 ? &step_ : nullptr;
   if (size_ == 0) return true;
   out->start = &start_;
   out->num_states = size_;
   out->num_samples = pack.num_samples;
   out->substeps = substeps_;
-  out->h = pack.dt / substeps_;
-  out->stride = rate_.num_scalars;
-  out->carried = before != nullptr && before->known && !all_measured_;
-  const int intervals = pack.num_samples - 1 + (out->carried ? 1 : 0);
-  const int points = 2 * substeps_;
-  if ((intervals * points + 1) * out->stride > kMaxStateCells) return false;
+  out->stride = step_.num_scalars;
+  const bool carried = before != nullptr && before->known && !all_measured_;
+  out->carried = carried;
+  const int intervals = pack.num_samples - 1 + (carried ? 1 : 0);
+  if (intervals * substeps_ * out->stride > kMaxStateCells) return false;
 
   PlantSignals from{}, to{}, between{};
   SignalsAt(pack, 0, output_, &to);
-  from = out->carried ? before->signals : to;
+  from = carried ? before->signals : to;
   bool finite = true;
   for (std::size_t s = 0; s < static_cast<std::size_t>(size_); ++s) {
     const int signal = measured_by_[s];
-    out->given[s] = out->carried || signal >= 0;
-    out->value[s] = signal >= 0 ? from[static_cast<std::size_t>(signal)] : out->carried ? before->state[s] : 0.0;
+    out->given[s] = carried || signal >= 0;
+    out->value[s] = signal >= 0 ? from[static_cast<std::size_t>(signal)] : carried ? before->state[s] : 0.0;
     finite = finite && std::isfinite(out->value[s]);
   }
   const double first_t = pack.t_last_s - intervals * pack.dt;
-  for (int i = 0; i <= intervals; ++i) {
-    const int sample = i + (out->carried ? 0 : 1);  // at the end of the interval
-    const bool last = i == intervals;
-    if (!last) SignalsAt(pack, sample, output_, &to);
-    for (int p = 0; p < (last ? 1 : points); ++p) {
+  const int points = 2 * substeps_;
+  const auto width = static_cast<std::size_t>(inputs_.num_outputs());
+  std::array<double, 1 + 3 * kMaxStepInputs> given{};  // h, then the inputs at the three points
+  given[0] = pack.dt / substeps_;
+  for (int i = 0; i < intervals; ++i) {
+    SignalsAt(pack, i + (carried ? 0 : 1), output_, &to);  // at the end of the interval
+    for (int p = 0; p <= points; ++p) {
       const double part = static_cast<double>(p) / points;
       for (std::size_t s = 0; s < between.size(); ++s) between[s] = from[s] + part * (to[s] - from[s]);
-      features_.Evaluate({between.data(), first_t + (i + part) * pack.dt, pack.dt}, nullptr, out->Row(i * points + p));
+      inputs_.Evaluate({between.data(), first_t + (i + part) * pack.dt, pack.dt}, nullptr,
+                       given.data() + 1 + static_cast<std::size_t>(p == 0 ? 0 : 2 - p % 2) * width);
+      if (p == 0 || p % 2 == 1) continue;
+      scalars_.Evaluate({given.data(), 0.0, 0.0}, nullptr, out->Row(i * substeps_ + p / 2 - 1));
+      std::copy_n(given.begin() + 1 + static_cast<std::ptrdiff_t>(2 * width), width, given.begin() + 1);
     }
     from = to;
   }

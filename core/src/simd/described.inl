@@ -1,33 +1,50 @@
 // Predicts and scores described plants by their tapes; included by kernels.inl, once per instruction set.
 
+#include <algorithm>
+
 #include "armcmc/plant/start_fit.hpp"
 #include "simd/states.inl"
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-/// Runs a tape at the samples of `data`, in their order: take(n, result), result[lane].
+/// Of several laws the one that acts at sample n.
+[[gnu::always_inline]] inline const Tape& TapeAt(const Tape* tapes, const ModeData& data, std::size_t n) noexcept {
+  return data.law == nullptr ? *tapes : tapes[data.law[data.sample[n]]];
+}
+
+/// Runs the laws, or what they leave, at the samples of `data`, in their order: take(n, result), result[lane].
+/// @param offset, end  Of the states of a plant that has some: added to their starts, and them at the end of the pack;
+///                     null: neither.
 template <class Take>
-[[gnu::always_inline]] inline void RunTape(const Tape& tape, const ModeData& data, const ThetaTile& theta,
-                                           Take take) noexcept {
+[[gnu::always_inline]] inline void RunSamples(const Tape* tapes, const ModeData& data, const ThetaTile& theta,
+                                              Take take, const StateTile* offset = nullptr,
+                                              StateTile* end = nullptr) noexcept {
   TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
-  StartTape(tape, theta, data.scalars->Row(0), &registers);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(tapes->num_parameters); ++d) registers.value[d] = theta.value[d];
+  const auto start = [&] {
+    for (int t = 0; t < data.num_tapes; ++t) StartTape(tapes[t], data.scalars->Row(0), &registers);
+  };
   const auto one = [&](std::size_t n) {
-    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
-        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
+    const Tape& tape = TapeAt(tapes, data, n);
+    RunTape(tape, data.scalars->Row(data.sample[n]), &registers);
     take(n, registers.value[tape.result[0]].data());
   };
   const auto samples = static_cast<std::size_t>(data.num_samples);
   if (data.states == nullptr) {
+    start();
     for (std::size_t n = 0; n < samples; ++n) one(n);
     return;
   }
-  StateIntegrator states(*data.states, theta, data.scalars->Row(0));
+  StateIntegrator states(*data.states, data.scalars->Row(0), &registers, offset);
+  start();
   for (std::size_t n = 0; n < samples; ++n) {
     states.AdvanceTo(data.sample[n]);
-    states.CopyTo(tape, &registers);
     one(n);
   }
+  if (end == nullptr) return;
+  states.AdvanceTo(data.states->num_samples - 1);
+  states.CopyTo(end);
 }
 
 /// Adds to the law what makes its errors independent beside an uncertain start.
@@ -53,26 +70,16 @@ void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) n
 }
 
 void PredictTape(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  RunTape(*data.tape, data, theta,
-          [&](std::size_t n, const double* law) { std::copy_n(law, kTileLanes, tile->value[n].data()); });
+  RunSamples(data.tape, data, theta,
+             [&](std::size_t n, const double* law) { std::copy_n(law, kTileLanes, tile->value[n].data()); });
   if (data.start_fit != nullptr) FitStart(*data.start_fit, data, tile);
 }
 
 void RunStates(const ModeData& data, const ThetaTile& theta, const StateTile& offset, StateTile* end,
                PredictionTile* law) noexcept ARMCMC_NONBLOCKING {
-  const Tape& tape = *data.tape;
-  TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
-  StartTape(tape, theta, data.scalars->Row(0), &registers);
-  StateIntegrator states(*data.states, theta, data.scalars->Row(0), &offset);
-  for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
-    states.AdvanceTo(data.sample[n]);
-    states.CopyTo(tape, &registers);
-    TapeRunner(&registers, data.scalars->Row(data.sample[n]))
-        .Run(tape.code.data() + tape.once, tape.code.data() + tape.size);
-    law->value[n] = registers.value[tape.result[0]];
-  }
-  states.AdvanceTo(data.states->num_samples - 1);
-  *end = states.state();
+  RunSamples(
+      data.tape, data, theta,
+      [&](std::size_t n, const double* value) { std::copy_n(value, kTileLanes, law->value[n].data()); }, &offset, end);
 }
 
 /// out[lane] = sum of the squares of law - target, weighted.
@@ -82,7 +89,7 @@ void SumTapeSquares(const ModeData& data, const ThetaTile& theta, double* out) n
   Simd::V along[kMaxStates][kTapeVectors] = {};
   const StartFit* fit = data.start_fit;
   const std::size_t count = fit != nullptr ? static_cast<std::size_t>(fit->count) : 0;
-  RunTape(*data.error_tape, data, theta, [&](std::size_t n, const double* error) {
+  RunSamples(data.error_tape, data, theta, [&](std::size_t n, const double* error) {
     for (int v = 0; v < kTapeVectors; ++v) {
       Simd::V e = Simd::Load(error + v * Simd::kLanes);
       if constexpr (kWeighted) e = e * Simd::Set(data.weight[n]);
@@ -112,20 +119,21 @@ template <int kGroup>
   }
 }
 
-/// The same for a tape with a shape: as many vectors side by side as keep the arithmetic units busy, nothing in memory.
+/// The same for tapes with a shape: as many vectors side by side as keep the arithmetic units busy, nothing in memory.
 /// Powers carry a relative error of 4e-11, as those of the compiled laws do.
-template <bool kWeighted, bool kPower>
+/// @tparam kPower  Some have one. @tparam kSeveral  There is more than one tape, and not all need have a power.
+template <bool kWeighted, bool kPower, bool kSeveral>
 void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
   constexpr int kGroup = Simd::kLanes == 8 ? 4 : 2;
   constexpr double kReach = 960.0;  // |exponent log2 x| that needs no clamp
-  const Tape& tape = *data.error_tape;
   for (int lane = 0; lane < kTileLanes; lane += kGroup * Simd::kLanes) {
     Simd::V sum[kGroup] = {};
     for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+      const Tape& tape = kSeveral ? TapeAt(data.error_tape, data, n) : *data.error_tape;
       const double* row = data.scalars->Row(data.sample[n]);
       Simd::V e[kGroup];
       AddTapeSum<kGroup>(tape.rest, row, theta, lane, e);
-      if constexpr (kPower) {
+      if (kPower && (!kSeveral || tape.shape == expression::TapeShape::kPower)) {
         Simd::V factor[kGroup];
         AddTapeSum<kGroup>(tape.factor, row, theta, lane, factor);
         const double* exponent = theta.value[tape.exponent].data() + lane;
@@ -149,19 +157,29 @@ void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) 
 }
 
 template <bool kWeighted>
-void SumSquaresOfTape(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
-  switch (data.error_tape->shape) {
-    case expression::TapeShape::kLinear: SumShapeSquares<kWeighted, false>(data, theta, out); break;
-    case expression::TapeShape::kPower: SumShapeSquares<kWeighted, true>(data, theta, out); break;
-    case expression::TapeShape::kGeneral: SumTapeSquares<kWeighted>(data, theta, out); break;
+void SumSquaresOfTapes(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  using expression::TapeShape;
+  const auto are = [&](auto... shapes) {
+    return std::all_of(data.error_tape, data.error_tape + data.num_tapes,
+                       [=](const Tape& tape) { return ((tape.shape == shapes) || ...); });
+  };
+  const bool several = data.num_tapes > 1;
+  if (are(TapeShape::kLinear)) {
+    several ? SumShapeSquares<kWeighted, false, true>(data, theta, out)
+            : SumShapeSquares<kWeighted, false, false>(data, theta, out);
+  } else if (are(TapeShape::kLinear, TapeShape::kPower)) {
+    several ? SumShapeSquares<kWeighted, true, true>(data, theta, out)
+            : SumShapeSquares<kWeighted, true, false>(data, theta, out);
+  } else {
+    SumTapeSquares<kWeighted>(data, theta, out);
   }
 }
 
 void SumSquaresTape(const ModeData& data, const ThetaTile& theta, double, double* out) noexcept ARMCMC_NONBLOCKING {
   if (data.weighted) {
-    SumSquaresOfTape<true>(data, theta, out);
+    SumSquaresOfTapes<true>(data, theta, out);
   } else {
-    SumSquaresOfTape<false>(data, theta, out);
+    SumSquaresOfTapes<false>(data, theta, out);
   }
 }
 

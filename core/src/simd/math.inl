@@ -1,6 +1,8 @@
 // Functions of expressions, for vectors of candidates; included once per instruction set. Accurate to some 1e-15 of the
 // larger of result and 1; whatever is not a number, or has no result, gives NaN.
 
+#include <bit>
+
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
@@ -61,8 +63,9 @@ struct Math {
   static V Power(V base, V exponent) noexcept { return Simd::Exp2OrNan(exponent * Log2(base)); }
   /// By squaring; exponent in [0, 255].
   static V PowerInt(V base, unsigned exponent) noexcept {
-    V power = Simd::Set(1.0);
-    for (unsigned bit = 128; bit != 0; bit >>= 1) {
+    if (exponent == 0) return Simd::Set(1.0);
+    V power = base;
+    for (unsigned bit = std::bit_floor(exponent) >> 1; bit != 0; bit >>= 1) {
       power = power * power;
       if ((exponent & bit) != 0) power = power * base;
     }
@@ -71,9 +74,8 @@ struct Math {
 
   /// sin and cos of x, |x| up to 1e7: the quarter turn, then polynomials on [-pi/4, pi/4].
   static void SinCos(V x, V* sine, V* cosine) noexcept {
-    const V magic = Simd::Set(6755399441055744.0);
-    const V shifted = x * Simd::Set(0.63661977236758134308) + magic;
-    const V n = shifted - magic;
+    const V shifted = x * Simd::Set(0.63661977236758134308) + Simd::Set(kMagic);
+    const V n = shifted - Simd::Set(kMagic);
     const V r = Less(Less(Less(x, n, 1.57079625129699707031e+00), n, 7.54978941586159635336e-08), n,
                      5.39030285815811905290e-15);
     const V z = r * r;
@@ -90,17 +92,32 @@ struct Math {
     *sine = Flip(Simd::Select(swap, c, s), sine_sign);
     *cosine = Flip(Simd::Select(swap, s, c), cosine_sign);
   }
-  static V Sin(V x) noexcept {
-    V s;
-    V c;
-    SinCos(x, &s, &c);
-    return s;
+  /// To the nearest multiple of pi, then one polynomial on [-pi/2, pi/2]; |x| up to 1e7. Of several vectors side by
+  /// side: what one has to wait for is the time of the others.
+  template <std::size_t kCount>
+  static void Sin(V (&x)[kCount]) noexcept {
+    V sign[kCount];
+    V n[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) {
+      const V shifted = Simd::Fma(x[v], Simd::Set(0.31830988618379067154), Simd::Set(kMagic));
+      n[v] = shifted - Simd::Set(kMagic);
+      sign[v] = Simd::FromBits(Simd::Bits(shifted) << 63);
+    }
+    SineFrom(n, 2.0, x);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Flip(x[v], sign[v]);
   }
-  static V Cos(V x) noexcept {
-    V s;
-    V c;
-    SinCos(x, &s, &c);
-    return c;
+  /// sin(x + pi/2): to the nearest odd multiple of pi/2.
+  template <std::size_t kCount>
+  static void Cos(V (&x)[kCount]) noexcept {
+    V sign[kCount];
+    V odd[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) {
+      const V shifted = Simd::Fma(x[v], Simd::Set(0.31830988618379067154), Simd::Set(-0.5)) + Simd::Set(kMagic);
+      odd[v] = Simd::Fma(shifted - Simd::Set(kMagic), Simd::Set(2.0), Simd::Set(1.0));
+      sign[v] = Simd::FromBits(~Simd::Bits(shifted) << 63);
+    }
+    SineFrom(odd, 1.0, x);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Flip(x[v], sign[v]);
   }
   static V Tan(V x) noexcept {
     V s;
@@ -152,6 +169,24 @@ struct Math {
   }
 
  private:
+  static constexpr double kMagic = 6755399441055744.0;  // 1.5 * 2^52: rounds to an integer, left in the lowest bits
+
+  /// x becomes sin(x - n times pi/2 * size): minimax polynomial, relative error 4e-17 before rounding.
+  template <std::size_t kCount>
+  static void SineFrom(const V (&n)[kCount], double size, V (&x)[kCount]) noexcept {
+    for (const double part : {1.57079625129699707031e+00, 7.54978941586159635336e-08, 5.39030285815811905290e-15})
+      for (std::size_t v = 0; v < kCount; ++v) x[v] = Less(x[v], n[v], size * part);
+    constexpr double kSine[] = {-7.64397029616579265158e-13, 1.60589773124442682639e-10,  -2.50521076169958777022e-08,
+                                2.75573192191632299576e-06,  -1.98412698412549741303e-04, 8.33333333333331587045e-03,
+                                -1.66666666666666657415e-01};
+    V z[kCount];
+    V p[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) z[v] = x[v] * x[v];
+    for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Set(2.73144475909634010934e-15);
+    for (const double coefficient : kSine)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], z[v], Simd::Set(coefficient));
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Simd::Fma(x[v] * z[v], p[v], x[v]);
+  }
   static V Flip(V a, V sign) noexcept { return Simd::FromBits(Simd::Bits(a) ^ Simd::Bits(sign)); }
 };
 

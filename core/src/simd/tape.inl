@@ -1,5 +1,7 @@
 // Runs tapes; included by kernels.inl, once per instruction set.
 
+#include <utility>
+
 #include "armcmc/expression/tape.hpp"
 #include "simd/math.inl"
 
@@ -13,132 +15,159 @@ using expression::TapeRegisters;
 
 constexpr int kTapeVectors = kTileLanes / Simd::kLanes;
 
-/// One sample of a tape for all candidates of a tile.
-class TapeRunner {
+/// One sample of a tape for a group of the candidates of a tile: as many vectors side by side as leave hardware
+/// registers for what is computed. The result of one instruction stays there for the next.
+class TapeGroup {
  public:
-  TapeRunner(TapeRegisters* registers, const double* scalars) noexcept
-      : register_(registers->value.data()), scalar_(scalars) {}
+  using Vec = Simd::V;
+  static constexpr int kVectors = kTapeVectors < 8 ? kTapeVectors : 8;
+  static constexpr int kLanes = kVectors * Simd::kLanes;
 
-  void Run(const TapeInstruction* first, const TapeInstruction* last) noexcept ARMCMC_NONBLOCKING {
-    for (const TapeInstruction* i = first; i != last; ++i) i += Execute(*i);
+  static void Run(const TapeInstruction* first, const TapeInstruction* last, double* registers,
+                  const double* scalars) noexcept {
+    const TapeGroup group(registers, scalars);
+    Vec x[kVectors] = {};
+    for (const TapeInstruction* at = first; at != last; ++at) {
+      const TapeInstruction& i = *at;
+      if (i.loads) Each([&x, a = group.Register(i.a)](std::size_t v) { x[v] = At(a, v); });
+      at += group.Execute(i, x);
+      if (i.stores) Each([&x, to = group.Register(i.to)](std::size_t v) { Simd::Store(to + v * Simd::kLanes, x[v]); });
+    }
   }
 
  private:
-  using Vec = Simd::V;
-  static constexpr int kCount = kTapeVectors;
+  /// @param registers  Of the group's first lane.
+  TapeGroup(double* registers, const double* scalars) noexcept : registers_(registers), scalars_(scalars) {}
 
-  [[nodiscard]] double* Register(std::uint8_t r) const noexcept { return register_[r].data(); }
-  [[nodiscard]] Vec Scalar(std::uint8_t s) const noexcept { return Simd::Set(scalar_[s]); }
+  [[nodiscard]] double* Register(std::uint8_t r) const noexcept { return registers_ + r * kTileLanes; }
+  [[nodiscard]] Vec Scalar(std::uint8_t s) const noexcept { return Simd::Set(scalars_[s]); }
+  static Vec At(const double* r, std::size_t v) noexcept { return Simd::Load(r + v * Simd::kLanes); }
 
+  /// Loops that are unrolled whatever the compiler thinks of it: an array of vectors that is indexed by a variable
+  /// would live in memory.
   template <class F>
-  void Nullary(const TapeInstruction& i, F f) noexcept {
-    double* to = Register(i.to);
-    for (int v = 0; v < kCount; ++v) Simd::Store(to + v * Simd::kLanes, f());
+  [[gnu::always_inline]] static void Each(F f) noexcept {
+    [f]<std::size_t... v>(std::index_sequence<v...>) { (f(v), ...); }
+    (std::make_index_sequence<kVectors>{});
   }
   template <class F>
-  void Unary(const TapeInstruction& i, F f) noexcept {
-    double* to = Register(i.to);
-    const double* a = Register(i.a);
-    for (int v = 0; v < kCount; ++v) Simd::Store(to + v * Simd::kLanes, f(Simd::Load(a + v * Simd::kLanes)));
+  [[gnu::always_inline]] static void Unary(Vec* a, F f) noexcept {
+    Each([a, f](std::size_t v) { a[v] = f(a[v]); });
+  }
+  /// Of functions that are worth the way through memory, and too long to be written down for every vector.
+  template <class F>
+  [[gnu::always_inline]] static void Long(Vec* a, F f) noexcept {
+    Vec value[kVectors];
+    Each([&value, a](std::size_t v) { value[v] = a[v]; });
+#pragma GCC unroll 2
+    for (Vec& v : value) v = f(v);  // in order
+    Each([&value, a](std::size_t v) { a[v] = value[v]; });
+  }
+  /// Of functions of four vectors at a time.
+  template <class F>
+  [[gnu::always_inline]] static void Fours(Vec* a, F f) noexcept {
+    Vec value[kVectors / 4][4];
+    Each([&value, a](std::size_t v) { value[v / 4][v % 4] = a[v]; });
+    for (auto& four : value) f(four);
+    Each([&value, a](std::size_t v) { a[v] = value[v / 4][v % 4]; });
   }
   template <class F>
-  void Binary(const TapeInstruction& i, F f) noexcept {
-    double* to = Register(i.to);
-    const double* a = Register(i.a);
+  [[gnu::always_inline]] void Binary(Vec* a, const TapeInstruction& i, F f) const noexcept {
     const double* b = Register(i.b);
-    for (int v = 0; v < kCount; ++v)
-      Simd::Store(to + v * Simd::kLanes, f(Simd::Load(a + v * Simd::kLanes), Simd::Load(b + v * Simd::kLanes)));
+    Each([a, b, f](std::size_t v) { a[v] = f(a[v], At(b, v)); });
   }
   template <class F>
-  void Ternary(const TapeInstruction& i, F f) noexcept {
-    double* to = Register(i.to);
-    const double* a = Register(i.a);
+  [[gnu::always_inline]] void Ternary(Vec* a, const TapeInstruction& i, F f) const noexcept {
     const double* b = Register(i.b);
     const double* c = Register(i.c);
-    for (int v = 0; v < kCount; ++v) {
-      const int at = v * Simd::kLanes;
-      Simd::Store(to + at, f(Simd::Load(a + at), Simd::Load(b + at), Simd::Load(c + at)));
-    }
+    Each([a, b, c, f](std::size_t v) { a[v] = f(a[v], At(b, v), At(c, v)); });
   }
-
-  /// Two terms at a time, the sum in registers.
-  int Linear(const TapeInstruction& i, bool from_register) noexcept {
-    Vec sum[kCount];
-    for (int v = 0; v < kCount; ++v)
-      sum[v] = from_register ? Simd::Load(Register(i.a) + v * Simd::kLanes) : Scalar(i.a);
-    const TapeInstruction* terms = &i + 1;
-    const int pairs = (i.b + 1) / 2;
-    for (int p = 0; p < pairs; ++p) {
-      const TapeInstruction& pair = terms[p];
-      const double* x = Register(pair.to);
-      const Vec s = Scalar(pair.a);
-      for (int v = 0; v < kCount; ++v) sum[v] = Simd::Fma(Simd::Load(x + v * Simd::kLanes), s, sum[v]);
-      if (2 * p + 1 == i.b) break;
-      const double* y = Register(pair.b);
-      const Vec t = Scalar(pair.c);
-      for (int v = 0; v < kCount; ++v) sum[v] = Simd::Fma(Simd::Load(y + v * Simd::kLanes), t, sum[v]);
+  /// a += the terms of the sum `i`, two an instruction. @return how many instructions hold them.
+  [[gnu::always_inline]] int AddTerms(Vec* a, const TapeInstruction& i) const noexcept {
+    const auto add = [a](const double* x, Vec s) { Each([=](std::size_t v) { a[v] = Simd::Fma(At(x, v), s, a[v]); }); };
+    const TapeInstruction* term = &i + 1;
+    for (int left = i.b; left > 0; left -= 2, ++term) {
+      add(Register(term->to), Scalar(term->a));
+      if (left > 1) add(Register(term->b), Scalar(term->c));
     }
-    double* to = Register(i.to);
-    for (int v = 0; v < kCount; ++v) Simd::Store(to + v * Simd::kLanes, sum[v]);
-    return pairs;
+    return (i.b + 1) / 2;
   }
 
   /// @return how many instructions that follow belong to this one.
-  int Execute(const TapeInstruction& i) noexcept {
+  [[gnu::always_inline]] int Execute(const TapeInstruction& i, Vec* x) const noexcept {
     switch (i.op) {
-      case TapeOp::kSplat: Nullary(i, [s = Scalar(i.a)] { return s; }); break;
-      case TapeOp::kCopy: Unary(i, [](Vec a) { return a; }); break;
-      case TapeOp::kLinear: return Linear(i, false);
-      case TapeOp::kAddLinear: return Linear(i, true);
-      case TapeOp::kAdd: Binary(i, [](Vec a, Vec b) { return a + b; }); break;
-      case TapeOp::kSubtract: Binary(i, [](Vec a, Vec b) { return a - b; }); break;
-      case TapeOp::kMultiply: Binary(i, [](Vec a, Vec b) { return a * b; }); break;
-      case TapeOp::kMultiplyAdd: Ternary(i, [](Vec a, Vec b, Vec c) { return Simd::Fma(a, b, c); }); break;
-      case TapeOp::kMultiplyAddS: Binary(i, [c = Scalar(i.c)](Vec a, Vec b) { return Simd::Fma(a, b, c); }); break;
-      case TapeOp::kDivide: Binary(i, [](Vec a, Vec b) { return a / b; }); break;
-      case TapeOp::kNegate: Unary(i, [](Vec a) { return -a; }); break;
-      case TapeOp::kReciprocal: Unary(i, [](Vec a) { return Simd::Set(1.0) / a; }); break;
-      case TapeOp::kAbs: Unary(i, [](Vec a) { return Simd::Abs(a); }); break;
-      case TapeOp::kSign: Unary(i, [](Vec a) { return Math::Sign(a); }); break;
-      case TapeOp::kSqrt: Unary(i, [](Vec a) { return Simd::Sqrt(a); }); break;
-      case TapeOp::kExp: Unary(i, [](Vec a) { return Math::Exp(a); }); break;
-      case TapeOp::kExp2S: Unary(i, [s = Scalar(i.b)](Vec a) { return Simd::Exp2OrNan(a * s); }); break;
-      case TapeOp::kLog: Unary(i, [](Vec a) { return Math::Log(a, 0.69314718055994530942); }); break;
-      case TapeOp::kLog2: Unary(i, [](Vec a) { return Math::Log(a, 1.0); }); break;
-      case TapeOp::kLog10: Unary(i, [](Vec a) { return Math::Log(a, 0.30102999566398119521); }); break;
-      case TapeOp::kPower: Binary(i, [](Vec a, Vec b) { return Math::Power(a, b); }); break;
-      case TapeOp::kPowerInt: Unary(i, [n = static_cast<unsigned>(i.b)](Vec a) { return Math::PowerInt(a, n); }); break;
-      case TapeOp::kSin: Unary(i, [](Vec a) { return Math::Sin(a); }); break;
-      case TapeOp::kCos: Unary(i, [](Vec a) { return Math::Cos(a); }); break;
-      case TapeOp::kTan: Unary(i, [](Vec a) { return Math::Tan(a); }); break;
-      case TapeOp::kAsin: Unary(i, [](Vec a) { return Math::Asin(a); }); break;
-      case TapeOp::kAcos: Unary(i, [](Vec a) { return Math::Acos(a); }); break;
-      case TapeOp::kAtan: Unary(i, [](Vec a) { return Math::Atan(a); }); break;
-      case TapeOp::kTanh: Unary(i, [](Vec a) { return Math::Tanh(a); }); break;
-      case TapeOp::kMin: Binary(i, [](Vec a, Vec b) { return Math::Min(a, b); }); break;
-      case TapeOp::kMax: Binary(i, [](Vec a, Vec b) { return Math::Max(a, b); }); break;
-      case TapeOp::kStep: Unary(i, [](Vec a) { return Math::Step(a); }); break;
-      case TapeOp::kLess: Binary(i, [](Vec a, Vec b) { return Math::Condition(a < b); }); break;
-      case TapeOp::kLessEqual: Binary(i, [](Vec a, Vec b) { return Math::Condition(a <= b); }); break;
-      case TapeOp::kEqual: Binary(i, [](Vec a, Vec b) { return Math::Condition(a == b); }); break;
-      case TapeOp::kNotEqual: Binary(i, [](Vec a, Vec b) { return Math::Condition(a != b); }); break;
-      case TapeOp::kAnd: Binary(i, [](Vec a, Vec b) { return Math::Condition((a != Vec{}) & (b != Vec{})); }); break;
-      case TapeOp::kOr: Binary(i, [](Vec a, Vec b) { return Math::Condition((a != Vec{}) | (b != Vec{})); }); break;
-      case TapeOp::kNot: Unary(i, [](Vec a) { return Math::Condition(a == Vec{}); }); break;
-      case TapeOp::kSelect: Ternary(i, [](Vec a, Vec b, Vec c) { return Simd::Select(a != Vec{}, b, c); }); break;
+      case TapeOp::kSplat: Unary(x, [s = Scalar(i.a)](Vec) { return s; }); break;
+      case TapeOp::kCopy: break;
+      case TapeOp::kLinear: Unary(x, [s = Scalar(i.a)](Vec) { return s; }); return AddTerms(x, i);
+      case TapeOp::kAddLinear: return AddTerms(x, i);
+      case TapeOp::kAdd: Binary(x, i, [](Vec a, Vec b) { return a + b; }); break;
+      case TapeOp::kSubtract: Binary(x, i, [](Vec a, Vec b) { return a - b; }); break;
+      case TapeOp::kMultiply: Binary(x, i, [](Vec a, Vec b) { return a * b; }); break;
+      case TapeOp::kMultiplyAdd: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(a, b, c); }); break;
+      case TapeOp::kMultiplyAddS: Binary(x, i, [c = Scalar(i.c)](Vec a, Vec b) { return Simd::Fma(a, b, c); }); break;
+      case TapeOp::kAddProduct: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(b, c, a); }); break;
+      case TapeOp::kScale: Unary(x, [s = Scalar(i.b)](Vec a) { return a * s; }); break;
+      case TapeOp::kScaleAdd: Binary(x, i, [s = Scalar(i.c)](Vec a, Vec b) { return Simd::Fma(a, s, b); }); break;
+      case TapeOp::kDivide: Binary(x, i, [](Vec a, Vec b) { return a / b; }); break;
+      case TapeOp::kNegate: Unary(x, [](Vec a) { return -a; }); break;
+      case TapeOp::kReciprocal: Unary(x, [](Vec a) { return Simd::Set(1.0) / a; }); break;
+      case TapeOp::kAbs: Unary(x, [](Vec a) { return Simd::Abs(a); }); break;
+      case TapeOp::kSign: Unary(x, [](Vec a) { return Math::Sign(a); }); break;
+      case TapeOp::kSqrt: Unary(x, [](Vec a) { return Simd::Sqrt(a); }); break;
+      case TapeOp::kExp: Long(x, [](Vec a) { return Math::Exp(a); }); break;
+      case TapeOp::kExp2S: Long(x, [s = Scalar(i.b)](Vec a) { return Simd::Exp2OrNan(a * s); }); break;
+      case TapeOp::kLog: Long(x, [](Vec a) { return Math::Log(a, 0.69314718055994530942); }); break;
+      case TapeOp::kLog2: Long(x, [](Vec a) { return Math::Log(a, 1.0); }); break;
+      case TapeOp::kLog10: Long(x, [](Vec a) { return Math::Log(a, 0.30102999566398119521); }); break;
+      case TapeOp::kPower:
+        Long(x, [b = Register(i.b)](Vec a) mutable {
+          const Vec power = Math::Power(a, Simd::Load(b));
+          b += Simd::kLanes;
+          return power;
+        });
+        break;
+      case TapeOp::kPowerInt: Long(x, [n = static_cast<unsigned>(i.b)](Vec a) { return Math::PowerInt(a, n); }); break;
+      case TapeOp::kSin: Fours(x, [](Vec(&a)[4]) { Math::Sin(a); }); break;
+      case TapeOp::kCos: Fours(x, [](Vec(&a)[4]) { Math::Cos(a); }); break;
+      case TapeOp::kTan: Long(x, [](Vec a) { return Math::Tan(a); }); break;
+      case TapeOp::kAsin: Long(x, [](Vec a) { return Math::Asin(a); }); break;
+      case TapeOp::kAcos: Long(x, [](Vec a) { return Math::Acos(a); }); break;
+      case TapeOp::kAtan: Long(x, [](Vec a) { return Math::Atan(a); }); break;
+      case TapeOp::kTanh: Long(x, [](Vec a) { return Math::Tanh(a); }); break;
+      case TapeOp::kMin: Binary(x, i, [](Vec a, Vec b) { return Math::Min(a, b); }); break;
+      case TapeOp::kMax: Binary(x, i, [](Vec a, Vec b) { return Math::Max(a, b); }); break;
+      // Nothing to look at: the hardware's give their second argument where one is not a number.
+      case TapeOp::kMinS: Unary(x, [s = Scalar(i.b)](Vec a) { return Simd::Min(s, a); }); break;
+      case TapeOp::kMaxS: Unary(x, [s = Scalar(i.b)](Vec a) { return Simd::Max(s, a); }); break;
+      case TapeOp::kStep: Unary(x, [](Vec a) { return Math::Step(a); }); break;
+      case TapeOp::kLess: Binary(x, i, [](Vec a, Vec b) { return Math::Condition(a < b); }); break;
+      case TapeOp::kLessEqual: Binary(x, i, [](Vec a, Vec b) { return Math::Condition(a <= b); }); break;
+      case TapeOp::kEqual: Binary(x, i, [](Vec a, Vec b) { return Math::Condition(a == b); }); break;
+      case TapeOp::kNotEqual: Binary(x, i, [](Vec a, Vec b) { return Math::Condition(a != b); }); break;
+      case TapeOp::kAnd: Binary(x, i, [](Vec a, Vec b) { return Math::Condition((a != Vec{}) & (b != Vec{})); }); break;
+      case TapeOp::kOr: Binary(x, i, [](Vec a, Vec b) { return Math::Condition((a != Vec{}) | (b != Vec{})); }); break;
+      case TapeOp::kNot: Unary(x, [](Vec a) { return Math::Condition(a == Vec{}); }); break;
+      case TapeOp::kSelect: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Select(a != Vec{}, b, c); }); break;
     }
     return 0;
   }
 
-  std::array<double, kTileLanes>* register_;
-  const double* scalar_;
+  double* registers_;
+  const double* scalars_;
 };
 
-/// Parameters into their registers, and what needs no sample.
-void StartTape(const Tape& tape, const ThetaTile& theta, const double* scalars,
-               TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
-  for (std::size_t d = 0; d < static_cast<std::size_t>(tape.num_parameters); ++d) registers->value[d] = theta.value[d];
-  TapeRunner(registers, scalars).Run(tape.code.data(), tape.code.data() + tape.once);
+void RunCode(const TapeInstruction* first, const TapeInstruction* last, const double* scalars,
+             TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
+  for (std::size_t lane = 0; lane < kTileLanes; lane += TapeGroup::kLanes)
+    TapeGroup::Run(first, last, registers->value[0].data() + lane, scalars);
+}
+/// What needs the sample.
+void RunTape(const Tape& tape, const double* scalars, TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
+  RunCode(tape.code.data() + tape.once, tape.code.data() + tape.code.size(), scalars, registers);
+}
+/// What needs no sample.
+void StartTape(const Tape& tape, const double* scalars, TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
+  RunCode(tape.code.data(), tape.code.data() + tape.once, scalars, registers);
 }
 
 }  // namespace

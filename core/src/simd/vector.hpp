@@ -84,7 +84,7 @@ struct Simd {
 
   static I Bits(V a) noexcept { return reinterpret_cast<I>(a); }
   static V FromBits(I a) noexcept { return reinterpret_cast<V>(a); }
-  static V Select(I mask, V yes, V no) noexcept { return FromBits((mask & Bits(yes)) | (~mask & Bits(no))); }
+  static V Select(I mask, V yes, V no) noexcept { return mask ? yes : no; }
   // maskz with a full mask: the plain intrinsics read an uninitialised register in g++ 12's header, which warns.
 #if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
   static V Max(V a, V b) noexcept { return _mm512_maskz_max_pd(0xff, a, b); }

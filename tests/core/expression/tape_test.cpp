@@ -49,7 +49,7 @@ struct Law {
   explicit Law(const std::string& text) : syntax(Parse(text)) {
     const expression::Scope scope = test::PlantWords();
     node = graph.Lower(syntax, scope, {});
-    compiled = CompileTape(&graph, {node}, kParameters, 0);
+    compiled = CompileTape(&graph, {node}, {.num_parameters = kParameters});
     const FeatureProgram features(graph, compiled.scalars);
     FeatureMemory memory;
     scalars->stride = static_cast<int>(compiled.scalars.size());
@@ -301,9 +301,9 @@ INSTANTIATE_TEST_SUITE_P(Tape, Score,
                          [](const auto& info) { return "n" + std::to_string(info.index); });
 
 TEST(Tape, IsAsShortAsTheLawAllows) {
-  EXPECT_EQ(Law("K*x + B*v + p").compiled.tape.size, 2 + 0) << "one sum of two terms";
-  EXPECT_EQ(Law("max(x, 0)^p * (K + B*v)").compiled.tape.size, 1 + 2 + 1) << "a power, a sum, a product";
-  EXPECT_EQ(Law("v*(K + B*(x - g))").compiled.tape.size, 1 + 1) << "v and v (x - g) are features";
+  EXPECT_EQ(Law("K*x + B*v + p").compiled.tape.size(), 2) << "one sum of two terms";
+  EXPECT_EQ(Law("max(x, 0)^p * (K + B*v)").compiled.tape.size(), 3) << "a power, a sum, a product";
+  EXPECT_EQ(Law("v*(K + B*(x - g))").compiled.tape.size(), 2) << "v and v (x - g) are features";
   const Law once("exp(K*B)*x");
   EXPECT_EQ(once.compiled.tape.once, 2) << "what needs no sample is computed once";
 }

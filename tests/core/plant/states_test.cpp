@@ -36,15 +36,17 @@ PlantDescription Oscillator() {
 
 double Drive(double t) { return 3.0 * std::sin(2.1 * t) + 2.0 * std::sin(5.3 * t + 1.0); }
 
-/// Place and speed of the oscillator, by the same method with inputs linear between samples.
+/// Two states by the same method with inputs linear between samples; place and speed of the oscillator.
 struct Reference {
+  using Rate = std::function<std::array<double, 2>(const std::array<double, 2>&, double)>;
+
   std::array<double, 2> x{};
   std::array<double, 3> theta{1.3, 0.8, 31.0};
   int substeps = 2;
+  Rate rate = [this](const std::array<double, 2>& s, double u) {
+    return std::array<double, 2>{s[1], (u - theta[1] * s[1] - theta[2] * s[0]) / theta[0]};
+  };
 
-  [[nodiscard]] std::array<double, 2> Rate(const std::array<double, 2>& s, double u) const {
-    return {s[1], (u - theta[1] * s[1] - theta[2] * s[0]) / theta[0]};
-  }
   void Step(double u0, double u1) {
     const double h = kDt / substeps;
     for (int i = 0; i < substeps; ++i) {
@@ -52,14 +54,27 @@ struct Reference {
       const auto moved = [&](const std::array<double, 2>& k, double by) {
         return std::array<double, 2>{x[0] + by * k[0], x[1] + by * k[1]};
       };
-      const auto k1 = Rate(x, at(0.0));
-      const auto k2 = Rate(moved(k1, 0.5 * h), at(0.5));
-      const auto k3 = Rate(moved(k2, 0.5 * h), at(0.5));
-      const auto k4 = Rate(moved(k3, h), at(1.0));
+      const auto k1 = rate(x, at(0.0));
+      const auto k2 = rate(moved(k1, 0.5 * h), at(0.5));
+      const auto k3 = rate(moved(k2, 0.5 * h), at(0.5));
+      const auto k4 = rate(moved(k3, h), at(1.0));
       for (std::size_t s = 0; s < 2; ++s) x[s] += h / 6.0 * (k1[s] + 2.0 * k2[s] + 2.0 * k3[s] + k4[s]);
     }
   }
 };
+
+/// Its rates are not linear, and have three steps a sample.
+PlantDescription Pendulum() {
+  PlantDescription plant = Oscillator();
+  plant.name = "pendulum";
+  plant.signals = {{"u", "1", "drive", ""}, {"y", "1", "position", ""}};
+  plant.parameters = {{"m", "s^2", "normal", 1.0, 0.5, 0.1, 5.0},
+                      {"d", "s^2", "normal", 0.5, 0.5, 0.0, 5.0},
+                      {"k", "1", "normal", 20.0, 10.0, 1.0, 100.0}};
+  plant.states = {{"pos", "1", "position", "speed", "y", "", 1},
+                  {"speed", "1/s", "velocity", "(abs(u) - d*speed*abs(speed) - k*sin(pos))/m", "0", "", 3}};
+  return plant;
+}
 
 /// A pack of the plant prepared for the kernels, all candidates alike.
 struct Laid {
@@ -103,6 +118,67 @@ TEST(States, AreIntegratedAsTheMethodSays) {
     EXPECT_NEAR(end.value[0][7], reference.x[0], 1e-13);
     EXPECT_NEAR(end.value[1][7], reference.x[1], 1e-12);
     EXPECT_NEAR(prediction->value[39][7], expected[39], 1e-13);
+  }
+}
+
+TEST(States, RatesThatAreNotLinearAreIntegratedStageByStage) {
+  const auto plant = test::Program(Pendulum());
+  const auto linear = test::Program(Oscillator());
+  EXPECT_LT(2 * linear->states().step().size(), plant->states().step().size())
+      << "all stages of a linear one are a sum of states and inputs, whose coefficients no sample changes";
+  const DataPack pack = DescribedPack(
+      *plant, 1,
+      [](double t) {
+        return PlantSample{{Drive(t)}, 0.2};
+      },
+      60, kDt);
+  const Laid laid(*plant, pack, nullptr, {1.3, 0.8, 31.0});
+  const auto prediction = std::make_unique<PredictionTile>();
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    Reference reference;
+    reference.x = {0.2, 0.0};
+    reference.substeps = 3;
+    reference.rate = [](const std::array<double, 2>& s, double u) {
+      return std::array<double, 2>{s[1], (std::fabs(u) - 0.8 * s[1] * std::fabs(s[1]) - 31.0 * std::sin(s[0])) / 1.3};
+    };
+    kernels->predict(-1, *laid.data, laid.tile, prediction.get());
+    for (int n = 0; n < 60; ++n) {
+      EXPECT_NEAR(prediction->value[static_cast<std::size_t>(n)][9], reference.x[0], 1e-12) << kernels->name << n;
+      reference.Step(Drive((n + 1) * kDt), Drive((n + 2) * kDt));
+    }
+  }
+}
+
+TEST(States, SameBitsOnEveryFusedInstructionSet) {
+  const auto sets = test::FusedKernels();
+  if (sets.size() < 2) GTEST_SKIP() << "this CPU has one of them only";
+  for (const PlantDescription& description : {Oscillator(), Pendulum()}) {
+    const auto plant = test::Program(description);
+    const DataPack pack = DescribedPack(
+        *plant, 1,
+        [](double t) {
+          return PlantSample{{Drive(t)}, 0.2};
+        },
+        60, kDt);
+    Laid laid(*plant, pack, nullptr, {1.3, 0.8, 31.0});
+    for (std::size_t d = 0; d < 3; ++d)
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane)
+        laid.tile.value[d][lane] *= 1.0 + 0.013 * static_cast<double>(lane);
+    const NoiseModel noise(NoiseSettings{.std = 0.1});
+    alignas(64) std::array<double, kTileLanes> log_scale{}, score{}, first_score{};
+    const auto first = std::make_unique<PredictionTile>(), other = std::make_unique<PredictionTile>();
+    for (const simd::Kernels* kernels : sets) {
+      const bool is_first = kernels == sets[0];
+      kernels->predict(-1, *laid.data, laid.tile, is_first ? first.get() : other.get());
+      auto& scored = is_first ? first_score : score;
+      const auto scratch = std::make_unique<PredictionTile>();
+      kernels->score(-1, noise, *laid.data, laid.tile, log_scale.data(), scratch.get(), scored.data());
+      for (std::size_t lane = 0; !is_first && lane < kTileLanes; ++lane) {
+        EXPECT_TRUE(test::SameBits(first_score[lane], score[lane])) << description.name;
+        for (std::size_t n = 0; n < 60; ++n)
+          ASSERT_TRUE(test::SameBits(first->value[n][lane], other->value[n][lane])) << description.name << n;
+      }
+    }
   }
 }
 

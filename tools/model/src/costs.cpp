@@ -88,14 +88,14 @@ std::string CostText(const std::shared_ptr<const PlantProgram>& program,
                      const std::shared_ptr<const support::Recording>& recording) {
   std::string text = "costs: ";
   for (int m = 0; m < program->info().num_modes; ++m) {
-    const expression::Tape& law = program->law(m);
-    text += (m > 0 ? ", " : "") + std::to_string(law.size - law.once);
+    int largest = 0;
+    for (const expression::Tape& law : program->laws(m)) largest = std::max(largest, law.size());
+    text += (m > 0 ? ", " : "") + std::to_string(largest);
     if (program->info().num_modes > 1) text += " in " + std::string(program->info().modes[static_cast<std::size_t>(m)]);
   }
   text += " operations a candidate and sample";
   if (const PlantStates& states = program->states(); states.size() > 0)
-    text += ", and " + std::to_string(4 * states.substeps() * (states.rate().size - states.rate().once)) +
-            " for the states";
+    text += ", and " + std::to_string(states.substeps() * states.step().size()) + " for the states";
   text += "; " + std::to_string(program->num_scalars()) + " quantities of the signals once a sample\n";
 
   std::optional<Step> step;

@@ -14,10 +14,11 @@ namespace armcmc::expression {
 enum class SymbolKind : std::uint8_t {
   kSignal,     ///< Measured: given at every sample.
   kTime,       ///< The plant's time t.
-  kConstant,   ///< A number.
+  kConstant,   ///< A number; in a graph one that is known before the first sample.
   kParameter,  ///< Sampled.
   kState,      ///< Integrated from its rate.
   kLet,        ///< Another expression.
+  kGiven,      ///< A number that somebody else works out for every sample; in graphs only.
 };
 
 /// Values that something can have.

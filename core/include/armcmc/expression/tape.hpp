@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "armcmc/mode_data.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -10,9 +11,9 @@
 namespace armcmc::expression {
 
 inline constexpr int kMaxTapeInstructions = 384;
-inline constexpr int kMaxTapeRegisters = 96;
+inline constexpr int kMaxTapeRegisters = 128;
 inline constexpr int kMaxTapeScalars = 48;  ///< Numbers that a sample brings along, constants included.
-inline constexpr int kMaxTapeResults = 9;   ///< Of a law and the rates of its states.
+inline constexpr int kMaxTapeResults = 8;   ///< As many as there may be states.
 
 /// What one instruction does with all candidates of a tile. R: a register, one number a candidate; S: a scalar, one
 /// number a sample.
@@ -25,6 +26,9 @@ enum class TapeOp : std::uint8_t {
   kSubtract,      ///< R = R a - R b
   kMultiply,      ///< R = R a x R b
   kMultiplyAdd,   ///< R = R a x R b + R c
+  kAddProduct,    ///< R = R a + R b x R c
+  kScale,         ///< R = R a x S b
+  kScaleAdd,      ///< R = R a x S c + R b
   kMultiplyAddS,  ///< R = R a x R b + S c
   kDivide,        ///< R = R a / R b
   kNegate,
@@ -48,6 +52,8 @@ enum class TapeOp : std::uint8_t {
   kTanh,
   kMin,
   kMax,
+  kMinS,  ///< R = the smaller one of R a and S b, a number
+  kMaxS,
   kStep,
   kLess,  ///< Conditions: 1 or 0.
   kLessEqual,
@@ -59,8 +65,12 @@ enum class TapeOp : std::uint8_t {
   kSelect,  ///< R = R a != 0 ? R b : R c
 };
 
+/// Where R a is the result of the instruction before it stays where arithmetic is done, and where nobody else needs a
+/// result it never reaches a register: in a chain of operations memory is what costs.
 struct TapeInstruction {
   TapeOp op = TapeOp::kCopy;
+  bool loads = false;   ///< R a comes from its register; else it is there already, or there is none.
+  bool stores = false;  ///< The result goes to its register.
   std::uint8_t to = 0, a = 0, b = 0, c = 0;
 };
 
@@ -82,10 +92,9 @@ struct TapeSum {
 };
 
 /// Straight-line code for all candidates of a tile at one sample. Registers 0 to num_parameters - 1 hold the
-/// parameters, the next num_states the states; both may be read only.
+/// parameters, the next num_states the states; both may be read only, but for states that are results.
 struct Tape {
-  std::array<TapeInstruction, kMaxTapeInstructions> code{};
-  int size = 0;
+  std::vector<TapeInstruction> code;
   int once = 0;  ///< The first instructions need no sample: they run once a tile.
   int num_parameters = 0;
   int num_states = 0;
@@ -98,6 +107,9 @@ struct Tape {
   TapeSum factor, rest;                   ///< kLinear: `rest` alone.
   std::uint8_t exponent = 0, log2 = 0;    ///< kPower: parameter and scalar.
   double largest_exponent = 1e300;        ///< Its magnitude, as far as whoever made the tape knows it.
+
+  /// Instructions a sample.
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(code.size()) - once; }
 };
 
 /// Registers of one tile of candidates.

@@ -21,6 +21,7 @@ namespace armcmc {
 struct PlantPack {
   expression::TapeScalars scalars;                    ///< Of every sample, whatever its mode.
   std::array<std::int8_t, kMaxPackSamples> mode{};    ///< That acts: of those that are sampled, their number for none.
+  std::array<std::uint8_t, kMaxPackSamples> law{};    ///< Of those that such a mode has.
   std::array<double, kMaxPackSamples> target{};       ///< What the law of that mode explains.
   std::array<double, kMaxPackSamples> passive{};      ///< What is shown where no sampled mode acts.
   std::array<bool, kMaxPackSamples> passive_given{};  ///< A passive mode acts, and its law is given.
@@ -31,8 +32,8 @@ struct PlantPack {
 /// changes.
 ///
 /// Modes whose parameters are all their own are sampled apart. Where a parameter is shared, all modes are sampled as
-/// one, whose law is that of the mode that acts; parameters of a mode then carry its name. So they are where the plant
-/// has states that a law needs, which go on from mode to mode.
+/// one, which has a law for each; parameters of a mode then carry its name. So they are where the plant has states that
+/// a law needs, which go on from mode to mode.
 class PlantProgram {
  public:
   /// kLaws: what is sampled. kPrediction: what is shown as prediction of the output where the modes explain a target,
@@ -48,8 +49,10 @@ class PlantProgram {
   [[nodiscard]] bool has_memory() const noexcept { return features_.has_memory(); }
   [[nodiscard]] const PlantStates& states() const noexcept { return states_; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
-  /// Of a sampled mode, and how many quantities of a sample the laws and rates read.
-  [[nodiscard]] const expression::Tape& law(int mode) const { return modes_[static_cast<std::size_t>(mode)].law; }
+  /// Of a sampled mode, and how many quantities of a sample they read.
+  [[nodiscard]] const std::vector<expression::Tape>& laws(int mode) const {
+    return modes_[static_cast<std::size_t>(mode)].laws;
+  }
   [[nodiscard]] int num_scalars() const noexcept { return num_scalars_; }
   /// The parameter's prior as it is sampled: of a lognormal one that of the logarithm.
   [[nodiscard]] const std::vector<ParameterDescription>& sampled() const noexcept { return sampled_; }
@@ -88,8 +91,8 @@ class PlantProgram {
  private:
   struct SampledMode {
     std::string name;
-    expression::Tape law;
-    expression::Tape error;  ///< law - target.
+    std::vector<expression::Tape> laws{};
+    std::vector<expression::Tape> errors{};  ///< law - target.
     bool law_is_output = true;
   };
   /// Of every mode of the plant, in the order of its file: where its parts stand among the features.
@@ -98,6 +101,7 @@ class PlantProgram {
     int target = 0;
     int passive = -1;
     int sampled = -1;            ///< Sampled mode, -1: passive.
+    int law = 0;                 ///< Of its laws.
     bool passive_given = false;  ///< The law of a passive mode is given.
   };
 
@@ -107,7 +111,8 @@ class PlantProgram {
   [[nodiscard]] int OfActingMode(NodeOfMode node_of);
   [[nodiscard]] bool LawsNeedStates() const;
   void CompileModes();
-  void CompileLaw(const std::string& name, int law, int target, const std::string& key, std::vector<int>* scalars);
+  /// One more for the newest sampled mode.
+  void CompileLaw(int law, int target, const std::string& key, std::vector<int>* scalars);
   void CompileFeatures(const std::vector<int>& scalars);
   void MakePrediction();
   void CompileStates(std::vector<int>* scalars);

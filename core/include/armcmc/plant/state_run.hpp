@@ -9,27 +9,27 @@
 namespace armcmc {
 
 inline constexpr int kMaxStates = 8;           ///< Of a plant.
-inline constexpr int kMaxStateCells = 32'768;  ///< Numbers that the rates of one pack need: rows x scalars.
+inline constexpr int kMaxStateCells = 65'536;  ///< Numbers that the rates of one pack need: rows x scalars.
 
 /// Numbers of kTileLanes candidates: value[state][lane].
 struct alignas(64) StateTile {
   std::array<std::array<double, kTileLanes>, kMaxStates> value;
 };
 
-/// The states of a described plant over the samples of one pack, as every candidate integrates them:
+/// The states of a described plant over the samples of one pack, as every candidate integrates them: the tape `step`
+/// takes them a substep of h further by the classical Runge-Kutta method,
 ///
-///   x(t + h) = x + h/6 (k1 + 2 k2 + 2 k3 + k4),   k1 = f(x, row), k2 = f(x + h/2 k1, row + 1),
-///   k3 = f(x + h/2 k2, row + 1), k4 = f(x + h k3, row + 2),
+///   x(t + h) = x + h/6 (k1 + 2 k2 + 2 k3 + k4),   k1 = f(x, t), k2 = f(x + h/2 k1, t + h/2),
+///   k3 = f(x + h/2 k2, t + h/2), k4 = f(x + h k3, t + h),
 ///
-/// the classical Runge-Kutta method, `substeps` times a sample interval. A row holds the scalars of the rates, for
-/// inputs that are linear between samples, at a half of a substep: those of a pack follow each other.
+/// `substeps` times a sample interval, with inputs that are linear between samples. A row holds the scalars of one
+/// substep: those of a pack follow each other.
 struct StateRun {
-  const expression::Tape* rate = nullptr;   ///< d state / dt, a result a state. Null: the plant has no states.
+  const expression::Tape* step = nullptr;   ///< Null: the plant has no states.
   const expression::Tape* start = nullptr;  ///< State at the first sample, of the scalars of that sample.
   int num_states = 0;
   int num_samples = 0;
   int substeps = 1;
-  double h = 0.0;        ///< s, a substep.
   bool carried = false;  ///< Goes on from `value`, one interval before the first sample; else begins at that sample.
   /// Of a state that begins with a number: whether it does, and the number.
   std::array<bool, kMaxStates> given{};

@@ -31,8 +31,9 @@ struct StateMemory {
   PlantSignals signals{};                  ///< Of its last sample.
 };
 
-/// The states of a described plant, compiled: their rates and starts as tapes, and everything in the rates that no
-/// parameter and no state changes as a program of signals.
+/// The states of a described plant, compiled: their starts and a step of Runge-Kutta's method as tapes, and everything
+/// in them that no parameter and no state changes as programs of signals. What the stages of a step have in common is
+/// computed once.
 ///
 /// A pack that continues another starts from the end of that one's trajectory for the posterior's mean, one interval
 /// before its first sample; a state that is measured, from its signal there. Any other pack starts at its first sample
@@ -43,7 +44,7 @@ class PlantStates {
   PlantStates() = default;
   /// @param rates, starts   A node of the graph a state, parameters replaced by those that are sampled.
   /// @param num_parameters  That are sampled.
-  /// @param scalars         Of a sample, shared with the laws; those of the starts are added.
+  /// @param scalars         Of a sample, shared with the laws: those of the starts.
   /// @throws PlantError where the plant is past a limit.
   PlantStates(const Plant& plant, expression::Graph* graph, const std::vector<int>& rates,
               const std::vector<int>& starts, int num_parameters, std::vector<int>* scalars);
@@ -58,7 +59,7 @@ class PlantStates {
   [[nodiscard]] double output_in_start(int state) const noexcept {
     return output_in_start_[static_cast<std::size_t>(state)];
   }
-  [[nodiscard]] const expression::Tape& rate() const noexcept { return rate_; }
+  [[nodiscard]] const expression::Tape& step() const noexcept { return step_; }
 
   /// Lays the pack out for integration.
   /// @param before  What the pack before left, of one that this one continues; else null.
@@ -68,14 +69,17 @@ class PlantStates {
                              StateRun* out) const noexcept ARMCMC_NONBLOCKING;
 
  private:
+  void CompileStep(expression::Graph* graph, const std::vector<int>& rates, int num_parameters);
+
   int size_ = 0;
   int output_ = 0;
   int substeps_ = 1;
   bool all_measured_ = false;
   std::array<int, kMaxStates> measured_by_{};  ///< Signal, -1: none.
   std::array<double, kMaxStates> output_in_start_{};
-  expression::Tape rate_, start_;
-  expression::FeatureProgram features_;  ///< The scalars of the rates.
+  expression::Tape step_, start_;
+  expression::FeatureProgram inputs_;   ///< What the rates need of the signals, at one point.
+  expression::FeatureProgram scalars_;  ///< Those of a step, from its length and the inputs at its three points.
 };
 
 }  // namespace armcmc

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "armcmc/expression/graph.hpp"
+
+namespace armcmc {
+
+/// A step of the classical Runge-Kutta method as nodes: the states a step later, of the states before it, the length of
+/// the step, and what the rates need of the signals at its beginning, middle and end.
+///
+/// The length is the constant 0, and what is given i at point p is the given number 1 + p inputs().size() + i.
+class RungeKutta {
+ public:
+  /// @param rates  A node a state.
+  RungeKutta(expression::Graph* graph, std::vector<int> rates);
+
+  /// What the rates need that neither parameter nor state changes, the largest parts of it.
+  [[nodiscard]] const std::vector<int>& inputs() const noexcept { return inputs_; }
+
+  /// Stage after stage.
+  [[nodiscard]] std::vector<int> Staged();
+  /// Nodes of Staged() in an order in which what is slow for one state overlaps with what the others do.
+  [[nodiscard]] const std::vector<int>& stages() const noexcept { return stages_; }
+
+  /// Of rates that are linear in states and inputs: all stages in one, whose coefficients no sample changes. Empty
+  /// where they are not, or where that would be too many coefficients.
+  [[nodiscard]] std::vector<int> Linear();
+
+ private:
+  /// constant + sum of coefficient x symbol; neither constant nor coefficients change from sample to sample.
+  struct Form {
+    std::map<int, int> coefficient;  ///< Symbol -> node.
+    int constant;
+  };
+
+  int Plus(int a, int b) { return graph_.Make(expression::Op::kAdd, a, b); }
+  int Times(int a, int b) { return graph_.Make(expression::Op::kMultiply, a, b); }
+  [[nodiscard]] int Given(int point, std::size_t input);
+  [[nodiscard]] std::vector<int> Rates(const std::vector<int>& states, int point);
+  [[nodiscard]] std::vector<int> Moved(const std::vector<int>& rates, int h);
+
+  [[nodiscard]] std::optional<Form> FormOf(int node);
+  [[nodiscard]] Form Plus(Form a, const Form& b);
+  [[nodiscard]] Form Times(Form a, int factor);
+  /// Of the rates, whose symbols are states and inputs, at a point of the step.
+  [[nodiscard]] std::vector<Form> Rates(const std::vector<Form>& rates, const std::vector<Form>& states, int point);
+  [[nodiscard]] std::vector<Form> Moved(const std::vector<Form>& states, const std::vector<Form>& rates, int h);
+  [[nodiscard]] int NodeOf(const Form& form);
+
+  expression::Graph& graph_;
+  std::vector<int> rates_, inputs_, states_, stages_;
+  int h_, half_, third_, sixth_;
+};
+
+}  // namespace armcmc
