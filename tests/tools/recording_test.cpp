@@ -210,6 +210,13 @@ TEST(RecordingFiles, ThoseThatComeAlongAreRead) {
   }
 }
 
+TEST(RecordingFiles, TheExcerptComesWithItsData) {
+  const Recording r =
+      ReadRecording(test::SourceDir() / "tools/gap/recordings/excerpt/emps_excerpt.toml", std::filesystem::path());
+  EXPECT_EQ(r.num_rows(), 9000u);
+  EXPECT_NEAR(r.dt, 2e-3, 1e-6);
+}
+
 TEST(RecordingFiles, ReplayEstimatesFromOne) {
   ARMCMC_REQUIRE_DATA("measured/emps_estimation.csv");
   const test::ScratchDir dir;

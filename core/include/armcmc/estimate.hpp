@@ -70,4 +70,14 @@ struct Estimate {
   GapState gap;                                            ///< Whether the model misses something.
 };
 
+/// What was expected of a pack before it was seen: what the law explains, from the posterior after the pack before.
+struct PackForecast {
+  int num_samples = 0;
+  std::array<double, kMaxPackSamples> target{};  ///< Measured. NaN: no mode acts that has been learnt.
+  std::array<double, kMaxPackSamples> centre{};  ///< Expected, same unit.
+  /// Standard deviation of the expected value: parameters, and where a plant's states begin. Without noise.
+  std::array<double, kMaxPackSamples> sd{};
+  std::array<double, kMaxPackSamples> noise_std{};  ///< Scale of the noise's law.
+};
+
 }  // namespace armcmc

@@ -66,6 +66,19 @@ class Estimator {
   /// @rt No heap, no lock, no throw. O(draws).
   void Execute(const AdjustResult& result, Estimate* estimate) noexcept ARMCMC_NONBLOCKING;
 
+  /// What the posterior before a pack of a described plant says about it, for every sample n of a mode that an earlier
+  /// pack has updated (NaN elsewhere, and for a compiled plant):
+  ///
+  ///   centre = median of F(X_n, theta_k) over a thinned chain theta_k of that posterior,
+  ///   sd^2   = (half the range of its middle two thirds)^2 + noise_std^2 (S P S')_nn,
+  ///
+  /// P the covariance of the plant's states where the pack begins, S the law's answer to them (StateFilter). A power
+  /// whose exponent is not known yet has no mean that means anything, but a median.
+  /// Errors against it are those of a prediction one pack ahead, which fitted nothing to what it predicts.
+  /// @param result  Of Adjust() for the newest pack, before Execute() has seen it.
+  /// @rt No heap, no lock, no throw; O(samples). While neither Adjust() nor Execute() runs.
+  void Forecast(const AdjustResult& result, PackForecast* forecast) noexcept ARMCMC_NONBLOCKING;
+
   /// Forgets everything learnt: the next pack meets the initial prior. (A restarted plant is no reason to
   /// call it: the mismatch test decides whether the old posterior still holds.)
   void Reset() noexcept ARMCMC_NONBLOCKING;

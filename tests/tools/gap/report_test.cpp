@@ -98,6 +98,28 @@ TEST(Report, EscapesEveryTextOfTheResult) {
   }
 }
 
+TEST(Report, TellsWhatHappensWhileTheDataGoBy) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  EXPECT_FALSE(Holds(ReportHtml(result), "While the data went by"));
+  ParameterDrift& drift = result.drift.emplace_back();
+  drift.name = "M<b>";
+  drift.unit = "kg";
+  drift.before = {true, {"", {1.0, 3.0}, {90.0, 99.0}, {89.0, 98.0}, {91.0, 100.0}}, 94.0, 4.7, 1e-9, false};
+  drift.after = {true, {"", {1.0, 3.0}, {95.0, 95.2}, {94.0, 94.0}, {96.0, 96.0}}, 95.1, 0.0, 0.6, true};
+  result.run.why_not = "no run has the 100 samples of a pack";
+  std::string page = ReportHtml(result);
+  for (const char* words :
+       {"M&lt;b&gt;", "moves by ± 4.7&nbsp;kg", ">constant<", "Not told: no run has the 100 samples"})
+    EXPECT_TRUE(Holds(page, words)) << words;
+  result.run = {};
+  result.run.done = result.run.has_after = true;
+  result.run.pack_s = 0.1;
+  result.run.before = {1000, 6.98, 0.774, 4.58};
+  result.run.after = {1000, 2.27, 0.947, 2.54};
+  page = ReportHtml(result);
+  for (const char* words : {"77.4 %", "94.7 %", "about what they promise"}) EXPECT_TRUE(Holds(page, words)) << words;
+}
+
 TEST(Report, ComesOutOfAnEmptyResult) { EXPECT_TRUE(Holds(ReportHtml(Result{}), "</html>")); }
 
 TEST(Report, ComesOutOfAResultWithoutANumber) {

@@ -73,6 +73,14 @@ TEST_F(LadderProgram, NamesWhatIsHiddenAndWritesAModelThatLacksNothing) {
   EXPECT_GT(result["parameters"]["before"]["Fv"]["mean"].get<double>(), 195.0);
   EXPECT_NEAR(result["parameters"]["after"]["Fv"]["mean"].get<double>(), 180.0, 6.0);
   EXPECT_NEAR(result["gap"]["heldout_rmse_after"].get<double>(), 2.0, 0.25);
+  // One pack ahead, too, and its intervals hold what they promise; the mass stays.
+  EXPECT_GT(result["one_step"]["before"]["rmse"].get<double>(), 3.0);
+  EXPECT_NEAR(result["one_step"]["after"]["rmse"].get<double>(), 2.0, 0.15);
+  EXPECT_NEAR(result["one_step"]["after"]["coverage95"].get<double>(), 0.95, 0.03);
+  EXPECT_GT(result["one_step"]["after"]["kept_apart"]["samples"].get<double>(), 500.0);
+  EXPECT_EQ(result["drift"]["M"]["after"]["constant"], true);
+  EXPECT_TRUE(result["drift"]["coulomb_friction_Fc"]["before"].is_null());
+  EXPECT_NEAR(result["drift"]["coulomb_friction_Fc"]["after"]["mean"].get<double>(), 14.0, 1.0);
   for (const char* key : {"ambiguous_set", "separate_by", "candidates", "where", "budget", "remainder", "published"})
     EXPECT_TRUE(result.contains(key)) << key;
   for (const char* file : {"report.html", "model.toml"})

@@ -272,16 +272,17 @@ int RunDescribed(const Arguments& a) {
   const std::vector<EffectEntry> known = support::EffectsFor(plant.effects);
   for (const std::string& name : a.without) (void)support::FindEffect(known, name, "--without: ");
   request.without = a.without;
+  request.seed = a.seed;
   const std::filesystem::path out = a.out;
   Claim(out);
   support::Progress progress("gap");
   request.progress = [&](const std::string&, double share) { progress.Update(share); };
   ladder::Diagnosis diagnosis = ladder::Diagnose(request);
   Result& result = diagnosis.result;
-  result.seed = a.seed;
   if (!result.effects.empty()) {
     result.model_file = "model.toml";
-    Write(out / result.model_file, support::PlantFileText(diagnosis.plant, "Made by armcmc-gap: " + result.sentence));
+    Write(out / result.model_file,
+          support::PlantFileText(diagnosis.after.plant, "Made by armcmc-gap: " + result.sentence));
   }
   Write(out / "result.json", ToJson(result).dump(2) + "\n");
   Write(out / "report.html", ReportHtml(result));

@@ -17,6 +17,7 @@ std::string ReportHtml(const Result& result) {
   AddGapAndEffects(result, &page);
   AddOpenQuestions(result, &page);
   AddTimeFigures(result, &page);
+  AddRunAlong(result, &page);
   AddWhere(result, &page);
   AddFeatureFigures(result, &page);
   AddCandidates(result, &page);

@@ -20,16 +20,6 @@ void AddCurve(const Curve& curve, Role role, const char* label, XyChart* chart) 
   chart->series.push_back({curve.label.empty() ? label : curve.label, role, curve.x, curve.y, curve.low, curve.high});
 }
 
-/// Tints what had no part in the diagnosis, when it is in the same recording.
-void ShadeHeldOut(const Figures& figures, XyChart* chart) {
-  double end = -std::numeric_limits<double>::infinity();
-  for (const Series& s : chart->series)
-    for (const double x : s.x)
-      if (std::isfinite(x)) end = std::max(end, x);
-  if (std::isfinite(figures.diagnosis_end_s) && end > figures.diagnosis_end_s)
-    chart->shades.push_back({figures.diagnosis_end_s, end, "held out"});
-}
-
 /// "force, N" -> "force residual, N".
 std::string ResidualTitle(const std::string& output_title) {
   if (output_title.empty()) return "residual";
@@ -39,6 +29,15 @@ std::string ResidualTitle(const std::string& output_title) {
 }
 
 }  // namespace
+
+void ShadeHeldOut(const Figures& figures, XyChart* chart) {
+  double end = -std::numeric_limits<double>::infinity();
+  for (const Series& s : chart->series)
+    for (const double x : s.x)
+      if (std::isfinite(x)) end = std::max(end, x);
+  if (std::isfinite(figures.diagnosis_end_s) && end > figures.diagnosis_end_s)
+    chart->shades.push_back({figures.diagnosis_end_s, end, "held out"});
+}
 
 void AddTimeFigures(const Result& result, plots::Page* page) {
   const Figures& f = result.figures;

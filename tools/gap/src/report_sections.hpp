@@ -9,6 +9,9 @@ namespace armcmc::gap {
 /// Whether the result describes a model with effects added, so that there is an "after".
 [[nodiscard]] bool HasAfter(const Result& result);
 
+/// Tints what had no part in the diagnosis, when it is the end of the same recording.
+void ShadeHeldOut(const Figures& figures, plots::XyChart* chart);
+
 /// Verdict, probability, what follows from it.
 void AddHeadline(const Result& result, plots::Page* page);
 /// What was named, rung by rung, and what is left.
@@ -19,6 +22,8 @@ void AddGapAndEffects(const Result& result, plots::Page* page);
 void AddOpenQuestions(const Result& result, plots::Page* page);
 /// Curves against time.
 void AddTimeFigures(const Result& result, plots::Page* page);
+/// What the estimator made of the recording as it went by: one-step prediction, drift of the parameters.
+void AddRunAlong(const Result& result, plots::Page* page);
 /// Residual against each feature.
 void AddFeatureFigures(const Result& result, plots::Page* page);
 /// Map and table of where model and data disagree.

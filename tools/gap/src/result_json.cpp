@@ -127,6 +127,50 @@ json BudgetJson(const Budget& b) {
           {"meets_deadline", b.measured ? json(b.meets_deadline) : json()}};
 }
 
+json SteadinessJson(const Steadiness& s) {
+  if (!s.known()) return {};
+  json stretches = json::array();
+  for (std::size_t k = 0; k < s.course.x.size(); ++k)
+    stretches.push_back({{"t_s", Number(s.course.x[k])},
+                         {"value", Number(s.course.y[k])},
+                         {"low95", Number(s.course.low[k])},
+                         {"high95", Number(s.course.high[k])}});
+  return {{"mean", Number(s.mean)},
+          {"moves_by", Number(s.moves_by)},
+          {"p_value", Number(s.p_value)},
+          {"constant", s.constant},
+          {"stretches", stretches}};
+}
+
+json DriftJson(const std::vector<ParameterDrift>& drift) {
+  json out = json::object();
+  for (const ParameterDrift& p : drift)
+    out[plots::ValidUtf8(p.name)] = {
+        {"unit", Text(p.unit)}, {"before", SteadinessJson(p.before)}, {"after", SteadinessJson(p.after)}};
+  return out;
+}
+
+json OneStepScoreJson(const OneStepScore& all, const OneStepScore& apart) {
+  const auto scores = [](const OneStepScore& s) -> json {
+    return {{"samples", s.samples},
+            {"rmse", Number(s.rmse)},
+            {"coverage95", Number(s.coverage95)},
+            {"half_width95", Number(s.half_width)}};
+  };
+  json out = scores(all);
+  out["kept_apart"] = scores(apart);
+  return out;
+}
+
+json OneStepJson(const Result& result) {
+  const RunAlong& run = result.run;
+  if (!run.done) return {};
+  return {{"unit", Text(result.gap.unit)},
+          {"ahead_s", Number(run.pack_s)},
+          {"before", OneStepScoreJson(run.before, run.before_apart)},
+          {"after", run.has_after ? OneStepScoreJson(run.after, run.after_apart) : json()}};
+}
+
 std::string SeparateBy(const Experiment& e) {
   if (e.scenario_file.empty()) return plots::ValidUtf8(e.words);
   return plots::ValidUtf8(e.words + (e.words.empty() ? "" : " ") + "(scenario file: " + e.scenario_file + ")");
@@ -171,6 +215,8 @@ json ToJson(const Result& result) {
   out["relative_error"] = {{"before", Number(result.relative_before)}, {"after", Number(result.relative_after)}};
   out["gap"] = GapJson(result.gap);
   out["parameters"] = ParametersJson(result.parameters);
+  out["drift"] = DriftJson(result.drift);
+  out["one_step"] = OneStepJson(result);
   out["budget"] = BudgetJson(result.budget);
   out["model"] = Text(result.model);
   out["model_file"] = Text(result.model_file);

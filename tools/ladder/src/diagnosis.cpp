@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <set>
 
+#include "armcmc/ladder/drift.hpp"
 #include "armcmc/ladder/evidence.hpp"
 #include "armcmc/support/program.hpp"
 #include "held_out.hpp"
+#include "run_along.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -59,22 +61,6 @@ std::vector<std::string> NamesBefore(const Ladder& ladder, std::size_t rung) {
 std::size_t NumNamed(const Ladder& ladder) {
   return static_cast<std::size_t>(
       std::count_if(ladder.rungs.begin(), ladder.rungs.end(), [](const Rung& r) { return !r.named.empty(); }));
-}
-
-/// The plant with its priors about the fit: means there, standard deviations of ten times what these data leave open,
-/// since the next run is another one; never wider than the file's.
-PlantDescription Tuned(const PlantDescription& plant, const Trial& trial, const std::vector<std::uint8_t>& rows) {
-  constexpr double kWider = 10.0;
-  PlantDescription tuned = plant;
-  const VectorXd sd = identify::StandardDeviations(*trial.model, rows, trial.fit);
-  for (Index d = 0; d < trial.fit.theta.size(); ++d)
-    for (ParameterDescription& p : tuned.parameters) {
-      if (p.name != trial.model->parameters()[static_cast<std::size_t>(d)].name || p.prior == "uniform") continue;
-      p.mean = trial.model->Shown(d, trial.fit.theta[d]);
-      p.sd = std::clamp(kWider * sd[d], 1e-6 * p.sd, p.sd);
-    }
-  tuned.noise.std = std::max(trial.fit.error_sd, 1e-300);
-  return tuned;
 }
 
 /// Everything that the diagnosis is made from, beside the result that it fills.
@@ -310,17 +296,38 @@ Diagnosis Diagnose(const DiagnosisRequest& request) {
   }
   climb.data = data;
   climb.known_noise = request.recording.smoothed_noise;
-  climb.progress = request.progress;
+  constexpr double kClimb = 0.9;  // share of the time, about
+  if (request.progress)
+    climb.progress = [&](const std::string& step, double share) { request.progress(step, kClimb * share); };
   diagnosis.ladder = Climb(climb);
   const Ladder& ladder = diagnosis.ladder;
   if (!ladder.base.fit.valid) throw support::InputError(request.recording.title + ": " + Joined(ladder.notes, "; "));
   LeaveOutStarts(ladder.base, &data);
   Teller(request, data, ladder, &diagnosis.result).TellAll();
-  diagnosis.plant = NumNamed(ladder) > 0
-                        ? Tuned(ladder.plant->description(), ladder.final_trial, ladder.view.data.training)
-                        : request.plant->plant.description();
-  diagnosis.result.seconds.emplace_back(
-      "all", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  const std::size_t own = request.plant->plant.description().parameters.size();
+  diagnosis.before = Tuned(request.plant->plant.description(), own, ladder.base, ladder.view.data.training);
+  diagnosis.after = Tuned(ladder.plant->description(), own, ladder.final_trial, ladder.view.data.training);
+  const bool named = NumNamed(ladder) > 0;
+  if (named && !diagnosis.after.held.empty())
+    diagnosis.result.notes.push_back(
+        "constants in the new model, since these data do not tell them or the estimator "
+        "samples no more: " +
+        Joined(diagnosis.after.held, ", "));
+  const auto seconds = [](auto since) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+  };
+  const auto run_begin = std::chrono::steady_clock::now();
+  diagnosis.result.seed = request.seed;
+  diagnosis.result.drift =
+      DriftOver(data, diagnosis.before, ladder.base, named ? &diagnosis.after : nullptr, ladder.final_trial);
+  const auto drift_end = std::chrono::steady_clock::now();
+  diagnosis.result.run = RunAlong(std::make_shared<const support::Recording>(request.recording), diagnosis.before,
+                                  named ? &diagnosis.after : nullptr, request.seed, [&](double share) {
+                                    if (request.progress) request.progress("run", kClimb + (1.0 - kClimb) * share);
+                                  });
+  diagnosis.result.seconds.emplace_back("one step", seconds(drift_end));
+  diagnosis.result.seconds.emplace_back("drift", std::chrono::duration<double>(drift_end - run_begin).count());
+  diagnosis.result.seconds.emplace_back("all", seconds(begin));
   return diagnosis;
 }
 

@@ -9,7 +9,8 @@
 namespace armcmc::replay {
 
 ReplaySummary Replay(PackSource* source, Estimator* estimator,
-                     const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate) {
+                     const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate,
+                     PackForecast* forecast) {
   using Clock = std::chrono::steady_clock;
   constexpr Nanos kNever = std::numeric_limits<Nanos>::max();
   const std::unique_ptr<AdjustResult> result = estimator->MakeResult();
@@ -24,6 +25,7 @@ ReplaySummary Replay(PackSource* source, Estimator* estimator,
       ++summary.refused;
       continue;
     }
+    if (forecast != nullptr) estimator->Forecast(*result, forecast);
     estimator->Execute(*result, estimate.get());
     const Clock::duration took = Clock::now() - start;
     compute += took;

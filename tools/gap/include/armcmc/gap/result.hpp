@@ -4,6 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/gap/curve.hpp"
+#include "armcmc/gap/run.hpp"
+
 namespace armcmc::gap {
 
 /// What the data say about a missing effect.
@@ -120,12 +123,6 @@ struct Experiment {
   std::string scenario_text{};  ///< For the plant.
 };
 
-/// One curve of a figure. `low` and `high` may be empty.
-struct Curve {
-  std::string label;
-  std::vector<double> x, y, low, high;
-};
-
 /// Residual against one feature, in bins.
 struct FeatureFigure {
   std::string feature;  ///< Axis title with unit.
@@ -210,6 +207,8 @@ struct Result {
   double relative_before = 0.0, relative_after = 0.0;  ///< Held-out rms error over the rms of what is explained.
   GapSummary gap;
   std::vector<ParameterChange> parameters;
+  std::vector<ParameterDrift> drift;  ///< Of a described plant.
+  RunAlong run;                       ///< Of a described plant.
   Budget budget;
   std::string model_file;  ///< model.toml, relative to the output folder; empty when no effect was added.
   Figures figures;

@@ -25,7 +25,9 @@ struct ReplaySummary {
 
 /// Drives an estimator over a recording: no thread, no deadline, the same result every time.
 /// @param on_estimate  Called after each pack.
+/// @param forecast     Filled with what was expected of the pack before it was seen, before on_estimate; may be null.
 ReplaySummary Replay(PackSource* source, Estimator* estimator,
-                     const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate);
+                     const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate,
+                     PackForecast* forecast = nullptr);
 
 }  // namespace armcmc::replay

@@ -1,0 +1,59 @@
+// What is expected of a pack before it was seen.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "estimator_impl.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// Of the sorted draws the one that lies a standard deviation above the median; of 32 normal ones the 27th is expected
+/// 0.937 deviations above it.
+constexpr std::size_t kUpper = 26;
+constexpr double kUpperDeviation = 0.937;
+
+/// (S P S') of sample k, in units of the noise's variance.
+double StartVariance(const StartFit* start, std::size_t k) noexcept {
+  double sum = 0.0;
+  for (std::size_t j = 0; start != nullptr && j < static_cast<std::size_t>(start->count); ++j) {
+    const double kept = 1.0 - start->shrink[j];
+    sum += (1.0 / (kept * kept) - 1.0) * start->direction[j][k] * start->direction[j][k];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void Estimator::Forecast(const AdjustResult& result, PackForecast* forecast) noexcept {
+  Impl& s = *impl_;
+  forecast->num_samples = result.pack.num_samples;
+  for (auto* row : {&forecast->target, &forecast->centre, &forecast->sd, &forecast->noise_std}) row->fill(kUnknown);
+  if (result.status == Status::kBadPack || s.info.described == nullptr) return;
+  for (int m = 0; m < s.info.num_modes; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    if (!s.known_draws[i]) continue;
+    s.PrepareMode(result.pack, result.effects, m, &s.execute_data);
+    const ModeData& data = s.execute_data;
+    if (data.num_samples == 0) continue;
+    s.kernels.predict(s.model, data, s.band_theta[i], &s.band_prediction);
+    const StartFit* start = s.state_filter.empty() ? nullptr : s.adjust_data[i].start_fit;
+    const double noise = s.last_estimates[i].noise_std;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(data.num_samples); ++k) {
+      const auto n = static_cast<std::size_t>(data.sample[k]);
+      std::array<double, Impl::kBandDraws> law = s.band_prediction.value[k];
+      std::sort(law.begin(), law.end());
+      const double spread = 0.5 * (law[kUpper] - law[Impl::kBandDraws - 1 - kUpper]) / kUpperDeviation;
+      forecast->target[n] = data.target[k];
+      forecast->centre[n] = 0.5 * (law[Impl::kBandDraws / 2 - 1] + law[Impl::kBandDraws / 2]);
+      forecast->sd[n] = std::sqrt(spread * spread + noise * noise * StartVariance(start, k));
+      forecast->noise_std[n] = noise;
+    }
+  }
+}
+
+}  // namespace armcmc
