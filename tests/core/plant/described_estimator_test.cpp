@@ -313,8 +313,7 @@ TEST(PlantProgram, LimitsAreErrorsThatNameTheirKey) {
   states.states = {{"s", "m/s", "", "a", "v", "", 100}};
   states.law = "M*a + Fv*s + off";
   EXPECT_EQ(key_of(states), "");
-  states.states[0].rate =
-      "M/(2*M)*a + M/(3*M)*abs(a) + M/(4*M)*max(a, 0) + M/(5*M)*min(a, 0) + M/(6*M)*a*step(a - 1)";
+  states.states[0].rate = "M/(2*M)*a + M/(3*M)*abs(a) + M/(4*M)*max(a, 0) + M/(5*M)*min(a, 0) + M/(6*M)*a*step(a - 1)";
   EXPECT_EQ(key_of(states), "states") << "too many substeps";
 }
 

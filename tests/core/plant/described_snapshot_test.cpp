@@ -90,7 +90,11 @@ TEST(DescribedSnapshot, BelongsToThePlantFile) {
   EXPECT_NE(identity_with([](auto* p) { p->states[0].substeps = 2; }), same);
   EXPECT_NE(identity_with([](auto* p) { std::swap(p->parameters[0], p->parameters[1]); }), same);
   EXPECT_NE(identity_with([](auto* p) { p->parameters[0].mean = 1.1; }), same);
-  EXPECT_NE(identity_with([](auto* p) { p->signals[0].unit = "1"; p->parameters[1].unit = "V/s"; }), same);
+  EXPECT_NE(identity_with([](auto* p) {
+              p->signals[0].unit = "1";
+              p->parameters[1].unit = "V/s";
+            }),
+            same);
   EXPECT_NE(identity_with([](auto* p) {
               p->law = "level + c";
               p->parameters.push_back({"c", "V", "normal", 0.0, 1.0});

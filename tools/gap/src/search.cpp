@@ -250,7 +250,7 @@ Finding Search::Run(bool pairs) const {
       // What is granted is not claimed: only the effect has to earn its name.
       const bool all_earned =
           pair->granted ? Better(pair->fit, pair->granted->without) : std::all_of(listed.begin(), listed.end(), earned);
-      if (all_earned && Adequate(pair, gap)) good.push_back(pair);
+      if (all_earned && (Adequate(pair, gap) || StandsOut(pair, beside))) good.push_back(pair);
     }
     DropUnsure(&good);
     // What leaves least tells the noise best.
@@ -291,7 +291,8 @@ Finding Search::Run(bool pairs) const {
   // An adequate hypothesis may leave the share; it would take clearly more to call for another name.
   finding.p_unnamed = bootstrap_->ProbabilityAbove(Judge(finding.best).gain,
                                                    rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap));
-  if (finding.approximate) finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
+  if (finding.approximate || finding.best->granted)
+    finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
   // No name was given because something is left, be it little.
   if (finding.verdict == Verdict::kUnnamed)
     finding.p_unnamed =
@@ -299,6 +300,7 @@ Finding Search::Run(bool pairs) const {
                   bootstrap_->ProbabilityAbove(Judge(finding.best).gain, 0.1 * limits_.min_gain * rows_)});
   AssignProbabilities(&finding);
   if (finding.verdict == Verdict::kNamed && !finding.approximate) Hedge(&finding);
+  if (finding.verdict == Verdict::kAmbiguous) Doubt(&finding);
   TakeBack(&finding);
   return finding;
 }

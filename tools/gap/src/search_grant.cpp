@@ -43,6 +43,15 @@ Search::Candidates Search::Beside(const Candidates& listed, const Candidates& un
   return beside;
 }
 
+bool Search::StandsOut(const CandidatePtr& candidate, const Candidates& beside) const {
+  if (!candidate->granted || candidate->fit.on_edge() || Closure(candidate) < limits_.granted_closure) return false;
+  const auto beyond = [](const CandidatePtr& c) { return c->fit.score() - c->granted->without.score(); };
+  return std::all_of(beside.begin(), beside.end(), [&](const CandidatePtr& rival) {
+    return rival->families() == candidate->families() ||
+           (beyond(rival) < limits_.granted_lead * beyond(candidate) && Better(candidate->fit, rival->fit));
+  });
+}
+
 CandidatePtr Search::LawError() const {
   for (const EffectForm& form : *catalogue_)
     if (form.regular) return Make(fitter_->Add(base_->fit, {&form, {}}));

@@ -110,12 +110,16 @@ void Search::Hedge(Finding* finding) const {
     finding->set.push_back(other);
     sum += other->probability;
   }
-  if (sum < limits_.doubt) {
-    finding->verdict = Verdict::kUnnamed;
-    finding->set.clear();
-  } else if (finding->set.size() > 1) {
-    finding->verdict = Verdict::kAmbiguous;
-  }
+  if (finding->set.size() > 1) finding->verdict = Verdict::kAmbiguous;
+  Doubt(finding);
+}
+
+void Search::Doubt(Finding* finding) const {
+  double sum = 0.0;
+  for (const CandidatePtr& member : finding->set) sum += member->probability;
+  if (sum >= limits_.doubt) return;
+  finding->verdict = Verdict::kUnnamed;
+  finding->set.clear();
 }
 
 void Search::AssignProbabilities(Finding* finding) const {

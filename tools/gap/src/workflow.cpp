@@ -83,8 +83,11 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
     return ShowGap(equation, heldout, *diagnosis->bootstrap, before, c->granted ? c->granted->with : c->fit, nullptr);
   };
-  const auto holds = [&](const GapSummary& gap) {
+  const auto holds = [&](const CandidatePtr& c) {
+    const GapSummary gap = closed(c);
     if (gap.gap_ratio < kUnseenRatio) return gap.after.rmse < kWorse * gap.before.rmse;
+    // What is granted bends to the first part; on the rest it errs, and the effect beside it is judged by what it adds.
+    if (c->granted) return gap.closed_low > 0.0 && gap.closed_fraction > limits.at_least_closed;
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
   const auto holds_elsewhere = [&](const CandidatePtr& c) {
@@ -98,12 +101,12 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
   std::vector<CandidatePtr> kept;
   double lost = 0.0;
   for (const CandidatePtr& member : finding.set) {
-    if (holds(closed(member))) {
+    if (holds(member)) {
       kept.push_back(member);
       continue;
     }
     const auto other = std::find_if(finding.tried.begin(), finding.tried.end(), [&](const CandidatePtr& c) {
-      return c != member && c->names() == member->names() && holds(closed(c));
+      return c != member && c->names() == member->names() && holds(c);
     });
     if (other == finding.tried.end() && holds_elsewhere(member)) {
       result->notes.push_back("the data kept apart hold something else besides, in a few stretches, that " +

@@ -101,6 +101,9 @@ class Search {
   /// Single effects beside physics without a name: that of `unlisted`, or the law's own error, which adds most to the
   /// best of `listed`.
   [[nodiscard]] Candidates Beside(const Candidates& listed, const Candidates& unlisted) const;
+  /// Whether an effect beside a grant that leaves something all the same is really there: it closes most of the gap,
+  /// and what it gains beyond the grant no effect of another family comes near to.
+  [[nodiscard]] bool StandsOut(const CandidatePtr& candidate, const Candidates& beside) const;
   /// The law with a smooth error of its own; null: the equation knows none.
   [[nodiscard]] CandidatePtr LawError() const;
   /// Leaves out hypotheses with a grant unless all of the equally good ones hold their families.
@@ -120,6 +123,8 @@ class Search {
   [[nodiscard]] double Margin(double gap, bool kin) const;
   /// A name that is not sure becomes a set, or none.
   void Hedge(Finding* finding) const;
+  /// What is less probable than not gets no name, be it a set.
+  void Doubt(Finding* finding) const;
   [[nodiscard]] Candidates Near(const Candidates& sorted, double gap) const;
   [[nodiscard]] double Gain(const CandidatePtr& candidate) const;
   [[nodiscard]] double Closure(const CandidatePtr& candidate) const;

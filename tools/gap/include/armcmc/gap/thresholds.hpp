@@ -31,6 +31,8 @@ struct Thresholds {
   double confirmed_elsewhere = 0.97;  ///< or this share outside the worst fifth of the blocks.
   double family_closure = 0.92;       ///< Closure that names a family whose formula is not adequate.
   double family_lead = 0.90;          ///< Share of the best gain that every other family must stay below.
+  double granted_closure = 0.70;      ///< Closure of a grant and an effect that leave something all the same,
+  double granted_lead = 0.70;         ///< and share of what it gains beyond the grant, that other families stay below.
   double relaxed_share = 0.70;        ///< Of what its free shape gains, that the formula itself must gain.
   double event_nats = 30.0;           ///< Evidence that names an effect seen in too few blocks to leave any out.
   double event_excess = 10.0;         ///< Robust standard deviations of a block's energy that make it an event,
