@@ -11,7 +11,7 @@
 namespace armcmc {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothingToExpect = std::numeric_limits<double>::quiet_NaN();
 /// Of the sorted draws the one that lies a standard deviation above the median; of 32 normal ones the 27th is expected
 /// 0.937 deviations above it.
 constexpr std::size_t kUpper = 26;
@@ -32,7 +32,7 @@ double StartVariance(const StartFit* start, std::size_t k) noexcept {
 void Estimator::Forecast(const AdjustResult& result, PackForecast* forecast) noexcept {
   Impl& s = *impl_;
   forecast->num_samples = result.pack.num_samples;
-  for (auto* row : {&forecast->target, &forecast->centre, &forecast->sd, &forecast->noise_std}) row->fill(kUnknown);
+  for (auto* row : {&forecast->target, &forecast->centre, &forecast->sd, &forecast->noise_std}) row->fill(kNothingToExpect);
   if (result.status == Status::kBadPack || s.info.described == nullptr) return;
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
