@@ -32,7 +32,8 @@ double StartVariance(const StartFit* start, std::size_t k) noexcept {
 void Estimator::Forecast(const AdjustResult& result, PackForecast* forecast) noexcept {
   Impl& s = *impl_;
   forecast->num_samples = result.pack.num_samples;
-  for (auto* row : {&forecast->target, &forecast->centre, &forecast->sd, &forecast->noise_std}) row->fill(kNothingToExpect);
+  for (auto* row : {&forecast->target, &forecast->centre, &forecast->sd, &forecast->noise_std})
+    row->fill(kNothingToExpect);
   if (result.status == Status::kBadPack || s.info.described == nullptr) return;
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
