@@ -78,6 +78,11 @@ std::vector<int> RungeKutta::Staged() {
 }
 
 std::optional<RungeKutta::Form> RungeKutta::FormOf(int node) {  // NOLINT(misc-no-recursion): as deep as the graph
+  if (const auto known = forms_.find(node); known != forms_.end()) return known->second;
+  return forms_[node] = MakeForm(node);
+}
+
+std::optional<RungeKutta::Form> RungeKutta::MakeForm(int node) {  // NOLINT(misc-no-recursion): see FormOf
   const auto is = [node](const std::vector<int>& symbols) {
     return std::find(symbols.begin(), symbols.end(), node) != symbols.end();
   };

@@ -42,7 +42,9 @@ class RungeKutta {
   [[nodiscard]] std::vector<int> Rates(const std::vector<int>& states, int point);
   [[nodiscard]] std::vector<int> Moved(const std::vector<int>& rates, int h);
 
+  /// Nothing where it is not linear. Each node once: what many use is not made for each of them.
   [[nodiscard]] std::optional<Form> FormOf(int node);
+  [[nodiscard]] std::optional<Form> MakeForm(int node);
   [[nodiscard]] Form Plus(Form a, const Form& b);
   [[nodiscard]] Form Times(Form a, int factor);
   /// Of the rates, whose symbols are states and inputs, at a point of the step.
@@ -51,6 +53,7 @@ class RungeKutta {
   [[nodiscard]] int NodeOf(const Form& form);
 
   expression::Graph& graph_;
+  std::map<int, std::optional<Form>> forms_;
   std::vector<int> rates_, inputs_, states_, stages_;
   int h_, half_, third_, sixth_;
 };

@@ -139,18 +139,6 @@ std::vector<DataPack> VesselPacks(const PlantProgram& plant, std::int64_t count)
   return packs;
 }
 
-PlantDescription LeakyVessel() {
-  PlantDescription plant;
-  plant.name = "leaky_vessel";
-  plant.output = "y";
-  plant.law = "level";
-  plant.signals = {{"u", "V", "drive", ""}, {"y", "V", "level", ""}};
-  plant.parameters = {{"a", "1/s", "normal", 1.0, 2.0, 0.0, 20.0}, {"b", "1/s", "normal", 1.0, 2.0, 0.0, 20.0}};
-  plant.states = {{"level", "V", "level", "b*u - a*level", "y", "", 1}};
-  plant.noise.std = 0.01;
-  return plant;
-}
-
 class DescribedBaseline : public ::testing::TestWithParam<Method> {};
 
 TEST_P(DescribedBaseline, AgreesWithLeastSquaresOfALinearLaw) {
@@ -168,7 +156,7 @@ TEST_P(DescribedBaseline, AgreesWithLeastSquaresOfALinearLaw) {
 }
 
 TEST_P(DescribedBaseline, FindsWhatMovesAState) {
-  const auto plant = test::Program(LeakyVessel());
+  const auto plant = test::Program(test::LeakyVessel());
   test::Rig rig(With(GetParam(), plant));
   for (const DataPack& pack : VesselPacks(*plant, 6)) {
     (void)rig.Step(pack);
@@ -181,7 +169,7 @@ TEST_P(DescribedBaseline, FindsWhatMovesAState) {
 }
 
 TEST_P(DescribedBaseline, DoesNotAllocateInAStep) {
-  const auto plant = test::Program(LeakyVessel());
+  const auto plant = test::Program(test::LeakyVessel());
   test::Rig rig(With(GetParam(), plant));
   const std::vector<DataPack> packs = VesselPacks(*plant, 3);
   (void)rig.Step(packs[0]);

@@ -27,16 +27,10 @@ Saved SaveOf(const Estimator& estimator) {
   return saved;
 }
 
-/// A vessel that is filled and leaks; nothing is known of what its state is after a lost pack but the output.
+/// Nothing is known of what its state is after a lost pack but the output.
 PlantDescription Vessel() {
-  PlantDescription plant;
-  plant.name = "vessel";
-  plant.output = "y";
-  plant.law = "level";
-  plant.signals = {{"u", "V", "drive", ""}, {"y", "V", "level", ""}};
-  plant.parameters = {{"a", "1/s", "normal", 1.0, 2.0, 0.0, 20.0}, {"b", "1/s", "normal", 1.0, 2.0, 0.0, 20.0}};
-  plant.states = {{"level", "V", "level", "b*u - a*sqrt(max(level, 0))*sqrt(max(level, 0))", "y", "", 1}};
-  plant.noise.std = 0.01;
+  PlantDescription plant = test::LeakyVessel();
+  plant.states[0].rate = "b*u - a*sqrt(max(level, 0))*sqrt(max(level, 0))";  // not linear to the eye
   plant.noise.estimate = true;
   return plant;
 }

@@ -51,6 +51,19 @@ inline PlantDescription DescribedVessel() {
   return plant;
 }
 
+/// A vessel that is filled and leaks; its level is a state, and is measured.
+inline PlantDescription LeakyVessel() {
+  PlantDescription plant;
+  plant.name = "leaky_vessel";
+  plant.output = "y";
+  plant.law = "level";
+  plant.signals = {{"u", "V", "drive", ""}, {"y", "V", "level", ""}};
+  plant.parameters = {{"a", "1/s", "normal", 1.0, 2.0, 0.0, 20.0}, {"b", "1/s", "normal", 1.0, 2.0, 0.0, 20.0}};
+  plant.states = {{"level", "V", "level", "b*u - a*level", "y", "", 1}};
+  plant.noise.std = 0.01;
+  return plant;
+}
+
 inline std::shared_ptr<const PlantProgram> Program(PlantDescription plant) {
   return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(std::move(plant)));
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "armcmc/plant/states.hpp"
@@ -119,6 +120,29 @@ TEST(States, AreIntegratedAsTheMethodSays) {
     EXPECT_NEAR(end.value[1][7], reference.x[1], 1e-12);
     EXPECT_NEAR(prediction->value[39][7], expected[39], 1e-13);
   }
+}
+
+// As written 2^40 terms; a plant file must not keep its reader waiting.
+TEST(States, APartOfARateThatManyUseIsMadeOnce) {
+  PlantDescription chain = Oscillator();
+  chain.lets = {{"a0", "pos/m"}};
+  for (int i = 1; i <= 40; ++i) {
+    const std::string before = "a" + std::to_string(i - 1);
+    chain.lets.push_back({"a" + std::to_string(i), "0.75*" + before + " + 0.25*" + before + "*d/d"});
+  }
+  chain.states[1].rate = "(u - d*speed)/m - k*a40";
+  const auto plain = test::Program(Oscillator()), chained = test::Program(chain);
+  const DataPack pack = DescribedPack(
+      *plain, 1,
+      [](double t) {
+        return PlantSample{{Drive(t)}, 0.2};
+      },
+      40, kDt);
+  const Laid one(*plain, pack, nullptr, {1.3, 0.8, 31.0}), other(*chained, pack, nullptr, {1.3, 0.8, 31.0});
+  const auto expected = std::make_unique<PredictionTile>(), prediction = std::make_unique<PredictionTile>();
+  simd::Best().predict(-1, *one.data, one.tile, expected.get());
+  simd::Best().predict(-1, *other.data, other.tile, prediction.get());
+  for (std::size_t n = 0; n < 40; ++n) EXPECT_NEAR(prediction->value[n][3], expected->value[n][3], 1e-12);
 }
 
 TEST(States, RatesThatAreNotLinearAreIntegratedStageByStage) {
