@@ -127,8 +127,10 @@ TEST(States, APartOfARateThatManyUseIsMadeOnce) {
   PlantDescription chain = Oscillator();
   chain.lets = {{"a0", "pos/m"}};
   for (int i = 1; i <= 40; ++i) {
-    const std::string before = "a" + std::to_string(i - 1);
-    chain.lets.push_back({"a" + std::to_string(i), "0.75*" + before + " + 0.25*" + before + "*d/d"});
+    const std::string& before = chain.lets.back().name;
+    std::string text = "0.75*";
+    text.append(before).append(" + 0.25*").append(before).append("*d/d");
+    chain.lets.push_back({"a" + std::to_string(i), text});
   }
   chain.states[1].rate = "(u - d*speed)/m - k*a40";
   const auto plain = test::Program(Oscillator()), chained = test::Program(chain);
