@@ -52,6 +52,13 @@ class Names : public ::testing::Test {
     scenario.close();
     return DiagnoseScenario(dir_ / "pair.toml", seed, {}, {});
   }
+  /// The scenario with a law that is off by a smooth random factor of that size.
+  [[nodiscard]] std::filesystem::path WithLawError(const std::string& scenario, const std::string& error) const {
+    std::ifstream plain(SourceDir() / ("plant_sim/scenarios/" + scenario + ".toml"));
+    std::ofstream off(dir_ / "off.toml");
+    off << plain.rdbuf() << "\n[law]\nerror = " << error << "\n";
+    return dir_ / "off.toml";
+  }
   Json DiagnoseScenario(const std::filesystem::path& scenario, const std::string& seed,
                         const std::vector<std::string>& more, const std::vector<std::string>& of_the_workflow) {
     std::vector<std::string> plant = {"--scenario", scenario.string(), "--seed", seed, "--csv", dir_ / "run.csv"};
@@ -226,6 +233,28 @@ TEST_F(Names, ASensorThatClipsPullsAsWellAsPushesHasASaturation) {
                                              "--sealed", dir_ / "truth.json"});
   EXPECT_THAT(Reported(result), ::testing::Contains(::testing::ElementsAre("sensor_saturation"))) << result["sentence"];
   EXPECT_GT(result.at("gap").at("closed_fraction"), 0.99);
+}
+
+// An error of the law that no smooth factor takes wholly: something is left, but friction gains beyond that factor
+// twice what any other family does.
+TEST_F(Names, AnEffectThatNoOtherComesNearIsNamedBesideALawThatErrs) {
+  std::ifstream rich(SourceDir() / "plant_sim/scenarios/contact_rich.toml");
+  std::ofstream off(dir_ / "off.toml");
+  off << rich.rdbuf() << "\n[law]\nerror = 0.03\n";
+  off.close();
+  const Json result = DiagnoseScenario(
+      dir_ / "off.toml", "521942139",
+      {"--hide-effect", "coulomb_friction:tanh", "--effect-strength", "3", "--sealed", dir_ / "truth.json"}, {});
+  EXPECT_THAT(Reported(result), ::testing::ElementsAre(std::vector<std::string>{"coulomb_friction"}))
+      << result["sentence"];
+  EXPECT_EQ(result["complete"], false);
+}
+
+// Relaxation and friction explain what a law that is off by a hair leaves, and drag that the catalogue lacks explains
+// it better: a tie that is less probable than not is no name.
+TEST_F(LongNames, ATieThatIsLessProbableThanNotIsWithheld) {
+  const Json result = DiagnoseScenario(WithLawError("contact_sine", "0.003"), "789295887", {}, {});
+  EXPECT_EQ(result["verdict"], "unnamed") << result["sentence"];
 }
 
 }  // namespace
