@@ -58,12 +58,19 @@ CandidatePtr Search::LawError() const {
   return nullptr;
 }
 
-void Search::DropUnsure(Candidates* good) {
-  // Where other physics does as well beside the same grant, the grant did the work.
+void Search::DropUnsure(Candidates* good) const {
   const auto holds = [](const CandidatePtr& all, const CandidatePtr& some) {
     const std::vector<std::string> families = all->families(), asked = some->families();
     return std::includes(families.begin(), families.end(), asked.begin(), asked.end());
   };
+  // What stands in for a second effect is not needed where that effect, by name, does better.
+  const Candidates all = *good;
+  std::erase_if(*good, [&](const CandidatePtr& granted) {
+    return granted->granted && std::any_of(all.begin(), all.end(), [&](const CandidatePtr& c) {
+             return !c->granted && holds(c, granted) && Better(c->fit, granted->fit);
+           });
+  });
+  // Where other physics does as well beside the same grant, the grant did the work.
   const bool sure = std::all_of(good->begin(), good->end(), [&](const CandidatePtr& granted) {
     return !granted->granted ||
            std::all_of(good->begin(), good->end(), [&](const CandidatePtr& c) { return holds(c, granted); });

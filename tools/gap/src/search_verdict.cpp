@@ -15,9 +15,9 @@ std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
 
 void Search::PreferCatalogue(Candidates* good) {
   // Where the catalogue's own formulas do, others are not needed. One that acts at times only, which are fitted, too,
-  // is no simpler than another formula that always acts.
-  const auto exact = [](const CandidatePtr& c) { return c->exact(); };
-  const auto simple = [](const CandidatePtr& c) { return c->exact() && c->always(); };
+  // is no simpler than another formula that always acts; nor is one that needs a grant.
+  const auto exact = [](const CandidatePtr& c) { return c->exact() && !c->granted; };
+  const auto simple = [&](const CandidatePtr& c) { return exact(c) && c->always(); };
   if (std::none_of(good->begin(), good->end(), exact)) return;
   const bool all = std::any_of(good->begin(), good->end(), simple);
   std::erase_if(*good, [&](const CandidatePtr& c) { return !c->exact() && (all || !c->always()); });

@@ -106,8 +106,9 @@ class Search {
   [[nodiscard]] bool StandsOut(const CandidatePtr& candidate, const Candidates& beside) const;
   /// The law with a smooth error of its own; null: the equation knows none.
   [[nodiscard]] CandidatePtr LawError() const;
-  /// Leaves out hypotheses with a grant unless all of the equally good ones hold their families.
-  static void DropUnsure(Candidates* good);
+  /// Leaves out hypotheses with a grant unless all of the equally good ones hold their families, and where one of them
+  /// without a grant does better.
+  void DropUnsure(Candidates* good) const;
   /// Of hypotheses with a grant those that a verdict tells of, fitted without it: that is the model that they add up
   /// to.
   void TakeBack(Finding* finding) const;
