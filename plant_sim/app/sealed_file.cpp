@@ -8,7 +8,7 @@
 
 #include "armcmc/plant_sim/effects/gap_meter.hpp"
 #include "armcmc/plant_sim/effects/hide.hpp"
-#include "armcmc/plant_sim/sha256.hpp"
+#include "armcmc/support/sha256.hpp"
 
 namespace armcmc::plant_sim {
 namespace {
@@ -103,7 +103,7 @@ std::string WriteSealedFile(const Scenario& scenario, std::uint64_t seed, const 
   std::ofstream file(path, std::ios::binary);
   file << text << std::flush;
   if (!file) throw std::runtime_error(path + ": cannot be written: " + std::strerror(errno));
-  return Sha256(text);
+  return support::Sha256(text);
 }
 
 }  // namespace armcmc::plant_sim

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "armcmc/plant_sim/sha256.hpp"
+#include "armcmc/support/sha256.hpp"
 #include "files.hpp"
 #include "plant_program.hpp"
 #include "support/json.hpp"
@@ -53,7 +53,7 @@ TEST(PlantProgramHides, NothingButTheSealedFileTellsWhat) {
                                        folder);
   ASSERT_EQ(ended.code, 0) << ended.err;
   const std::string sealed = Text(folder / "truth.json");
-  EXPECT_THAT(ended.out, HasSubstr(Sha256(sealed)));
+  EXPECT_THAT(ended.out, HasSubstr(support::Sha256(sealed)));
   const test::Json truth = test::Json::Parse(sealed);
   EXPECT_EQ(truth.at("schema"), 1);
   EXPECT_EQ(truth.at("kind"), "pair");

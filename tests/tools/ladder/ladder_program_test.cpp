@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "armcmc/support/sha256.hpp"
 #include "support/json.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
@@ -31,6 +32,21 @@ law = "gaussian"
 std = 2.0
 )";
 
+constexpr const char* kRecording = R"(
+schema = 1
+model = "servo_axis"
+file = "run.csv"
+title = "servo"
+[columns]
+t = { column = "t" }
+q = { column = "q" }
+v = { column = "v" }
+a = { column = "a" }
+F = { column = "F" }
+[held_out]
+rows = [[300, 600], [1500, 2000]]
+)";
+
 class LadderProgram : public ::testing::Test {
  protected:
   std::filesystem::path Simulate(const std::string& hidden) const {
@@ -53,7 +69,8 @@ constexpr const char* kFriction = "[[hidden]]\nslot = \"output\"\nvalue = \"14*t
 
 TEST_F(LadderProgram, NamesWhatIsHiddenAndWritesAModelThatLacksNothing) {
   const std::filesystem::path csv = Simulate(kFriction);
-  const Outcome run = Gap({"--model", "servo_axis", "--data", csv});
+  std::ofstream(dir_ / "recording.toml") << kRecording;
+  const Outcome run = Gap({"--recording", dir_ / "recording.toml"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("+ coulomb_friction"));
   const Json result = Result();
@@ -73,6 +90,15 @@ TEST_F(LadderProgram, NamesWhatIsHiddenAndWritesAModelThatLacksNothing) {
   EXPECT_GT(result["parameters"]["before"]["Fv"]["mean"].get<double>(), 195.0);
   EXPECT_NEAR(result["parameters"]["after"]["Fv"]["mean"].get<double>(), 180.0, 6.0);
   EXPECT_NEAR(result["gap"]["heldout_rmse_after"].get<double>(), 2.0, 0.25);
+  ASSERT_EQ(result["gap"]["stretches"].size(), 2u);
+  EXPECT_NEAR(result["gap"]["stretches"][0]["until_s"].get<double>(), 5.99, 0.01);
+  EXPECT_GT(result["gap"]["stretches"][1]["rmse_before"].get<double>(), 3.0);
+  EXPECT_NEAR(result["gap"]["stretches"][1]["rmse_after"].get<double>(), 2.0, 0.25);
+  const double closed = result["gap"]["closed_fraction"].number();
+  EXPECT_LT(result["gap"]["closed_fraction_95"][0].number(), closed);
+  EXPECT_GT(result["gap"]["closed_fraction_95"][1].number(), closed);
+  EXPECT_EQ(result["data"]["sha256"], support::Sha256OfFile(csv));
+  EXPECT_EQ(result["budget"]["measured"], true);
   // One pack ahead, too, and its intervals hold what they promise; the mass stays.
   EXPECT_GT(result["one_step"]["before"]["rmse"].get<double>(), 3.0);
   EXPECT_NEAR(result["one_step"]["after"]["rmse"].get<double>(), 2.0, 0.15);

@@ -8,20 +8,17 @@
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/estimator.hpp"
-#include "armcmc/replay/pack_source.hpp"
 
 namespace armcmc::gap {
 namespace {
 
-constexpr int kMaxPacks = 40;
+constexpr int kMaxPacks = 20;
 
-std::vector<DataPack> ReadPacks(const Estimator& estimator, const std::string& data, double period_s, bool skip_bad) {
-  replay::SourceRequest request;
-  request.data = data;
+std::vector<DataPack> ReadPacks(const Estimator& estimator, const std::shared_ptr<const PlantProgram>& described,
+                                replay::SourceRequest request) {
   request.plant = estimator.plant();
   request.num_inputs = estimator.num_inputs();
-  request.period = period_s;
-  request.skip_bad = skip_bad;
+  request.described = described;
   for (int mode = 0; mode < estimator.num_modes(); ++mode) request.mode_names.emplace_back(estimator.mode_name(mode));
   const auto source = replay::OpenSource(request);
   std::vector<DataPack> packs;
@@ -56,13 +53,13 @@ class Timed {
 
 }  // namespace
 
-Budget MeasureBudget(const EstimatorSettings& base, const EstimatorSettings& augmented, const std::string& data,
-                     double period_s, bool skip_bad) {
+Budget MeasureBudget(const EstimatorSettings& base, const EstimatorSettings& augmented,
+                     const replay::SourceRequest& packs) {
   Timed before(base), after(augmented);
   Budget budget;
-  budget.deadline_ms = 1e3 * period_s;
+  budget.deadline_ms = 1e3 * packs.period;
   // In turn, so that both see the same machine.
-  for (const DataPack& pack : ReadPacks(Estimator(base), data, period_s, skip_bad)) {
+  for (const DataPack& pack : ReadPacks(Estimator(base), base.plant, packs)) {
     before.Step(pack);
     after.Step(pack);
     budget.measured = true;

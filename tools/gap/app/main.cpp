@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,10 +18,12 @@
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/model_file.hpp"
+#include "armcmc/support/pack_length.hpp"
 #include "armcmc/support/plant_library.hpp"
 #include "armcmc/support/plant_writer.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
+#include "armcmc/support/sha256.hpp"
 #include "armcmc/support/strict_toml.hpp"
 #include "budget.hpp"
 #include "gallery_page.hpp"
@@ -225,12 +229,16 @@ int RunBuiltIn(const Arguments& a) {
   WorkflowOutcome outcome = RunWorkflow(request);
   Result& result = outcome.result;
   result.version = support::Version();
+  result.data_sha256 = support::Sha256OfFile(a.data);
   if (outcome.augmented) {
     result.model_file = "model.toml";
     Write(out / result.model_file, support::ModelFileText(*outcome.augmented, request.model));
     try {
-      result.budget =
-          MeasureBudget(support::ReadModel(a.model), *outcome.augmented, a.data, 1e-3 * a.period_ms, a.skip_bad);
+      replay::SourceRequest packs;
+      packs.data = a.data;
+      packs.period = 1e-3 * a.period_ms;
+      packs.skip_bad = a.skip_bad;
+      result.budget = MeasureBudget(support::ReadModel(a.model), *outcome.augmented, packs);
     } catch (const support::InputError& error) {
       // The diagnosis stands, whether or not these samples make packs.
       result.notes.push_back(std::string("step time of the estimator not measured (--period-ms): ") + error.what());
@@ -261,6 +269,23 @@ void CheckDescribed(const Arguments& a) {
   refuse(LastStep(a.steps) != Step::kShow, "--steps");
 }
 
+/// Step time of the estimator as it came and with what was named.
+Budget DescribedBudget(const support::Recording& recording, const ladder::Diagnosis& diagnosis,
+                       std::vector<std::string>* notes) {
+  if (diagnosis.before.program == nullptr || diagnosis.after.program == nullptr) return {};
+  replay::SourceRequest packs;
+  packs.recording = std::make_shared<const support::Recording>(recording);
+  packs.period = support::SuitablePackLength(recording.dt, kMaxPackSamples) * recording.dt;
+  try {
+    return MeasureBudget(DescribedSettings(diagnosis.before.program), DescribedSettings(diagnosis.after.program),
+                         packs);
+  } catch (const std::exception& error) {
+    // The diagnosis stands, whether or not this recording makes packs.
+    notes->push_back(std::string("step time of the estimator not measured: ") + error.what());
+    return {};
+  }
+}
+
 /// A plant that a file describes.
 int RunDescribed(const Arguments& a) {
   CheckDescribed(a);
@@ -283,6 +308,7 @@ int RunDescribed(const Arguments& a) {
     result.model_file = "model.toml";
     Write(out / result.model_file,
           support::PlantFileText(diagnosis.after.plant, "Made by armcmc-gap: " + result.sentence));
+    result.budget = DescribedBudget(request.recording, diagnosis, &result.notes);
   }
   Write(out / "result.json", ToJson(result).dump(2) + "\n");
   Write(out / "report.html", ReportHtml(result));

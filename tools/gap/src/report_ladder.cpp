@@ -54,6 +54,17 @@ void AddRemainder(const Result& result, std::ostream& out) {
   out << "; a description, not physics.</p>\n";
 }
 
+void AddStretches(const Result& result, std::ostream& out) {
+  if (result.gap.stretches.empty()) return;
+  out << "<h3>The stretches that were kept apart</h3>\n<div class=\"scroll\"><table>\n<tr><th>from, s</th><th>until, "
+         "s</th><th class=\"num\">samples</th><th class=\"num\">error before</th><th class=\"num\">after</th></tr>\n";
+  for (const StretchFit& s : result.gap.stretches)
+    out << "<tr><td>" << NumberText(s.from_s, 4) << "</td><td>" << NumberText(s.until_s, 4) << "</td><td class=\"num\">"
+        << s.samples << "</td><td class=\"num\">" << NumberText(s.rmse_before, 3) << "</td><td class=\"num\">"
+        << NumberText(s.rmse_after, 3) << ' ' << EscapeHtml(result.gap.unit) << "</td></tr>\n";
+  out << "</table></div>\n";
+}
+
 void AddPublished(const Result& result, std::ostream& out) {
   if (result.published.empty()) return;
   out << "<h3>What others report of these data</h3>\n<div class=\"scroll\"><table>\n<tr><th>what</th><th "
@@ -82,6 +93,7 @@ void AddLadder(const Result& result, plots::Page* page) {
       << "</td><td></td></tr>\n";
   for (const LadderRung& rung : result.ladder) AddRung(rung, result.gap.unit, out);
   out << "</table></div>\n";
+  AddStretches(result, out);
   AddRemainder(result, out);
   AddPublished(result, out);
   out << "</section>\n";

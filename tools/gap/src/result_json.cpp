@@ -78,6 +78,13 @@ json GapJson(const GapSummary& gap) {
   for (const ModeFit& m : gap.modes)
     modes[plots::ValidUtf8(m.mode)] = {
         {"samples", m.samples}, {"rmse_before", Number(m.rmse_before)}, {"rmse_after", Number(m.rmse_after)}};
+  json stretches = json::array();
+  for (const StretchFit& s : gap.stretches)
+    stretches.push_back({{"from_s", Number(s.from_s)},
+                         {"until_s", Number(s.until_s)},
+                         {"samples", s.samples},
+                         {"rmse_before", Number(s.rmse_before)},
+                         {"rmse_after", Number(s.rmse_after)}});
   return {{"heldout_rmse_before", Number(gap.before.rmse)},
           {"heldout_rmse_after", Number(gap.after.rmse)},
           {"noise_floor", Number(gap.noise_floor)},
@@ -88,6 +95,7 @@ json GapJson(const GapSummary& gap) {
           {"before", FitJson(gap.before)},
           {"after", FitJson(gap.after)},
           {"modes", modes},
+          {"stretches", stretches},
           {"negative_control",
            {{"effects", Text(gap.control_effects)}, {"closed_fraction", Number(gap.control_closed_fraction)}}}};
 }

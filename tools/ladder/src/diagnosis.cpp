@@ -9,6 +9,7 @@
 #include "armcmc/ladder/drift.hpp"
 #include "armcmc/ladder/evidence.hpp"
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/sha256.hpp"
 #include "held_out.hpp"
 #include "run_along.hpp"
 
@@ -85,6 +86,9 @@ class Teller {
     result_.version = support::Version();
     result_.model = recording.plant;
     result_.data_file = recording.title;
+    std::vector<std::string> sums;
+    for (const std::filesystem::path& file : recording.files) sums.push_back(support::Sha256OfFile(file));
+    result_.data_sha256 = Joined(sums, ", ");
     result_.rows = static_cast<long long>(recording.num_rows());
     result_.dt = recording.dt;
     result_.notes = recording.notes;
@@ -115,7 +119,8 @@ class Teller {
             : "noise floor: neighbouring samples differ by more (" + Number(ladder_.noise_floor) +
                   ") than models leave, since the signal moves between them; taken from what a flexible model leaves");
     gap.closed_fraction = Closed(gap.after.rmse);
-    gap.closed_low = gap.closed_high = gap.closed_fraction;
+    CloseInterval(rows_, before_, after_, request_.seed, &gap);
+    gap.stretches = StretchesOf(data_, rows_, before_, after_);
     gap.gap_ratio = ladder_.base.fit.error_sd / std::max(gap.noise_floor, 1e-300);
     const VectorXd target = before_.model->target()(rows_);
     const double size = std::sqrt(target.squaredNorm() / static_cast<double>(target.size()));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "armcmc/gap/blocks.hpp"
 #include "armcmc/ladder/features.hpp"
 
 namespace armcmc::ladder {
@@ -107,6 +108,46 @@ std::vector<Index> HeldOutRows(const Dataset& data, const WholeRun& run) {
   for (std::size_t n = 0; n < data.held_out.size(); ++n)
     if (data.held_out[n] != 0 && run.model->active()[n] != 0) rows.push_back(static_cast<Index>(n));
   return rows;
+}
+
+std::vector<gap::StretchFit> StretchesOf(const Dataset& data, const std::vector<Index>& rows, const WholeRun& before,
+                                         const WholeRun& after) {
+  constexpr std::size_t kMost = 20;
+  std::vector<gap::StretchFit> stretches;
+  if (before.error.size() == 0 || after.error.size() == 0) return stretches;
+  const auto kept_apart = [&data](Index n) { return data.held_out[static_cast<std::size_t>(n)] != 0; };
+  for (std::size_t from = 0, to = 0; from < rows.size(); from = to) {
+    // Rows in which no mode acts do not end a stretch.
+    for (to = from + 1; to < rows.size(); ++to) {
+      Index between = rows[to - 1] + 1;
+      while (between < rows[to] && kept_apart(between)) ++between;
+      if (between < rows[to]) break;
+    }
+    const std::vector<Index> own(rows.begin() + static_cast<std::ptrdiff_t>(from),
+                                 rows.begin() + static_cast<std::ptrdiff_t>(to));
+    const auto rms = [&own](const VectorXd& error) {
+      return std::sqrt(error(own).squaredNorm() / static_cast<double>(own.size()));
+    };
+    const auto time = [&data](Index n) { return data.series->t[static_cast<std::size_t>(n)]; };
+    stretches.push_back(
+        {time(own.front()), time(own.back()), static_cast<long long>(own.size()), rms(before.error), rms(after.error)});
+  }
+  if (stretches.size() < 2 || stretches.size() > kMost) stretches.clear();
+  return stretches;
+}
+
+void CloseInterval(const std::vector<Index>& rows, const WholeRun& before, const WholeRun& after, std::uint64_t seed,
+                   gap::GapSummary* gap) {
+  gap->closed_low = gap->closed_high = gap->closed_fraction;
+  if (before.error.size() == 0 || after.error.size() == 0 || rows.size() < gap::kNumBlocks) return;
+  const VectorXd first = gap::BlockSquares(before.error(rows)), second = gap::BlockSquares(after.error(rows));
+  const double noise =
+      gap->noise_floor * gap->noise_floor * static_cast<double>(rows.size()) / static_cast<double>(gap::kNumBlocks);
+  const VectorXd total = first.array() - noise;
+  if (!(total.sum() > 0.0)) return;
+  const gap::BlockBootstrap bootstrap(seed);
+  gap->closed_low = bootstrap.RatioQuantile(first - second, total, 0.025);
+  gap->closed_high = bootstrap.RatioQuantile(first - second, total, 0.975);
 }
 
 void LeaveOutStarts(const Trial& trial, Dataset* data) {

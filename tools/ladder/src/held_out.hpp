@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "armcmc/gap/result.hpp"
@@ -23,6 +24,14 @@ struct WholeRun {
 
 /// Rows that are kept apart and where a mode acts.
 [[nodiscard]] std::vector<Eigen::Index> HeldOutRows(const Dataset& data, const WholeRun& run);
+
+/// Errors on each stretch of them that hangs together, where there are several and not too many.
+[[nodiscard]] std::vector<gap::StretchFit> StretchesOf(const Dataset& data, const std::vector<Eigen::Index>& rows,
+                                                       const WholeRun& before, const WholeRun& after);
+
+/// Fills the interval of the fraction that is closed on `rows`: bootstrap over stretches of time.
+void CloseInterval(const std::vector<Eigen::Index>& rows, const WholeRun& before, const WholeRun& after,
+                   std::uint64_t seed, gap::GapSummary* gap);
 
 /// Rows behind the beginning of every run in which a start of states that nobody measured still shows.
 void LeaveOutStarts(const Trial& trial, Dataset* data);

@@ -73,15 +73,17 @@ Recording ReadRecording(const fs::path& path, const fs::path& data_dir) {
   recording.model = model;
   recording.published = file.published;
 
-  RecordingRows rows = ReadRecordingRows(FindData(path, file.file, data_dir), file, file.columns, description,
-                                         path.string(), /*skip_bad=*/false);
+  recording.files = {FindData(path, file.file, data_dir)};
+  RecordingRows rows = ReadRecordingRows(recording.files.front(), file, file.columns, description, path.string(),
+                                         /*skip_bad=*/false);
   if (!file.held_out.given) HoldOutByDefault(&rows.held_out);
   if (!file.held_out.file.empty() || !file.held_out.columns.empty()) {
     const std::string& other = file.held_out.file.empty() ? file.file : file.held_out.file;
     std::map<std::string, ColumnSource> sources = file.columns;
     for (const auto& [signal, source] : file.held_out.columns) sources[signal] = source;
-    RecordingRows second = ReadRecordingRows(FindData(path, other, data_dir), file, sources, description, path.string(),
-                                             /*skip_bad=*/false);
+    const fs::path data = FindData(path, other, data_dir);
+    if (data != recording.files.front()) recording.files.push_back(data);
+    RecordingRows second = ReadRecordingRows(data, file, sources, description, path.string(), /*skip_bad=*/false);
     std::fill(second.held_out.begin(), second.held_out.end(), std::uint8_t{1});
     rows.Append(second);
   }
@@ -101,6 +103,7 @@ Recording ReadRecordedCsv(const fs::path& csv, const std::string& model, bool sk
   const PlantDescription& description = plant.description();
   Recording recording = Begin(description, plant.fingerprint());
   recording.title = csv.filename().string();
+  recording.files = {csv};
   recording.model = plant_file.string();
   const RecordingFile file;
   RecordingRows rows = ReadRecordingRows(csv, file, {}, description, csv.string(), skip_bad);

@@ -78,6 +78,13 @@ struct ModeFit {
   double rmse_before = 0.0, rmse_after = 0.0;
 };
 
+/// Fit of one stretch of the data that were kept apart, where there are several.
+struct StretchFit {
+  double from_s = 0.0, until_s = 0.0;
+  long long samples = 0;
+  double rmse_before = 0.0, rmse_after = 0.0;
+};
+
 /// The gap, before and after the effect was added, on held-out data.
 struct GapSummary {
   std::string unit;
@@ -86,7 +93,8 @@ struct GapSummary {
   double closed_fraction = 0.0;                ///< (mse before - mse after) / (mse before - floor^2).
   double closed_low = 0.0, closed_high = 0.0;  ///< 95 % interval, bootstrap over blocks.
   std::vector<ModeFit> modes;
-  std::string control_effects;  ///< Negative control: the second-ranked effects, added instead.
+  std::vector<StretchFit> stretches;  ///< Empty: there is one, or too many to list.
+  std::string control_effects;        ///< Negative control: the second-ranked effects, added instead.
   double control_closed_fraction = 0.0;
   double gap_ratio = 0.0;  ///< Rms of the unexplained over the noise, base model refitted.
 };

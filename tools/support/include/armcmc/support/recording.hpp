@@ -25,15 +25,16 @@ struct PublishedFigure {
 /// intervals within each run.
 struct Recording {
   std::string title;
-  std::string model;                    ///< Name of a plant that came with the product, or path of a plant file.
-  std::string plant;                    ///< Name that the plant file gives.
-  std::uint64_t fingerprint = 0;        ///< Of the plant's signals.
-  std::vector<RecordedSignal> signals;  ///< In the order of the plant file.
-  std::size_t output = 0;               ///< Among the signals.
-  double dt = 0.0;                      ///< s, sample interval.
-  std::vector<double> t;                ///< [row] s, increasing within a run.
-  std::vector<std::size_t> runs;        ///< First row of every run: no memory and no derivative goes across.
-  std::vector<std::uint8_t> held_out;   ///< [row] 1: kept apart, to judge a model on.
+  std::vector<std::filesystem::path> files;  ///< That the samples came from.
+  std::string model;                         ///< Name of a plant that came with the product, or path of a plant file.
+  std::string plant;                         ///< Name that the plant file gives.
+  std::uint64_t fingerprint = 0;             ///< Of the plant's signals.
+  std::vector<RecordedSignal> signals;       ///< In the order of the plant file.
+  std::size_t output = 0;                    ///< Among the signals.
+  double dt = 0.0;                           ///< s, sample interval.
+  std::vector<double> t;                     ///< [row] s, increasing within a run.
+  std::vector<std::size_t> runs;             ///< First row of every run: no memory and no derivative goes across.
+  std::vector<std::uint8_t> held_out;        ///< [row] 1: kept apart, to judge a model on.
   /// Standard deviation of the noise that the filter has let through where the output was filtered here; else 0.
   double smoothed_noise = 0.0;
   std::vector<PublishedFigure> published;

@@ -1,11 +1,15 @@
-#include "armcmc/plant_sim/sha256.hpp"
+#include "armcmc/support/sha256.hpp"
 
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 
-namespace armcmc::plant_sim {
+#include "armcmc/support/program.hpp"
+
+namespace armcmc::support {
 namespace {
 
 constexpr std::array<std::uint32_t, 64> kRound = {
@@ -71,4 +75,11 @@ std::string Sha256(std::string_view bytes) {
   return text;
 }
 
-}  // namespace armcmc::plant_sim
+std::string Sha256OfFile(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (!file || !(bytes << file.rdbuf())) throw InputError(path.string() + ": cannot be read");
+  return Sha256(bytes.view());
+}
+
+}  // namespace armcmc::support

@@ -1,10 +1,14 @@
-#include "armcmc/plant_sim/sha256.hpp"
+#include "armcmc/support/sha256.hpp"
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
 
-namespace armcmc::plant_sim::sha256_test {
+#include "armcmc/support/program.hpp"
+#include "support/paths.hpp"
+
+namespace armcmc::support::sha256_test {
 namespace {
 
 TEST(Sha256, GivesTheStandardsExamples) {
@@ -15,5 +19,13 @@ TEST(Sha256, GivesTheStandardsExamples) {
   EXPECT_EQ(Sha256(std::string(1'000'000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+TEST(Sha256, OfAFileIsThatOfItsBytes) {
+  const test::ScratchDir dir;
+  std::ofstream(dir / "abc") << "abc";
+  EXPECT_EQ(Sha256OfFile(dir / "abc"), Sha256("abc"));
+  EXPECT_THROW((void)Sha256OfFile(dir / "nothing"), InputError);
+  EXPECT_THROW((void)Sha256OfFile(dir / "."), InputError);
+}
+
 }  // namespace
-}  // namespace armcmc::plant_sim::sha256_test
+}  // namespace armcmc::support::sha256_test
