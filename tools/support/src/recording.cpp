@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Beside the recording file, or where the data are.
-fs::path FindData(const fs::path& recording, const std::string& file, const fs::path& data_dir) {
+fs::path FindData(const fs::path& recording, StrictTable table, const std::string& file, const fs::path& data_dir) {
   std::error_code error;
   std::vector<fs::path> places;
   if (!data_dir.empty()) places.push_back(data_dir / file);
@@ -24,8 +24,8 @@ fs::path FindData(const fs::path& recording, const std::string& file, const fs::
     if (fs::is_regular_file(place, error)) return place;
     tried += (tried.empty() ? "" : " nor ") + place.string();
   }
-  throw InputError(recording.string() + ": file = " + file + ": there is no " + tried +
-                   (data_dir.empty() ? "; --data-dir says where the data are" : ""));
+  throw table.Error("file",
+                    "there is no file " + tried + (data_dir.empty() ? "; --data-dir says where the data are" : ""));
 }
 
 /// The last rows of every record where nothing is said.
@@ -73,21 +73,23 @@ Recording ReadRecording(const fs::path& path, const fs::path& data_dir) {
   recording.model = model;
   recording.published = file.published;
 
-  RecordingRows rows = ReadRecordingRows(FindData(path, file.file, data_dir), file, file.columns, description,
-                                         path.string(), /*skip_bad=*/false);
+  RecordingRows rows = ReadRecordingRows(FindData(path, *file.root, file.file, data_dir), file, file.columns,
+                                         description, path.string(), /*skip_bad=*/false);
   if (!file.held_out.given) HoldOutByDefault(&rows.held_out);
   if (!file.held_out.file.empty() || !file.held_out.columns.empty()) {
     const std::string& other = file.held_out.file.empty() ? file.file : file.held_out.file;
     std::map<std::string, ColumnSource> sources = file.columns;
     for (const auto& [signal, source] : file.held_out.columns) sources[signal] = source;
-    RecordingRows second = ReadRecordingRows(FindData(path, other, data_dir), file, sources, description, path.string(),
-                                             /*skip_bad=*/false);
+    const StrictTable table = file.held_out.file.empty() ? *file.root : StrictTable(*file.root).Table("held_out");
+    RecordingRows second =
+        ReadRecordingRows(FindData(path, table, other, data_dir), file, sources, description, path.string(),
+                          /*skip_bad=*/false);
     std::fill(second.held_out.begin(), second.held_out.end(), std::uint8_t{1});
     rows.Append(second);
   }
-  if (std::count(rows.held_out.begin(), rows.held_out.end(), std::uint8_t{1}) ==
-      static_cast<std::ptrdiff_t>(rows.held_out.size()))
-    throw ConfigError(path.string() + ": held_out: nothing is left to learn from");
+  const auto held = static_cast<std::size_t>(std::count(rows.held_out.begin(), rows.held_out.end(), std::uint8_t{1}));
+  if (held == rows.size()) throw file.root->Error("held_out", "nothing is left to learn from");
+  if (held == 0) throw file.root->Error("held_out", "no row that is used is among what it keeps apart");
   Resample(rows, &recording);
   if (recording.t.empty())
     throw ConfigError(path.string() + ": every run has fewer than 10 rows; is segment_column right, or the time?");
