@@ -17,16 +17,23 @@ using expression::TapeRegisters;
 
 constexpr int kTapeVectors = kTileLanes / Simd::kLanes;
 
-/// What was kept `back` samples before a place, linear between samples; of a negative `back` what is at the place.
+/// What was kept `back` samples before a place; of a negative `back` what is at the place. Between samples both the
+/// line and what is looked up in it are linear.
 inline double Past(const double* lines, double place, double back) noexcept {
   constexpr double kLength = expression::PastLines::kLength;
   const double oldest = std::floor(place / kLength) * kLength;
-  const double at = back > 0.0 ? std::fmax(place - back, oldest) : place;
-  const double whole = std::floor(at);
-  const double part = at - whole;
-  const double* const kept = lines + static_cast<std::ptrdiff_t>(whole);
-  const double value = part > 0.0 ? kept[0] + part * (kept[1] - kept[0]) : kept[0];
-  return back == back ? value : back;
+  const auto before = [&](double sample) {
+    const double at = back > 0.0 ? std::fmax(sample - back, oldest) : sample;
+    const double whole = std::floor(at);
+    const double part = at - whole;
+    const double* const kept = lines + static_cast<std::ptrdiff_t>(whole);
+    return part > 0.0 ? kept[0] + part * (kept[1] - kept[0]) : kept[0];
+  };
+  if (back != back) return back;
+  const double sample = std::floor(place);
+  const double part = place - sample;
+  const double value = before(sample);
+  return part > 0.0 ? value + part * (before(sample + 1.0) - value) : value;
 }
 
 /// One sample of a tape for a group of the candidates of a tile: as many vectors side by side as leave hardware
