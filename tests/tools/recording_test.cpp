@@ -122,7 +122,7 @@ TEST_F(RecordingFile, AColumnMayBeAnExpression) {
   EXPECT_NEAR(r.signals[0].value[50], -1e-3 * (100.0 * std::sin(2.0 * M_PI * 0.25) + 0.55), 1e-12);
   EXPECT_NEAR(r.signals[3].value[50], 0.55, 1e-12);
   EXPECT_THAT(ErrorOf("", "[columns]\nt = { value = \"tme_ms\" }\nq = \"pos_mm\"\nF = \"volt\"\n"),
-              HasSubstr("columns.t.value: character 1: unknown"));
+              HasSubstr("recording.toml:5:16: columns.t.value = \"tme_ms\": unknown name"));
 }
 
 TEST_F(RecordingFile, SegmentsAndGapsAreRuns) {
@@ -202,7 +202,7 @@ TEST_F(RecordingFile, AMistakeInAColumnStandsWhereItIs) {
   WriteCsv(1000);
   const std::string time = "[columns]\nt = \"time_ms\"\nF = \"volt\"\n";
   EXPECT_THAT(ErrorOf("", time + "q = { value = \"0.001*pos_mm + speed\" }\n"),
-              testing::AllOf(HasSubstr("recording.toml:7:30: columns.q.value"), HasSubstr("speed")));
+              testing::AllOf(HasSubstr("recording.toml:7:31: columns.q.value"), HasSubstr("speed")));
   EXPECT_THAT(ErrorOf("", time + "q = { column = \"pos\" }\n"), HasSubstr("recording.toml:7:16: columns.q.column"));
   EXPECT_THAT(ErrorOf("[rows]\nsegment_column = \"run\"\n"), HasSubstr("rows.segment_column"));
   EXPECT_THAT(ErrorOf("[rows]\nonly = { part = [\"two\"] }\n"), HasSubstr("no row has \"two\"; there: one"));
