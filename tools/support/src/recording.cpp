@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Beside the recording file, or where the data are.
-fs::path FindData(const fs::path& recording, StrictTable table, const std::string& file, const fs::path& data_dir) {
+fs::path FindData(const fs::path& recording, const StrictTable& table, const std::string& file,
+                  const fs::path& data_dir) {
   std::error_code error;
   std::vector<fs::path> places;
   if (!data_dir.empty()) places.push_back(data_dir / file);

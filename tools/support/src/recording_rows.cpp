@@ -119,7 +119,7 @@ class Selection {
 };
 
 /// Words that a column is asked for and does not have.
-void RequireWords(StrictTable table, const std::string& key, const std::vector<std::string>& words,
+void RequireWords(const StrictTable& table, const std::string& key, const std::vector<std::string>& words,
                   const std::vector<std::string>& cells) {
   const std::set<std::string> there(cells.begin(), cells.end());
   for (const std::string& word : words) {
@@ -129,7 +129,9 @@ void RequireWords(StrictTable table, const std::string& key, const std::vector<s
     const std::string hint = DidYouMean(word, shown);
     const bool all = shown.size() <= kMaxShown;
     if (!all) shown.resize(kMaxShown);
-    throw table.Error(key, "no row has \"" + word + '"' + hint + "; there: " + JoinedNames(shown) + (all ? "" : ",.."));
+    std::string problem = "no row has \"";
+    problem.append(word).append("\"").append(hint).append("; there: ").append(JoinedNames(shown));
+    throw table.Error(key, problem + (all ? "" : ",.."));
   }
 }
 
@@ -206,6 +208,7 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
     for (std::size_t n = 0; n < csv.num_rows(); ++n) t.push_back(static_cast<double>(n) / file.rate_hz);
   }
   std::vector<std::vector<double>> values;
+  values.reserve(signals.size());
   for (const auto& signal : signals) values.push_back(signal ? signal->Values(csv) : std::vector<double>());
 
   const Selection selection(file, csv);
