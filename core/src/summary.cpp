@@ -9,7 +9,8 @@
 namespace armcmc {
 namespace {
 
-/// Reported quantity r of every candidate.
+/// Reported quantity r of every candidate; 0 of one that counts nowhere: outside its bounds the quantity may have no
+/// value, which no weight of 0 would take out of a sum.
 void Reported(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
               const ModeDraws& draws, int r, double* value) noexcept {
   const auto ir = static_cast<std::size_t>(r);
@@ -24,7 +25,8 @@ void Reported(const ModelInfo& info, const PlantConstants& constants, const Para
     for (int d = 0; d < space.num_parameters; ++d)
       theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
     if (info.described != nullptr) {
-      value[k] = info.described->Report(r, theta.data());
+      const bool counts = draws.weight[k] > 0.0 || draws.visits[k] != 0;
+      value[k] = counts ? info.described->Report(r, theta.data()) : 0.0;
       continue;
     }
     info.Report(theta.data(), constants, reported.data());

@@ -95,6 +95,7 @@ DescribedPlant ReadDescribedPlant(StrictTable root) {
     if (law == NoiseKindName(kind)) plant.noise.kind = kind;
   plant.noise.std = noise.RequiredNumber("std", 0.0, kAny);
   static_cast<void>(noise.Boolean("estimate", false));
+  if (root.IsTable("effects")) static_cast<void>(root.Table("effects").Texts("without"));  // of a diagnosis
   if (root.IsTable("effects") && !root.Table("effects").TextsOrTables("use").empty())
     throw root.Table("effects").Error(
         "use", "the simulated plant has no catalogue of effects: write them as [[hidden]] into the scenario");

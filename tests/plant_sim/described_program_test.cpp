@@ -68,6 +68,15 @@ TEST(DescribedProgram, SaysWhatItAssumesWithoutAScenario) {
   EXPECT_NE(Text(folder / "a.csv"), Text(folder / "c.csv"));
 }
 
+TEST(DescribedProgram, EffectsThatADiagnosisShallLeaveOutAreNoMatter) {
+  const test::ScratchDir folder;
+  Write(folder / "p.toml",
+        Text(test::SourceDir() / "core/plants/servo_axis/plant.toml") + "[effects]\nwithout = [\"cogging\"]\n");
+  Write(folder / "s.toml", kScenario);
+  const test::Outcome ended = RunPlant({"--model", "p.toml", "--scenario", "s.toml", "--csv", "a.csv"}, folder);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+}
+
 TEST(DescribedProgram, HidesEffects) {
   const test::ScratchDir folder;
   Write(folder / "s.toml", kScenario);

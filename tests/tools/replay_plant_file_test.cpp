@@ -3,16 +3,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "armcmc/data_pack_v2_t.hpp"
+#include "armcmc/replay/pack_source.hpp"
+#include "armcmc/support/model_file.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "tools/replay_data.hpp"
 
 namespace armcmc::replay::replay_plant_file_test {
 namespace {
@@ -115,6 +122,62 @@ TEST_F(ReplayOfAPlantFile, MakesPacksOfAHundredSamplesOfASlowRecording) {
   const test::Outcome run = Replay({"--model", "servo_axis", "--data", "slow.csv"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("10 packs (50 s)"));
+}
+
+/// The packs of a CSV as a log holds them.
+void WriteLog(const std::filesystem::path& path, const SourceRequest& csv, const std::string& plant) {
+  LogWriter log(path);
+  const auto source = OpenSource(csv);
+  for (RecordedPack next; source->Next(&next);) {
+    data_pack_v2_t message{};
+    const DataPack& pack = next.pack;
+    message.seq = pack.seq;
+    message.run_id = pack.run_id;
+    message.t_last_ns = pack.t_last_ns;
+    message.t_last_s = pack.t_last_s;
+    message.dt = pack.dt;
+    std::copy(plant.begin(), plant.end(), message.plant);
+    message.fingerprint = static_cast<std::int64_t>(pack.fingerprint);
+    message.n_samples = pack.num_samples;
+    message.n_inputs = pack.num_inputs;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(pack.num_samples); ++n) {
+      message.y[n] = pack.y[n];
+      std::copy_n(pack.u[n].begin(), pack.num_inputs, message.u[n]);
+    }
+    log.Write("PLANT_PACK_V2", message);
+  }
+}
+
+std::string TextOf(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+TEST_F(ReplayOfAPlantFile, ALogGivesWhatTheCsvOfItsSamplesGives) {
+  WriteMotion("motion.csv", "q", 1e-3, 1000);
+  SourceRequest csv;
+  csv.data = dir_ / "motion.csv";
+  csv.plant = PlantNumber::kDescribed;
+  csv.described = support::DescribedPlant((test::SourceDir() / "core/plants/servo_axis/plant.toml").string());
+  csv.num_inputs = csv.described->info().num_inputs;
+  csv.period = 0.0;
+  WriteLog(dir_ / "axis.lcm", csv, "servo_axis");
+  ASSERT_EQ(Replay({"--model", "servo_axis", "--data", "motion.csv"}).code, 0);
+  const std::string from_csv = TextOf(dir_ / "estimates.csv");
+  // The plant came along, so that its name in the log is enough.
+  const test::Outcome run = Replay({"--data", "axis.lcm"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("model: servo_axis, by the plant of the log"));
+  EXPECT_THAT(run.out, HasSubstr("10 packs (1 s)"));
+  EXPECT_EQ(TextOf(dir_ / "estimates.csv"), from_csv);
+
+  const test::Outcome other = Replay({"--model", "oscillator", "--data", "axis.lcm"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.out, HasSubstr("rejected 10: pack of another plant"));
+  WriteLog(dir_ / "mine.lcm", csv, "my_own");
+  const test::Outcome unknown = Replay({"--data", "mine.lcm"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("holds packs of my_own, a plant that a file describes: say --model FILE"));
 }
 
 TEST_F(ReplayOfAPlantFile, IsComparedByItsOwnNamesAndUnits) {

@@ -97,11 +97,11 @@ TEST(StrictToml, ChoiceListsTheAllowedWordsAndTheNearest) {
   EXPECT_THAT(message, HasSubstr("did you mean gaussian?"));
 }
 
-TEST(StrictToml, MissingRequiredKeysNameTheTableTheyBelongTo) {
+TEST(StrictToml, MissingRequiredKeysNameTheirTableAndALikelyTypo) {
   auto t = Toml("\n[model]\nnme = \"x\"\n");
   auto model = t.Table("model");
   const std::string message = MessageOf([&] { model.RequiredText("name"); });
-  EXPECT_THAT(message, HasSubstr("f.toml:2:1: model.name is missing"));
+  EXPECT_THAT(message, HasSubstr("f.toml:3:7: model.name is missing"));
   EXPECT_THAT(message, HasSubstr("model.nme is set; is it a typo?"));
   EXPECT_THROW(t.RequiredNumber("a", 0, 1), ConfigError);
   EXPECT_THROW(t.RequiredInteger("a", 0, 1), ConfigError);

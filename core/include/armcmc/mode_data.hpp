@@ -39,6 +39,7 @@ struct alignas(64) ModeData {
   int num_tapes = 1;
   const std::uint8_t* law = nullptr;  ///< Of several: which one acts, a number a sample of the pack.
   const expression::TapeScalars* scalars = nullptr;
+  const double* past = nullptr;      ///< PastLines::value of the pack.
   const StateRun* states = nullptr;  ///< Of a plant that has some: what they do over the pack.
   const StartFit* start_fit =
       nullptr;  ///< Errors are those that remain beside an uncertain start; null: it is certain.

@@ -218,6 +218,7 @@ Status ParticleFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64
     chunk_.num_tapes = data.num_tapes;
     chunk_.law = data.law;
     chunk_.scalars = data.scalars;
+    chunk_.past = data.past;
     chunk_.states = data.states;
     chunk_.start_fit = nullptr;  // its directions are those of the whole pack
     std::copy(data.sample.begin() + from, data.sample.begin() + to, chunk_.sample.begin());

@@ -49,7 +49,7 @@ bool Composition::PrepareDescribed(const DataPack& pack, PlantPack* out) noexcep
   if (!continues) after.features.Clear();
   if (!plant_->Prepare(pack, &after.features, continues ? &before.states : nullptr, out)) return false;
   after.states.known = false;
-  SignalsAt(pack, pack.num_samples - 1, plant_->plant().output(), &after.states.signals);
+  plant_->Leave(*out, pack.num_samples, &after.states);
   current_ = 1 - current_;
   return true;
 }

@@ -149,6 +149,7 @@ class Assembler {
       case TapeOp::kSplat: i.a = scalar(0); break;
       case TapeOp::kScale:
       case TapeOp::kExp2S:
+      case TapeOp::kPast:
       case TapeOp::kMinS:
       case TapeOp::kMaxS: i.b = scalar(0); break;
       case TapeOp::kPowerInt: i.b = Byte(v.number); break;

@@ -216,6 +216,7 @@ class Builder {
         return OfRegister(Emit(TapeOp::kDivide, {Materialise(above), divisor}));
       }
       case Op::kPower: return OfRegister(Power(a, b));
+      case Op::kPast: return OfRegister(Emit(TapeOp::kPast, {Register(b)}, {Scalar(a)}));
       case Op::kMin:
       case Op::kMax:
         return OfRegister(graph_.IsNumber(a) ? Bounded(n.op, Register(b), a) : Bounded(n.op, Register(a), b));

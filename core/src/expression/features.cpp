@@ -85,7 +85,9 @@ void FeatureProgram::Evaluate(const FeatureInput& input, FeatureMemory* memory,
       continue;
     }
     if (i.op == Op::kSymbol) {
-      value[n] = i.kind == SymbolKind::kTime ? input.t : input.signals[i.index];
+      value[n] = i.kind == SymbolKind::kTime       ? input.t
+                 : i.kind == SymbolKind::kInterval ? input.dt
+                                                   : input.signals[i.index];
       continue;
     }
     if (!InfoOf(i.op).memory) {

@@ -28,7 +28,8 @@ int Graph::Insert(GraphNode node) {
   node.varies = InfoOf(node.op).memory;
   if (node.op == Op::kSymbol) {
     node.sampled = node.kind == SymbolKind::kParameter || node.kind == SymbolKind::kState;
-    node.varies = node.kind != SymbolKind::kParameter && node.kind != SymbolKind::kConstant;
+    node.varies =
+        node.kind != SymbolKind::kParameter && node.kind != SymbolKind::kConstant && node.kind != SymbolKind::kInterval;
   }
   for (const int argument : node.argument) {
     if (argument < 0) continue;

@@ -277,7 +277,9 @@ Unit Unit::Power(double power) const noexcept {
 std::string Unit::Text() const {
   if (IsNumber() && std::fabs(scale - 1.0) < kSameScale) return "1";
   for (const Named& named : kNamed)
-    if (named.name != "g" && Same(Unit{named.scale, named.exponent})) return std::string(named.name);
+    // 1/s may be an angle's rate as well as a frequency.
+    if (named.name != "g" && named.name != "Hz" && Same(Unit{named.scale, named.exponent}))
+      return std::string(named.name);
   std::string above;
   std::string below;
   for (std::size_t b = 0; b < kBases; ++b) {

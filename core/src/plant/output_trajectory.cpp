@@ -20,7 +20,7 @@ bool OutputTrajectory::Prepare(const DataPack& pack) noexcept {
     Reset();
     return false;
   }
-  SignalsAt(pack, pack.num_samples - 1, prediction_->plant().output(), &states_.signals);
+  prediction_->Leave(pack_, pack.num_samples, &states_);
   prediction_->Fill(pack_, pack.num_samples, 0, &data_);
   data_.pack_share = 1.0;
   data_.weighted = false;

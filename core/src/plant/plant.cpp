@@ -327,7 +327,6 @@ void Plant::AddRates() {
       throw PlantError(key + "substeps", 0, "expected a number of substeps in [1, 100]");
     const Lowered rate = Lower(key + "rate", state.rate, unit ? std::optional(unit->Over(Second())) : std::nullopt,
                                "the rate of " + state.name);
-    if (rate.meaning.memory) throw PlantError(key + "rate", 1, "a rate has no memory but that of its states");
     understood.rate = rate.node;
     const Lowered start = Lower(key + "start", state.start, unit, "the start of " + state.name);
     for (std::size_t s = 0; s < description_.states.size(); ++s)

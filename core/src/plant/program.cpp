@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "armcmc/expression/compile.hpp"
+#include "plant/remembered.hpp"
 
 namespace armcmc {
 namespace {
@@ -33,6 +35,8 @@ PlantProgram::PlantProgram(std::shared_ptr<const Plant> plant, Part part)
 }
 
 bool PlantProgram::LawsNeedStates() const {
+  for (const std::size_t m : active_)
+    if (Remembered::MakesStates(graph_, plant_->modes()[m].law)) return true;
   // Where nothing else predicts the output, the laws do.
   if (plant_->predicts() < 0) return !plant_->states().empty();
   for (std::size_t s = 0; s < plant_->states().size(); ++s) {
@@ -130,22 +134,34 @@ void PlantProgram::CompileModes() {
     return plant_->description().law.empty() ? "mode[" + std::to_string(active_[a]) + "].law" : std::string("law");
   };
   std::vector<int> scalars;
-  if (part_ == Part::kPrediction || LawsNeedStates()) CompileStates(&scalars);
+  Remembered remembered(&graph_, static_cast<int>(plant_->states().size()));
+  std::vector<int> laws;
+  const auto add_law = [&](int node, const std::string& key) {
+    try {
+      laws.push_back(remembered.InLaw(node));
+    } catch (const std::logic_error& error) {  // length_error, invalid_argument
+      throw PlantError(key, 0, std::string("the law ") + error.what());
+    }
+  };
+  for (std::size_t a = 0; a < active_.size() && part_ == Part::kLaws; ++a)
+    add_law(InMode(modes[active_[a]].law, a), key_of(a));
+  if (part_ == Part::kPrediction)
+    add_law(OfActingMode([&](std::size_t a) { return InMode(plant_->predicts(), a); }), "predicts");
+  if (part_ == Part::kPrediction || LawsNeedStates()) CompileStates(&remembered, &scalars);
   if (part_ == Part::kPrediction) {
-    const int law = OfActingMode([&](std::size_t a) { return InMode(plant_->predicts(), a); });
     modes_.push_back({.name = "prediction"});
-    CompileLaw(law, output, "predicts", &scalars);
+    CompileLaw(laws[0], output, "predicts", &scalars);
   }
   for (std::size_t a = 0; a < active_.size() && part_ == Part::kLaws; ++a) {
     const PlantMode& mode = modes[active_[a]];
     if (a == 0 || !merged_) modes_.push_back({.name = merged_ ? "active" : described[active_[a]].name});
-    CompileLaw(InMode(mode.law, a), mode.target, key_of(a), &scalars);
+    CompileLaw(laws[a], mode.target, key_of(a), &scalars);
     modes_.back().law_is_output = modes_.back().law_is_output && mode.target == output;
   }
-  CompileFeatures(scalars);
+  CompileFeatures(scalars, remembered);
 }
 
-void PlantProgram::CompileFeatures(const std::vector<int>& scalars) {
+void PlantProgram::CompileFeatures(const std::vector<int>& scalars, const Remembered& remembered) {
   const auto& modes = plant_->modes();
   num_scalars_ = static_cast<int>(scalars.size());
   std::vector<int> features = scalars;
@@ -173,6 +189,12 @@ void PlantProgram::CompileFeatures(const std::vector<int>& scalars) {
   // What is shown is shown at every sample, whatever mode acts.
   if (part_ == Part::kPrediction)
     outputs_.push_back({.target = feature(plant_->NodeOf(SymbolKind::kSignal, plant_->output())), .sampled = 0});
+  first_remembered_ = static_cast<int>(features.size());
+  num_remembered_ = static_cast<int>(remembered.inputs().size());
+  features.insert(features.end(), remembered.inputs().begin(), remembered.inputs().end());
+  first_line_ = static_cast<int>(features.size());
+  num_lines_ = static_cast<int>(remembered.lines().size());
+  features.insert(features.end(), remembered.lines().begin(), remembered.lines().end());
   try {
     features_ = expression::FeatureProgram(graph_, features);
   } catch (const std::length_error& error) {
@@ -180,15 +202,24 @@ void PlantProgram::CompileFeatures(const std::vector<int>& scalars) {
   }
 }
 
-void PlantProgram::CompileStates(std::vector<int>* scalars) {
-  if (plant_->states().empty()) return;
+void PlantProgram::CompileStates(Remembered* remembered, std::vector<int>* scalars) {
   std::vector<int> rates, starts;
-  for (const PlantState& state : plant_->states()) {
+  for (std::size_t s = 0; s < plant_->states().size(); ++s) {
+    const PlantState& state = plant_->states()[s];
     // In a mode a parameter means that mode's value; in a passive one that of the last mode that is none.
-    rates.push_back(OfActingMode([&](std::size_t a) { return InMode(state.rate, a); }));
+    const int rate = OfActingMode([&](std::size_t a) { return InMode(state.rate, a); });
+    try {
+      rates.push_back(remembered->InRate(rate));
+    } catch (const std::logic_error& error) {  // length_error, invalid_argument
+      throw PlantError("states." + plant_->description().states[s].name + ".rate", 0,
+                       std::string("the rate ") + error.what());
+    }
     starts.push_back(OfActingMode([&](std::size_t a) { return InMode(state.start, a); }));
   }
-  states_ = PlantStates(*plant_, &graph_, rates, starts, static_cast<int>(sampled_.size()), scalars);
+  for (const RememberedState& state : remembered->states()) rates.push_back(remembered->RateOf(state));
+  if (rates.empty()) return;
+  states_ = PlantStates(*plant_, &graph_, rates, remembered->Starts(std::move(starts)), remembered->states(),
+                        static_cast<int>(sampled_.size()), scalars);
 }
 
 void PlantProgram::FillInfo() {
@@ -211,6 +242,8 @@ void PlantProgram::FillInfo() {
       if (InMode(plant_->reports()[r], a) != first)
         throw PlantError("report." + reports[r].name + ".value", 1,
                          "differs from mode to mode, and there is one value to report");
+    if (std::find(names_.begin(), names_.end(), reports[r].name) != names_.end())
+      throw PlantError("report." + reports[r].name, 0, '"' + reports[r].name + "\" is reported already: a parameter");
     nodes.push_back(first);
     names_.push_back(reports[r].name);
     units_.push_back(reports[r].unit);
@@ -241,16 +274,35 @@ void PlantProgram::FillInfo() {
   for (std::size_t r = 0; r < nodes.size(); ++r) info_.reported[r] = {names_[r], units_[r]};
 }
 
+void PlantProgram::LayDownPast(const expression::PastSamples& kept, int line, double first,
+                               expression::PastLines* out) const noexcept {
+  constexpr int kLength = expression::kMaxDelaySamples;
+  const auto& samples = kept.line[static_cast<std::size_t>(line)];
+  double* newest = &out->value[static_cast<std::size_t>(expression::PastLines::Place(line, -1))];
+  double oldest = first;
+  for (int age = 0; age < kLength; ++age) {
+    if (age < kept.samples) oldest = samples[static_cast<std::size_t>((kept.samples - 1 - age) % kLength)];
+    *(newest - age) = oldest;
+  }
+  *(newest - kLength) = kept.samples >= kLength ? std::numeric_limits<double>::quiet_NaN() : oldest;
+}
+
 bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memory, const StateMemory* before,
                            PlantPack* out) const noexcept {
   PlantSignals signals{};
-  std::array<double, expression::kMaxTapeScalars + 2 * Plant::kMaxPlantModes> value{};
+  std::array<double, expression::kMaxTapeScalars + 2 * Plant::kMaxPlantModes + PlantPoint::kMaxRemembered +
+                         expression::kMaxDelays>
+      value{};
   out->scalars.stride = num_scalars_;
-  bool finite = states_.Prepare(pack, before, &out->states);
+  bool finite = true;
   for (int n = 0; n < pack.num_samples; ++n) {
     const auto in = static_cast<std::size_t>(n);
     SignalsAt(pack, n, plant_->output(), &signals);
-    features_.Evaluate({signals.data(), pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt, pack.dt}, memory,
+    PlantPoint::Values& point = out->point[in];
+    std::copy(signals.begin(), signals.end(), point.begin());
+    for (int l = 0; l < num_lines_; ++l)
+      point[static_cast<std::size_t>(PlantPoint::kFirstPosition + l)] = expression::PastLines::Place(l, n);
+    features_.Evaluate({point.data(), pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt, pack.dt}, memory,
                        value.data());
     out->mode[in] = static_cast<std::int8_t>(info_.num_modes);
     out->target[in] = out->passive[in] = 0.0;
@@ -269,8 +321,32 @@ bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memo
       break;
     }
     std::copy_n(value.begin(), num_scalars_, out->scalars.Row(n));
+    std::copy_n(value.begin() + first_remembered_, num_remembered_, point.begin() + PlantPoint::kFirstRemembered);
+    for (int l = 0; l < num_lines_; ++l) {
+      const double kept = value[static_cast<std::size_t>(first_line_ + l)];
+      if (n == 0) LayDownPast(memory->kept, l, kept, &out->past);
+      out->past.value[static_cast<std::size_t>(expression::PastLines::Place(l, n))] = kept;
+      finite = finite && std::isfinite(kept);
+    }
   }
-  return finite;
+  for (int l = 0; l < num_lines_; ++l)
+    for (int n = 0; n < pack.num_samples; ++n)
+      memory->kept.line[static_cast<std::size_t>(l)]
+                       [static_cast<std::size_t>((memory->kept.samples + n) % expression::kMaxDelaySamples)] =
+          out->past.value[static_cast<std::size_t>(expression::PastLines::Place(l, n))];
+  // Keeps counting without running over, and the place in the lines what it is.
+  if (num_lines_ > 0) {
+    memory->kept.samples += pack.num_samples;
+    while (memory->kept.samples >= 2 * expression::kMaxDelaySamples)
+      memory->kept.samples -= expression::kMaxDelaySamples;
+  }
+  return states_.Prepare(pack, out->point.data(), before, &out->states) && finite;
+}
+
+void PlantProgram::Leave(const PlantPack& pack, int num_samples, StateMemory* memory) const noexcept {
+  memory->point = pack.point[static_cast<std::size_t>(num_samples - 1)];
+  for (int l = 0; l < num_lines_; ++l)
+    memory->point[static_cast<std::size_t>(PlantPoint::kFirstPosition + l)] = expression::PastLines::Place(l, -1);
 }
 
 void PlantProgram::Fill(const PlantPack& pack, int num_samples, int mode, ModeData* data) const noexcept {
@@ -288,6 +364,7 @@ void PlantProgram::Fill(const PlantPack& pack, int num_samples, int mode, ModeDa
   data->num_tapes = static_cast<int>(sampled.laws.size());
   data->law = data->num_tapes > 1 ? pack.law.data() : nullptr;
   data->scalars = &pack.scalars;
+  data->past = pack.past.value.data();
   data->states = pack.states.step != nullptr ? &pack.states : nullptr;
   data->start_fit = nullptr;
 }

@@ -49,13 +49,39 @@ int RungeKutta::Given(int point, std::size_t input) {
   return graph_.Symbol(SymbolKind::kGiven, 1 + point * static_cast<int>(inputs_.size()) + static_cast<int>(input));
 }
 
-std::vector<int> RungeKutta::Rates(const std::vector<int>& states, int point) {
+int RungeKutta::At(int node, const std::vector<int>& states, int point) {
   std::map<int, int> by;
   for (std::size_t s = 0; s < states_.size(); ++s) by.emplace(states_[s], states[s]);
   for (std::size_t i = 0; i < inputs_.size(); ++i) by.emplace(inputs_[i], Given(point, i));
+  return graph_.Substitute(node, by);
+}
+
+std::vector<int> RungeKutta::Rates(const std::vector<int>& states, int point) {
   std::vector<int> rates;
-  for (const int rate : rates_) rates.push_back(graph_.Substitute(rate, by));
+  for (const int rate : rates_) rates.push_back(At(rate, states, point));
   return rates;
+}
+
+void RungeKutta::MakeExact(const std::vector<RememberedState>& remembered, std::vector<int>* results) {
+  if (remembered.empty()) return;
+  const auto minus = [this](int a, int b) { return graph_.Make(Op::kSubtract, a, b); };
+  const auto over = [this](int a, int b) { return graph_.Make(Op::kDivide, a, b); };
+  for (const RememberedState& one : remembered) {
+    const auto s = static_cast<std::size_t>(one.state);
+    const int a = At(one.argument, states_, 0);
+    const int b = At(one.argument, *results, 2);
+    if (one.tau < 0) {
+      (*results)[s] = Plus(states_[s], Times(half_, Plus(a, b)));
+      continue;
+    }
+    const int ratio = over(h_, At(one.tau, states_, 0));
+    const int decay = graph_.Make(Op::kExp, graph_.Make(Op::kNegate, ratio));
+    const int mean = over(minus(graph_.Number(1.0), decay), ratio);
+    (*results)[s] = minus(Plus(b, Times(decay, minus(states_[s], a))), Times(mean, minus(b, a)));
+  }
+  std::erase_if(stages_, [&](int stage) {
+    return std::none_of(results->begin(), results->end(), [&](int r) { return graph_.DependsOn(r, stage); });
+  });
 }
 
 std::vector<int> RungeKutta::Moved(const std::vector<int>& rates, int h) {

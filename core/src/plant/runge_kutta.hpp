@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "armcmc/expression/graph.hpp"
+#include "armcmc/plant/states.hpp"
 
 namespace armcmc {
 
@@ -29,6 +30,10 @@ class RungeKutta {
   /// where they are not, or where that would be too many coefficients.
   [[nodiscard]] std::vector<int> Linear();
 
+  /// Takes functions with memory among the states to what they are at the end of the step, and leaves out the stages
+  /// that nobody needs then.
+  void MakeExact(const std::vector<RememberedState>& remembered, std::vector<int>* results);
+
  private:
   /// constant + sum of coefficient x symbol; neither constant nor coefficients change from sample to sample.
   struct Form {
@@ -39,6 +44,8 @@ class RungeKutta {
   int Plus(int a, int b) { return graph_.Make(expression::Op::kAdd, a, b); }
   int Times(int a, int b) { return graph_.Make(expression::Op::kMultiply, a, b); }
   [[nodiscard]] int Given(int point, std::size_t input);
+  /// A node that reads states and inputs, at a point of the step.
+  [[nodiscard]] int At(int node, const std::vector<int>& states, int point);
   [[nodiscard]] std::vector<int> Rates(const std::vector<int>& states, int point);
   [[nodiscard]] std::vector<int> Moved(const std::vector<int>& rates, int h);
 

@@ -23,19 +23,21 @@ constexpr int kMaxStepInputs = 64;  ///< Of the rates, at one point.
 }  // namespace
 
 PlantStates::PlantStates(const Plant& plant, expression::Graph* graph, const std::vector<int>& rates,
-                         const std::vector<int>& starts, int num_parameters, std::vector<int>* scalars)
-    : size_(static_cast<int>(plant.states().size())), output_(plant.output()) {
+                         const std::vector<int>& starts, const std::vector<RememberedState>& remembered,
+                         int num_parameters, std::vector<int>* scalars)
+    : size_(static_cast<int>(rates.size())) {
   all_measured_ = true;
-  for (std::size_t s = 0; s < plant.states().size(); ++s) {
-    measured_by_[s] = plant.states()[s].measured_by;
+  const int output = plant.NodeOf(expression::SymbolKind::kSignal, plant.output());
+  for (std::size_t s = 0; s < rates.size(); ++s) {
+    const bool of_plant = s < plant.states().size();
+    measured_by_[s] = of_plant ? plant.states()[s].measured_by : -1;
     all_measured_ = all_measured_ && measured_by_[s] >= 0;
-    const int output = plant.NodeOf(expression::SymbolKind::kSignal, output_);
     const int slope = measured_by_[s] < 0 ? graph->Differentiate(starts[s], output) : -1;
-    output_in_start_[s] = measured_by_[s] == output_             ? 1.0
+    output_in_start_[s] = measured_by_[s] == plant.output()      ? 1.0
                           : slope >= 0 && graph->IsNumber(slope) ? graph->at(slope).value
                                                                  : 0.0;
     // One step for all: they are one system.
-    substeps_ = std::max(substeps_, plant.description().states[s].substeps);
+    if (of_plant) substeps_ = std::max(substeps_, plant.description().states[s].substeps);
   }
   const auto guarded = [](const char* what, const auto& work) {
     try {
@@ -49,7 +51,7 @@ PlantStates::PlantStates(const Plant& plant, expression::Graph* graph, const std
     *scalars = tape.scalars;
     start_ = tape.tape;
   });
-  guarded("the rates of the states ", [&] { CompileStep(graph, rates, num_parameters); });
+  guarded("the rates of the states ", [&] { CompileStep(graph, rates, remembered, num_parameters); });
   if (substeps_ * kSmallestPack * step_.num_scalars > kMaxStateCells)
     throw PlantError("states", 0,
                      "a step of their rates needs " + std::to_string(step_.num_scalars) +
@@ -57,7 +59,8 @@ PlantStates::PlantStates(const Plant& plant, expression::Graph* graph, const std
                          " steps a sample are more than there is room for: use fewer substeps");
 }
 
-void PlantStates::CompileStep(Graph* graph, const std::vector<int>& rates, int num_parameters) {
+void PlantStates::CompileStep(Graph* graph, const std::vector<int>& rates,
+                              const std::vector<RememberedState>& remembered, int num_parameters) {
   RungeKutta method(graph, rates);
   if (method.inputs().size() > kMaxStepInputs)
     throw std::length_error("need more than " + std::to_string(kMaxStepInputs) +
@@ -70,10 +73,12 @@ void PlantStates::CompileStep(Graph* graph, const std::vector<int>& rates, int n
                                 .advances = true,
                                 .most_instructions = kMaxStepInstructions,
                                 .most_scalars = kMaxStepScalars};
-  const std::vector<int> results = method.Staged();
+  std::vector<int> results = method.Staged();
+  method.MakeExact(remembered, &results);
   layout.first = method.stages();
   expression::CompiledTape tape = CompileTape(graph, results, layout);
-  if (const std::vector<int> linear = method.Linear(); !linear.empty()) {
+  if (std::vector<int> linear = method.Linear(); !linear.empty()) {
+    method.MakeExact(remembered, &linear);
     layout.first.clear();
     expression::CompiledTape short_tape = CompileTape(graph, linear, layout);
     if (short_tape.tape.size() < tape.tape.size()) tape = std::move(short_tape);
@@ -82,7 +87,8 @@ void PlantStates::CompileStep(Graph* graph, const std::vector<int>& rates, int n
   scalars_ = expression::FeatureProgram(*graph, tape.scalars);
 }
 
-bool PlantStates::Prepare(const DataPack& pack, const StateMemory* before, StateRun* out) const noexcept {
+bool PlantStates::Prepare(const DataPack& pack, const PlantPoint::Values* point, const StateMemory* before,
+                          StateRun* out) const noexcept {
   out->step = size_ > 0 ? &step_ : nullptr;
   if (size_ == 0) return true;
   out->start = &start_;
@@ -95,9 +101,8 @@ bool PlantStates::Prepare(const DataPack& pack, const StateMemory* before, State
   const int intervals = pack.num_samples - 1 + (carried ? 1 : 0);
   if (intervals * substeps_ * out->stride > kMaxStateCells) return false;
 
-  PlantSignals from{}, to{}, between{};
-  SignalsAt(pack, 0, output_, &to);
-  from = carried ? before->signals : to;
+  PlantPoint::Values from = carried ? before->point : point[0];
+  PlantPoint::Values between{};
   bool finite = true;
   for (std::size_t s = 0; s < static_cast<std::size_t>(size_); ++s) {
     const int signal = measured_by_[s];
@@ -111,14 +116,14 @@ bool PlantStates::Prepare(const DataPack& pack, const StateMemory* before, State
   std::array<double, 1 + 3 * kMaxStepInputs> given{};  // h, then the inputs at the three points
   given[0] = pack.dt / substeps_;
   for (int i = 0; i < intervals; ++i) {
-    SignalsAt(pack, i + (carried ? 0 : 1), output_, &to);  // at the end of the interval
+    const PlantPoint::Values& to = point[i + (carried ? 0 : 1)];  // at the end of the interval
     for (int p = 0; p <= points; ++p) {
       const double part = static_cast<double>(p) / points;
       for (std::size_t s = 0; s < between.size(); ++s) between[s] = from[s] + part * (to[s] - from[s]);
       inputs_.Evaluate({between.data(), first_t + (i + part) * pack.dt, pack.dt}, nullptr,
                        given.data() + 1 + static_cast<std::size_t>(p == 0 ? 0 : 2 - p % 2) * width);
       if (p == 0 || p % 2 == 1) continue;
-      scalars_.Evaluate({given.data(), 0.0, 0.0}, nullptr, out->Row(i * substeps_ + p / 2 - 1));
+      scalars_.Evaluate({given.data(), 0.0, pack.dt}, nullptr, out->Row(i * substeps_ + p / 2 - 1));
       std::copy_n(given.begin() + 1 + static_cast<std::ptrdiff_t>(2 * width), width, given.begin() + 1);
     }
     from = to;

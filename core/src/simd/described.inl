@@ -27,7 +27,7 @@ template <class Take>
   };
   const auto one = [&](std::size_t n) {
     const Tape& tape = TapeAt(tapes, data, n);
-    RunTape(tape, data.scalars->Row(data.sample[n]), &registers);
+    RunTape(tape, data.scalars->Row(data.sample[n]), data.past, &registers);
     take(n, registers.value[tape.result[0]].data());
   };
   const auto samples = static_cast<std::size_t>(data.num_samples);
@@ -36,7 +36,7 @@ template <class Take>
     for (std::size_t n = 0; n < samples; ++n) one(n);
     return;
   }
-  StateIntegrator states(*data.states, data.scalars->Row(0), &registers, offset);
+  StateIntegrator states(*data.states, data.scalars->Row(0), data.past, &registers, offset);
   start();
   for (std::size_t n = 0; n < samples; ++n) {
     states.AdvanceTo(data.sample[n]);

@@ -10,16 +10,17 @@ namespace {
 class StateIntegrator {
  public:
   /// @param scalars    Of the pack's first sample.
+  /// @param past       PastLines::value, where a tape looks something up.
   /// @param registers  With the parameters in them.
   /// @param offset     Added to the starts; null: nothing.
-  StateIntegrator(const StateRun& run, const double* scalars, TapeRegisters* registers,
+  StateIntegrator(const StateRun& run, const double* scalars, const double* past, TapeRegisters* registers,
                   const StateTile* offset = nullptr) noexcept
-      : run_(run), registers_(*registers) {
+      : run_(run), past_(past), registers_(*registers) {
     const Tape& start = *run.start;
     StateTile state;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
     if (!run.carried) {
       StartTape(start, scalars, &registers_);
-      RunTape(start, scalars, &registers_);
+      RunTape(start, scalars, past_, &registers_);
       for (std::size_t s = 0; s < NumStates(); ++s) state.value[s] = registers_.value[start.result[s]];
     }
     for (std::size_t s = 0; s < NumStates(); ++s) {
@@ -48,10 +49,11 @@ class StateIntegrator {
 
   /// One sample interval.
   void Step() noexcept {
-    for (int i = 0; i < run_.substeps; ++i) RunTape(*run_.step, run_.Row(row_++), &registers_);
+    for (int i = 0; i < run_.substeps; ++i) RunTape(*run_.step, run_.Row(row_++), past_, &registers_);
   }
 
   const StateRun& run_;
+  const double* past_;
   TapeRegisters& registers_;
   int sample_ = 0;
   int row_ = 0;  ///< Substeps done.

@@ -1,5 +1,7 @@
 // Runs tapes; included by kernels.inl, once per instruction set.
 
+#include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "armcmc/expression/tape.hpp"
@@ -15,6 +17,25 @@ using expression::TapeRegisters;
 
 constexpr int kTapeVectors = kTileLanes / Simd::kLanes;
 
+/// What was kept `back` samples before a place; of a negative `back` what is at the place. Between samples both the
+/// line and what is looked up in it are linear.
+inline double Past(const double* lines, double place, double back) noexcept {
+  constexpr double kLength = expression::PastLines::kLength;
+  const double oldest = std::floor(place / kLength) * kLength;
+  const auto before = [&](double sample) {
+    const double at = back > 0.0 ? std::fmax(sample - back, oldest) : sample;
+    const double whole = std::floor(at);
+    const double part = at - whole;
+    const double* const kept = lines + static_cast<std::ptrdiff_t>(whole);
+    return part > 0.0 ? kept[0] + part * (kept[1] - kept[0]) : kept[0];
+  };
+  if (back != back) return back;
+  const double sample = std::floor(place);
+  const double part = place - sample;
+  const double value = before(sample);
+  return part > 0.0 ? value + part * (before(sample + 1.0) - value) : value;
+}
+
 /// One sample of a tape for a group of the candidates of a tile: as many vectors side by side as leave hardware
 /// registers for what is computed. The result of one instruction stays there for the next.
 class TapeGroup {
@@ -23,9 +44,9 @@ class TapeGroup {
   static constexpr int kVectors = kTapeVectors < 8 ? kTapeVectors : 8;
   static constexpr int kLanes = kVectors * Simd::kLanes;
 
-  static void Run(const TapeInstruction* first, const TapeInstruction* last, double* registers,
-                  const double* scalars) noexcept {
-    const TapeGroup group(registers, scalars);
+  static void Run(const TapeInstruction* first, const TapeInstruction* last, double* registers, const double* scalars,
+                  const double* past) noexcept {
+    const TapeGroup group(registers, scalars, past);
     Vec x[kVectors] = {};
     for (const TapeInstruction* at = first; at != last; ++at) {
       const TapeInstruction& i = *at;
@@ -37,7 +58,8 @@ class TapeGroup {
 
  private:
   /// @param registers  Of the group's first lane.
-  TapeGroup(double* registers, const double* scalars) noexcept : registers_(registers), scalars_(scalars) {}
+  TapeGroup(double* registers, const double* scalars, const double* past) noexcept
+      : registers_(registers), scalars_(scalars), past_(past) {}
 
   [[nodiscard]] double* Register(std::uint8_t r) const noexcept { return registers_ + r * kTileLanes; }
   [[nodiscard]] Vec Scalar(std::uint8_t s) const noexcept { return Simd::Set(scalars_[s]); }
@@ -148,26 +170,36 @@ class TapeGroup {
       case TapeOp::kOr: Binary(x, i, [](Vec a, Vec b) { return Math::Condition((a != Vec{}) | (b != Vec{})); }); break;
       case TapeOp::kNot: Unary(x, [](Vec a) { return Math::Condition(a == Vec{}); }); break;
       case TapeOp::kSelect: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Select(a != Vec{}, b, c); }); break;
+      case TapeOp::kPast:
+        Long(x, [past = past_, place = scalars_[i.b]](Vec a) {
+          alignas(64) double lane[Simd::kLanes];
+          Simd::Store(lane, a);
+          for (double& back : lane) back = Past(past, place, back);
+          return Simd::Load(lane);
+        });
+        break;
     }
     return 0;
   }
 
   double* registers_;
   const double* scalars_;
+  const double* past_;  ///< PastLines::value.
 };
 
-void RunCode(const TapeInstruction* first, const TapeInstruction* last, const double* scalars,
+void RunCode(const TapeInstruction* first, const TapeInstruction* last, const double* scalars, const double* past,
              TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
   for (std::size_t lane = 0; lane < kTileLanes; lane += TapeGroup::kLanes)
-    TapeGroup::Run(first, last, registers->value[0].data() + lane, scalars);
+    TapeGroup::Run(first, last, registers->value[0].data() + lane, scalars, past);
 }
 /// What needs the sample.
-void RunTape(const Tape& tape, const double* scalars, TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
-  RunCode(tape.code.data() + tape.once, tape.code.data() + tape.code.size(), scalars, registers);
+void RunTape(const Tape& tape, const double* scalars, const double* past,
+             TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
+  RunCode(tape.code.data() + tape.once, tape.code.data() + tape.code.size(), scalars, past, registers);
 }
 /// What needs no sample.
 void StartTape(const Tape& tape, const double* scalars, TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
-  RunCode(tape.code.data(), tape.code.data() + tape.once, scalars, registers);
+  RunCode(tape.code.data(), tape.code.data() + tape.once, scalars, nullptr, registers);
 }
 
 }  // namespace

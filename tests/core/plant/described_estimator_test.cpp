@@ -92,7 +92,8 @@ TEST(DescribedEstimator, LognormalParametersAreReportedAsTheyAre) {
                             {"n", "1", "normal", 1.5, 0.35, 1.0, 3.0},
                             {"x0", "m", "normal", 0.0, 0.05},
                             {"f0", "N", "normal", 0.0, 0.5}};
-  description.reports = {{"k_over_f0", "1/m^n", "k/(1 + f0)"}};
+  // The root has no value at candidates beyond the prior's bounds, which count nowhere.
+  description.reports = {{"k_over_f0", "1/m^n", "k/(1 + f0)"}, {"root", "1", "sqrt(n - 1)"}};
   description.noise.std = 0.01;
   const auto plant = test::Program(description);
   test::Rig rig(DescribedSettings(plant));
@@ -105,10 +106,10 @@ TEST(DescribedEstimator, LognormalParametersAreReportedAsTheyAre) {
       return s;
     }));
   const ModeEstimate& mode = rig.estimate().modes[0];
-  const double truth[] = {20.0, 1.5, 0.02, 0.1, 20.0 / 1.1};
-  ASSERT_EQ(rig.estimator.num_reported(), 5);
+  const double truth[] = {20.0, 1.5, 0.02, 0.1, 20.0 / 1.1, std::sqrt(0.5)};
+  ASSERT_EQ(rig.estimator.num_reported(), 6);
   EXPECT_EQ(rig.estimator.reported(4).name, "k_over_f0");
-  for (std::size_t r = 0; r < 5; ++r)
+  for (std::size_t r = 0; r < 6; ++r)
     EXPECT_NEAR(mode.marginal[r].ar_ap, truth[r], 4.0 * mode.marginal[r].sd)
         << rig.estimator.reported(static_cast<int>(r)).name;
   EXPECT_LT(mode.marginal[0].sd, 1.0);
@@ -307,7 +308,8 @@ TEST(PlantProgram, LimitsAreErrorsThatNameTheirKey) {
   named.name += 'a';
   EXPECT_EQ(key_of(named), "name");
   PlantDescription memory = test::DescribedAxis();
-  memory.law = "lowpass(M*a, 0.1) + Fv*v + off";
+  memory.law = "delay(integral(M*a), 0.1) + Fv*v + off";
+  memory.signals[1] = {"a", "m/s^3", "", ""};
   EXPECT_EQ(key_of(memory), "law");
   PlantDescription states = test::DescribedAxis();
   states.states = {{"s", "m/s", "", "a", "v", "", 100}};

@@ -215,7 +215,7 @@ TEST(States, APackThatGoesOnStartsOneIntervalBeforeItsFirstSample) {
   StateMemory memory;
   memory.known = true;
   memory.state = {0.1, -0.4};
-  SignalsAt(first, 29, plant->plant().output(), &memory.signals);
+  plant->Leave(*Laid(*plant, first, nullptr, {}).plant_pack, 30, &memory);
   Reference reference;
   reference.x = {0.1, -0.4};
   const Laid laid(*plant, second, &memory, {1.3, 0.8, 31.0});
@@ -240,7 +240,7 @@ TEST(States, AMeasuredOneStartsFromItsSignal) {
   StateMemory memory;
   memory.known = true;
   memory.state = {100.0, 0.5};
-  memory.signals = {0.0, 0.25};  // u, y
+  memory.point = {0.0, 0.25};  // u, y
   const Laid laid(*plant, pack, &memory, {1.3, 0.8, 31.0});
   const StateRun& run = laid.plant_pack->states;
   EXPECT_TRUE(run.carried) << "the speed goes on";

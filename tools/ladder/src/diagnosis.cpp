@@ -266,9 +266,14 @@ class Teller {
     return base > 0.0 ? (result_.gap.before.rmse * result_.gap.before.rmse - rmse * rmse) / base : 0.0;
   }
 
+  /// Of what the laws explain.
   [[nodiscard]] std::string OutputUnit() const {
     const Plant& plant = request_.plant->plant;
-    return plant.description().signals[static_cast<std::size_t>(plant.output())].unit;
+    const PlantDescription& description = plant.description();
+    for (std::size_t m = 0; m < description.modes.size(); ++m)
+      if (!plant.modes()[m].passive && !description.modes[m].target.empty())
+        return plant.modes()[m].target_unit ? plant.modes()[m].target_unit->Text() : "";
+    return description.signals[static_cast<std::size_t>(plant.output())].unit;
   }
 
   const DiagnosisRequest& request_;

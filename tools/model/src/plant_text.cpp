@@ -59,9 +59,9 @@ std::string StatesText(const Plant& plant) {
 std::string ModesText(const Plant& plant) {
   TextTable table({"mode", "when", "explains", "unit", "law"}, TextTable::Content::kWords);
   const PlantDescription& description = plant.description();
+  const std::string& output_unit = description.signals[static_cast<std::size_t>(plant.output())].unit;
   if (description.modes.empty()) {
-    const auto& unit = plant.modes().front().target_unit;
-    table.AddRow({"-", "always", description.output, unit ? unit->Text() : "not checked", description.law});
+    table.AddRow({"-", "always", description.output, output_unit, description.law});
   }
   for (std::size_t m = 0; m < description.modes.size(); ++m) {
     const ModeDescription& mode = description.modes[m];
@@ -70,8 +70,12 @@ std::string ModesText(const Plant& plant) {
     if (mode.passive) {
       table.AddRow({mode.name, when, "nothing: carries no information", "-", OrDash(mode.law)});
     } else {
-      table.AddRow({mode.name, when, mode.target.empty() ? description.output : mode.target,
-                    unit ? unit->Text() : "not checked", mode.law});
+      const bool is_output = mode.target.empty();
+      table.AddRow({mode.name, when, is_output ? description.output : mode.target,
+                    is_output ? output_unit
+                    : unit    ? unit->Text()
+                              : "not checked",
+                    mode.law});
     }
   }
   return table.ToString();

@@ -1,11 +1,15 @@
 #include "arguments.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "armcmc/models/registry.hpp"
 #include "armcmc/replay/lcm_source.hpp"
 #include "armcmc/support/model_file.hpp"
+#include "armcmc/support/plant_library.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/recording.hpp"
 
@@ -31,9 +35,9 @@ std::string ColumnsOfModels() {
 
 void Declare(CLI::App* app, Arguments* a) {
   const std::string plant = DefaultModel();
-  app->add_option(
-      "--config", a->config,
-      "Configuration, by path or by name (" + DefaultModel() + "); for an LCM log, left out: that of its plant");
+  app->add_option("--config", a->config,
+                  "Configuration, by path or by name (" + DefaultModel() +
+                      "); for an LCM log, left out: that of its plant, if that needs one");
   app->add_option(
       "--data", a->data,
       "Recording: a CSV of samples (" + ColumnsOfModels() + "; a plant file: t and its signals) or an LCM log");
@@ -82,6 +86,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-replay --model axis.toml --data axis.csv --out estimates.csv\n"
       "  armcmc-replay --recording axis_recording.toml --out estimates.csv\n"
       "  armcmc-replay --data run.lcm --verify\n"
+      "  armcmc-replay --model axis.toml --data axis.lcm --out estimates.csv\n"
       "  armcmc-replay --data run.lcm --config " +
       plant +
       " --compare other.toml --out report.html\n"
@@ -92,6 +97,17 @@ void Declare(CLI::App* app, Arguments* a) {
 }
 
 namespace {
+
+/// The plant of a log of packs of a plant that came along as a file; empty: it holds those of a compiled one.
+std::string DescribedPlantOf(const std::string& log, const std::string& prefix) {
+  const std::string plant = DescribedPlantOfLog(log, prefix);
+  if (plant.empty()) return plant;
+  const std::vector<std::string> known = support::PlantNames();
+  if (std::find(known.begin(), known.end(), plant) == known.end())
+    throw InputError(log + ": holds packs of " + plant + ", a plant that a file describes: say --model FILE");
+  std::cout << "model: " << plant << ", by the plant of the log\n";
+  return plant;
+}
 
 /// What is named by a recording is what is estimated from.
 void CompleteRecording(Arguments* a) {
@@ -108,8 +124,8 @@ void Complete(Arguments* a) {
   if (!a->data_dir.empty() && a->recording.empty()) throw InputError("--data-dir goes with --recording");
   if (a->data.empty()) throw InputError(a->config.empty() ? "--config and --data are required" : "--data is required");
   const bool is_log = a->recording.empty() && IsLcmLog(a->data);
+  if (is_log && a->config.empty() && a->model.empty()) a->model = DescribedPlantOf(a->data, a->prefix);
   const bool described = !a->model.empty() && support::DescribedPlant(a->model) != nullptr;
-  if (described && is_log) throw InputError("--model " + a->model + ": a log holds no packs of such a plant");
   if (a->config.empty() && !described) {
     if (!is_log) throw InputError("--config is required for a CSV: which plant is it?");
     a->config = ModelOfLog(a->data, a->prefix).name;

@@ -60,10 +60,12 @@ double MedianStep(const std::vector<double>& t) {
 CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> record)
     : plant_(request.plant),
       // An output that is simulated over time needs every sample before it; one that is the law does not.
-      takes_gaps_(request.described != nullptr ? !request.described->has_memory()
-                                               : ModelOf(request.plant)->compiled->law_is_output),
+      takes_gaps_(request.described != nullptr
+                      ? !request.described->has_memory() && request.described->states().size() == 0
+                      : ModelOf(request.plant)->compiled->law_is_output),
       samples_(support::ReadCsv(request.data, Columns(request))),
-      record_(std::move(record)) {
+      record_(std::move(record)),
+      row_(request.described != nullptr ? 0 : 1) {
   if (samples_.num_rows() < 2)
     throw support::InputError(request.data.string() + ": one row is too few, the sample interval is unknown");
   if (request.described != nullptr) fingerprint_ = request.described->plant().fingerprint();
@@ -71,20 +73,21 @@ CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> rec
   last_pack_ = number_.back() / samples_per_pack_;
   if (last_pack_ == 0)
     throw support::InputError(request.data.string() + ": " + std::to_string(number_.size()) +
-                              " rows do not fill a pack; expected sample 0 and at least " +
-                              std::to_string(samples_per_pack_) + " more");
+                              " rows do not fill a pack; expected " +
+                              (row_ > 0 ? "sample 0 and at least " : "at least ") + std::to_string(samples_per_pack_) +
+                              (row_ > 0 ? " more" : ""));
 }
 
 void CsvSource::NumberSamples(const SourceRequest& request) {
   const std::vector<double>& t = samples_.columns.front();
   const double step = MedianStep(t);
   number_.resize(t.size());
-  number_[0] = 0;
+  number_[0] = row_ > 0 ? 0 : 1;
   for (std::size_t i = 1; i < t.size(); ++i) {
     const double steps = std::round((t[i] - t[i - 1]) / step);
     number_[i] = number_[i - 1] + static_cast<std::int64_t>(std::clamp(steps, 1.0, 1e12));
   }
-  dt_ = Snapped((t.back() - t.front()) / static_cast<double>(number_.back()));
+  dt_ = Snapped((t.back() - t.front()) / static_cast<double>(number_.back() - number_[0]));
   if (request.period == 0.0) {
     samples_per_pack_ = support::SuitablePackLength(dt_, kMaxPackSamples);
     return;

@@ -67,7 +67,7 @@ class Reader {
                                         [&](const DerivedColumn& d) { return d.name == name; });
       if (derived != request_.derived.end()) return kAbsent;
       throw Error("column " + name + " is missing" + DidYouMean(name, header) + "; the header has " +
-                  JoinedNames(header) + ", expected " + JoinedNames(request_.columns));
+                  JoinedNames(header) + ", expected " + JoinedNames(request_.columns) + HeaderHint(header));
     }
     if (std::find(found + 1, header.end(), name) != header.end())
       throw Error("column " + name + " appears twice in the header");
@@ -91,7 +91,7 @@ class Reader {
     for (std::size_t i = 0; i < source_.size(); ++i) {
       if (source_[i] == kAbsent) continue;
       const std::string_view text = fields_[source_[i]];
-      const std::string what = request_.columns[i] + " = " + (text.empty() ? "(empty)" : std::string(text));
+      const std::string what = request_.columns[i] + " = " + (text.empty() ? "(empty)" : Printable(text));
       const std::optional<double> value = text.empty() ? std::numeric_limits<double>::quiet_NaN() : ParseNumber(text);
       if (!value) return Reject(&BadRows::malformed, what + ": expected a number");
       if (!std::isfinite(*value)) return Reject(&BadRows::non_finite, what + ": expected a finite number");

@@ -24,7 +24,7 @@ std::size_t FieldOf(const std::filesystem::path& path, const std::vector<std::st
   const auto found = std::find(header.begin(), header.end(), name);
   if (found == header.end())
     throw InputError(path.string() + ": column " + name + " is missing" + DidYouMean(name, header) +
-                     "; the header has " + JoinedNames(header));
+                     "; the header has " + JoinedNames(header) + HeaderHint(header));
   if (std::find(found + 1, header.end(), name) != header.end())
     throw InputError(path.string() + ": column " + name + " appears twice in the header");
   return static_cast<std::size_t>(found - header.begin());
@@ -39,7 +39,7 @@ std::vector<std::string> ReadCsvHeader(const std::filesystem::path& path) {
 }
 
 CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<std::string>& numbers,
-                          const std::vector<std::string>& texts, bool skip_bad) {
+                          const std::vector<std::string>& texts, BadRowsAre bad_rows) {
   CsvColumns columns;
   std::string line;
   LineReader lines = Open(path, &line);
@@ -56,30 +56,35 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
   while (lines.NextRow(&line)) {
     SplitFields(line, &fields);
     std::string problem;
+    std::fill(row.begin(), row.end(), std::numeric_limits<double>::quiet_NaN());
     if (!lines.complete()) {
       problem = "the last line has no line end: the file is cut off here";
     } else if (fields.size() != columns.header.size()) {
       problem = "has " + std::to_string(fields.size()) + " fields, expected " + std::to_string(columns.header.size()) +
                 " as in the header";
     }
-    for (std::size_t i = 0; i < number_fields.size() && problem.empty(); ++i) {
+    for (std::size_t i = 0; i < number_fields.size() && fields.size() == columns.header.size(); ++i) {
       const std::string_view text = fields[number_fields[i].first];
       row[i] = ParseNumber(text).value_or(std::numeric_limits<double>::quiet_NaN());
-      if (!std::isfinite(row[i]))
-        problem = columns.header[number_fields[i].first] + " = " + (text.empty() ? "(empty)" : std::string(text)) +
+      if (!std::isfinite(row[i]) && problem.empty())
+        problem = columns.header[number_fields[i].first] + " = " + (text.empty() ? "(empty)" : Printable(text)) +
                   ": expected a finite number";
     }
-    if (!problem.empty()) {
-      if (!skip_bad)
+    if (!problem.empty() && bad_rows != BadRowsAre::kKept) {
+      if (bad_rows == BadRowsAre::kErrors)
         throw InputError(path.string() + ":" + std::to_string(lines.number()) + ": " + problem +
                          " (--skip-bad counts and skips bad rows)");
       ++columns.skipped;
       continue;
     }
+    if (!problem.empty()) columns.bad.emplace(columns.num_rows(), std::move(problem));
     for (std::size_t i = 0; i < number_fields.size(); ++i) number_fields[i].second->push_back(row[i]);
-    for (const auto& [field, text] : text_fields) text->emplace_back(fields[field]);
+    for (const auto& [field, text] : text_fields)
+      text->emplace_back(field < fields.size() ? fields[field] : std::string_view());
     columns.line.push_back(lines.number());
   }
+  if (columns.line.size() == columns.bad.size() && !columns.bad.empty())
+    throw InputError(path.string() + ":" + std::to_string(columns.line.front()) + ": " + columns.bad.begin()->second);
   if (columns.line.empty()) throw InputError(path.string() + ": holds no valid row of numbers");
   if (columns.skipped > columns.line.size())
     throw InputError(path.string() + ": " + std::to_string(columns.skipped) + " rows are bad and only " +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -14,17 +15,25 @@ struct CsvColumns {
   std::map<std::string, std::vector<double>> number;     ///< Of the columns that were asked for as numbers.
   std::map<std::string, std::vector<std::string>> text;  ///< Of those that were asked for as text.
   std::vector<std::size_t> line;                         ///< [row] Where it stands in the file.
-  std::size_t skipped = 0;                               ///< Bad rows.
+  std::map<std::size_t, std::string> bad;                ///< [row] What is wrong with a bad row that was kept.
+  std::size_t skipped = 0;                               ///< Bad rows that were not.
   [[nodiscard]] std::size_t num_rows() const { return line.size(); }
 };
 
 /// Names in the header of a CSV file. @throws InputError.
 [[nodiscard]] std::vector<std::string> ReadCsvHeader(const std::filesystem::path& path);
 
-/// Reads the columns. A cell of a number column that is no finite number, a row with too few or too many fields and a
-/// last line without an end are errors, or are skipped and counted.
+/// What becomes of bad rows: a cell of a number column that is no finite number, too few or too many fields, a last
+/// line without an end.
+enum class BadRowsAre : std::uint8_t {
+  kErrors,
+  kSkipped,  ///< And counted.
+  kKept,     ///< Whoever selects rows may do without them; what cannot be read is not a number, or an empty text.
+};
+
+/// Reads the columns.
 /// @throws InputError naming file, line and column.
 [[nodiscard]] CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<std::string>& numbers,
-                                        const std::vector<std::string>& texts, bool skip_bad);
+                                        const std::vector<std::string>& texts, BadRowsAre bad_rows);
 
 }  // namespace armcmc::support

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace armcmc::support {
@@ -22,26 +24,36 @@ inline std::string_view TrimField(std::string_view text) {
   return text;
 }
 
+/// The fields of a line, without the quotes around them; between quotes a comma belongs to the field.
 inline void SplitFields(std::string_view line, std::vector<std::string_view>* fields) {
   fields->clear();
   for (std::size_t from = 0;;) {
-    const std::size_t comma = line.find(',', from);
-    fields->push_back(TrimField(line.substr(from, comma == std::string_view::npos ? comma : comma - from)));
+    const std::size_t start = std::min(line.find_first_not_of(" \t", from), line.size());
+    const bool quoted = start < line.size() && line[start] == '"';
+    const std::size_t closing = quoted ? line.find('"', start + 1) : std::string_view::npos;
+    const std::size_t comma = line.find(',', closing == std::string_view::npos ? from : closing);
+    std::string_view field = TrimField(line.substr(from, comma == std::string_view::npos ? comma : comma - from));
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
+    fields->push_back(field);
     if (comma == std::string_view::npos) return;
     from = comma + 1;
   }
 }
 
-/// The names of a header line, without quotes.
+/// The names of a header line.
 inline std::vector<std::string> HeaderNames(std::string_view line) {
   std::vector<std::string_view> fields;
   SplitFields(line, &fields);
-  std::vector<std::string> names;
-  for (std::string_view field : fields) {
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
-    names.emplace_back(field);
-  }
-  return names;
+  return {fields.begin(), fields.end()};
+}
+
+/// A cell as a message may show it: its beginning, without characters that a terminal would act on or a message end at.
+inline std::string Printable(std::string_view text) {
+  constexpr std::size_t kMaxShown = 60;
+  std::string shown(text.substr(0, kMaxShown));
+  for (char& c : shown)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = '?';
+  return shown + (text.size() > kMaxShown ? "..." : "");
 }
 
 /// The nearest double, whatever the locale; none where the text is no number.
@@ -90,8 +102,20 @@ class LineReader {
 
 inline std::string JoinedNames(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + Printable(name);
   return text;
+}
+
+/// Why a header holds none of the names that were expected, where its characters tell; else nothing.
+inline std::string HeaderHint(const std::vector<std::string>& header) {
+  const std::string& first = header.front();
+  if (first.find('\0') != std::string::npos) return "; it is no UTF-8 text: UTF-16, or no CSV at all?";
+  if (header.size() > 1) return "";
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}, {' ', "spaces"}})
+    if (first.find(separator) != std::string::npos)
+      return std::string("; its fields are separated by ") + name +
+             ", expected commas, and a point as decimal separator";
+  return "";
 }
 
 }  // namespace armcmc::support

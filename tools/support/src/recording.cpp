@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Beside the recording file, or where the data are.
-fs::path FindData(const fs::path& recording, const std::string& file, const fs::path& data_dir) {
+fs::path FindData(const fs::path& recording, const StrictTable& table, const std::string& file,
+                  const fs::path& data_dir) {
   std::error_code error;
   std::vector<fs::path> places;
   if (!data_dir.empty()) places.push_back(data_dir / file);
@@ -24,8 +25,8 @@ fs::path FindData(const fs::path& recording, const std::string& file, const fs::
     if (fs::is_regular_file(place, error)) return place;
     tried += (tried.empty() ? "" : " nor ") + place.string();
   }
-  throw InputError(recording.string() + ": file = " + file + ": there is no " + tried +
-                   (data_dir.empty() ? "; --data-dir says where the data are" : ""));
+  throw table.Error("file",
+                    "there is no file " + tried + (data_dir.empty() ? "; --data-dir says where the data are" : ""));
 }
 
 /// The last rows of every record where nothing is said.
@@ -73,7 +74,7 @@ Recording ReadRecording(const fs::path& path, const fs::path& data_dir) {
   recording.model = model;
   recording.published = file.published;
 
-  recording.files = {FindData(path, file.file, data_dir)};
+  recording.files = {FindData(path, *file.root, file.file, data_dir)};
   RecordingRows rows = ReadRecordingRows(recording.files.front(), file, file.columns, description, path.string(),
                                          /*skip_bad=*/false);
   if (!file.held_out.given) HoldOutByDefault(&rows.held_out);
@@ -81,15 +82,16 @@ Recording ReadRecording(const fs::path& path, const fs::path& data_dir) {
     const std::string& other = file.held_out.file.empty() ? file.file : file.held_out.file;
     std::map<std::string, ColumnSource> sources = file.columns;
     for (const auto& [signal, source] : file.held_out.columns) sources[signal] = source;
-    const fs::path data = FindData(path, other, data_dir);
+    const StrictTable table = file.held_out.file.empty() ? *file.root : StrictTable(*file.root).Table("held_out");
+    const fs::path data = FindData(path, table, other, data_dir);
     if (data != recording.files.front()) recording.files.push_back(data);
     RecordingRows second = ReadRecordingRows(data, file, sources, description, path.string(), /*skip_bad=*/false);
     std::fill(second.held_out.begin(), second.held_out.end(), std::uint8_t{1});
     rows.Append(second);
   }
-  if (std::count(rows.held_out.begin(), rows.held_out.end(), std::uint8_t{1}) ==
-      static_cast<std::ptrdiff_t>(rows.held_out.size()))
-    throw ConfigError(path.string() + ": held_out: nothing is left to learn from");
+  const auto held = static_cast<std::size_t>(std::count(rows.held_out.begin(), rows.held_out.end(), std::uint8_t{1}));
+  if (held == rows.size()) throw file.root->Error("held_out", "nothing is left to learn from");
+  if (held == 0) throw file.root->Error("held_out", "no row that is used is among what it keeps apart");
   Resample(rows, &recording);
   if (recording.t.empty())
     throw ConfigError(path.string() + ": every run has fewer than 10 rows; is segment_column right, or the time?");

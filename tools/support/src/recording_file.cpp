@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "nearest.hpp"
 
@@ -16,10 +17,14 @@ ColumnSource ReadSource(StrictTable& columns, const std::string& signal) {
   ColumnSource source;
   if (columns.IsText(signal)) {
     source.column = columns.RequiredText(signal);
+    source.table = columns;
+    source.key = signal;
     return source;
   }
   StrictTable table = columns.Table(signal);
+  source.table = table;
   source.value = table.Text("value", "");
+  source.key = source.value.empty() ? "column" : "value";
   if (!source.value.empty()) {
     for (const char* key : {"column", "scale", "offset"})
       if (table.Has(key)) throw table.Error(key, "does not go together with `value`, which is an expression");
@@ -68,6 +73,9 @@ void ReadRows(StrictTable rows, RecordingFile* file) {
   file->until_s = ReadOptional(rows, "until_s");
   if (file->from_s && file->until_s && *file->from_s >= *file->until_s)
     throw rows.Error("until_s", "must be above `from_s`");
+  for (const auto& [number, second] : {std::pair{"from", "from_s"}, {"until", "until_s"}})
+    if (rows.Has(number) && rows.Has(second))
+      throw rows.Error(second, std::string("does not go together with `") + number + "`: a row or a time, not both");
   file->drop = ReadRanges(rows, "drop");
   file->every = static_cast<std::size_t>(rows.Integer("every", 1, 1, 1'000'000));
   file->segment_column = rows.Text("segment_column", "");
@@ -124,6 +132,7 @@ RecordingFile ReadRecordingFile(const std::filesystem::path& path, const std::ve
     file.published.push_back(std::move(figure));
   }
   root.Finish();
+  file.root = root;
   return file;
 }
 

@@ -17,7 +17,9 @@ namespace armcmc::support {
 struct ColumnSource {
   std::string column;  ///< Of the CSV; empty: `value`.
   double scale = 1.0, offset = 0.0;
-  std::string value;  ///< Expression of columns.
+  std::string value{};                              ///< Expression of columns.
+  std::optional<StrictTable> table = std::nullopt;  ///< Where it is said; none: nowhere, it is the signal's name.
+  std::string key{};                                ///< Of that table.
 };
 
 /// From row `from` up to, not including, row `until`; the first row is 0.
@@ -50,6 +52,7 @@ struct RecordingFile {
   std::vector<std::string> filtered_with;
   HeldOut held_out;
   std::vector<PublishedFigure> published;
+  std::optional<StrictTable> root;  ///< To say where something stands; none: there is no such file.
 };
 
 /// Reads the file; `signals` are the names that the plant has.

@@ -10,26 +10,37 @@
 #include "armcmc/support/csv.hpp"
 #include "armcmc/support/program.hpp"
 #include "csv_columns.hpp"
+#include "csv_text.hpp"
 #include "nearest.hpp"
 
 namespace armcmc::support {
 namespace {
 
+namespace fs = std::filesystem;
+
+bool Contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string NoColumn(const std::string& column, const fs::path& csv, const std::vector<std::string>& header) {
+  return csv.string() + " has no column " + column + DidYouMean(column, header) + "; its header has " +
+         JoinedNames(header) + HeaderHint(header);
+}
+
 /// What a source says, with the columns that it reads.
 class Source {
  public:
-  Source(const std::string& name, const std::string& key, const ColumnSource& source,
-         const std::vector<std::string>& header)
-      : source_(source) {
+  Source(const ColumnSource& source, const fs::path& csv, const std::vector<std::string>& header) : source_(source) {
     if (source.value.empty()) {
       columns_ = {source.column};
+      if (source.table && !Contains(header, source.column))
+        throw source.table->Error(source.key, NoColumn(source.column, csv, header));
       return;
     }
     try {
       Compile(header);
     } catch (const expression::Error& error) {
-      throw ConfigError(name + ": columns." + key + ".value: character " + std::to_string(error.column()) + ": " +
-                        error.what());
+      throw source.table->ErrorInText(source.key, error.column(), error.what());
     }
   }
 
@@ -77,10 +88,6 @@ class Source {
   expression::FeatureProgram program_;
 };
 
-bool Contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 bool Within(const std::vector<RowRange>& ranges, std::size_t row) {
   return std::any_of(ranges.begin(), ranges.end(), [row](const RowRange& r) { return row >= r.from && row < r.until; });
 }
@@ -111,6 +118,40 @@ class Selection {
   const CsvColumns& csv_;
 };
 
+/// Words that a column is asked for and does not have.
+void RequireWords(const StrictTable& table, const std::string& key, const std::vector<std::string>& words,
+                  const std::vector<std::string>& cells) {
+  const std::set<std::string> there(cells.begin(), cells.end());
+  for (const std::string& word : words) {
+    if (there.contains(word)) continue;
+    constexpr std::size_t kMaxShown = 12;
+    std::vector<std::string> shown(there.begin(), there.end());
+    const std::string hint = DidYouMean(word, shown);
+    const bool all = shown.size() <= kMaxShown;
+    if (!all) shown.resize(kMaxShown);
+    std::string problem = "no row has \"";
+    problem.append(word).append("\"").append(hint).append("; there: ").append(JoinedNames(shown));
+    throw table.Error(key, problem + (all ? "" : ",.."));
+  }
+}
+
+/// The columns of text that the file speaks of, and what it expects to find there.
+std::vector<std::string> TextColumns(const RecordingFile& file, const fs::path& csv,
+                                     const std::vector<std::string>& header) {
+  std::vector<std::string> texts;
+  if (!file.segment_column.empty()) {
+    if (!Contains(header, file.segment_column))
+      throw StrictTable(*file.root).Table("rows").Error("segment_column", NoColumn(file.segment_column, csv, header));
+    texts.push_back(file.segment_column);
+  }
+  for (const auto& [column, words] : file.only) {
+    if (!Contains(header, column))
+      throw StrictTable(*file.root).Table("rows").Table("only").Error(column, NoColumn(column, csv, header));
+    if (!Contains(texts, column)) texts.push_back(column);
+  }
+  return texts;
+}
+
 }  // namespace
 
 void RecordingRows::Append(const RecordingRows& other) {
@@ -129,12 +170,11 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
                                 const std::string& name, bool skip_bad) {
   const std::vector<std::string> header = ReadCsvHeader(csv_path);
   const auto source_of = [&](const std::string& signal) -> std::optional<Source> {
-    if (const auto found = sources.find(signal); found != sources.end())
-      return Source(name, signal, found->second, header);
-    if (Contains(header, signal)) return Source(name, signal, {signal, 1.0, 0.0, ""}, header);
+    if (const auto found = sources.find(signal); found != sources.end()) return Source(found->second, csv_path, header);
+    if (Contains(header, signal)) return Source({.column = signal}, csv_path, header);
     return std::nullopt;
   };
-  std::vector<std::string> numbers, texts;
+  std::vector<std::string> numbers;
   const auto want = [&](const std::optional<Source>& source) {
     if (!source) return;
     for (const std::string& column : source->columns())
@@ -148,14 +188,18 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
   for (const SignalDescription& signal : plant.signals) {
     signals.push_back(source_of(signal.name));
     if (!signals.back() && signal.derivative_of.empty())
-      throw ConfigError(name + ": columns." + signal.name + ": which column is it? " + csv_path.filename().string() +
-                        " has no column of that name" + DidYouMean(signal.name, header));
+      throw ConfigError(name + ": columns." + signal.name + ": which column is it? " +
+                        NoColumn(signal.name, csv_path, header));
     want(signals.back());
   }
-  if (!file.segment_column.empty()) texts.push_back(file.segment_column);
+  const std::vector<std::string> texts = TextColumns(file, csv_path, header);
+  const BadRowsAre bad_rows = skip_bad ? BadRowsAre::kSkipped : file.root ? BadRowsAre::kKept : BadRowsAre::kErrors;
+  const CsvColumns csv = ReadCsvColumns(csv_path, numbers, texts, bad_rows);
   for (const auto& [column, words] : file.only)
-    if (!Contains(texts, column)) texts.push_back(column);
-  const CsvColumns csv = ReadCsvColumns(csv_path, numbers, texts, skip_bad);
+    RequireWords(StrictTable(*file.root).Table("rows").Table("only"), column, words, csv.text.at(column));
+  if (!file.held_out.segments.empty() && file.held_out.file.empty())
+    RequireWords(StrictTable(*file.root).Table("held_out"), "segments", file.held_out.segments,
+                 csv.text.at(file.segment_column));
 
   std::vector<double> t;
   if (time) {
@@ -164,6 +208,7 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
     for (std::size_t n = 0; n < csv.num_rows(); ++n) t.push_back(static_cast<double>(n) / file.rate_hz);
   }
   std::vector<std::vector<double>> values;
+  values.reserve(signals.size());
   for (const auto& signal : signals) values.push_back(signal ? signal->Values(csv) : std::vector<double>());
 
   const Selection selection(file, csv);
@@ -173,6 +218,10 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
   std::size_t before = 0;
   for (std::size_t n = 0; n < csv.num_rows(); ++n) {
     if (!selection.Uses(n, t[n])) continue;
+    if (const auto bad = csv.bad.find(n); bad != csv.bad.end())
+      throw InputError(csv_path.string() + ":" + std::to_string(csv.line[n]) + ": " + bad->second +
+                       "; [rows] drop = [[" + std::to_string(n) + ", " + std::to_string(n + 1) +
+                       "]] leaves the row out");
     const bool first = rows.t.empty();
     const bool other_segment = !first && selection.Segment(n) != selection.Segment(before);
     if (!first && !other_segment && t[n] <= t[before])

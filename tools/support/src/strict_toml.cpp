@@ -100,9 +100,13 @@ struct StrictTable::Node {
   }
   [[nodiscard]] ConfigError Missing(std::string_view key, const std::string& expected) const {
     std::string hint;
-    for (const std::string& name : Unasked())
-      if (Nearest(name, {std::string(key)}) == key) hint = " (" + PathOf(name) + " is set; is it a typo?)";
-    return ConfigError(Place(at) + PathOf(key) + " is missing: expected " + expected + hint);
+    toml::source_position place = at;
+    for (const std::string& name : Unasked()) {
+      if (Nearest(name, {std::string(key)}) != key) continue;
+      hint = " (" + PathOf(name) + " is set; is it a typo?)";
+      place = table->get(name)->source().begin;
+    }
+    return ConfigError(Place(place) + PathOf(key) + " is missing: expected " + expected + hint);
   }
   [[nodiscard]] std::vector<std::string> Unasked() const {
     std::vector<std::string> names;

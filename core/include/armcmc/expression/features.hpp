@@ -15,6 +15,12 @@ inline constexpr int kMaxMemories = 16;        ///< Functions with memory.
 inline constexpr int kMaxDelays = 4;           ///< Of these: delays.
 inline constexpr int kMaxDelaySamples = 1024;  ///< The longest delay.
 
+/// Samples of what is looked up in the past, as long as the longest delay.
+struct PastSamples {
+  int samples = 0;  ///< Of each line, counted on beyond their length.
+  std::array<std::array<double, kMaxDelaySamples>, kMaxDelays> line{};
+};
+
 /// What functions with memory carry from sample to sample, and from pack to pack.
 struct FeatureMemory {
   struct Slot {
@@ -25,11 +31,13 @@ struct FeatureMemory {
   int samples = 0;    ///< In the delay lines, counted on beyond their length.
   std::array<Slot, kMaxMemories> slot{};
   std::array<std::array<double, kMaxDelaySamples>, kMaxDelays> line{};
+  PastSamples kept;  ///< Of delays that are sampled.
 
   /// The next sample is the first of a run.
   void Clear() noexcept {
     empty = true;
     samples = 0;
+    kept.samples = 0;
   }
 };
 

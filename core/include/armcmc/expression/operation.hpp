@@ -49,6 +49,8 @@ enum class Op : std::uint8_t {
   kIntegral,  ///< integral(e): from 0 at the first sample.
   kPrevious,  ///< previous(e): e one sample earlier, e at the first sample.
   kElapsed,   ///< elapsed(): s since the first sample.
+  // In graphs only.
+  kPast,  ///< Value of a line of kept samples, b samples before place a of it.
 };
 
 inline constexpr int kMaxArguments = 3;
@@ -61,7 +63,7 @@ struct OpInfo {
   bool memory;     ///< Depends on the samples before.
 };
 
-inline constexpr std::array<OpInfo, 39> kOps{{
+inline constexpr std::array<OpInfo, 40> kOps{{
     {"number", 0, false, false, false}, {"name", 0, false, false, false},   {"+", 2, false, false, false},
     {"-", 2, false, false, false},      {"*", 2, false, false, false},      {"/", 2, false, false, false},
     {"^", 2, false, false, false},      {"-", 1, false, false, false},      {"<", 2, false, true, false},
@@ -75,8 +77,9 @@ inline constexpr std::array<OpInfo, 39> kOps{{
     {"max", 2, true, false, false},     {"clamp", 3, true, false, false},   {"step", 1, true, false, false},
     {"if", 3, true, false, false},      {"lowpass", 2, true, false, true},  {"delay", 2, true, false, true},
     {"integral", 1, true, false, true}, {"previous", 1, true, false, true}, {"elapsed", 0, true, false, true},
+    {"past", 2, false, false, false},
 }};
-static_assert(kOps.size() == static_cast<std::size_t>(Op::kElapsed) + 1);
+static_assert(kOps.size() == static_cast<std::size_t>(Op::kPast) + 1);
 
 [[nodiscard]] constexpr const OpInfo& InfoOf(Op op) noexcept { return kOps[static_cast<std::size_t>(op)]; }
 

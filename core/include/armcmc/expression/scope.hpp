@@ -19,6 +19,7 @@ enum class SymbolKind : std::uint8_t {
   kState,      ///< Integrated from its rate.
   kLet,        ///< Another expression.
   kGiven,      ///< A number that somebody else works out for every sample; in graphs only.
+  kInterval,   ///< Seconds between samples; in graphs only.
 };
 
 /// Values that something can have.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "armcmc/expression/features.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
@@ -63,6 +64,7 @@ enum class TapeOp : std::uint8_t {
   kOr,
   kNot,
   kSelect,  ///< R = R a != 0 ? R b : R c
+  kPast,    ///< R = what was kept R a samples before place S b of its line
 };
 
 /// Where R a is the result of the instruction before it stays where arithmetic is done, and where nobody else needs a
@@ -115,6 +117,19 @@ struct Tape {
 /// Registers of one tile of candidates.
 struct alignas(64) TapeRegisters {
   std::array<std::array<double, kTileLanes>, kMaxTapeRegisters> value;
+};
+
+/// Lines of kept samples, one behind the other: in a line entry 0 is what is further back than the line, not a number
+/// where that is not known any more; then the samples before the pack, the newest at kMaxDelaySamples; then those of
+/// the pack.
+struct PastLines {
+  static constexpr int kLength = 1 + kMaxDelaySamples + kMaxPackSamples;
+  alignas(64) std::array<double, static_cast<std::size_t>(kMaxDelays) * kLength> value;
+
+  /// Place of sample n of the pack, from -1 for the last one before it, in a line.
+  [[nodiscard]] static constexpr int Place(int line, int n) noexcept {
+    return line * kLength + 1 + kMaxDelaySamples + n;
+  }
 };
 
 /// The scalars of the samples of one pack: row n holds those of sample n.

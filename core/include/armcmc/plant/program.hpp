@@ -17,6 +17,8 @@
 
 namespace armcmc {
 
+class Remembered;
+
 /// What no parameter changes of one pack of a described plant.
 struct PlantPack {
   expression::TapeScalars scalars;                    ///< Of every sample, whatever its mode.
@@ -26,6 +28,8 @@ struct PlantPack {
   std::array<double, kMaxPackSamples> passive{};      ///< What is shown where no sampled mode acts.
   std::array<bool, kMaxPackSamples> passive_given{};  ///< A passive mode acts, and its law is given.
   StateRun states;
+  expression::PastLines past;  ///< What candidates look up.
+  std::array<PlantPoint::Values, kMaxPackSamples> point{};
 };
 
 /// A described plant as the estimator runs it: tapes for its laws, one program for everything that no parameter
@@ -46,7 +50,7 @@ class PlantProgram {
   PlantProgram& operator=(const PlantProgram&) = delete;
 
   [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
-  [[nodiscard]] bool has_memory() const noexcept { return features_.has_memory(); }
+  [[nodiscard]] bool has_memory() const noexcept { return features_.has_memory() || num_lines_ > 0; }
   [[nodiscard]] const PlantStates& states() const noexcept { return states_; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
   /// Of a sampled mode, and how many quantities of a sample they read.
@@ -65,6 +69,9 @@ class PlantProgram {
   /// @rt No heap, no lock, no throw. O(samples).
   [[nodiscard]] bool Prepare(const DataPack& pack, expression::FeatureMemory* memory, const StateMemory* before,
                              PlantPack* out) const noexcept ARMCMC_NONBLOCKING;
+
+  /// What the last sample of a pack leaves to the states of the next one.
+  void Leave(const PlantPack& pack, int num_samples, StateMemory* memory) const noexcept ARMCMC_NONBLOCKING;
 
   /// The samples of one sampled mode. `pack` must outlive `data`.
   void Fill(const PlantPack& pack, int num_samples, int mode, ModeData* data) const noexcept ARMCMC_NONBLOCKING;
@@ -113,9 +120,12 @@ class PlantProgram {
   void CompileModes();
   /// One more for the newest sampled mode.
   void CompileLaw(int law, int target, const std::string& key, std::vector<int>* scalars);
-  void CompileFeatures(const std::vector<int>& scalars);
+  void CompileFeatures(const std::vector<int>& scalars, const Remembered& remembered);
   void MakePrediction();
-  void CompileStates(std::vector<int>* scalars);
+  void CompileStates(Remembered* remembered, std::vector<int>* scalars);
+  /// Lays the samples before a pack down where candidates look them up.
+  void LayDownPast(const expression::PastSamples& kept, int line, double first,
+                   expression::PastLines* out) const noexcept ARMCMC_NONBLOCKING;
   void FillInfo();
   /// The node with the plant's parameters replaced by those that are sampled in one of its modes.
   [[nodiscard]] int InMode(int node, std::size_t active);
@@ -131,6 +141,8 @@ class PlantProgram {
   std::vector<Outputs> outputs_;
   PlantStates states_;
   int num_scalars_ = 0;
+  int num_remembered_ = 0, first_remembered_ = 0;    ///< Among the features: what rates read of functions with memory.
+  int num_lines_ = 0, first_line_ = 0;               ///< Likewise: what is kept to be looked up.
   expression::FeatureProgram features_;              ///< Scalars of the tapes, then what outputs_ refers to.
   std::vector<expression::FeatureProgram> reports_;  ///< Each reads parameters as signals.
   std::vector<std::string> names_, units_;

@@ -24,11 +24,30 @@ inline void SignalsAt(const DataPack& pack, int n, int output, PlantSignals* sig
     (*signals)[s] = s == static_cast<std::size_t>(output) ? pack.y[in] : pack.u[in][column++];
 }
 
+/// What expressions read at one sample as signals: first the plant's, then functions with memory that rates read, then
+/// the places of the sample in the lines of kept samples.
+struct PlantPoint {
+  static constexpr int kMaxRemembered = 8;
+  static constexpr int kFirstRemembered = Plant::kMaxInputs + 1;
+  static constexpr int kFirstPosition = kFirstRemembered + kMaxRemembered;
+  static constexpr int kSize = kFirstPosition + expression::kMaxDelays;
+  using Values = std::array<double, kSize>;
+};
+
+/// A function with memory as a state z of what it takes, a at the beginning of a step of h and b at its end:
+///   lowpass(e, tau)  z <- b + E (z - a) - G (b - a),  E = exp(-h / tau), G = (1 - E) tau / h
+///   integral(e)      z <- z + h (a + b) / 2
+struct RememberedState {
+  int state = 0;      ///< Its number.
+  int argument = -1;  ///< Node.
+  int tau = -1;       ///< Node; -1: an integral.
+};
+
 /// What one pack of a plant with states leaves to the next.
 struct StateMemory {
   bool known = false;                      ///< There is one.
   std::array<double, kMaxStates> state{};  ///< At its last sample, for the mean of the posterior after it.
-  PlantSignals signals{};                  ///< Of its last sample.
+  PlantPoint::Values point{};              ///< Of its last sample; places count in the next pack.
 };
 
 /// The states of a described plant, compiled: their starts and a step of Runge-Kutta's method as tapes, and everything
@@ -44,10 +63,12 @@ class PlantStates {
   PlantStates() = default;
   /// @param rates, starts   A node of the graph a state, parameters replaced by those that are sampled.
   /// @param num_parameters  That are sampled.
+  /// @param remembered      The last ones of them that are functions with memory.
   /// @param scalars         Of a sample, shared with the laws: those of the starts.
   /// @throws PlantError where the plant is past a limit.
   PlantStates(const Plant& plant, expression::Graph* graph, const std::vector<int>& rates,
-              const std::vector<int>& starts, int num_parameters, std::vector<int>* scalars);
+              const std::vector<int>& starts, const std::vector<RememberedState>& remembered, int num_parameters,
+              std::vector<int>* scalars);
 
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] int substeps() const noexcept { return substeps_; }
@@ -62,17 +83,18 @@ class PlantStates {
   [[nodiscard]] const expression::Tape& step() const noexcept { return step_; }
 
   /// Lays the pack out for integration.
+  /// @param point   Of each of its samples.
   /// @param before  What the pack before left, of one that this one continues; else null.
   /// @return false where the pack has more samples than fit, or a start that is not finite.
   /// @rt No heap, no lock, no throw. O(samples x substeps x operations of the rates).
-  [[nodiscard]] bool Prepare(const DataPack& pack, const StateMemory* before,
+  [[nodiscard]] bool Prepare(const DataPack& pack, const PlantPoint::Values* point, const StateMemory* before,
                              StateRun* out) const noexcept ARMCMC_NONBLOCKING;
 
  private:
-  void CompileStep(expression::Graph* graph, const std::vector<int>& rates, int num_parameters);
+  void CompileStep(expression::Graph* graph, const std::vector<int>& rates,
+                   const std::vector<RememberedState>& remembered, int num_parameters);
 
   int size_ = 0;
-  int output_ = 0;
   int substeps_ = 1;
   bool all_measured_ = false;
   std::array<int, kMaxStates> measured_by_{};  ///< Signal, -1: none.

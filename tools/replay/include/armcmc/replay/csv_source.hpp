@@ -9,7 +9,7 @@
 namespace armcmc::replay {
 
 /// Packs from a CSV of samples. The first row is sample 0; pack k holds the samples (k-1) N + 1 .. k N, N = period /
-/// dt.
+/// dt. Of a plant that a file describes the first row is sample 1, so that its packs are those that it sends.
 ///
 /// A sample's number follows from its time, so that a row that is missing or was skipped leaves a gap. Such a pack is
 /// used with the samples that it has when the model has no memory of those before, else it counts as lost, as does one
@@ -40,7 +40,7 @@ class CsvSource final : public PackSource {
   double dt_ = 0.0;
   std::int64_t samples_per_pack_ = 0;
   std::vector<std::int64_t> number_;  // of each row
-  std::size_t row_ = 1;
+  std::size_t row_;
   std::int64_t pack_ = 0;  // the last one looked at
   std::int64_t last_pack_ = 0;
   std::int64_t incomplete_ = 0;  // packs used although samples are missing

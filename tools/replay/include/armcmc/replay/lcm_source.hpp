@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "armcmc/model.hpp"
 #include "armcmc/replay/draw_record.hpp"
@@ -13,7 +17,12 @@ namespace armcmc::replay {
 /// Plant of the first pack of an LCM log. @throws support::InputError when it holds no pack.
 [[nodiscard]] const ModelInfo& ModelOfLog(const std::filesystem::path& path, const std::string& prefix);
 
-/// Packs from the PLANT_PACK events of an LCM log, checked and sequenced by the code of the real-time process.
+/// Name of the plant of the first pack of an LCM log, where a file describes it; empty where a compiled plant's packs
+/// are there too, or none of either.
+[[nodiscard]] std::string DescribedPlantOfLog(const std::filesystem::path& path, const std::string& prefix);
+
+/// Packs from the PLANT_PACK events of an LCM log, or the PLANT_PACK_V2 events of a plant that a file describes,
+/// checked and sequenced by the code of the real-time process.
 ///
 /// With a draw record, packs that the recorded run made no estimate from are left out: it was not running
 /// yet, or had dropped them.
@@ -29,12 +38,12 @@ class LcmSource final : public PackSource {
   [[nodiscard]] support::LcmLogDamage damage() const override { return log_.damage(); }
 
  private:
-  struct Checks;  // codec and sequence tracker of the real-time process
+  struct Checks;  // codec and sequence tracker of the real-time process, and what they found
   std::string channel_;
   support::LcmLogReader log_;
   std::optional<DrawRecord> record_;
   std::unique_ptr<Checks> checks_;
-  std::int64_t rejected_ = 0, unused_ = 0;
+  std::int64_t unused_ = 0;
 };
 
 }  // namespace armcmc::replay

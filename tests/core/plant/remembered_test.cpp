@@ -1,0 +1,167 @@
+// Functions with memory of what is sampled, against their definitions.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/kernel_sets.hpp"
+#include "core/plant/described_packs.hpp"
+#include "core/plant/plants.hpp"
+
+namespace armcmc::remembered_test {
+namespace {
+
+using test::DescribedPack;
+using test::PlantSample;
+
+constexpr double kDt = 0.01;
+constexpr int kSamples = 40, kPacks = 3;
+constexpr double kGain = 1.7, kTau = 0.083, kLate = 0.0537;
+
+double Input(int n) { return std::sin(0.31 * n) + (n % 17 < 8 ? 0.6 : -0.2); }
+
+/// One input, one output, three parameters, of which tau and late are times.
+PlantDescription Late(const std::string& law) {
+  PlantDescription plant;
+  plant.name = "late";
+  plant.output = "y";
+  plant.law = law;
+  plant.signals = {{"u", "1", "drive", ""}, {"y", "1", "position", ""}};
+  plant.parameters = {{"K", "1", "normal", 1.0, 1.0},
+                      {"tau", "s", "lognormal", 0.1, 1.0, 0.01, 1.0},
+                      {"late", "s", "normal", 0.05, 0.05, 0.0, 0.2}};
+  plant.noise.std = 0.01;
+  return plant;
+}
+
+/// What the law says at every sample of packs that follow each other, for the parameters K, tau, late.
+std::vector<double> Predicted(const PlantProgram& plant, const simd::Kernels& kernels) {
+  std::vector<double> values;
+  expression::FeatureMemory memory;
+  StateMemory before;
+  const auto pack_of_plant = std::make_unique<PlantPack>();
+  const auto data = std::make_unique<ModeData>();
+  const auto law = std::make_unique<PredictionTile>();
+  ThetaTile theta{};
+  const double sampled[] = {kGain, std::log(kTau), kLate};
+  for (std::size_t d = 0; d < 3; ++d) theta.value[d].fill(sampled[d]);
+  for (int k = 1; k <= kPacks; ++k) {
+    const DataPack pack = DescribedPack(
+        plant, k,
+        [](double t) {
+          return PlantSample{{Input(static_cast<int>(std::lround(t / kDt)))}, 0.0};
+        },
+        kSamples, kDt);
+    EXPECT_TRUE(plant.Prepare(pack, &memory, k > 1 ? &before : nullptr, pack_of_plant.get()));
+    plant.Fill(*pack_of_plant, kSamples, 0, data.get());
+    data->weighted = false;
+    StateTile end{};
+    if (plant.states().size() > 0) {
+      kernels.run_states(*data, theta, StateTile{}, &end, law.get());
+    } else {
+      kernels.predict(-1, *data, theta, law.get());
+    }
+    for (std::size_t n = 0; n < kSamples; ++n) values.push_back(law->value[n][5]);
+    plant.Leave(*pack_of_plant, kSamples, &before);
+    before.known = true;
+    for (std::size_t s = 0; s < kMaxStates; ++s) before.state[s] = end.value[s][5];
+  }
+  return values;
+}
+
+/// u at a place between samples, that of the first one before it.
+double InputAt(double place) {
+  const double at = std::fmax(place, 1.0);
+  const int n = static_cast<int>(std::floor(at));
+  return Input(n) + (at - n) * (Input(n + 1) - Input(n));
+}
+
+/// A low pass of input(n), n from 1, exact for what is linear between samples.
+std::vector<double> Lowpass(const std::function<double(int)>& input) {
+  std::vector<double> y{input(1)};
+  const double decay = std::exp(-kDt / kTau), mean = (1.0 - decay) * kTau / kDt;
+  for (int n = 2; n <= kPacks * kSamples; ++n)
+    y.push_back(y.back() * decay + input(n - 1) * (mean - decay) + input(n) * (1.0 - mean));
+  return y;
+}
+
+void ExpectLaw(const PlantDescription& description, const std::function<double(int)>& expected, double near) {
+  const auto plant = test::Program(description);
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const std::vector<double> values = Predicted(*plant, *kernels);
+    for (int n = 1; n <= kPacks * kSamples; ++n)
+      ASSERT_NEAR(values[static_cast<std::size_t>(n - 1)], expected(n), near)
+          << description.law << ", " << kernels->name << ", sample " << n;
+  }
+}
+
+TEST(Remembered, ADelayThatIsSampledLooksItsSignalUp) {
+  ExpectLaw(
+      Late("K*delay(u, late) + 1e-300*tau/late"), [](int n) { return kGain * InputAt(n - kLate / kDt); }, 1e-12);
+}
+
+TEST(Remembered, ADelayOfSomethingSampledIsThatOfItsSignals) {
+  ExpectLaw(
+      Late("delay(K*u^2 + late*u/tau, 0.03)"),
+      [](int n) {
+        const double u = InputAt(n - 3);
+        return kGain * u * u + kLate * u / kTau;
+      },
+      1e-12);
+  ExpectLaw(
+      Late("previous(K*u) + 1e-300*late/tau"), [](int n) { return kGain * Input(n > 1 ? n - 1 : 1); }, 1e-12);
+}
+
+TEST(Remembered, ALowPassOfSomethingSampledIsExact) {
+  const std::vector<double> y = Lowpass(Input);
+  ExpectLaw(
+      Late("lowpass(K*u, tau) + 1e-300*late/tau"), [&](int n) { return kGain * y[static_cast<std::size_t>(n - 1)]; },
+      1e-12);
+}
+
+TEST(Remembered, ADelayedLowPassIsOneOfADelayedSignal) {
+  const std::vector<double> y = Lowpass([](int n) { return InputAt(n - kLate / kDt); });
+  ExpectLaw(
+      Late("K*delay(lowpass(u, tau), late)"), [&](int n) { return kGain * y[static_cast<std::size_t>(n - 1)]; }, 1e-12);
+}
+
+TEST(Remembered, AnIntegralOfSomethingSampled) {
+  double sum = 0.0;
+  std::vector<double> expected{0.0};
+  for (int n = 2; n <= kPacks * kSamples; ++n)
+    expected.push_back(sum += 0.5 * kDt * (Input(n - 1) * Input(n - 1) + Input(n) * Input(n)));
+  ExpectLaw(
+      Late("integral(K*u*u)/tau + 1e-300*late/tau"),
+      [&](int n) { return kGain * expected[static_cast<std::size_t>(n - 1)] / kTau; }, 1e-11);
+}
+
+// Which is what a first-order lag with dead time is. Its steps are short enough to be as good as the exact ones.
+TEST(Remembered, ARateMayHaveADeadTime) {
+  const std::vector<double> y = Lowpass([](int n) { return InputAt(n - kLate / kDt); });
+  for (const char* time : {"late", "0.0537"}) {
+    PlantDescription plant = Late("T + 1e-300*late/tau");
+    plant.states = {{"T", "1", "", std::string("(K*delay(u, ") + time + ") - T)/tau", "K*u", "", 10}};
+    ExpectLaw(
+        plant, [&](int n) { return kGain * y[static_cast<std::size_t>(n - 1)]; }, 1e-8);
+  }
+}
+
+TEST(Remembered, WhatCannotBeLookedUpSaysWhatToDo) {
+  PlantDescription plant = Late("delay(T, late)");
+  plant.states = {{"T", "1", "", "(K*u - T)/tau", "0", "", 1}};
+  try {
+    (void)test::Program(plant);
+    FAIL() << "no error";
+  } catch (const PlantError& error) {
+    EXPECT_EQ(error.key(), "law");
+    EXPECT_NE(std::string(error.what()).find("delay() of a state: take it of the inputs"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::remembered_test
