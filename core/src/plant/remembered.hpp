@@ -11,10 +11,10 @@ namespace armcmc {
 
 /// Functions with memory of a plant's laws and rates, brought into forms that a tape can run.
 ///
-///   lowpass(e, tau), integral(e)   of what a parameter or a state changes: a further state, exact between samples
-///   delay(e, tau), previous(e)     of such an e: e of delayed signals, f(delay(u, tau), theta)
-///   delay(u, tau)                  of signals alone by a tau that is sampled: u is kept, and looked up by every
-///   candidate any of signals alone           in a law a feature; in a rate an input that is linear between samples
+/// - `lowpass(e, tau)`, `integral(e)` of what a parameter or a state changes: a further state, exact between samples.
+/// - `delay(e, tau)`, `previous(e)` of such an e: e of delayed signals, f(delay(u, tau), theta).
+/// - `delay(u, tau)` of signals alone by a tau that is sampled: u is kept, and every candidate looks its own sample up.
+/// - Any of signals alone: in a law a feature; in a rate an input that is linear between samples.
 class Remembered {
  public:
   /// @param num_states  Of the plant; those that are added come behind them.
