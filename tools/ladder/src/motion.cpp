@@ -17,7 +17,6 @@ namespace armcmc::ladder {
 namespace {
 
 using expression::Graph;
-using expression::Op;
 using expression::SymbolKind;
 
 constexpr double kTurn = 6.283185307179586;
