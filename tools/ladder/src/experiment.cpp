@@ -136,8 +136,9 @@ std::string WordsOf(const Proposed& best, const Tied& tied, const PlantDescripti
       (prospect.least < 1.0 ? Short(1, prospect.least) : Short(6, std::round(prospect.least))) +
       " nats of evidence between " + pair;
   if (prospect.open == prospect.pairs)
-    return "No motion within reach of the recording would decide between " + pair + ". The best, to " + move + ": " +
-           evidence + ", of the " + Short(2, kDecidingNats) + " that decide.";
+    return "No motion within reach of the recording would decide between " +
+           (prospect.pairs > 1 ? "any two of them" : pair) + ". The best, to " + move + ": " + evidence + ", of the " +
+           Short(2, kDecidingNats) + " that decide.";
   std::string enough = "; " + Short(2, kDecidingNats) + " decide.";
   if (prospect.open > 0) {
     enough = prospect.least < 1.0 ? ", so little that repeating it would hardly help"
