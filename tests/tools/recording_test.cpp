@@ -271,5 +271,26 @@ TEST(RecordingFiles, ReplayEstimatesFromOne) {
   EXPECT_THAT(o.out, HasSubstr("v is derived from q, 40 Hz"));
 }
 
+TEST_F(RecordingFile, TwoOfOnePlantAreJoinedAsRuns) {
+  WriteCsv(400);
+  const Recording first = Read();
+  WriteCsv(200);
+  const Recording second = Read();
+  const Recording both = Joined(first, second);
+  ASSERT_EQ(both.num_rows(), first.num_rows() + second.num_rows());
+  EXPECT_THAT(both.runs, ElementsAre(0u, first.num_rows()));
+  EXPECT_EQ(both.signals[0].value[first.num_rows()], second.signals[0].value[0]);
+  EXPECT_EQ(both.held_out[first.num_rows() - 1], first.held_out.back());
+  EXPECT_EQ(both.t[first.num_rows()], second.t[0]);
+  EXPECT_THAT(both.notes.back(), HasSubstr("judged together"));
+
+  Recording other = first;
+  other.dt *= 2.0;
+  EXPECT_THROW(static_cast<void>(Joined(other, second)), std::runtime_error);
+  other = first;
+  other.fingerprint += 1;
+  EXPECT_THROW(static_cast<void>(Joined(other, second)), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace armcmc::support::recording_test

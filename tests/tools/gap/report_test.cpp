@@ -30,6 +30,25 @@ TEST(Report, AmbiguousSaysThatItDoesNotKnowAndWhatWouldTell) {
   EXPECT_TRUE(Holds(html, "separate.toml"));
 }
 
+TEST(Report, ShowsTheProposedMotionAlsoOfATieBehindAName) {
+  Result result = test::ExampleResult(Verdict::kAmbiguous);
+  EXPECT_FALSE(Holds(ReportHtml(result), "The proposed motion."));
+  result.separate_by.course.x = {0.0, 1.0};
+  result.separate_by.course.y = {0.0, 0.1};
+  result.separate_by.course_title = "q, m";
+  EXPECT_TRUE(Holds(ReportHtml(result), "The proposed motion."));
+  result.verdict = Verdict::kNamed;
+  result.ambiguous_set.clear();
+  EXPECT_FALSE(Holds(ReportHtml(result), "What these data cannot tell apart"));
+  result.ladder.resize(2);
+  result.ladder[0].effects = {"coulomb_friction"};
+  result.ladder[1].effects = {"sensor_lag", "sensor_delay"};
+  const std::string html = ReportHtml(result);
+  EXPECT_TRUE(Holds(html, "What these data cannot tell apart"));
+  EXPECT_TRUE(Holds(html, "<li>Sensor delay</li>"));
+  EXPECT_TRUE(Holds(html, "The proposed motion."));
+}
+
 TEST(Report, UnnamedSaysThatItDoesNotKnowAndAddsNothing) {
   const std::string html = ReportHtml(test::ExampleResult(Verdict::kUnnamed));
   EXPECT_TRUE(Holds(html, "I do not know what it is"));

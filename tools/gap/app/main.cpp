@@ -50,8 +50,10 @@ void Declare(CLI::App* app, Arguments* a) {
           ->excludes(data);
   app->add_option("--data-dir", a->data_dir, "Where the recording's CSV is if not beside its file")->needs(recording);
   app->add_option("--heldout", a->heldout, "CSV of another run to show the gap on; without it the last 30 % of --data");
-  app->add_option("--earlier", a->earlier,
-                  "CSV of an earlier run with the same effect: names that it leaves open are judged by both runs");
+  app->add_option(
+      "--earlier", a->earlier,
+      "CSV, or recording file, of an earlier run with the same effect: names that it leaves open are judged "
+      "by both runs");
   app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->type_name("TEXT REQUIRED");
   app->add_option("--gallery", a->gallery,
                   "Only makes one page, index.html, that links the reports in the folders of this folder")
@@ -130,6 +132,12 @@ void Write(const std::filesystem::path& path, const std::string& text) {
   if (!file.flush()) throw support::InputError(path.string() + ": cannot be written");
   file.close();
   std::filesystem::rename(part, path);
+}
+
+void WriteExperiment(const std::filesystem::path& out, Experiment* experiment) {
+  if (experiment->scenario_text.empty()) return;
+  experiment->scenario_file = "experiment.toml";
+  Write(out / experiment->scenario_file, experiment->scenario_text);
 }
 
 std::string Summary(const Result& result) {
@@ -244,10 +252,7 @@ int RunBuiltIn(const Arguments& a) {
       result.notes.push_back(std::string("step time of the estimator not measured (--period-ms): ") + error.what());
     }
   }
-  if (!result.separate_by.scenario_text.empty()) {
-    result.separate_by.scenario_file = "experiment.toml";
-    Write(out / result.separate_by.scenario_file, result.separate_by.scenario_text);
-  }
+  WriteExperiment(out, &result.separate_by);
   Write(out / "result.json", ToJson(result).dump(2) + "\n");
   if (request.until == Step::kShow) Write(out / "report.html", ReportHtml(result));
   if (!result.ladder.empty()) std::cout << LadderText(result);
@@ -264,7 +269,6 @@ void CheckDescribed(const Arguments& a) {
     if (given) throw support::InputError(std::string(option) + ": not for plants that a file describes; leave it out");
   };
   refuse(!a.heldout.empty(), "--heldout");
-  refuse(!a.earlier.empty(), "--earlier");
   refuse(a.no_pairs, "--no-pairs");
   refuse(LastStep(a.steps) != Step::kShow, "--steps");
 }
@@ -292,6 +296,13 @@ int RunDescribed(const Arguments& a) {
   ladder::DiagnosisRequest request;
   request.recording = a.recording.empty() ? support::ReadRecordedCsv(a.data, a.model, a.skip_bad)
                                           : support::ReadRecording(a.recording, a.data_dir);
+  if (!a.earlier.empty()) {
+    const bool described = std::filesystem::path(a.earlier).extension() == ".toml";
+    request.recording =
+        support::Joined(described ? support::ReadRecording(a.earlier, a.data_dir)
+                                  : support::ReadRecordedCsv(a.earlier, request.recording.model, a.skip_bad),
+                        request.recording);
+  }
   const support::PlantFile plant = support::ReadPlantFile(support::FindPlantFile(request.recording.model));
   request.plant = &plant;
   const std::vector<EffectEntry> known = support::EffectsFor(plant.effects);
@@ -310,6 +321,7 @@ int RunDescribed(const Arguments& a) {
           support::PlantFileText(diagnosis.after.plant, "Made by armcmc-gap: " + result.sentence));
     result.budget = DescribedBudget(request.recording, diagnosis, &result.notes);
   }
+  WriteExperiment(out, &result.separate_by);
   Write(out / "result.json", ToJson(result).dump(2) + "\n");
   Write(out / "report.html", ReportHtml(result));
   std::cout << LadderText(result) << Summary(result);

@@ -244,24 +244,36 @@ void AddGapAndEffects(const Result& result, plots::Page* page) {
 }
 
 void AddOpenQuestions(const Result& result, plots::Page* page) {
+  std::vector<std::vector<std::string>> open = result.ambiguous_set;
+  // Behind a name that is sure.
+  for (std::size_t r = 0; r < result.ladder.size() && result.ambiguous_set.empty(); ++r)
+    if (result.ladder[r].effects.size() > 1)
+      for (const std::string& effect : result.ladder[r].effects) open.push_back({effect});
+  if (open.empty()) return;
+  const Experiment& experiment = result.separate_by;
   std::ostringstream out;
-  if (!result.ambiguous_set.empty()) {
-    out << "<section class=\"card\" id=\"separate\">\n<h2>What these data cannot tell apart</h2>\n<ul "
-           "class=\"plain\">\n";
-    for (const auto& effects : result.ambiguous_set) out << "<li>" << EscapeHtml(EffectTitles(effects)) << "</li>\n";
-    out << "</ul>\n";
-    if (!result.separate_by.words.empty() || !result.separate_by.scenario_file.empty()) {
-      out << "<h3>The experiment that would</h3>\n<p>" << EscapeHtml(result.separate_by.words) << "</p>\n";
-      if (std::isfinite(result.separate_by.nats) && result.separate_by.nats > 0.0)
-        out << "<p class=\"soft\">Expected evidence between the closest pair: "
-            << NumberText(result.separate_by.nats, 2) << " nats (3 nats are odds of 20 to 1).</p>\n";
-      if (!result.separate_by.scenario_file.empty())
-        out << "<p class=\"soft\">Ready to run: <code>" << EscapeHtml(result.separate_by.scenario_file)
-            << "</code></p>\n";
-    }
-    out << "</section>\n";
+  out << "<section class=\"card\" id=\"separate\">\n<h2>What these data cannot tell apart</h2>\n<ul "
+         "class=\"plain\">\n";
+  for (const auto& effects : open) out << "<li>" << EscapeHtml(EffectTitles(effects)) << "</li>\n";
+  out << "</ul>\n";
+  if (!experiment.words.empty() || !experiment.scenario_file.empty()) {
+    out << "<h3>The experiment that would</h3>\n<p>" << EscapeHtml(experiment.words) << "</p>\n";
+    if (std::isfinite(experiment.nats) && experiment.nats > 0.0)
+      out << "<p class=\"soft\">Expected evidence between the closest pair: " << NumberText(experiment.nats, 2)
+          << " nats (3 nats are odds of 20 to 1).</p>\n";
+    if (!experiment.scenario_file.empty())
+      out << "<p class=\"soft\">Ready to run: <code>" << EscapeHtml(experiment.scenario_file) << "</code></p>\n";
   }
   page->Html(out.view());
+  if (!experiment.course.x.empty()) {
+    plots::XyChart chart;
+    chart.x_title = "time, s";
+    chart.y_title = experiment.course_title;
+    chart.height = 200;
+    chart.series.push_back({"proposed", plots::Role::kEffect, experiment.course.x, experiment.course.y, {}, {}});
+    page->Chart(chart, "The proposed motion.");
+  }
+  page->Html("</section>\n");
 }
 
 }  // namespace armcmc::gap

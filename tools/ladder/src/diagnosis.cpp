@@ -8,6 +8,7 @@
 
 #include "armcmc/ladder/drift.hpp"
 #include "armcmc/ladder/evidence.hpp"
+#include "armcmc/ladder/experiment.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/sha256.hpp"
 #include "held_out.hpp"
@@ -230,16 +231,24 @@ class Teller {
       result_.probability_none = ladder_.complete ? 1.0 : 0.0;
       result_.probability_unnamed = ladder_.complete ? 0.0 : 1.0;
     }
-    std::vector<std::string> experiments;
+    std::vector<std::string> shows;
+    const Rung* tie = nullptr;
     for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
       const Rung& rung = ladder_.rungs[r];
       if (rung.named.size() < 2) continue;
+      tie = &rung;
       for (const std::size_t i : rung.named) {
         if (r == 0) result_.ambiguous_set.push_back({NameOf(rung.contenders[i])});
-        experiments.push_back(NameOf(rung.contenders[i]) + ": " + rung.contenders[i].candidate.entry->experiment);
+        shows.push_back(NameOf(rung.contenders[i]) + ": " + rung.contenders[i].candidate.entry->experiment);
       }
     }
-    result_.separate_by.words = Joined(experiments, " ");
+    if (tie != nullptr) {
+      const auto begin = std::chrono::steady_clock::now();
+      result_.separate_by = SeparatingMotion(data_, *tie, request_.plant->plant.description());
+      result_.seconds.emplace_back("experiment",
+                                   std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      result_.separate_by.words += " What shows each of them: " + Joined(shows, " ");
+    }
     result_.sentence = Sentence();
   }
 

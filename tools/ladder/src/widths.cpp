@@ -7,6 +7,23 @@ namespace armcmc::ladder {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+double Correlated(const Trial& trial, const std::vector<std::uint8_t>& rows) {
+  constexpr double kNothing = 0.05;
+  std::vector<double> e;
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    if (rows[n] != 0 && trial.model->active()[n] != 0)
+      e.push_back(trial.model->target()[static_cast<Index>(n)] - trial.fit.prediction[static_cast<Index>(n)]);
+  const Eigen::Map<const VectorXd> x(e.data(), static_cast<Index>(e.size()));
+  const double all = x.squaredNorm();
+  double sum = 1.0;
+  for (Index lag = 1; lag < x.size() / 4 && all > 0.0; ++lag) {
+    const double r = x.head(x.size() - lag).dot(x.tail(x.size() - lag)) / all;
+    if (r < kNothing) break;
+    sum += 2.0 * r;
+  }
+  return sum;
+}
+
 Widths::Widths(const Trial& trial, const std::vector<std::uint8_t>& rows, double correlated) {
   const identify::TrajectoryModel& model = *trial.model;
   information_ = identify::PriorPrecision(model).asDiagonal();

@@ -8,6 +8,10 @@
 
 namespace armcmc::ladder {
 
+/// How many neighbouring errors say what one says: 1 + 2 sum of the autocorrelations up to the first that is next to
+/// nothing.
+[[nodiscard]] double Correlated(const Trial& trial, const std::vector<std::uint8_t>& rows);
+
 /// Posterior standard deviations at a fit, in sampled coordinates, with some parameters known: of the inverse of
 /// J' J / (f s^2) + prior.
 class Widths {

@@ -129,6 +129,8 @@ struct Experiment {
   double depth = 0.0;         ///< Of its deepest press, unit of the position.
   double sample_interval_s = 0.0;
   std::string scenario_text{};  ///< For the plant.
+  Curve course{};               ///< Of the input that is moved, against time; empty: not shown.
+  std::string course_title{};   ///< "q, m"
 };
 
 /// Residual against one feature, in bins.

@@ -57,4 +57,9 @@ struct Recording {
 /// @param skip_bad  Count and skip bad rows; otherwise the first one is an error.
 [[nodiscard]] Recording ReadRecordedCsv(const std::filesystem::path& csv, const std::string& model, bool skip_bad);
 
+/// Two recordings of one plant as the runs of one, so that a law has the same parameters in both. Each keeps its rows
+/// apart as it did; notes, title and published figures are those of the later one.
+/// @throws InputError where they are of different plants or rates.
+[[nodiscard]] Recording Joined(const Recording& earlier, const Recording& later);
+
 }  // namespace armcmc::support
