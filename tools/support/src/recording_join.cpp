@@ -22,6 +22,7 @@ Recording Joined(const Recording& earlier, const Recording& later) {
   for (std::size_t s = 0; s < joined.signals.size(); ++s) put_first(earlier.signals[s].value, &joined.signals[s].value);
   for (std::size_t& run : joined.runs) run += before;
   put_first(earlier.runs, &joined.runs);
+  joined.files.insert(joined.files.begin(), earlier.files.begin(), earlier.files.end());
   joined.smoothed_noise = std::max(earlier.smoothed_noise, later.smoothed_noise);
   joined.notes.push_back("judged together with " + earlier.title + ", " + std::to_string(before) + " rows");
   return joined;
