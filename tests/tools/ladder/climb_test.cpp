@@ -151,5 +151,17 @@ TEST(Climb, AnInputThatGivesWayIsFoundThoughTheLawBendsAfterIt) {
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("input_saturation"));
 }
 
+TEST(Climb, WhatCannotBeFollowedIsLeftOut) {
+  // Behind a lag the drive is a state, and a dead time in a rate cannot know what a state was before.
+  const Dataset data = test::SwingData([](double u) { return u; });
+  PlantDescription plant = test::SwingPlant();
+  for (const EffectEntry& entry : support::ReadEffectLibrary())
+    if (entry.name == "input_delay")
+      plant = AddEffect(plant, entry, Bindings(plant, entry).front(), ScalesOf(data, plant, 0.003));
+  const Ladder ladder = ClimbWith({"input_lag"}, data, std::move(plant));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("input_lag was not tried")));
+}
+
 }  // namespace
 }  // namespace armcmc::ladder::climb_test

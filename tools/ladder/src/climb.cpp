@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <mutex>
 #include <numeric>
 #include <random>
 #include <set>
-#include <thread>
 
+#include "armcmc/plant/error.hpp"
 #include "comparison.hpp"
 #include "held_out.hpp"
+#include "parallel.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -29,17 +29,6 @@ constexpr double kFarBeside = 0.8;     // or in one, losing in none, where few e
 constexpr double kLeavesAsMuch = 1.5;  // times what the named one leaves: kin that are not excluded
 constexpr double kFarBetter = 2.0;     // times less than the simple one leaves: a larger effect that is a rival of it
 constexpr double kLoses = 1.1;         // squared error in regions that says: it is not that
-
-/// Runs work(i) for i < count on both cores of a small machine.
-void InParallel(std::size_t count, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  const auto loop = [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
-  };
-  std::thread other(loop);
-  loop();
-  other.join();
-}
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
 
@@ -76,16 +65,25 @@ std::size_t StartsFor(const Contender& c) {
 }
 
 /// Fits everything quickly, what is worth it on all rows, and judges what may be named.
-void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung) {
+/// @param notes  Gets why an effect could not be tried.
+void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung,
+            std::vector<std::string>* notes) {
   constexpr double kWorthIt = 0.25, kNoGain = 0.05;
   std::vector<Contender>& all = rung->contenders;
   const Eigen::VectorXd error = rung->base.model->target() - rung->base.fit.prediction;
+  std::vector<std::string> not_tried(all.size());
   InParallel(all.size(), [&](std::size_t i) {
-    const Dataset quick = QuickPart(*all[i].candidate.plant, data, error);
-    const double base = Square(Refine(plant, quick, rung->base.fit.theta));
-    all[i].trial = Try(all[i].candidate.plant, quick, rung->base.fit.theta, StartsFor(all[i]));
-    if (all[i].trial.fit.valid) all[i].closed = std::clamp(1.0 - Square(all[i].trial) / base, 0.0, 1.0);
+    try {
+      const Dataset quick = QuickPart(*all[i].candidate.plant, data, error);
+      const double base = Square(Refine(plant, quick, rung->base.fit.theta));
+      all[i].trial = Try(all[i].candidate.plant, quick, rung->base.fit.theta, StartsFor(all[i]));
+      if (all[i].trial.fit.valid) all[i].closed = std::clamp(1.0 - Square(all[i].trial) / base, 0.0, 1.0);
+    } catch (const PlantError& why) {  // as a rate that would have to remember a state
+      not_tried[i] = all[i].candidate.entry->name + " was not tried: " + why.what();
+    }
   });
+  for (const std::string& note : not_tried)
+    if (!note.empty() && std::find(notes->begin(), notes->end(), note) == notes->end()) notes->push_back(note);
   const auto best_closing = [&] {
     double best = kNoGain;
     for (const Contender& c : all) best = std::max(best, c.closed);
@@ -298,7 +296,7 @@ Ladder Climb(const ClimbRequest& request) {
       rung.contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false});
     progress.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
                   static_cast<double>(r) / request.max_rungs);
-    TryAll(ladder.plant, data, ladder.view, &rung);
+    TryAll(ladder.plant, data, ladder.view, &rung, &ladder.notes);
     Bootstrap(&rung);
     const double floor = ladder.noise_floor;
     const Rung* const open = !ladder.rungs.empty() && ladder.rungs.back().open ? &ladder.rungs.back() : nullptr;

@@ -1,0 +1,28 @@
+#include "parallel.hpp"
+
+#include <array>
+#include <atomic>
+#include <exception>
+#include <thread>
+
+namespace armcmc::ladder {
+
+void InParallel(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  std::array<std::exception_ptr, 2> thrown;
+  const auto loop = [&](std::size_t which) {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    } catch (...) {
+      thrown[which] = std::current_exception();
+      next = count;
+    }
+  };
+  std::thread other(loop, 1);
+  loop(0);
+  other.join();
+  for (const std::exception_ptr& exception : thrown)
+    if (exception) std::rethrow_exception(exception);
+}
+
+}  // namespace armcmc::ladder
