@@ -64,6 +64,15 @@ int Remembered::Visit(int node, bool in_rate) {  // NOLINT(misc-no-recursion): a
 
 /// The node some time ago: what it is made of some time ago.
 int Remembered::Shifted(int node, Op op, int tau, bool in_rate) {  // NOLINT(misc-no-recursion): see Visit
+  // A chain in which every link is used twice has more paths than anybody can wait for.
+  const std::tuple<int, Op, int, bool> key{node, op, tau, in_rate};
+  if (const auto known = shifted_.find(key); known != shifted_.end()) return known->second;
+  const int made = ShiftedAnew(node, op, tau, in_rate);
+  shifted_.emplace(key, made);
+  return made;
+}
+
+int Remembered::ShiftedAnew(int node, Op op, int tau, bool in_rate) {  // NOLINT(misc-no-recursion): see Visit
   const GraphNode at = graph_.at(node);
   if (!at.varies) return node;
   if (!at.sampled) {

@@ -2,6 +2,8 @@
 
 #include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "armcmc/expression/graph.hpp"
@@ -43,6 +45,7 @@ class Remembered {
  private:
   int Visit(int node, bool in_rate);
   int Shifted(int node, expression::Op op, int tau, bool in_rate);
+  int ShiftedAnew(int node, expression::Op op, int tau, bool in_rate);
   int AddState(int argument, int tau);
   int Input(int node);
   int PastOf(int node, int tau);
@@ -50,6 +53,7 @@ class Remembered {
   expression::Graph& graph_;
   int num_states_;
   std::map<std::pair<int, bool>, int> known_;
+  std::map<std::tuple<int, expression::Op, int, bool>, int> shifted_;
   std::vector<RememberedState> states_;
   std::vector<int> inputs_, lines_;
 };

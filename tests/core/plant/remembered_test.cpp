@@ -39,7 +39,7 @@ PlantDescription Late(const std::string& law) {
 }
 
 /// What the law says at every sample of packs that follow each other, for the parameters K, tau, late.
-std::vector<double> Predicted(const PlantProgram& plant, const simd::Kernels& kernels) {
+std::vector<double> Predicted(const PlantProgram& plant, const simd::Kernels& kernels, int packs = kPacks) {
   std::vector<double> values;
   expression::FeatureMemory memory;
   StateMemory before;
@@ -49,7 +49,7 @@ std::vector<double> Predicted(const PlantProgram& plant, const simd::Kernels& ke
   ThetaTile theta{};
   const double sampled[] = {kGain, std::log(kTau), kLate};
   for (std::size_t d = 0; d < 3; ++d) theta.value[d].fill(sampled[d]);
-  for (int k = 1; k <= kPacks; ++k) {
+  for (int k = 1; k <= packs; ++k) {
     const DataPack pack = DescribedPack(
         plant, k,
         [](double t) {
@@ -89,11 +89,12 @@ std::vector<double> Lowpass(const std::function<double(int)>& input) {
   return y;
 }
 
-void ExpectLaw(const PlantDescription& description, const std::function<double(int)>& expected, double near) {
+void ExpectLaw(const PlantDescription& description, const std::function<double(int)>& expected, double near,
+               int packs = kPacks) {
   const auto plant = test::Program(description);
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
-    const std::vector<double> values = Predicted(*plant, *kernels);
-    for (int n = 1; n <= kPacks * kSamples; ++n)
+    const std::vector<double> values = Predicted(*plant, *kernels, packs);
+    for (int n = 1; n <= packs * kSamples; ++n)
       ASSERT_NEAR(values[static_cast<std::size_t>(n - 1)], expected(n), near)
           << description.law << ", " << kernels->name << ", sample " << n;
   }
@@ -102,6 +103,33 @@ void ExpectLaw(const PlantDescription& description, const std::function<double(i
 TEST(Remembered, ADelayThatIsSampledLooksItsSignalUp) {
   ExpectLaw(
       Late("K*delay(u, late) + 1e-300*tau/late"), [](int n) { return kGain * InputAt(n - kLate / kDt); }, 1e-12);
+}
+
+// More packs than the line is long, twice over.
+TEST(Remembered, ALongDelayIsLookedUpThoughItsLineIsFull) {
+  ExpectLaw(
+      Late("K*delay(u, 150*late) + 1e-300*tau/late"), [](int n) { return kGain * InputAt(n - 150.0 * kLate / kDt); }, 1e-12,
+      60);
+}
+
+TEST(Remembered, FurtherBackThanTheLineHasNoValue) {
+  const auto plant = test::Program(Late("K*delay(u, 200*late) + 1e-300*tau/late"));
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    const std::vector<double> values = Predicted(*plant, *kernels, 60);
+    EXPECT_EQ(values[10], kGain * Input(1)) << kernels->name;
+    EXPECT_TRUE(std::isnan(values.back())) << kernels->name;
+  }
+}
+
+TEST(Remembered, AChainInWhichEveryLinkIsUsedTwiceIsWalkedOnce) {
+  PlantDescription chain = Late("delay(a60, late) + 1e-300*tau/late");
+  chain.lets = {{"a0", "K*u"}};
+  for (int i = 1; i <= 60; ++i) {
+    const std::string before = chain.lets.back().name;
+    chain.lets.push_back({"a" + std::to_string(i), "0.5*" + before + " + 0.5*min(" + before + ", 9)"});
+  }
+  ExpectLaw(
+      chain, [](int n) { return kGain * InputAt(n - kLate / kDt); }, 1e-12);
 }
 
 TEST(Remembered, ADelayOfSomethingSampledIsThatOfItsSignals) {
