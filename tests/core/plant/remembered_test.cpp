@@ -108,8 +108,8 @@ TEST(Remembered, ADelayThatIsSampledLooksItsSignalUp) {
 // More packs than the line is long, twice over.
 TEST(Remembered, ALongDelayIsLookedUpThoughItsLineIsFull) {
   ExpectLaw(
-      Late("K*delay(u, 150*late) + 1e-300*tau/late"), [](int n) { return kGain * InputAt(n - 150.0 * kLate / kDt); }, 1e-12,
-      60);
+      Late("K*delay(u, 150*late) + 1e-300*tau/late"), [](int n) { return kGain * InputAt(n - 150.0 * kLate / kDt); },
+      1e-12, 60);
 }
 
 TEST(Remembered, FurtherBackThanTheLineHasNoValue) {
