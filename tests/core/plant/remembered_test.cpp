@@ -126,7 +126,9 @@ TEST(Remembered, AChainInWhichEveryLinkIsUsedTwiceIsWalkedOnce) {
   chain.lets = {{"a0", "K*u"}};
   for (int i = 1; i <= 60; ++i) {
     const std::string before = chain.lets.back().name;
-    chain.lets.push_back({"a" + std::to_string(i), "0.5*" + before + " + 0.5*min(" + before + ", 9)"});
+    std::string text = "0.5*";
+    text.append(before).append(" + 0.5*min(").append(before).append(", 9)");
+    chain.lets.push_back({"a" + std::to_string(i), text});
   }
   ExpectLaw(
       chain, [](int n) { return kGain * InputAt(n - kLate / kDt); }, 1e-12);
