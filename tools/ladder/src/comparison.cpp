@@ -1,6 +1,7 @@
 #include "comparison.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace armcmc::ladder {
@@ -26,6 +27,48 @@ double FoldSquares(const View& view, const std::vector<double>& squares) {
   return sum;
 }
 
+/// Whether errors are forgotten within a tenth of the period: noise that neighbouring samples share. What is missing
+/// from a law repeats with the motion.
+///
+/// Mean square of the autocorrelation over lags of 0.1 to 0.6 periods, against what it has for noise of the same
+/// correlation at short lags: 1/n times 1 + 2 sum r^2.
+bool ForgottenSoon(const View& view, const Trial& trial) {
+  constexpr double kFirst = 0.1, kLast = 0.6, kShare = 0.01;
+  constexpr int kLags = 40;
+  const identify::Series& series = *view.data.series;
+  const Eigen::VectorXd error = trial.model->target() - trial.fit.prediction;
+  const auto counts = [&](std::size_t n) { return view.data.training[n] != 0 && trial.model->active()[n] != 0; };
+  std::vector<std::size_t> run(series.num_rows(), 0);
+  for (std::size_t n = 1; n < run.size(); ++n)
+    run[n] = run[n - 1] + (std::binary_search(series.runs.begin(), series.runs.end(), n) ? 1 : 0);
+  double all = 0.0, count = 0.0;
+  for (std::size_t n = 0; n < run.size(); ++n)
+    if (counts(n)) {
+      all += error[static_cast<Eigen::Index>(n)] * error[static_cast<Eigen::Index>(n)];
+      count += 1.0;
+    }
+  const auto correlation = [&](std::size_t lag) {
+    double sum = 0.0, pairs = 0.0;
+    for (std::size_t n = 0; n + lag < run.size(); ++n)
+      if (counts(n) && counts(n + lag) && run[n] == run[n + lag]) {
+        sum += error[static_cast<Eigen::Index>(n)] * error[static_cast<Eigen::Index>(n + lag)];
+        pairs += 1.0;
+      }
+    return pairs > 0.0 ? sum / pairs / (all / count + 1e-300) : 0.0;
+  };
+  const double per_period = view.period / series.dt;
+  if (!(kFirst * per_period > 2.0) || !(kLast * per_period < 0.25 * count)) return false;
+  const auto first = static_cast<std::size_t>(kFirst * per_period);
+  double near = 1.0;
+  for (std::size_t lag = 1; lag < first; ++lag) near += 2.0 * std::pow(correlation(lag), 2);
+  double far = 0.0;
+  for (int k = 0; k < kLags; ++k) {
+    const double place = kFirst + (kLast - kFirst) * k / (kLags - 1);
+    far += std::pow(correlation(static_cast<std::size_t>(place * per_period)), 2) / kLags;
+  }
+  return far < kShare + 2.0 * near / count;
+}
+
 }  // namespace
 
 Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool beside) {
@@ -48,13 +91,19 @@ Comparison Compare(const View& view, const Contender& c, const Trial& base_trial
   return {ratio(GroupKind::kFold), ratio(GroupKind::kBlock), ratio(GroupKind::kRegion)};
 }
 
+bool BetterEverywhere(const Contender& a, const Contender& b) {
+  return a.alone.folds < b.alone.folds && a.alone.blocks < b.alone.blocks && a.alone.regions < b.alone.regions;
+}
+
 double FlexibleGain(const View& view, const Trial& trial) {
   return 1.0 - FoldSquares(view, trial.beside) / (FoldSquares(view, trial.alone) + 1e-300);
 }
 
 bool LeavesMore(const View& view, const Trial& trial, double floor) {
-  constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.2;
-  return FlexibleGain(view, trial) > kMore || (floor > 0.0 && trial.fit.error_sd > kRougher * floor);
+  constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.2, kFarRougher = 3.0;
+  if (FlexibleGain(view, trial) > kMore) return true;
+  if (!(floor > 0.0) || trial.fit.error_sd < kRougher * floor) return false;
+  return trial.fit.error_sd > kFarRougher * floor || !ForgottenSoon(view, trial);
 }
 
 }  // namespace armcmc::ladder

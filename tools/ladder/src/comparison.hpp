@@ -10,10 +10,14 @@ inline constexpr double kLeastGain = 0.1;  // of the squared error: what a name 
 /// @param beside  Both with the flexible function beside them.
 [[nodiscard]] Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool beside);
 
+/// Better wherever it is looked for.
+[[nodiscard]] bool BetterEverywhere(const Contender& a, const Contender& b);
+
 /// Share of the squared error that is left which a flexible function takes, in folds.
 [[nodiscard]] double FlexibleGain(const View& view, const Trial& trial);
 
-/// Whether a trial leaves more than noise: what a flexible function takes, or what is rough at the sampling rate.
+/// Whether a trial leaves more than noise: what a flexible function takes, or errors that are larger than neighbouring
+/// samples differ; by little where they are forgotten within a tenth of the period.
 /// @param floor  Standard deviation of the noise; 0: nobody knows.
 [[nodiscard]] bool LeavesMore(const View& view, const Trial& trial, double floor);
 

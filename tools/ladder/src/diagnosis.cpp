@@ -110,15 +110,7 @@ class Teller {
     gap.unit = OutputUnit();
     gap.before = FitOn(before_, rows_, ladder_.base.fit.error_sd);
     gap.after = FitOn(after_, rows_, ladder_.final_trial.fit.error_sd);
-    const double left = ladder_.final_trial.fit.error_sd * std::sqrt(std::max(0.0, 1.0 - ladder_.flexible_gain));
-    gap.noise_floor = std::min(ladder_.noise_floor, left);
-    result_.notes.push_back(
-        request_.recording.smoothed_noise > 0.0 && ladder_.noise_floor <= left
-            ? "noise floor: from differences of neighbouring samples before the filter, " + Number(ladder_.noise_floor)
-        : ladder_.noise_floor <= left
-            ? "noise floor: from differences of neighbouring samples, " + Number(ladder_.noise_floor)
-            : "noise floor: neighbouring samples differ by more (" + Number(ladder_.noise_floor) +
-                  ") than models leave, since the signal moves between them; taken from what a flexible model leaves");
+    TellNoiseFloor();
     gap.closed_fraction = Closed(gap.after.rmse);
     CloseInterval(rows_, before_, after_, request_.seed, &gap);
     gap.stretches = StretchesOf(data_, rows_, before_, after_);
@@ -127,6 +119,26 @@ class Teller {
     const double size = std::sqrt(target.squaredNorm() / static_cast<double>(target.size()));
     result_.relative_before = gap.before.rmse / size;
     result_.relative_after = gap.after.rmse / size;
+  }
+
+  void TellNoiseFloor() {
+    const double left = ladder_.final_trial.fit.error_sd * std::sqrt(std::max(0.0, 1.0 - ladder_.flexible_gain));
+    const double differences = ladder_.noise_floor;
+    std::string from;
+    if (differences > left) {
+      result_.gap.noise_floor = left;
+      from = "neighbouring samples differ by more (" + Number(differences) +
+             ") than models leave, since the signal moves between them; taken from what a flexible model leaves";
+    } else if (ladder_.complete && left > kShared * differences) {
+      result_.gap.noise_floor = left;
+      from = "neighbouring samples share noise and differ by less (" + Number(differences) +
+             "); taken from what the model leaves, which is forgotten within a tenth of the period";
+    } else {
+      result_.gap.noise_floor = differences;
+      from = std::string("from differences of neighbouring samples") +
+             (request_.recording.smoothed_noise > 0.0 ? " before the filter, " : ", ") + Number(differences);
+    }
+    result_.notes.push_back("noise floor: " + from);
   }
 
   void TellLadder() {
@@ -284,6 +296,8 @@ class Teller {
         return plant.modes()[m].target_unit ? plant.modes()[m].target_unit->Text() : "";
     return description.signals[static_cast<std::size_t>(plant.output())].unit;
   }
+
+  static constexpr double kShared = 1.2;  ///< Times the differences' floor.
 
   const DiagnosisRequest& request_;
   const Dataset& data_;

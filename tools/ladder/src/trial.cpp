@@ -175,12 +175,16 @@ bool IsSimulated(const PlantDescription& plant) {
                      [](const StateDescription& s) { return !s.role.empty(); });
 }
 
+bool Remembers(const Plant& plant) {
+  return !plant.states().empty() || std::any_of(plant.modes().begin(), plant.modes().end(), [&](const PlantMode& mode) {
+    return plant.graph().at(mode.law).memory;
+  });
+}
+
 Dataset QuickPart(const Plant& plant, const Dataset& data, const Eigen::VectorXd& error) {
   constexpr std::size_t kRows = 3000, kLong = 500, kShort = 50;
   if (IsSimulated(plant.description())) return Beginnings(data, kRows);
-  bool remembers = !plant.states().empty();
-  for (const PlantMode& mode : plant.modes()) remembers = remembers || plant.graph().at(mode.law).memory;
-  return remembers ? Windows(data, error, kLong, 2 * kRows) : Windows(data, error, kShort, kRows);
+  return Remembers(plant) ? Windows(data, error, kLong, 2 * kRows) : Windows(data, error, kShort, kRows);
 }
 
 Trial Try(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Eigen::VectorXd& known,

@@ -63,6 +63,7 @@ View MakeView(const Dataset& data, const identify::TrajectoryModel& base, const 
   constexpr int kFlexible = 60;
   View view;
   view.data = data;
+  view.period = period;
   std::vector<Eigen::Index> rows;
   for (std::size_t n = 0; n < data.training.size(); ++n)
     if (data.training[n] != 0 && base.active()[n] != 0) rows.push_back(static_cast<Eigen::Index>(n));

@@ -17,6 +17,9 @@ std::vector<EffectEntry> ReadEffectLibrary() {
     if (entries.back().name != name)
       throw ConfigError(path.string() + ": its name is \"" + entries.back().name + "\", expected that of the file");
   }
+  if (entries.empty())
+    throw ConfigError(SharedFolder("effects").string() +
+                      ": no effects there: the catalogue is installed beside the programs, in share/armcmc/effects");
   return entries;
 }
 

@@ -80,7 +80,6 @@ struct EffectEntry {
   std::string title;                 ///< For people.
   std::string family;
   std::vector<std::string> kin;  ///< Effects that act alike.
-  bool single = false;           ///< Has a kink: two of them in one place are pieces of some curve.
   std::string experiment;        ///< That would show it.
   std::vector<EffectForm> forms;
 };

@@ -31,6 +31,7 @@ struct Contender {
   double win_share = 0.0;    ///< Share in which its family has the least error of all.
   bool larger_part = false;  ///< It takes the larger part of what is unexplained.
   bool earned = false;       ///< Its gain is more than a flexible function has, wherever it is looked for.
+  bool ruled_out = false;    ///< Something that is not in the catalogue explains more.
 };
 
 /// An effect that was named, or several that the data cannot tell apart.
@@ -81,15 +82,17 @@ struct ClimbRequest {
 ///    - takes the larger part of what is unexplained, alone or with the next one, unless its family has been named
 ///      before or it leaves nothing but noise.
 /// 2. Simplest first. Of those that close 95 % of what the best closes the ones with the fewest parameters, and of
-/// these
-///    the best. What a simple effect leaves is looked at on the next rung.
+///    these the best. What a simple effect leaves is looked at on the next rung.
 /// 3. Ties. With it go what is kin to it and leaves less than half as much again, where its own formula is not exact;
 ///    a family of as few parameters that wins one bootstrap sample in twenty; and a larger effect of another family
 ///    that leaves less than half and is better wherever it is looked for. Behind a tie nothing more is named: it would
 ///    stand on what is not known. So each of them shows the form of it that predicts best.
-/// 4. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain; and where a
-///    later rung names it again in the same place and it has a kink: both are pieces of a curve that is none of theirs,
-///    as plays are of a spring that stiffens.
+/// 4. Nothing simpler to say. What leaves more than noise is ruled out by a curve: one part of the law that follows one
+///    quantity in a way that no formula of the catalogue has, leaves less than half, is better wherever it is looked
+///    for, and does not hold the effect: its best copy of what the effect predicts is off by more than a quarter of
+///    what the effect leaves. So it is where the model as it is leaves less on smoother signals, of those that are
+///    rates of others: their noise is what is unexplained.
+/// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain.
 [[nodiscard]] Ladder Climb(const ClimbRequest& request);
 
 }  // namespace armcmc::ladder

@@ -27,6 +27,9 @@ struct Trial {
 [[nodiscard]] std::vector<Eigen::VectorXd> Starts(const identify::TrajectoryModel& model, const Dataset& data,
                                                   const Eigen::VectorXd& known, std::size_t count);
 
+/// True where the law at one row depends on earlier ones.
+[[nodiscard]] bool Remembers(const Plant& plant);
+
 /// A part of the data on which a fit is quick: of a plant that is simulated the beginnings of its runs, else stretches
 /// where a model errs and others, longer where the law remembers.
 /// @param error  [row] Of a model that has been fitted.

@@ -26,6 +26,7 @@ struct RowGroup {
 /// The view of the data in which models are compared: the same rows, groups and flexible function for all of them.
 struct View {
   Dataset data;                         ///< Training rows only.
+  double period = 0.0;                  ///< s, in which the output goes to and fro.
   std::vector<Eigen::Index> looked_at;  ///< Training rows where a mode acts, thinned to a few thousand.
   std::vector<RowGroup> groups;
   std::vector<int> stretch;  ///< [looked at] Short stretch that the row belongs to.

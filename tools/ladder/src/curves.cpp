@@ -1,0 +1,200 @@
+#include "curves.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "armcmc/ladder/features.hpp"
+#include "armcmc/plant/error.hpp"
+#include "comparison.hpp"
+#include "parallel.hpp"
+#include "rung.hpp"
+
+namespace armcmc::ladder {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr int kBumps = 8;
+constexpr std::size_t kFitted = 4;   // of those that act differently
+constexpr double kAlike = 0.02;      // of the square of what one takes away: the other takes it as well
+constexpr double kFarBetter = 2.0;   // times less than what it rules out leaves
+constexpr double kOff = 0.1;         // of the square of what an effect leaves: as well copied as one can ask
+constexpr double kOutermost = 0.01;  // of the rows, where a state or signal seldom is
+
+/// @param x     Name of what the curve follows; "t" is time.
+/// @param unit  Of the curve.
+/// @param size  Of its coefficients.
+EffectForm Along(const std::string& x, const std::string& unit, const std::string& size, EffectTerm term,
+                 std::vector<EffectNeed> needs) {
+  const bool time = x == "t";
+  const std::string low = time ? "start" : "low_" + x, range = time ? "record" : "range_" + x;
+  EffectForm form;
+  form.variant = true;  // all forms side by side
+  form.needs = std::move(needs);
+  form.constants.push_back({"w", time ? "s" : x, "1.2*" + range + '/' + std::to_string(kBumps - 1)});
+  for (int k = 0; k < kBumps; ++k) {
+    const std::string number = std::to_string(k + 1), middle = "m" + number;
+    form.constants.push_back(
+        {middle, time ? "s" : x, low + " + " + std::to_string(k) + '*' + range + '/' + std::to_string(kBumps - 1)});
+    form.parameters.push_back({"c" + number, unit, "normal", "0", size, "", "", "0"});
+    term.formula += (term.formula.empty() ? "c" : " + c") + number + "*exp(-((" + x + " - " + middle + ")/w)^2)";
+  }
+  form.terms.push_back(std::move(term));
+  return form;
+}
+
+EffectNeed Need(const std::string& name, const std::string& kind) {
+  EffectNeed need;
+  need.name = name;
+  need.kind = kind;
+  return need;
+}
+
+EffectNeed Used(const std::string& name, const std::string& kind) {
+  EffectNeed need = Need(name, kind);
+  need.used = true;
+  return need;
+}
+
+/// The sizes with the ranges that signals and states really pass through, without the outermost rows.
+DataScales WithRanges(DataScales scales, const std::vector<Feature>& features, const std::vector<Index>& rows) {
+  for (const Feature& feature : features) {
+    std::vector<double> sorted;
+    for (const Index n : rows) sorted.push_back(feature.value[n]);
+    std::sort(sorted.begin(), sorted.end());
+    const auto at = static_cast<std::size_t>(kOutermost * static_cast<double>(sorted.size()));
+    const double low = sorted[at], high = sorted[sorted.size() - 1 - at];
+    QuantityScale& scale = scales.quantity[feature.name];
+    scale.low = high > low ? low : sorted.front();
+    scale.high = high > low ? high : sorted.back();
+  }
+  return scales;
+}
+
+/// What is left of y when columns have taken what they can; columns without size are let be.
+/// @param pull  [column] Precision of a prior about 0.
+VectorXd LeftOf(const VectorXd& y, const Eigen::MatrixXd& columns, const VectorXd& pull) {
+  const VectorXd size = (columns.colwise().squaredNorm().transpose() + pull).cwiseMax(1e-300).cwiseSqrt();
+  const Eigen::MatrixXd scaled = columns * size.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd matrix = scaled.transpose() * scaled;
+  matrix.diagonal() += pull.cwiseQuotient(size.cwiseAbs2());
+  matrix.diagonal().array() += 1e-9;
+  return y - scaled * matrix.ldlt().solve(scaled.transpose() * y);
+}
+
+/// "K, if it followed w by a curve,"
+std::string InWords(const Contender& curve) {
+  const EffectForm& form = curve.candidate.form();
+  const EffectTerm& term = form.terms.front();
+  const std::map<std::string, std::string>& symbols = curve.candidate.binding.symbols;
+  const std::string followed = form.needs.empty() ? "time" : symbols.at(form.needs.back().name);
+  if (term.slot == "parameter") return symbols.at(term.of) + ", if it followed " + followed + " by a curve,";
+  if (term.slot == "input") return followed + ", if the plant got a curve of it,";
+  return "a curve of " + followed + (term.slot == "rate" ? " in the rate of " + symbols.at(term.of) : "");
+}
+
+}  // namespace
+
+EffectEntry CurveEntry() {
+  EffectEntry entry;
+  entry.name = entry.family = "curve";
+  for (const std::string kind : {"signal", "state"}) {
+    const EffectNeed x = Need("x", kind);
+    entry.forms.push_back(Along("x", "output", "output", {"output", "", ""}, {x}));
+    entry.forms.push_back(Along("x", "p", "p", {"parameter", "p", "p"}, {Used("p", "parameter"), x}));
+    entry.forms.push_back(Along("x", "v/s", "rate_v", {"rate", "v", ""}, {Need("v", "state"), x}));
+  }
+  entry.forms.push_back(Along("t", "output", "output", {"output", "", ""}, {}));
+  entry.forms.push_back(Along("t", "p", "p", {"parameter", "p", "p"}, {Used("p", "parameter")}));
+  entry.forms.push_back(Along("v", "v/s", "rate_v", {"rate", "v", ""}, {Need("v", "state")}));
+  entry.forms.push_back(Along("u", "u", "u", {"input", "u", "u"}, {Used("u", "signal")}));
+  return entry;
+}
+
+std::vector<Candidate> Curves::MostPromising() const {
+  const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.looked_at);
+  std::vector<std::string> notes;  // what does not fit a limit is no rival
+  std::vector<Candidate> all = Candidates(plant_->description(), entries_, scales, &notes);
+  const Dataset quick = QuickPart(*plant_, data_, base_.model->target() - base_.fit.prediction);
+  const Index own = base_.fit.theta.size();
+  std::vector<VectorXd> left(all.size());
+  VectorXd error;
+  double square = 0.0;
+  std::vector<Index> rows;
+  {
+    const identify::TrajectoryModel model(plant_, quick.series);
+    VectorXd prediction;
+    if (!model.PredictOne(base_.fit.theta, &prediction)) return {};
+    for (Index n = 0; n < prediction.size(); ++n)
+      if (quick.training[static_cast<std::size_t>(n)] != 0 && model.active()[static_cast<std::size_t>(n)] != 0)
+        rows.push_back(n);
+    error = (model.target() - prediction)(rows);
+    square = error.squaredNorm();
+  }
+  InParallel(all.size(), [&](std::size_t i) {
+    try {
+      const identify::TrajectoryModel model(all[i].plant, quick.series);
+      VectorXd theta = model.Start(), prediction;
+      theta.head(own) = base_.fit.theta;
+      Eigen::MatrixXd jacobian;
+      if (!model.Linearise(theta, &prediction, &jacobian)) return;
+      const double variance = square / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
+      left[i] = LeftOf(error, jacobian(rows, Eigen::all), variance * identify::PriorPrecision(model));
+    } catch (const PlantError&) {  // needs more than there is room for
+    }
+  });
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (left[i].size() > 0 && left[i].squaredNorm() < square) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return left[a].squaredNorm() < left[b].squaredNorm(); });
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : order) {
+    const bool alike = std::any_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
+      return (left[c] - left[i]).squaredNorm() < kAlike * (square - left[i].squaredNorm());
+    });
+    if (!alike && chosen.size() < kFitted) chosen.push_back(i);
+  }
+  std::vector<Candidate> best;
+  best.reserve(chosen.size());
+  for (const std::size_t i : chosen) best.push_back(std::move(all[i]));
+  return best;
+}
+
+void Curves::FitThem() {
+  fitted_.emplace();
+  fitted_->base = base_;
+  for (Candidate& candidate : MostPromising())
+    fitted_->contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
+  std::vector<std::string> notes;
+  TryAll(plant_, data_, view_, &*fitted_, &notes);
+  Sort(&*fitted_);
+}
+
+bool Curves::Holds(const Contender& curve, const Contender& c) const {
+  const std::vector<Index>& rows = view_.looked_at;
+  const VectorXd apart = (c.trial.fit.prediction - curve.trial.fit.prediction)(rows);
+  const VectorXd base = (base_.model->target() - base_.fit.prediction)(rows);
+  const Eigen::MatrixXd columns = curve.trial.fit.jacobian(rows, Eigen::all);
+  const VectorXd off = LeftOf(apart, columns, VectorXd::Zero(columns.cols()));
+  return off.squaredNorm() < kOff * c.alone.folds * base.squaredNorm();
+}
+
+std::string Curves::WhyNot(const Contender& c) {
+  if (!fitted_) FitThem();
+  for (const Contender& curve : fitted_->contenders) {
+    if (!curve.trial.judged) continue;
+    const double times = c.alone.folds / std::max(curve.alone.folds, 1e-12);
+    if (times < kFarBetter || !BetterEverywhere(curve, c) || Holds(curve, c)) continue;
+    char less[32];
+    std::snprintf(less, sizeof(less), "%.1f", times);
+    return c.candidate.entry->name + " was not named: " + InWords(curve) + " leaves " + less +
+           " times less, and has another shape";
+  }
+  return "";
+}
+
+}  // namespace armcmc::ladder

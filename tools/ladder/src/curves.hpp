@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "armcmc/ladder/climb.hpp"
+
+namespace armcmc::ladder {
+
+/// What no catalogue has a formula for: something of the law that is not constant but follows one quantity by a curve.
+///
+/// The curve is sum_k c_k exp(-((x - m_k) / w)^2) with bumps over the range of x, which is a signal, a state or time.
+/// It is added to a parameter, the output, an input (of itself) or the rate of a state.
+[[nodiscard]] EffectEntry CurveEntry();
+
+/// The curves that explain most of what a model leaves. Fitted when they are first asked for.
+class Curves {
+ public:
+  /// All outlive it.
+  Curves(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, const Trial& base,
+         const DataScales& scales)
+      : plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{CurveEntry()} {}
+
+  /// Why a contender is not what is missing, in words; empty where no curve says so.
+  /// @pre c.trial.judged.
+  [[nodiscard]] std::string WhyNot(const Contender& c);
+
+ private:
+  void FitThem();
+  /// Of those that act differently the ones that explain most, by one step from the model without them.
+  [[nodiscard]] std::vector<Candidate> MostPromising() const;
+  [[nodiscard]] bool Holds(const Contender& curve, const Contender& c) const;
+
+  const std::shared_ptr<const Plant>& plant_;
+  const Dataset& data_;
+  const View& view_;
+  const Trial& base_;
+  const DataScales& scales_;
+  std::vector<EffectEntry> entries_;
+  std::optional<Rung> fitted_;
+};
+
+}  // namespace armcmc::ladder

@@ -1,0 +1,69 @@
+#include "derived_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "comparison.hpp"
+
+namespace armcmc::ladder {
+namespace {
+
+/// With a Gaussian kernel of that many samples, cut at three of them and at the borders of a run.
+std::vector<double> SmoothedOver(const std::vector<double>& value, const std::vector<std::size_t>& runs, double sd) {
+  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(3.0 * sd));
+  std::vector<double> out(value.size());
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const auto from = static_cast<std::ptrdiff_t>(runs[r]);
+    const auto to = static_cast<std::ptrdiff_t>(r + 1 < runs.size() ? runs[r + 1] : value.size());
+    for (std::ptrdiff_t n = from; n < to; ++n) {
+      double sum = 0.0, weights = 0.0;
+      const std::ptrdiff_t side = std::min({reach, n - from, to - 1 - n});  // as far to one side as to the other
+      for (std::ptrdiff_t k = -side; k <= side; ++k) {
+        const double weight = std::exp(-0.5 * static_cast<double>(k * k) / (sd * sd));
+        sum += weight * value[static_cast<std::size_t>(n + k)];
+        weights += weight;
+      }
+      out[static_cast<std::size_t>(n)] = sum / weights;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void DerivedNoise::FitIt() {
+  fitted_ = true;
+  const PlantDescription& plant = plant_->description();
+  std::vector<std::size_t> derived;
+  for (std::size_t s = 0; s < plant.signals.size(); ++s)
+    if (!plant.signals[s].derivative_of.empty() && plant.signals[s].name != plant.output) derived.push_back(s);
+  if (derived.empty()) return;
+  for (const double sd : {2.0, 5.0, 12.0}) {
+    auto series = std::make_shared<identify::Series>(*data_.series);
+    for (const std::size_t s : derived)
+      series->signals[s] = SmoothedOver(data_.series->signals[s], data_.series->runs, sd);
+    Dataset smooth = data_;
+    smooth.series = std::move(series);
+    Contender c;
+    c.trial = Refine(plant_, smooth, base_.fit.theta);
+    if (!c.trial.fit.valid) continue;
+    LeaveOut(view_, &c.trial);
+    c.closed = std::clamp(1.0 - std::pow(c.trial.fit.error_sd / base_.fit.error_sd, 2), 0.0, 1.0);
+    c.alone = Compare(view_, c, base_, false);
+    if (!best_ || c.alone.folds < best_->contender.alone.folds)
+      best_.emplace(Smoothed{sd * data_.series->dt, std::move(c)});
+  }
+}
+
+std::string DerivedNoise::WhyNot(const Contender& c) {
+  if (!fitted_) FitIt();
+  if (!best_ || !BetterEverywhere(best_->contender, c)) return "";
+  char text[64];
+  std::snprintf(text, sizeof(text), "over %.2g s leaves %.1f times less", best_->sd,
+                c.alone.folds / std::max(best_->contender.alone.folds, 1e-12));
+  return c.candidate.entry->name + " was not named: smoothing the signals that are rates of others " + text +
+         "; their noise is what is unexplained";
+}
+
+}  // namespace armcmc::ladder

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "armcmc/ladder/climb.hpp"
+
+namespace armcmc::ladder {
+
+/// Fits everything quickly, what is worth it on all rows, and compares what may be named with the base.
+/// @param notes  Gets why an effect could not be tried.
+void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung,
+            std::vector<std::string>* notes);
+
+/// Fills gain_share and win_share from bootstrap samples of the short stretches.
+void Bootstrap(Rung* rung);
+
+/// Decides what has earned a name.
+/// @param families  That were named before: more of the same is looked for in finer parts.
+/// @param before    Share of the error that the rung before leaves, where its name is still open; else 1.
+void Judge(const View& view, double floor, const std::set<std::string>& families, double before, Rung* rung);
+
+/// Chooses among those that have earned it and are not ruled out; nothing where there are none.
+/// @param open  Also what takes the smaller part only.
+void Name(const View& view, double floor, bool open, Rung* rung);
+
+/// Best first.
+void Sort(Rung* rung);
+
+}  // namespace armcmc::ladder
