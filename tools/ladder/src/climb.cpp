@@ -55,6 +55,27 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
   }
 }
 
+/// The rung that named the same effect in the same place, if a second one makes a curve of it; else how many there are.
+std::size_t FirstWith(const Ladder& ladder, const Candidate& candidate) {
+  const auto same = [&](const Rung& rung) {
+    if (rung.named.empty() || !candidate.entry->single) return false;
+    const Candidate& other = rung.leader().candidate;
+    return other.entry == candidate.entry && other.binding.form == candidate.binding.form &&
+           other.binding.symbols == candidate.binding.symbols;
+  };
+  return static_cast<std::size_t>(std::find_if(ladder.rungs.begin(), ladder.rungs.end(), same) - ladder.rungs.begin());
+}
+
+/// What this rung would name, or would but for a rival, though an earlier one did in the same place.
+const Contender* NamedAgain(const Ladder& ladder, const Rung& rung) {
+  for (std::size_t i = 0; i < rung.contenders.size(); ++i) {
+    const Contender& c = rung.contenders[i];
+    const bool leads = !rung.named.empty() && rung.named.front() == i;
+    if ((leads || c.ruled_out) && FirstWith(ladder, c.candidate) < ladder.rungs.size()) return &c;
+  }
+  return nullptr;
+}
+
 /// Back to where nothing had been named on a rung.
 void TakeBack(std::size_t rung, Ladder* ladder, Trial* base) {
   ladder->rungs.resize(rung + 1);
@@ -130,6 +151,13 @@ Ladder Climb(const ClimbRequest& request) {
     const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
     if (!named && open != nullptr) {
       TakeBack(ladder.rungs.size() - 1, &ladder, &base);
+      break;
+    }
+    if (const Contender* again = NamedAgain(ladder, rung)) {
+      ladder.notes.push_back(again->candidate.entry->name +
+                             " was not named: one alone does not do, and two of them in one place are pieces of "
+                             "something that has another formula");
+      TakeBack(FirstWith(ladder, again->candidate), &ladder, &base);
       break;
     }
     if (named && open != nullptr) ladder.rungs.back().open = false;

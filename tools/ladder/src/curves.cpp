@@ -9,7 +9,6 @@
 #include "armcmc/plant/error.hpp"
 #include "comparison.hpp"
 #include "parallel.hpp"
-#include "rung.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -18,11 +17,12 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kBumps = 8;
-constexpr std::size_t kFitted = 4;   // of those that act differently
-constexpr double kAlike = 0.02;      // of the square of what one takes away: the other takes it as well
-constexpr double kFarBetter = 2.0;   // times less than what it rules out leaves
-constexpr double kOff = 0.1;         // of the square of what an effect leaves: as well copied as one can ask
-constexpr double kOutermost = 0.01;  // of the rows, where a state or signal seldom is
+constexpr std::size_t kFitted = 4;    // of those that act differently
+constexpr double kAlike = 0.02;       // of the square of what one takes away: the other takes it as well
+constexpr double kAsWell = 1.5;       // times what the best one leaves
+constexpr double kFarBetter = 2.0;    // times less than what it rules out leaves
+constexpr double kOff = 0.1;          // of the square of what an effect leaves: as well copied as one can ask
+constexpr double kOutermost = 0.001;  // of the rows, where a state or signal seldom is
 
 /// @param x     Name of what the curve follows; "t" is time.
 /// @param unit  Of the curve.
@@ -34,13 +34,14 @@ EffectForm Along(const std::string& x, const std::string& unit, const std::strin
   EffectForm form;
   form.variant = true;  // all forms side by side
   form.needs = std::move(needs);
-  form.constants.push_back({"w", time ? "s" : x, "1.2*" + range + '/' + std::to_string(kBumps - 1)});
+  form.constants.push_back({"w", time ? "s" : x, "2.4*" + range + '/' + std::to_string(kBumps - 1)});
   for (int k = 0; k < kBumps; ++k) {
     const std::string number = std::to_string(k + 1), middle = "m" + number;
     form.constants.push_back(
         {middle, time ? "s" : x, low + " + " + std::to_string(k) + '*' + range + '/' + std::to_string(kBumps - 1)});
     form.parameters.push_back({"c" + number, unit, "normal", "0", size, "", "", "0"});
-    term.formula += (term.formula.empty() ? "c" : " + c") + number + "*exp(-((" + x + " - " + middle + ")/w)^2)";
+    term.formula +=
+        (term.formula.empty() ? "c" : " + c") + number + "*max(1 - ((" + x + " - " + middle + ")/w)^2, 0)^4";
   }
   form.terms.push_back(std::move(term));
   return form;
@@ -90,7 +91,8 @@ std::string InWords(const Contender& curve) {
   const EffectForm& form = curve.candidate.form();
   const EffectTerm& term = form.terms.front();
   const std::map<std::string, std::string>& symbols = curve.candidate.binding.symbols;
-  const std::string followed = form.needs.empty() ? "time" : symbols.at(form.needs.back().name);
+  const bool over_time = term.formula.find("(t - ") != std::string::npos;
+  const std::string followed = over_time ? "time" : symbols.at(form.needs.back().name);
   if (term.slot == "parameter") return symbols.at(term.of) + ", if it followed " + followed + " by a curve,";
   if (term.slot == "input") return followed + ", if the plant got a curve of it,";
   return "a curve of " + followed + (term.slot == "rate" ? " in the rate of " + symbols.at(term.of) : "");
@@ -166,12 +168,21 @@ std::vector<Candidate> Curves::MostPromising() const {
 
 void Curves::FitThem() {
   fitted_.emplace();
-  fitted_->base = base_;
   for (Candidate& candidate : MostPromising())
-    fitted_->contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
-  std::vector<std::string> notes;
-  TryAll(plant_, data_, view_, &*fitted_, &notes);
-  Sort(&*fitted_);
+    fitted_->push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
+  const VectorXd error = base_.model->target() - base_.fit.prediction;
+  InParallel(fitted_->size(), [&](std::size_t i) {
+    Contender& c = (*fitted_)[i];
+    try {
+      c.trial = Try(c.candidate.plant, QuickPart(*c.candidate.plant, data_, error), base_.fit.theta, 1);
+      if (c.trial.fit.valid) c.trial = Refine(c.candidate.plant, data_, c.trial.fit.theta);
+      c.refined = c.trial.fit.valid;
+      c.closed = c.refined ? 1.0 - std::pow(c.trial.fit.error_sd / base_.fit.error_sd, 2) : 0.0;
+    } catch (const PlantError&) {  // needs more than there is room for
+    }
+  });
+  std::stable_sort(fitted_->begin(), fitted_->end(),
+                   [](const Contender& a, const Contender& b) { return a.closed > b.closed; });
 }
 
 bool Curves::Holds(const Contender& curve, const Contender& c) const {
@@ -185,16 +196,27 @@ bool Curves::Holds(const Contender& curve, const Contender& c) const {
 
 std::string Curves::WhyNot(const Contender& c) {
   if (!fitted_) FitThem();
-  for (const Contender& curve : fitted_->contenders) {
-    if (!curve.trial.judged) continue;
+  if (fitted_->empty()) return "";
+  // The best one and what does as well: several that act alike are the rule, and one that holds it is enough.
+  const double left = kAsWell * (1.0 - fitted_->front().closed);
+  std::string why;
+  for (Contender& curve : *fitted_) {
+    // What is not far better where it was fitted is not where it was not.
+    if (!curve.refined || 1.0 - curve.closed > left || 1.0 - c.closed < kFarBetter * (1.0 - curve.closed)) continue;
+    if (Holds(curve, c)) return "";  // the same physics with a better formula
+    if (!why.empty()) continue;
+    if (!curve.trial.judged) {
+      LeaveOut(view_, &curve.trial);
+      curve.alone = Compare(view_, curve, base_, false);
+    }
     const double times = c.alone.folds / std::max(curve.alone.folds, 1e-12);
-    if (times < kFarBetter || !BetterEverywhere(curve, c) || Holds(curve, c)) continue;
+    if (times < kFarBetter || !BetterEverywhere(curve, c)) continue;
     char less[32];
     std::snprintf(less, sizeof(less), "%.1f", times);
-    return c.candidate.entry->name + " was not named: " + InWords(curve) + " leaves " + less +
-           " times less, and has another shape";
+    why = c.candidate.entry->name + " was not named: " + InWords(curve) + " leaves " + less +
+          " times less, and has another shape";
   }
-  return "";
+  return why;
 }
 
 }  // namespace armcmc::ladder

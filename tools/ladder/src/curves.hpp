@@ -10,8 +10,8 @@ namespace armcmc::ladder {
 
 /// What no catalogue has a formula for: something of the law that is not constant but follows one quantity by a curve.
 ///
-/// The curve is sum_k c_k exp(-((x - m_k) / w)^2) with bumps over the range of x, which is a signal, a state or time.
-/// It is added to a parameter, the output, an input (of itself) or the rate of a state.
+/// The curve is sum_k c_k max(1 - ((x - m_k) / w)^2, 0)^4, bumps over the range of x, which is a signal, a state or
+/// time. It is added to a parameter, the output, an input (of itself) or the rate of a state.
 [[nodiscard]] EffectEntry CurveEntry();
 
 /// The curves that explain most of what a model leaves. Fitted when they are first asked for.
@@ -38,7 +38,7 @@ class Curves {
   const Trial& base_;
   const DataScales& scales_;
   std::vector<EffectEntry> entries_;
-  std::optional<Rung> fitted_;
+  std::optional<std::vector<Contender>> fitted_;  ///< Best first.
 };
 
 }  // namespace armcmc::ladder

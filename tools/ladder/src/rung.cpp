@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include "armcmc/plant/error.hpp"
 #include "comparison.hpp"
@@ -19,6 +21,7 @@ constexpr int kBootstrap = 400;
 constexpr double kSure = 0.99;         // share of bootstrap samples in which it does
 constexpr double kLikely = 0.95;       // the same where few events show it: named, provisionally
 constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effect is named first
+constexpr double kAlike = 1.01;        // times the least error: as good
 constexpr double kTie = 0.05;          // share of bootstrap samples that another family may win
 constexpr double kLargerPart = 0.5;    // squared error that a name of a new family leaves at most
 constexpr double kBeside = 0.95;       // squared error that a name reaches where both may bend, in two of three senses,
@@ -190,10 +193,16 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     }
   rung->named.clear();
   if (good.empty()) return;
-  std::size_t leader = SIZE_MAX;
+  double least = std::numeric_limits<double>::infinity();
   for (const std::size_t i : good)
-    if (NumParameters(all[i]) == fewest && (leader == SIZE_MAX || all[i].alone.folds < all[leader].alone.folds))
-      leader = i;
+    if (NumParameters(all[i]) == fewest) least = std::min(least, all[i].alone.folds);
+  // Of those that are alike the one that reads fewest quantities, as dry friction where the pressure stands still.
+  std::size_t leader = SIZE_MAX;
+  for (const std::size_t i : good) {
+    if (NumParameters(all[i]) != fewest || all[i].alone.folds > kAlike * least) continue;
+    const auto key = [&](std::size_t k) { return std::pair(all[k].candidate.form().needs.size(), all[k].alone.folds); };
+    if (leader == SIZE_MAX || key(i) < key(leader)) leader = i;
+  }
   rung->named = {leader};
   rung->provisional = all[leader].alone.blocks > 1.0 - kLeastGain || all[leader].gain_share < kSure;
   // A formula that leaves noise alone is exact: what is like it, or holds it, is no rival.

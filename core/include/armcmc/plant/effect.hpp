@@ -80,6 +80,7 @@ struct EffectEntry {
   std::string title;                 ///< For people.
   std::string family;
   std::vector<std::string> kin;  ///< Effects that act alike.
+  bool single = false;           ///< Two of them in one place are pieces of some curve.
   std::string experiment;        ///< That would show it.
   std::vector<EffectForm> forms;
 };

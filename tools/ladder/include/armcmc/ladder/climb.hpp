@@ -82,7 +82,8 @@ struct ClimbRequest {
 ///    - takes the larger part of what is unexplained, alone or with the next one, unless its family has been named
 ///      before or it leaves nothing but noise.
 /// 2. Simplest first. Of those that close 95 % of what the best closes the ones with the fewest parameters, and of
-///    these the best. What a simple effect leaves is looked at on the next rung.
+///    these the best, and of those within 1 % of it the one that reads fewest quantities. What a simple effect leaves
+///    is looked at on the next rung.
 /// 3. Ties. With it go what is kin to it and leaves less than half as much again, where its own formula is not exact;
 ///    a family of as few parameters that wins one bootstrap sample in twenty; and a larger effect of another family
 ///    that leaves less than half and is better wherever it is looked for. Behind a tie nothing more is named: it would
@@ -92,7 +93,9 @@ struct ClimbRequest {
 ///    for, and does not hold the effect: its best copy of what the effect predicts is off by more than a quarter of
 ///    what the effect leaves. So it is where the model as it is leaves less on smoother signals, of those that are
 ///    rates of others: their noise is what is unexplained.
-/// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain.
+/// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain; and where a
+///    later rung names it again in the same place and it is an effect of which two are pieces of a curve that is none
+///    of theirs, as plays are of a spring that stiffens.
 [[nodiscard]] Ladder Climb(const ClimbRequest& request);
 
 }  // namespace armcmc::ladder

@@ -12,6 +12,7 @@ namespace armcmc::support {
 ///
 ///   schema = 1
 ///   name, title, family, experiment     words; aliases, kin: arrays of names
+///   single = true                       it has a kink: two of them in one place are pieces of a curve, and no name
 ///   slot, of, formula, explains, online, reason        the usual form (see EffectForm and EffectTerm)
 ///   also = [{ slot, of, formula }, ..]                 where it acts in more than one place
 ///   [needs]      NAME = { role, kind, unit, per, reads, used }
