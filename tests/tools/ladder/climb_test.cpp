@@ -93,6 +93,7 @@ TEST(Climb, WhatNoEffectExplainsHasNoName) {
       kSome, test::AxisData([](const AxisSample& s) { return 12.0 * std::exp(-std::pow((s.q - 0.02) / 0.01, 2)); }));
   ASSERT_EQ(ladder.rungs.size(), 1u);
   EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_EQ(ladder.rungs[0].as_if, "a curve of q were added to the output");
   EXPECT_FALSE(ladder.complete);
 }
 
@@ -173,7 +174,8 @@ TEST(Climb, WhatACurveOfAnotherShapeExplainsFarBetterIsNotNamed) {
                 test::MotorPlant());
   EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
   EXPECT_GT(1.0 - ladder.rungs[0].contenders[0].alone.folds, 0.5);
-  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("K, if it followed speed by a curve")));
+  EXPECT_EQ(ladder.rungs[0].as_if, "K followed speed by a curve");
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if K followed speed by a curve")));
   EXPECT_FALSE(ladder.complete);
 }
 

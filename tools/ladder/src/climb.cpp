@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "comparison.hpp"
@@ -33,9 +35,9 @@ struct Rivals {
   DerivedNoise noise;
   Curves curves;
 
-  [[nodiscard]] std::string WhyNot(const Contender& c) {
-    const std::string why = noise.WhyNot(c);
-    return why.empty() ? curves.WhyNot(c) : why;
+  [[nodiscard]] std::optional<Rival> Of(const Contender& c) {
+    const std::optional<Rival> rival = noise.RivalOf(c);
+    return rival ? rival : curves.RivalOf(c);
   }
 };
 
@@ -47,10 +49,14 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
     for (const std::size_t i : rung->named) {
       Contender& c = rung->contenders[i];
       if (!LeavesMore(view, c.trial, floor)) continue;
-      const std::string why = rivals->WhyNot(c);
-      if (why.empty()) continue;
+      const std::optional<Rival> rival = rivals->Of(c);
+      if (!rival) continue;
       c.ruled_out = again = true;
-      notes->push_back(why);
+      if (rung->as_if.empty()) rung->as_if = rival->as_if;
+      char times[32];
+      std::snprintf(times, sizeof(times), "%.1f", rival->times);
+      notes->push_back(c.candidate.entry->name + " was not named: it acts as if " + rival->as_if + ", which leaves " +
+                       times + " times less and has another shape");
     }
   }
 }
@@ -142,6 +148,8 @@ Ladder Climb(const ClimbRequest& request) {
       NameOne(ladder.view, floor, true, &rivals, &rung, &ladder.notes);
       rung.open = !rung.named.empty();
     }
+    if (r == 0 && rung.named.empty() && rung.as_if.empty() && LeavesMore(ladder.view, base, floor))
+      rung.as_if = rivals.curves.Best();
     if (!rung.named.empty() && !Confirmed(request.data, base, rung.leader())) {
       ladder.notes.push_back(rung.leader().candidate.entry->name +
                              " was not named: what it gains is not found again in the data kept apart");

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "armcmc/ladder/features.hpp"
 #include "armcmc/plant/error.hpp"
@@ -86,16 +85,17 @@ VectorXd LeftOf(const VectorXd& y, const Eigen::MatrixXd& columns, const VectorX
   return y - scaled * matrix.ldlt().solve(scaled.transpose() * y);
 }
 
-/// "K, if it followed w by a curve,"
-std::string InWords(const Contender& curve) {
+/// "K followed w by a curve"
+std::string AsIf(const Contender& curve) {
   const EffectForm& form = curve.candidate.form();
   const EffectTerm& term = form.terms.front();
   const std::map<std::string, std::string>& symbols = curve.candidate.binding.symbols;
   const bool over_time = term.formula.find("(t - ") != std::string::npos;
   const std::string followed = over_time ? "time" : symbols.at(form.needs.back().name);
-  if (term.slot == "parameter") return symbols.at(term.of) + ", if it followed " + followed + " by a curve,";
-  if (term.slot == "input") return followed + ", if the plant got a curve of it,";
-  return "a curve of " + followed + (term.slot == "rate" ? " in the rate of " + symbols.at(term.of) : "");
+  if (term.slot == "parameter") return symbols.at(term.of) + " followed " + followed + " by a curve";
+  if (term.slot == "input") return "the plant got a curve of " + followed;
+  return "a curve of " + followed + " were added to the " +
+         (term.slot == "rate" ? "rate of " + symbols.at(term.of) : "output");
 }
 
 }  // namespace
@@ -194,29 +194,38 @@ bool Curves::Holds(const Contender& curve, const Contender& c) const {
   return off.squaredNorm() < kOff * c.alone.folds * base.squaredNorm();
 }
 
-std::string Curves::WhyNot(const Contender& c) {
+void Curves::Judge(Contender* curve) {
+  if (curve->trial.judged) return;
+  LeaveOut(view_, &curve->trial);
+  curve->alone = Compare(view_, *curve, base_, false);
+}
+
+std::string Curves::Best() {
+  constexpr double kLargerPart = 0.5;
   if (!fitted_) FitThem();
-  if (fitted_->empty()) return "";
+  if (fitted_->empty() || fitted_->front().closed < kLargerPart) return "";
+  Contender& best = fitted_->front();
+  Judge(&best);
+  return best.alone.folds < kLargerPart && best.alone.blocks < 1.0 ? AsIf(best) : "";
+}
+
+std::optional<Rival> Curves::RivalOf(const Contender& c) {
+  if (!fitted_) FitThem();
+  if (fitted_->empty()) return std::nullopt;
   // The best one and what does as well: several that act alike are the rule, and one that holds it is enough.
   const double left = kAsWell * (1.0 - fitted_->front().closed);
-  std::string why;
+  std::optional<Rival> rival;
   for (Contender& curve : *fitted_) {
     // What is not far better where it was fitted is not where it was not.
     if (!curve.refined || 1.0 - curve.closed > left || 1.0 - c.closed < kFarBetter * (1.0 - curve.closed)) continue;
-    if (Holds(curve, c)) return "";  // the same physics with a better formula
-    if (!why.empty()) continue;
-    if (!curve.trial.judged) {
-      LeaveOut(view_, &curve.trial);
-      curve.alone = Compare(view_, curve, base_, false);
-    }
+    if (Holds(curve, c)) return std::nullopt;  // the same physics with a better formula
+    if (rival) continue;
+    Judge(&curve);
     const double times = c.alone.folds / std::max(curve.alone.folds, 1e-12);
     if (times < kFarBetter || !BetterEverywhere(curve, c)) continue;
-    char less[32];
-    std::snprintf(less, sizeof(less), "%.1f", times);
-    why = c.candidate.entry->name + " was not named: " + InWords(curve) + " leaves " + less +
-          " times less, and has another shape";
+    rival = Rival{AsIf(curve), times};
   }
-  return why;
+  return rival;
 }
 
 }  // namespace armcmc::ladder

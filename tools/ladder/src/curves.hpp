@@ -8,6 +8,12 @@
 
 namespace armcmc::ladder {
 
+/// What explains more than an effect does, and is none.
+struct Rival {
+  std::string as_if;  ///< "K followed w by a curve"
+  double times;       ///< What the effect leaves over what this leaves, squared errors on data left out.
+};
+
 /// What no catalogue has a formula for: something of the law that is not constant but follows one quantity by a curve.
 ///
 /// The curve is sum_k c_k max(1 - ((x - m_k) / w)^2, 0)^4, bumps over the range of x, which is a signal, a state or
@@ -22,12 +28,16 @@ class Curves {
          const DataScales& scales)
       : plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{CurveEntry()} {}
 
-  /// Why a contender is not what is missing, in words; empty where no curve says so.
+  /// The curve that rules a contender out; nothing where none does.
   /// @pre c.trial.judged.
-  [[nodiscard]] std::string WhyNot(const Contender& c);
+  [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
+
+  /// The best of them, in words; empty where it leaves half of the squared error or more.
+  [[nodiscard]] std::string Best();
 
  private:
   void FitThem();
+  void Judge(Contender* curve);
   /// Of those that act differently the ones that explain most, by one step from the model without them.
   [[nodiscard]] std::vector<Candidate> MostPromising() const;
   [[nodiscard]] bool Holds(const Contender& curve, const Contender& c) const;

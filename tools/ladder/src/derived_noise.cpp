@@ -56,14 +56,12 @@ void DerivedNoise::FitIt() {
   }
 }
 
-std::string DerivedNoise::WhyNot(const Contender& c) {
+std::optional<Rival> DerivedNoise::RivalOf(const Contender& c) {
   if (!fitted_) FitIt();
-  if (!best_ || !BetterEverywhere(best_->contender, c)) return "";
+  if (!best_ || !BetterEverywhere(best_->contender, c)) return std::nullopt;
   char text[64];
-  std::snprintf(text, sizeof(text), "over %.2g s leaves %.1f times less", best_->sd,
-                c.alone.folds / std::max(best_->contender.alone.folds, 1e-12));
-  return c.candidate.entry->name + " was not named: smoothing the signals that are rates of others " + text +
-         "; their noise is what is unexplained";
+  std::snprintf(text, sizeof(text), "signals that are rates of others were smoother, over %.2g s", best_->sd);
+  return Rival{text, c.alone.folds / std::max(best_->contender.alone.folds, 1e-12)};
 }
 
 }  // namespace armcmc::ladder

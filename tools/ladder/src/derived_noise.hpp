@@ -1,9 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "armcmc/ladder/climb.hpp"
+#include "curves.hpp"
 
 namespace armcmc::ladder {
 
@@ -17,9 +17,9 @@ class DerivedNoise {
   DerivedNoise(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, const Trial& base)
       : plant_(plant), data_(data), view_(view), base_(base) {}
 
-  /// Why a contender is not what is missing, in words; empty where smoother signals do not explain more.
+  /// Nothing where smoother signals do not explain more than the contender.
   /// @pre c.trial.judged.
-  [[nodiscard]] std::string WhyNot(const Contender& c);
+  [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
 
  private:
   struct Smoothed {

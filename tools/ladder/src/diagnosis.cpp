@@ -268,7 +268,7 @@ class Teller {
     const std::string percent = Number(std::round(1000.0 * result_.gap.closed_fraction) / 10.0);
     if (result_.ladder.empty())
       return ladder_.complete ? "Nothing is missing that these data show: the model explains them to the noise."
-                              : "Something is missing, and no effect that fits this plant earns a name.";
+                              : "Something is missing, and no effect that fits this plant earns a name." + ActsAsIf();
     std::vector<std::string> rungs;
     for (const Rung& rung : ladder_.rungs) {
       if (rung.named.empty()) continue;
@@ -278,7 +278,14 @@ class Teller {
     }
     return "Missing: " + Joined(rungs, ", then ") + ". With that, " + percent +
            " % of the gap on data kept apart is closed" +
-           (ladder_.complete ? ", and nothing is left to explain." : "; something is still unexplained.");
+           (ladder_.complete ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf());
+  }
+
+  /// Of what is left, where something is known that no catalogue has.
+  [[nodiscard]] std::string ActsAsIf() const {
+    const bool known =
+        !ladder_.rungs.empty() && ladder_.rungs.back().named.empty() && !ladder_.rungs.back().as_if.empty();
+    return known ? " It acts as if " + ladder_.rungs.back().as_if + "." : "";
   }
 
   [[nodiscard]] double Closed(double rmse) const {

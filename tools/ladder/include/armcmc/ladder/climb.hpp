@@ -40,6 +40,7 @@ struct Rung {
   std::vector<Contender> contenders;  ///< Best first.
   double probability = 0.0;           ///< That an effect of the named family is there.
   bool open = false;                  ///< Takes the smaller part: named only with the next one.
+  std::string as_if;                  ///< "K followed w by a curve": what rules the best one out; else empty.
   bool provisional = false;           ///< Seen in too few separate stretches to be judged on others.
   Trial base;                         ///< What it was compared with,
   View view;                          ///< in which view.
