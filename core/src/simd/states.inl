@@ -6,28 +6,32 @@
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-/// The states of all candidates of a tile, from sample to sample, where the tapes of the laws read them.
+/// The states of all candidates of one or two tiles, from sample to sample, where the tapes of the laws read them.
+template <std::size_t kTiles>
 class StateIntegrator {
+  static constexpr std::size_t kLanes = TapeRegisters<kTiles>::kLanes;
+
  public:
   /// @param scalars    Of the pack's first sample.
   /// @param past       PastLines::value, where a tape looks something up.
   /// @param registers  With the parameters in them.
-  /// @param offset     Added to the starts; null: nothing.
-  StateIntegrator(const StateRun& run, const double* scalars, const double* past, TapeRegisters* registers,
+  /// @param offset     Added to the starts of one tile; null: nothing.
+  StateIntegrator(const StateRun& run, const double* scalars, const double* past, TapeRegisters<kTiles>* registers,
                   const StateTile* offset = nullptr) noexcept
       : run_(run), past_(past), registers_(*registers) {
     const Tape& start = *run.start;
-    StateTile state;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
+    std::array<std::array<double, kLanes>, kMaxStates> state;  // NOLINT(cppcoreguidelines-pro-type-member-init):
+                                                               // written before read
     if (!run.carried) {
       StartTape(start, scalars, &registers_);
       RunTape(start, scalars, past_, &registers_);
-      for (std::size_t s = 0; s < NumStates(); ++s) state.value[s] = registers_.value[start.result[s]];
+      for (std::size_t s = 0; s < NumStates(); ++s) state[s] = registers_.value[start.result[s]];
     }
     for (std::size_t s = 0; s < NumStates(); ++s) {
-      if (run.given[s]) state.value[s].fill(run.value[s]);
+      if (run.given[s]) state[s].fill(run.value[s]);
       if (offset != nullptr)
-        for (std::size_t lane = 0; lane < kTileLanes; ++lane) state.value[s][lane] += offset->value[s][lane];
-      State(s) = state.value[s];
+        for (std::size_t lane = 0; lane < kLanes; ++lane) state[s][lane] += offset->value[s][lane % kTileLanes];
+      State(s) = state[s];
     }
     StartTape(*run.step, run.Row(0), &registers_);
     if (run.carried) Step();
@@ -38,12 +42,12 @@ class StateIntegrator {
     for (; sample_ < n; ++sample_) Step();
   }
   void CopyTo(StateTile* state) noexcept {
-    for (std::size_t s = 0; s < NumStates(); ++s) state->value[s] = State(s);
+    for (std::size_t s = 0; s < NumStates(); ++s) std::copy_n(State(s).data(), kTileLanes, state->value[s].data());
   }
 
  private:
   [[nodiscard]] std::size_t NumStates() const noexcept { return static_cast<std::size_t>(run_.num_states); }
-  [[nodiscard]] std::array<double, kTileLanes>& State(std::size_t s) noexcept {
+  [[nodiscard]] std::array<double, kLanes>& State(std::size_t s) noexcept {
     return registers_.value[static_cast<std::size_t>(run_.step->num_parameters) + s];
   }
 
@@ -54,7 +58,7 @@ class StateIntegrator {
 
   const StateRun& run_;
   const double* past_;
-  TapeRegisters& registers_;
+  TapeRegisters<kTiles>& registers_;
   int sample_ = 0;
   int row_ = 0;  ///< Substeps done.
 };

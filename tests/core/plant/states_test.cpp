@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -191,7 +192,7 @@ TEST(States, SameBitsOnEveryFusedInstructionSet) {
       for (std::size_t lane = 0; lane < kTileLanes; ++lane)
         laid.tile.value[d][lane] *= 1.0 + 0.013 * static_cast<double>(lane);
     const NoiseModel noise(NoiseSettings{.std = 0.1});
-    alignas(64) std::array<double, kTileLanes> log_scale{}, score{}, first_score{};
+    alignas(64) std::array<double, kTileLanes> log_scale{}, score{}, first_score{}, one{};
     const auto first = std::make_unique<PredictionTile>(), other = std::make_unique<PredictionTile>();
     for (const simd::Kernels* kernels : sets) {
       const bool is_first = kernels == sets[0];
@@ -199,6 +200,16 @@ TEST(States, SameBitsOnEveryFusedInstructionSet) {
       auto& scored = is_first ? first_score : score;
       const auto scratch = std::make_unique<PredictionTile>();
       kernels->score(-1, noise, *laid.data, laid.tile, log_scale.data(), scratch.get(), scored.data());
+      // Two tiles side by side, the second one turned round.
+      ThetaPair two = {laid.tile, laid.tile};
+      for (std::size_t d = 0; d < 3; ++d) std::reverse(two[1].value[d].begin(), two[1].value[d].end());
+      alignas(64) std::array<double, 2 * kTileLanes> both_scale{}, both{};
+      kernels->score_two(-1, noise, *laid.data, two, both_scale.data(), scratch.get(), both.data());
+      kernels->score(-1, noise, *laid.data, two[1], log_scale.data(), scratch.get(), one.data());
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+        EXPECT_TRUE(test::SameBits(both[lane], scored[lane])) << kernels->name << description.name << lane;
+        EXPECT_TRUE(test::SameBits(both[kTileLanes + lane], one[lane])) << kernels->name << description.name << lane;
+      }
       for (std::size_t lane = 0; !is_first && lane < kTileLanes; ++lane) {
         EXPECT_TRUE(test::SameBits(first_score[lane], score[lane])) << description.name;
         for (std::size_t n = 0; n < 60; ++n)
