@@ -100,14 +100,25 @@ void DescribedSimulation::Begin() {
   }
 }
 
+double DescribedSimulation::Between(std::size_t signal, double from, double to, double part, double t) {
+  const std::string& between = plant_.signals[signal].between;
+  if (between == "held") return from;
+  const bool hidden = std::any_of(hidden_.begin(), hidden_.end(), [signal](const Hidden& h) {
+    return h.slot == HiddenTerm::Slot::kInput && static_cast<std::size_t>(h.of) == signal;
+  });
+  const auto& [input, state, order] = sources_[signal];
+  if (between != "smooth" || hidden || input < 0) return from + part * (to - from);
+  return inputs_[static_cast<std::size_t>(input)].At(t)[static_cast<std::size_t>(order)];
+}
+
 void DescribedSimulation::Advance(const std::vector<double>& from, const std::vector<double>& to) {
   int substeps = 1;
   for (const DescribedPlant::State& state : plant_.states) substeps = std::max(substeps, state.substeps);
   const double h = scenario_.dt / substeps;
   const auto rates = [&](double part, const std::vector<double>& state) {
     std::vector<double> frame = frame_;
-    for (std::size_t s = 0; s < from.size(); ++s) frame[s] = from[s] + part * (to[s] - from[s]);
     frame.back() = (static_cast<double>(index_ - 1) + part) * scenario_.dt;
+    for (std::size_t s = 0; s < from.size(); ++s) frame[s] = Between(s, from[s], to[s], part, frame.back());
     return Rates(std::move(frame), state);
   };
   for (int j = 0; j < substeps; ++j) {

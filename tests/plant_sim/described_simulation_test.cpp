@@ -115,6 +115,17 @@ TEST(DescribedSimulation, InputsAreLinearBetweenSamples) {
   }
 }
 
+TEST(DescribedSimulation, AnInputMayBeHeldOrSmoothBetweenSamples) {
+  DescribedPlant plant = Tank();
+  plant.states[0].rate = "u + 0*c";
+  plant.signals[0].between = "held";
+  auto rows = Rows(plant, Moving("u", "t^2"), 4);
+  EXPECT_NEAR(rows[3][1], 0.1 * (0.0 + 0.01 + 0.04), 1e-15);
+  plant.signals[0].between = "smooth";
+  rows = Rows(plant, Moving("u", "t^2"), 4);
+  EXPECT_NEAR(rows[3][1], 0.3 * 0.3 * 0.3 / 3.0, 1e-15) << "as it is at every time";
+}
+
 TEST(DescribedSimulation, ARateReadsTheTimeOfItsStage) {
   DescribedPlant plant = Tank();
   plant.states[0].rate = "3*t^2 + 0*c";

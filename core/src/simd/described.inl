@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "armcmc/plant/start_fit.hpp"
 #include "simd/states.inl"
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
@@ -39,7 +38,7 @@ template <std::size_t kTiles, class Take>
     for (std::size_t n = 0; n < samples; ++n) one(n);
     return;
   }
-  StateIntegrator<kTiles> states(*data.states, data.scalars->Row(0), data.past, &registers, offset);
+  StateIntegrator<kTiles> states(*data.states, data.scalars->Row(0), data.past, &registers, data.start_fit, offset);
   start();
   for (std::size_t n = 0; n < samples; ++n) {
     states.AdvanceTo(data.sample[n]);

@@ -1,5 +1,6 @@
 // Integrates the states of described plants; included by described.inl, once per instruction set.
 
+#include "armcmc/plant/start_fit.hpp"
 #include "armcmc/plant/state_run.hpp"
 #include "simd/tape.inl"
 
@@ -15,9 +16,10 @@ class StateIntegrator {
   /// @param scalars    Of the pack's first sample.
   /// @param past       PastLines::value, where a tape looks something up.
   /// @param registers  With the parameters in them.
+  /// @param fit        Of the start; null: all candidates start alike.
   /// @param offset     Added to the starts of one tile; null: nothing.
   StateIntegrator(const StateRun& run, const double* scalars, const double* past, TapeRegisters<kTiles>* registers,
-                  const StateTile* offset = nullptr) noexcept
+                  const StartFit* fit, const StateTile* offset = nullptr) noexcept
       : run_(run), past_(past), registers_(*registers) {
     const Tape& start = *run.start;
     std::array<std::array<double, kLanes>, kMaxStates> state;  // NOLINT(cppcoreguidelines-pro-type-member-init):
@@ -29,6 +31,10 @@ class StateIntegrator {
     }
     for (std::size_t s = 0; s < NumStates(); ++s) {
       if (run.given[s]) state[s].fill(run.value[s]);
+      if (fit != nullptr) {
+        if (run.carried) FollowParameters(*fit, s, state[s].data());
+        for (std::size_t lane = 0; lane < kLanes; ++lane) state[s][lane] += fit->shift[s];
+      }
       if (offset != nullptr)
         for (std::size_t lane = 0; lane < kLanes; ++lane) state[s][lane] += offset->value[s][lane % kTileLanes];
       State(s) = state[s];
@@ -46,6 +52,16 @@ class StateIntegrator {
   }
 
  private:
+  void FollowParameters(const StartFit& fit, std::size_t s, double* state) const noexcept {
+    for (std::size_t d = 0; d < static_cast<std::size_t>(fit.num_parameters); ++d)
+      for (std::size_t lane = 0; lane < kLanes; lane += Simd::kLanes) {
+        const Simd::V away = Simd::Load(registers_.value[d].data() + lane) - Simd::Set(fit.about[d]);
+        const Simd::V size = Simd::Abs(away);
+        const Simd::V back = Simd::Max(Simd::Set(2.0 * fit.reach[d]) - size, Simd::V{});
+        Simd::Store(state + lane, Simd::Fma(Simd::CopySign(Simd::Min(size, back), away), Simd::Set(fit.slope[s][d]),
+                                            Simd::Load(state + lane)));
+      }
+  }
   [[nodiscard]] std::size_t NumStates() const noexcept { return static_cast<std::size_t>(run_.num_states); }
   [[nodiscard]] std::array<double, kLanes>& State(std::size_t s) noexcept {
     return registers_.value[static_cast<std::size_t>(run_.step->num_parameters) + s];

@@ -84,6 +84,8 @@ class DescribedSimulation {
 
   /// Signals at the present index that come from inputs: recorded into `signals`, as the plant sees them into `seen`.
   void MoveInputs(std::vector<double>* signals, std::vector<double>* seen);
+  /// A signal at t, `part` of the way between its samples.
+  [[nodiscard]] double Between(std::size_t signal, double from, double to, double part, double t);
   void Begin();
   void Advance(const std::vector<double>& from, const std::vector<double>& to);
   [[nodiscard]] std::vector<double> Rates(std::vector<double> frame, const std::vector<double>& state);
