@@ -62,7 +62,17 @@ int DescribedSimulation::ModeOf(const std::vector<double>& frame, double dt, boo
   return mode;
 }
 
-std::vector<double> DescribedSimulation::Rates(std::vector<double> frame, const std::vector<double>& state) {
+void DescribedSimulation::FollowSignals(double dt) {
+  std::vector<double> frame = frame_;
+  std::copy(seen_.begin(), seen_.end(), frame.begin());
+  frame.back() = t();
+  PlaceParameters(last_active_, &frame);
+  for (Expression& rate : rates_)
+    if (rate.has_memory()) static_cast<void>(rate.Evaluate(frame, dt));
+}
+
+std::vector<double> DescribedSimulation::Rates(std::vector<double> frame, const std::vector<double>& state,
+                                               double part) {
   const std::size_t first_let = names_.size() - 1 - lets_.size();
   const auto lets = [&](bool late) {
     for (std::size_t l = 0; l < lets_.size(); ++l)
@@ -74,7 +84,8 @@ std::vector<double> DescribedSimulation::Rates(std::vector<double> frame, const 
   PlaceParameters(ModeOf(frame, 0.0, false), &frame);
   lets(true);
   std::vector<double> rates;
-  for (Expression& rate : rates_) rates.push_back(rate.EvaluateNow(frame));
+  for (Expression& rate : rates_)
+    rates.push_back(rate.has_memory() ? rate.EvaluateBetween(frame, part) : rate.EvaluateNow(frame));
   for (Hidden& hidden : hidden_)
     if (hidden.slot == HiddenTerm::Slot::kRate)
       rates[static_cast<std::size_t>(hidden.of)] += hidden.value.EvaluateNow(frame);
@@ -119,7 +130,7 @@ void DescribedSimulation::Advance(const std::vector<double>& from, const std::ve
     std::vector<double> frame = frame_;
     frame.back() = (static_cast<double>(index_ - 1) + part) * scenario_.dt;
     for (std::size_t s = 0; s < from.size(); ++s) frame[s] = Between(s, from[s], to[s], part, frame.back());
-    return Rates(std::move(frame), state);
+    return Rates(std::move(frame), state, part);
   };
   for (int j = 0; j < substeps; ++j) {
     const double begin = static_cast<double>(j) / substeps, end = static_cast<double>(j + 1) / substeps;
@@ -159,6 +170,7 @@ void DescribedSimulation::Next() {
   const double dt = index_ == 0 ? 0.0 : scenario_.dt;
   const std::vector<double> before = seen_;
   MoveInputs(&signals_, &seen_);
+  FollowSignals(dt);
   if (index_ == 0) {
     Begin();
   } else if (!state_.empty()) {
@@ -168,7 +180,7 @@ void DescribedSimulation::Next() {
   std::copy(seen_.begin(), seen_.end(), frame.begin());
   frame.back() = t();
   PlaceStates(state_, &frame);
-  const std::vector<double> rates = Rates(frame, state_);
+  const std::vector<double> rates = Rates(frame, state_, 1.0);
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     if (sources_[s].state < 0) continue;
     const auto of = static_cast<std::size_t>(sources_[s].state);
