@@ -213,6 +213,7 @@ void Estimator::Impl::ExpectStates(AdjustResult* result) noexcept {
   if (state_filter.empty()) return;
   states_due = result;
   ModeData* data = adjust_data.data();
+  state_filter.TrustStart();
   state_filter.Predict(kernels, state_mean, state_noise, data);
   if (data->num_samples == 0) return;
   const ModeMemory& memory = *memories[0];

@@ -63,7 +63,6 @@ void StateFilter::Predict(const simd::Kernels& kernels, const std::array<double,
   const StateRun& run = *data->states;
   const auto n = static_cast<Eigen::Index>(plant_->size());
   start_ = run.carried ? end_covariance_ : ParamMatrix::Zero(n, n);
-  if (run.carried) opened_.fill(0.0);
   const bool opened = std::any_of(opened_.begin(), opened_.end(), [](double variance) { return variance > 0.0; });
   if (!opened) fit_.shift.fill(0.0);
   fit_.count = 0;
@@ -269,7 +268,6 @@ void StateFilter::Update(const simd::Kernels& kernels, const std::array<double, 
   }
   if (!end_covariance_.allFinite()) end_covariance_.setZero();
   if (!slope_.allFinite()) slope_.setZero();
-  opened_.fill(0.0);
 }
 
 }  // namespace armcmc

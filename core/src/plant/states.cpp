@@ -124,7 +124,7 @@ bool PlantStates::Prepare(const DataPack& pack, const PlantPoint::Values* point,
   given[0] = pack.dt / substeps_;
   for (int i = 0; i < intervals; ++i) {
     const int n = i - (carried ? 1 : 0);  // sample at the beginning of the interval
-    const PlantPoint::Values &from = *sample(n), &to = *sample(n + 1);
+    const PlantPoint::Values &from = n < 0 ? start : point[n], &to = point[n + 1];
     const PlantPoint::Values *earlier = sample(n - 1), *later = sample(n + 2);
     for (int p = 0; p <= points; ++p) {
       const double part = static_cast<double>(p) / points;

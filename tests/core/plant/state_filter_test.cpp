@@ -97,6 +97,24 @@ TEST(StateFilter, SixPacksTellWhatOneOfAllTheirSamplesDoes) {
   }
 }
 
+// A live process warms up on packs of its own.
+TEST(StateFilter, ResetEqualsAFreshEstimator) {
+  const auto plant = test::Program(Oscillator());
+  test::Rig fresh(DescribedSettings(plant)), used(DescribedSettings(plant));
+  const auto pack = [&](std::int64_t seq, double phase) {
+    return DescribedPack(
+        *plant, seq,
+        [&](double t) {
+          return PlantSample{{Drive(t)}, std::sin(5.0 * t + phase)};
+        },
+        50, kDt);
+  };
+  for (std::int64_t seq = 1; seq <= 3; ++seq) (void)used.Step(pack(seq, 1.0));
+  used.estimator.Reset();
+  for (std::int64_t seq = 1; seq <= 3; ++seq)
+    test::ExpectSameBits(fresh.Step(pack(seq, 0.0)), used.Step(pack(seq, 0.0)));
+}
+
 struct Begun {
   int packs;
   double speed;
