@@ -105,10 +105,6 @@ bool PlantStates::Prepare(const DataPack& pack, const PlantPoint::Values* point,
   if (intervals * substeps_ * out->stride > kMaxStateCells) return false;
 
   const PlantPoint::Values& start = carried ? before->point : point[0];
-  // Of sample n of the pack, from -1 for the last one before it; null where that is not known.
-  const auto sample = [&](int n) {
-    return n >= 0 ? (n < pack.num_samples ? point + n : nullptr) : n == -1 && carried ? &before->point : nullptr;
-  };
   PlantPoint::Values between{};
   bool finite = true;
   for (std::size_t s = 0; s < static_cast<std::size_t>(size_); ++s) {
@@ -125,13 +121,14 @@ bool PlantStates::Prepare(const DataPack& pack, const PlantPoint::Values* point,
   for (int i = 0; i < intervals; ++i) {
     const int n = i - (carried ? 1 : 0);  // sample at the beginning of the interval
     const PlantPoint::Values &from = n < 0 ? start : point[n], &to = point[n + 1];
-    const PlantPoint::Values *earlier = sample(n - 1), *later = sample(n + 2);
+    const bool has_earlier = i > 0, has_later = n + 2 < pack.num_samples;
+    const PlantPoint::Values &earlier = n > 0 ? point[n - 1] : start, &later = point[has_later ? n + 2 : n + 1];
     for (int p = 0; p <= points; ++p) {
       const double part = static_cast<double>(p) / points;
       for (std::size_t s = 0; s < between.size(); ++s)
-        between[s] = ValueBetween(s < between_.size() ? between_[s] : Between::kLinear,
-                                  earlier != nullptr ? &(*earlier)[s] : nullptr, from[s], to[s],
-                                  later != nullptr ? &(*later)[s] : nullptr, part);
+        between[s] =
+            ValueBetween(s < between_.size() ? between_[s] : Between::kLinear, has_earlier ? &earlier[s] : nullptr,
+                         from[s], to[s], has_later ? &later[s] : nullptr, part);
       inputs_.Evaluate({between.data(), first_t + (i + part) * pack.dt, pack.dt}, nullptr,
                        given.data() + 1 + static_cast<std::size_t>(p == 0 ? 0 : 2 - p % 2) * width);
       if (p == 0 || p % 2 == 1) continue;
