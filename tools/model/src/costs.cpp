@@ -112,8 +112,8 @@ std::string BetweenText(const std::shared_ptr<const PlantProgram>& program,
     }
     if (best.empty()) continue;
     const std::string& name = description.signals[s].name;
-    text += "between samples: " + name + " with between = \"" + best + "\" explains these data better, by " +
-            support::Significant(most, 3) + " nats\n";
+    text.append("between samples: ").append(name).append(" with between = \"").append(best);
+    text.append("\" explains these data better, by ").append(support::Significant(most, 3)).append(" nats\n");
   }
   return text;
 }
