@@ -213,18 +213,29 @@ void Estimator::Impl::ExpectStates(AdjustResult* result) noexcept {
   if (state_filter.empty()) return;
   states_due = result;
   ModeData* data = adjust_data.data();
+  state_filter.TrustStart();
   state_filter.Predict(kernels, state_mean, state_noise, data);
+  if (data->num_samples == 0) return;
   const ModeMemory& memory = *memories[0];
-  if (memory.slot[memory.current].valid || data->num_samples == 0) return;
   // Far from the prior's mean a start that is off has another effect: about where the parameters are, then.
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
-    const ParamVector u = samplers[0]->ModeFromPrior(*data, workspace.get());
-    std::array<double, kMaxParams> mode{};
-    for (int d = 0; d < info.num_parameters; ++d)
-      mode[static_cast<std::size_t>(d)] = samplers[0]->space().Theta(d, u[d]);
-    state_filter.Predict(kernels, mode, state_noise, data);
-  }
+  constexpr int kRounds = 2, kRoundsWithout = 8;  // of a start that is known, and of one that is not
+  std::array<double, kMaxParams> mean = state_mean;
+  const auto find = [&](int rounds) {
+    for (int round = 0; round < rounds && !memory.slot[memory.current].valid; ++round) {
+      const ParamVector u = samplers[0]->ModeFromPrior(*data, workspace.get());
+      for (int d = 0; d < info.num_parameters; ++d)
+        mean[static_cast<std::size_t>(d)] = samplers[0]->space().Theta(d, u[d]);
+      state_filter.Predict(kernels, mean, state_noise, data);
+    }
+  };
+  find(kRounds);
+  const std::array<double, kMaxParams> told_mean = mean;
+  const double told = state_filter.OpenStart(kernels, mean, state_noise, *data);
+  if (told < 0.0) return;
+  state_filter.Predict(kernels, mean, state_noise, data);
+  find(kRoundsWithout);
+  if (!state_filter.StartIsContradicted(kernels, mean, state_noise, *data, told))
+    state_filter.Predict(kernels, told_mean, state_noise, data);
 }
 
 void Estimator::Impl::CarryStates() noexcept {

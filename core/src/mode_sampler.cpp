@@ -88,8 +88,8 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
   double mean_square = 0.0;
   alignas(64) std::array<double, kTileLanes> log_scale;
   for (int first = 0; first < kMismatchDraws; first += kTileLanes) {
-    kernels_.to_physical(space_, u.data(), first, &ws->theta, log_scale.data());
-    kernels_.predict(model_, data, ws->theta, &ws->prediction);
+    kernels_.to_physical(space_, u.data(), first, ws->theta.data(), log_scale.data());
+    kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
     std::array<double, kTileLanes> lane_mean{};
     for (int n = 0; n < data.num_samples; ++n) {
       const auto in = static_cast<std::size_t>(n);

@@ -245,11 +245,20 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
   for (int k = last; k < end; ++k)  // lanes past the end repeat the last candidate; nothing reads their results
     for (int d = 0; d < out->dim; ++d) u[d][k] = u[d][last - 1];
 
-  alignas(64) std::array<double, kTileLanes> log_scale;
+  alignas(64) std::array<double, 2 * kTileLanes> log_scale;
+  for (int k = first; k < end; k += 2 * kTileLanes) {
+    const bool two = k + kTileLanes < end;
+    kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
+    if (two) kernels_.to_physical(space_, u, k + kTileLanes, &ws->theta[1], log_scale.data() + kTileLanes);
+    double* const out_k = &ws->log_likelihood[static_cast<std::size_t>(k)];
+    if (two) {
+      kernels_.score_two(model_, noise_, data, ws->theta, log_scale.data(), &ws->prediction, out_k);
+    } else {
+      kernels_.score(model_, noise_, data, ws->theta[0], log_scale.data(), &ws->prediction, out_k);
+    }
+  }
   for (int k = first; k < end; k += kTileLanes) {
     const auto at = static_cast<std::size_t>(k);
-    kernels_.to_physical(space_, u, k, &ws->theta, log_scale.data());
-    kernels_.score(model_, noise_, data, ws->theta, log_scale.data(), &ws->prediction, &ws->log_likelihood[at]);
     kernels_.initial_prior(space_, u, k, &ws->initial_prior[at]);
     double* q = &ws->proposal[at];
     std::fill(q, q + kTileLanes, 0.0);

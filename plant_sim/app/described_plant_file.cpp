@@ -28,7 +28,8 @@ void ReadNames(StrictTable root, DescribedPlant* plant) {
   StrictTable signals = root.Table("signals");
   for (const std::string& name : signals.Keys()) {
     StrictTable at = signals.Table(name);
-    plant->signals.push_back({name, at.RequiredText("unit"), at.Text("role", ""), at.Text("derivative_of", "")});
+    plant->signals.push_back({name, at.RequiredText("unit"), at.Text("role", ""), at.Text("derivative_of", ""),
+                              at.Choice("between", "linear", {"linear", "held", "smooth"})});
   }
   StrictTable constants = root.Table("constants");
   for (const std::string& name : constants.Keys()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <regex>
 
 #include "armcmc/plant_sim/described_simulation.hpp"
 
@@ -174,14 +175,40 @@ void DescribedSimulation::MakeExpressions() {
     for (std::size_t m = 0; m < whens_.size(); ++m) RefuseMemory(ModeKey(plant_, m, "when"), whens_[m]);
   for (const DescribedPlant::State& state : plant_.states) {
     const std::string key = "states." + state.name + ".";
-    rates_.push_back(Read(key + "rate", state.rate));
-    RefuseMemory(key + "rate", rates_.back());
+    rates_.push_back(ReadRate(key + "rate", state.rate));
     starts_.push_back(Read(key + "start", state.start, /*sees_output=*/true));
     RefuseMemory(key + "start", starts_.back());
   }
   for (const auto& [name, value] : scenario_.start)
     if (plant_.StateAt(name) < 0 && plant_.SignalAt(name) < 0)
       throw DescribedError("scenario.start." + name, 0, plant_.name + " has no state and no signal of that name");
+}
+
+DescribedSimulation::Expression DescribedSimulation::ReadRate(const std::string& key, const std::string& text) const {
+  Expression rate = Read(key, text);
+  const auto reads_let = [&](const auto& which) {
+    for (std::size_t l = 0; l < lets_.size(); ++l)
+      if (which[l] && rate.Reads(static_cast<int>(Place(plant_.lets[l].name)))) return true;
+    return false;
+  };
+  if (!rate.has_memory() && !reads_let(remembers_)) return rate;
+  // What it remembers is its own: named parts are put in, the last one first, as each uses those above it.
+  std::string whole = text;
+  for (auto let = plant_.lets.rbegin(); let != plant_.lets.rend(); ++let)
+    whole = std::regex_replace(whole, std::regex("\\b" + let->name + "\\b"), "(" + let->text + ")");
+  rate = Read(key, whole);
+  for (std::size_t place = 0; place + 1 < names_.size(); ++place) {
+    if (!rate.RemembersPlace(static_cast<int>(place))) continue;
+    const bool signal = place < plant_.signals.size();
+    const std::string& name = names_[place];
+    const auto parameter = std::find_if(plant_.parameters.begin(), plant_.parameters.end(),
+                                        [&name](const DescribedPlant::Parameter& p) { return p.name == name; });
+    if (plant_.StateAt(name) >= 0 || (signal && sources_[place].state >= 0))
+      throw DescribedError(key, 0, "remembers the state " + name + ": between samples only signals are known");
+    if (parameter != plant_.parameters.end() && parameter->per_mode)
+      throw DescribedError(key, 0, "remembers what depends on " + name + ", which differs from mode to mode");
+  }
+  return rate;
 }
 
 void DescribedSimulation::RefuseMemory(const std::string& key, const Expression& rate) const {

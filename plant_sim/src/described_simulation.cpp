@@ -62,7 +62,17 @@ int DescribedSimulation::ModeOf(const std::vector<double>& frame, double dt, boo
   return mode;
 }
 
-std::vector<double> DescribedSimulation::Rates(std::vector<double> frame, const std::vector<double>& state) {
+void DescribedSimulation::FollowSignals(double dt) {
+  std::vector<double> frame = frame_;
+  std::copy(seen_.begin(), seen_.end(), frame.begin());
+  frame.back() = t();
+  PlaceParameters(last_active_, &frame);
+  for (Expression& rate : rates_)
+    if (rate.has_memory()) static_cast<void>(rate.Evaluate(frame, dt));
+}
+
+std::vector<double> DescribedSimulation::Rates(std::vector<double> frame, const std::vector<double>& state,
+                                               double part) {
   const std::size_t first_let = names_.size() - 1 - lets_.size();
   const auto lets = [&](bool late) {
     for (std::size_t l = 0; l < lets_.size(); ++l)
@@ -74,7 +84,8 @@ std::vector<double> DescribedSimulation::Rates(std::vector<double> frame, const 
   PlaceParameters(ModeOf(frame, 0.0, false), &frame);
   lets(true);
   std::vector<double> rates;
-  for (Expression& rate : rates_) rates.push_back(rate.EvaluateNow(frame));
+  for (Expression& rate : rates_)
+    rates.push_back(rate.has_memory() ? rate.EvaluateBetween(frame, part) : rate.EvaluateNow(frame));
   for (Hidden& hidden : hidden_)
     if (hidden.slot == HiddenTerm::Slot::kRate)
       rates[static_cast<std::size_t>(hidden.of)] += hidden.value.EvaluateNow(frame);
@@ -100,15 +111,26 @@ void DescribedSimulation::Begin() {
   }
 }
 
+double DescribedSimulation::Between(std::size_t signal, double from, double to, double part, double t) {
+  const std::string& between = plant_.signals[signal].between;
+  if (between == "held") return from;
+  const bool hidden = std::any_of(hidden_.begin(), hidden_.end(), [signal](const Hidden& h) {
+    return h.slot == HiddenTerm::Slot::kInput && static_cast<std::size_t>(h.of) == signal;
+  });
+  const auto& [input, state, order] = sources_[signal];
+  if (between != "smooth" || hidden || input < 0) return from + part * (to - from);
+  return inputs_[static_cast<std::size_t>(input)].At(t)[static_cast<std::size_t>(order)];
+}
+
 void DescribedSimulation::Advance(const std::vector<double>& from, const std::vector<double>& to) {
   int substeps = 1;
   for (const DescribedPlant::State& state : plant_.states) substeps = std::max(substeps, state.substeps);
   const double h = scenario_.dt / substeps;
   const auto rates = [&](double part, const std::vector<double>& state) {
     std::vector<double> frame = frame_;
-    for (std::size_t s = 0; s < from.size(); ++s) frame[s] = from[s] + part * (to[s] - from[s]);
     frame.back() = (static_cast<double>(index_ - 1) + part) * scenario_.dt;
-    return Rates(std::move(frame), state);
+    for (std::size_t s = 0; s < from.size(); ++s) frame[s] = Between(s, from[s], to[s], part, frame.back());
+    return Rates(std::move(frame), state, part);
   };
   for (int j = 0; j < substeps; ++j) {
     const double begin = static_cast<double>(j) / substeps, end = static_cast<double>(j + 1) / substeps;
@@ -148,6 +170,7 @@ void DescribedSimulation::Next() {
   const double dt = index_ == 0 ? 0.0 : scenario_.dt;
   const std::vector<double> before = seen_;
   MoveInputs(&signals_, &seen_);
+  FollowSignals(dt);
   if (index_ == 0) {
     Begin();
   } else if (!state_.empty()) {
@@ -157,7 +180,7 @@ void DescribedSimulation::Next() {
   std::copy(seen_.begin(), seen_.end(), frame.begin());
   frame.back() = t();
   PlaceStates(state_, &frame);
-  const std::vector<double> rates = Rates(frame, state_);
+  const std::vector<double> rates = Rates(frame, state_, 1.0);
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     if (sources_[s].state < 0) continue;
     const auto of = static_cast<std::size_t>(sources_[s].state);

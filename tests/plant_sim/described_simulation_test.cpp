@@ -115,6 +115,30 @@ TEST(DescribedSimulation, InputsAreLinearBetweenSamples) {
   }
 }
 
+TEST(DescribedSimulation, AnInputMayBeHeldOrSmoothBetweenSamples) {
+  DescribedPlant plant = Tank();
+  plant.states[0].rate = "u + 0*c";
+  plant.signals[0].between = "held";
+  auto rows = Rows(plant, Moving("u", "t^2"), 4);
+  EXPECT_NEAR(rows[3][1], 0.1 * (0.0 + 0.01 + 0.04), 1e-15);
+  plant.signals[0].between = "smooth";
+  rows = Rows(plant, Moving("u", "t^2"), 4);
+  EXPECT_NEAR(rows[3][1], 0.3 * 0.3 * 0.3 / 3.0, 1e-15) << "as it is at every time";
+}
+
+TEST(DescribedSimulation, ARateRemembersSignals) {
+  DescribedPlant plant = Tank();
+  plant.lets = {{"late", "delay(u, 0.2)"}, {"twice", "2*late"}};
+  plant.states[0].rate = "twice + 0*c";
+  const auto rows = Rows(plant, Moving("u", "1 + t"), 8);
+  // Twice the integral of u 0.2 s ago, which before the first sample is what it was there.
+  EXPECT_NEAR(rows[2][1], 2.0 * 0.2, 1e-14);
+  EXPECT_NEAR(rows[7][1], 2.0 * (0.2 + 0.5 + 0.5 * 0.5 / 2.0), 1e-14);
+  plant.states[0].rate = "lowpass(u, 0.5) - c*s";
+  const auto filtered = Rows(plant, Moving("u", "3 + 0*t"), 4);
+  EXPECT_NEAR(filtered[3][1], 3.0 * (1.0 - std::exp(-0.3)), 1e-5);
+}
+
 TEST(DescribedSimulation, ARateReadsTheTimeOfItsStage) {
   DescribedPlant plant = Tank();
   plant.states[0].rate = "3*t^2 + 0*c";
@@ -241,8 +265,11 @@ TEST(DescribedSimulation, RefusesWhatItCannotSimulate) {
   plant.modes[0].target = "f*2";
   EXPECT_THAT(ErrorOf(plant, good), HasSubstr("target"));
   plant = Tank();
-  plant.states[0].rate = "lowpass(u, c)";
-  EXPECT_THAT(ErrorOf(plant, Moving("u", "t")), HasSubstr("states.s.rate has a memory"));
+  plant.states[0].rate = "lowpass(s, c)";
+  EXPECT_THAT(ErrorOf(plant, Moving("u", "t")), HasSubstr("states.s.rate remembers the state s"));
+  plant.states[0].rate = "-delay(twice, c)";
+  plant.lets = {{"twice", "2*s"}};
+  EXPECT_THAT(ErrorOf(plant, Moving("u", "t")), HasSubstr("states.s.rate remembers the state s"));
   plant = Tank();
   plant.one_law = false;
   plant.modes = {{"late", "previous(u) > 0", "s", "", false}, {"else", "", "2*s", "", false}};

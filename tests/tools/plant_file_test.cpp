@@ -129,6 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"of = \"q\"", "of = \"v\"", "7:56", "a rate of itself"},
                     Wrong{"role = \"force\"", "role = \"force\", derivative_of = \"q\"", "9:51",
                           "the rate of q would be"},
+                    Wrong{"role = \"force\"", "role = \"force\", between = \"hold\"", "9:45", "held"},
                     Wrong{"unit = \"kg\"", "unit = \"kgg\"", "15:15", "unknown unit \"kgg\""},
                     Wrong{"unit = \"kg\"", "unit = \"g\"", "26:12", "units do not fit"},
                     Wrong{"M*a + Fs*v", "M*a + Fv*v", "17:6", "Fs is used nowhere"},

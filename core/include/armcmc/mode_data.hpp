@@ -55,5 +55,6 @@ struct alignas(64) PredictionTile {
 struct alignas(64) ThetaTile {
   std::array<std::array<double, kTileLanes>, kMaxParams> value;
 };
+using ThetaPair = std::array<ThetaTile, 2>;
 
 }  // namespace armcmc

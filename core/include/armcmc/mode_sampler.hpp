@@ -42,7 +42,7 @@ class SamplerWorkspace {
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;
   LaplaceScratch laplace;
-  ThetaTile theta;
+  ThetaPair theta;
   PredictionTile prediction;
   std::array<std::vector<double>, kMaxParams> mismatch_u;
   PredictiveMoments predictive;

@@ -27,11 +27,14 @@ PlantStates::PlantStates(const Plant& plant, expression::Graph* graph, const std
                          int num_parameters, std::vector<int>* scalars)
     : size_(static_cast<int>(rates.size())) {
   all_measured_ = true;
+  const auto& signals = plant.description().signals;
+  for (std::size_t s = 0; s < signals.size(); ++s) between_[s] = BetweenNamed(signals[s].between);
   const int output = plant.NodeOf(expression::SymbolKind::kSignal, plant.output());
   for (std::size_t s = 0; s < rates.size(); ++s) {
     const bool of_plant = s < plant.states().size();
     measured_by_[s] = of_plant ? plant.states()[s].measured_by : -1;
     all_measured_ = all_measured_ && measured_by_[s] >= 0;
+    given_start_[s] = of_plant && measured_by_[s] < 0 && !graph->at(starts[s]).sampled;
     const int slope = measured_by_[s] < 0 ? graph->Differentiate(starts[s], output) : -1;
     output_in_start_[s] = measured_by_[s] == plant.output()      ? 1.0
                           : slope >= 0 && graph->IsNumber(slope) ? graph->at(slope).value
@@ -101,13 +104,13 @@ bool PlantStates::Prepare(const DataPack& pack, const PlantPoint::Values* point,
   const int intervals = pack.num_samples - 1 + (carried ? 1 : 0);
   if (intervals * substeps_ * out->stride > kMaxStateCells) return false;
 
-  PlantPoint::Values from = carried ? before->point : point[0];
+  const PlantPoint::Values& start = carried ? before->point : point[0];
   PlantPoint::Values between{};
   bool finite = true;
   for (std::size_t s = 0; s < static_cast<std::size_t>(size_); ++s) {
     const int signal = measured_by_[s];
     out->given[s] = carried || signal >= 0;
-    out->value[s] = signal >= 0 ? from[static_cast<std::size_t>(signal)] : carried ? before->state[s] : 0.0;
+    out->value[s] = signal >= 0 ? start[static_cast<std::size_t>(signal)] : carried ? before->state[s] : 0.0;
     finite = finite && std::isfinite(out->value[s]);
   }
   const double first_t = pack.t_last_s - intervals * pack.dt;
@@ -116,17 +119,22 @@ bool PlantStates::Prepare(const DataPack& pack, const PlantPoint::Values* point,
   std::array<double, 1 + 3 * kMaxStepInputs> given{};  // h, then the inputs at the three points
   given[0] = pack.dt / substeps_;
   for (int i = 0; i < intervals; ++i) {
-    const PlantPoint::Values& to = point[i + (carried ? 0 : 1)];  // at the end of the interval
+    const int n = i - (carried ? 1 : 0);  // sample at the beginning of the interval
+    const PlantPoint::Values &from = n < 0 ? start : point[n], &to = point[n + 1];
+    const bool has_earlier = i > 0, has_later = n + 2 < pack.num_samples;
+    const PlantPoint::Values &earlier = n > 0 ? point[n - 1] : start, &later = point[has_later ? n + 2 : n + 1];
     for (int p = 0; p <= points; ++p) {
       const double part = static_cast<double>(p) / points;
-      for (std::size_t s = 0; s < between.size(); ++s) between[s] = from[s] + part * (to[s] - from[s]);
+      for (std::size_t s = 0; s < between.size(); ++s)
+        between[s] =
+            ValueBetween(s < between_.size() ? between_[s] : Between::kLinear, has_earlier ? &earlier[s] : nullptr,
+                         from[s], to[s], has_later ? &later[s] : nullptr, part);
       inputs_.Evaluate({between.data(), first_t + (i + part) * pack.dt, pack.dt}, nullptr,
                        given.data() + 1 + static_cast<std::size_t>(p == 0 ? 0 : 2 - p % 2) * width);
       if (p == 0 || p % 2 == 1) continue;
       scalars_.Evaluate({given.data(), 0.0, pack.dt}, nullptr, out->Row(i * substeps_ + p / 2 - 1));
       std::copy_n(given.begin() + 1 + static_cast<std::ptrdiff_t>(2 * width), width, given.begin() + 1);
     }
-    from = to;
   }
   return finite;
 }

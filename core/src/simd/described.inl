@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "armcmc/plant/start_fit.hpp"
 #include "simd/states.inl"
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
@@ -14,14 +13,17 @@ namespace {
 }
 
 /// Runs the laws, or what they leave, at the samples of `data`, in their order: take(n, result), result[lane].
-/// @param offset, end  Of the states of a plant that has some: added to their starts, and them at the end of the pack;
-///                     null: neither.
-template <class Take>
-[[gnu::always_inline]] inline void RunSamples(const Tape* tapes, const ModeData& data, const ThetaTile& theta,
+/// @param theta        kTiles of them.
+/// @param offset, end  Of the states of a plant that has some, and one tile: added to their starts, and them at the end
+///                     of the pack; null: neither.
+template <std::size_t kTiles, class Take>
+[[gnu::always_inline]] inline void RunSamples(const Tape* tapes, const ModeData& data, const ThetaTile* theta,
                                               Take take, const StateTile* offset = nullptr,
                                               StateTile* end = nullptr) noexcept {
-  TapeRegisters registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
-  for (std::size_t d = 0; d < static_cast<std::size_t>(tapes->num_parameters); ++d) registers.value[d] = theta.value[d];
+  TapeRegisters<kTiles> registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
+  for (std::size_t d = 0; d < static_cast<std::size_t>(tapes->num_parameters); ++d)
+    for (std::size_t t = 0; t < kTiles; ++t)
+      std::copy_n(theta[t].value[d].data(), kTileLanes, registers.value[d].data() + t * kTileLanes);
   const auto start = [&] {
     for (int t = 0; t < data.num_tapes; ++t) StartTape(tapes[t], data.scalars->Row(0), &registers);
   };
@@ -36,7 +38,7 @@ template <class Take>
     for (std::size_t n = 0; n < samples; ++n) one(n);
     return;
   }
-  StateIntegrator states(*data.states, data.scalars->Row(0), data.past, &registers, offset);
+  StateIntegrator<kTiles> states(*data.states, data.scalars->Row(0), data.past, &registers, data.start_fit, offset);
   start();
   for (std::size_t n = 0; n < samples; ++n) {
     states.AdvanceTo(data.sample[n]);
@@ -53,7 +55,7 @@ void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) n
   const auto count = static_cast<std::size_t>(fit.count);
   const auto samples = static_cast<std::size_t>(data.num_samples);
   for (std::size_t n = 0; n < samples; ++n)
-    for (int v = 0; v < kTapeVectors; ++v) {
+    for (std::size_t v = 0; v < kTapeVectors; ++v) {
       const Simd::V law = Simd::Load(tile->value[n].data() + v * Simd::kLanes);
       const Simd::V error = (Simd::Set(data.target[n]) - law) * Simd::Set(data.weight[n]);
       for (std::size_t j = 0; j < count; ++j)
@@ -62,7 +64,7 @@ void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) n
   for (std::size_t n = 0; n < samples; ++n)
     for (std::size_t j = 0; j < count; ++j) {
       const Simd::V part = Simd::Set(fit.shrink[j] * fit.direction[j][n] / data.weight[n]);
-      for (int v = 0; v < kTapeVectors; ++v) {
+      for (std::size_t v = 0; v < kTapeVectors; ++v) {
         double* law = tile->value[n].data() + v * Simd::kLanes;
         Simd::Store(law, Simd::Fma(along[j][v], part, Simd::Load(law)));
       }
@@ -70,27 +72,28 @@ void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) n
 }
 
 void PredictTape(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  RunSamples(data.tape, data, theta,
-             [&](std::size_t n, const double* law) { std::copy_n(law, kTileLanes, tile->value[n].data()); });
+  RunSamples<1>(data.tape, data, &theta,
+                [&](std::size_t n, const double* law) { std::copy_n(law, kTileLanes, tile->value[n].data()); });
   if (data.start_fit != nullptr) FitStart(*data.start_fit, data, tile);
 }
 
 void RunStates(const ModeData& data, const ThetaTile& theta, const StateTile& offset, StateTile* end,
                PredictionTile* law) noexcept ARMCMC_NONBLOCKING {
-  RunSamples(
-      data.tape, data, theta,
+  RunSamples<1>(
+      data.tape, data, &theta,
       [&](std::size_t n, const double* value) { std::copy_n(value, kTileLanes, law->value[n].data()); }, &offset, end);
 }
 
-/// out[lane] = sum of the squares of law - target, weighted.
-template <bool kWeighted>
-void SumTapeSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
-  Simd::V sum[kTapeVectors] = {};
-  Simd::V along[kMaxStates][kTapeVectors] = {};
+/// out[lane] = sum of the squares of law - target, weighted, for the lanes of kTiles.
+template <bool kWeighted, std::size_t kTiles>
+void SumTapeSquares(const ModeData& data, const ThetaTile* theta, double* out) noexcept {
+  constexpr std::size_t kVectors = kTiles * kTapeVectors;
+  Simd::V sum[kVectors] = {};
+  Simd::V along[kMaxStates][kVectors] = {};
   const StartFit* fit = data.start_fit;
   const std::size_t count = fit != nullptr ? static_cast<std::size_t>(fit->count) : 0;
-  RunSamples(data.error_tape, data, theta, [&](std::size_t n, const double* error) {
-    for (int v = 0; v < kTapeVectors; ++v) {
+  RunSamples<kTiles>(data.error_tape, data, theta, [&](std::size_t n, const double* error) {
+    for (std::size_t v = 0; v < kVectors; ++v) {
       Simd::V e = Simd::Load(error + v * Simd::kLanes);
       if constexpr (kWeighted) e = e * Simd::Set(data.weight[n]);
       sum[v] = Simd::Fma(e, e, sum[v]);
@@ -100,10 +103,10 @@ void SumTapeSquares(const ModeData& data, const ThetaTile& theta, double* out) n
   // |e - sum_j shrink_j u_j (u_j' e)|^2
   for (std::size_t j = 0; j < count; ++j) {
     const double kept = 1.0 - fit->shrink[j];
-    for (int v = 0; v < kTapeVectors; ++v)
+    for (std::size_t v = 0; v < kVectors; ++v)
       sum[v] = Simd::Fma(along[j][v] * along[j][v], Simd::Set(kept * kept - 1.0), sum[v]);
   }
-  for (int v = 0; v < kTapeVectors; ++v) Simd::Store(out + v * Simd::kLanes, sum[v]);
+  for (std::size_t v = 0; v < kVectors; ++v) Simd::Store(out + v * Simd::kLanes, sum[v]);
 }
 
 /// sum[v] += constant + sum of scalars x parameters, for the vectors of a group whose first lane is `lane`.
@@ -156,30 +159,37 @@ void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) 
   }
 }
 
-template <bool kWeighted>
-void SumSquaresOfTapes(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+/// Instruction sets whose vectors of one tile leave half of the hardware registers unused run two tiles side by side.
+constexpr bool kTapesInPairs = kTapeVectors < 8;
+
+template <bool kWeighted, std::size_t kTiles>
+void SumSquaresOfTapes(const ModeData& data, const ThetaTile* theta, double* out) noexcept {
   using expression::TapeShape;
   const auto are = [&](auto... shapes) {
     return std::all_of(data.error_tape, data.error_tape + data.num_tapes,
                        [=](const Tape& tape) { return ((tape.shape == shapes) || ...); });
   };
+  const auto shaped = [&](auto sum_squares) {
+    for (std::size_t t = 0; t < kTiles; ++t) sum_squares(data, theta[t], out + t * kTileLanes);
+  };
   const bool several = data.num_tapes > 1;
   if (are(TapeShape::kLinear)) {
-    several ? SumShapeSquares<kWeighted, false, true>(data, theta, out)
-            : SumShapeSquares<kWeighted, false, false>(data, theta, out);
+    shaped(several ? &SumShapeSquares<kWeighted, false, true> : &SumShapeSquares<kWeighted, false, false>);
   } else if (are(TapeShape::kLinear, TapeShape::kPower)) {
-    several ? SumShapeSquares<kWeighted, true, true>(data, theta, out)
-            : SumShapeSquares<kWeighted, true, false>(data, theta, out);
+    shaped(several ? &SumShapeSquares<kWeighted, true, true> : &SumShapeSquares<kWeighted, true, false>);
+  } else if constexpr (kTapesInPairs) {
+    SumTapeSquares<kWeighted, kTiles>(data, theta, out);
   } else {
-    SumTapeSquares<kWeighted>(data, theta, out);
+    for (std::size_t t = 0; t < kTiles; ++t) SumTapeSquares<kWeighted, 1>(data, theta + t, out + t * kTileLanes);
   }
 }
 
-void SumSquaresTape(const ModeData& data, const ThetaTile& theta, double, double* out) noexcept ARMCMC_NONBLOCKING {
+template <std::size_t kTiles>
+void SumSquaresOfTapes(const ModeData& data, const ThetaTile* theta, double* out) noexcept ARMCMC_NONBLOCKING {
   if (data.weighted) {
-    SumSquaresOfTapes<true>(data, theta, out);
+    SumSquaresOfTapes<true, kTiles>(data, theta, out);
   } else {
-    SumSquaresOfTapes<false>(data, theta, out);
+    SumSquaresOfTapes<false, kTiles>(data, theta, out);
   }
 }
 

@@ -46,6 +46,11 @@ struct Kernels {
   void (*score)(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta,
                 const double* log_scale, PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING;
 
+  /// score() of two tiles: the same bits, in less time where a plant's tape is long. log_scale[lane] and out[lane] of
+  /// the second tile follow those of the first.
+  void (*score_two)(int model, const NoiseModel& noise, const ModeData& data, const ThetaPair& theta,
+                    const double* log_scale, PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING;
+
   /// out[lane] += factor * p(u[., first + lane]).
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,
                       double* out) noexcept ARMCMC_NONBLOCKING;

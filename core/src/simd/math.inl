@@ -72,6 +72,31 @@ struct Math {
     return power;
   }
 
+  /// Square roots of several vectors side by side, without the hardware's: 1 / sqrt(x) from the exponent, better by a
+  /// minimax polynomial (1.1e-8), then one step of Newton's method. Relative error below 2 ulp from 1e-290 on, below
+  /// that an absolute one of 1e-140; 0 gives 0.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Sqrt(V* x) noexcept {
+    constexpr double kHalfInverse[] = {0.01687317635856974, -0.13824470852612578, 0.4623033938455575,
+                                       -0.8176278781060615, 0.9756629033674393};  // of w in [1.4996, 1.6872]
+    constexpr std::int64_t kLargest = 0x7fefffffffffffffLL;
+    const auto odd = [](I bits) { return bits | ((I{} + kLargest) - bits); };  // negative: so is x, or not finite
+    I any{};
+    V s[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) {
+      const I bits = Simd::Bits(x[v]);
+      any |= odd(bits);
+      const V start = Simd::FromBits((I{} + 0x5febff50c7b537a9LL) - (bits >> 1));
+      const V half = start * Polynomial(x[v] * start * start, kHalfInverse);  // 1 / (2 sqrt x)
+      const V once = x[v] * half;
+      const V root = once + once;
+      s[v] = Simd::Fma(Simd::Fma(-root, root, x[v]), half, root);
+    }
+    if (Simd::Any(any < I{}))
+      for (std::size_t v = 0; v < kCount; ++v) s[v] = Simd::Select(odd(Simd::Bits(x[v])) < I{}, Simd::Sqrt(x[v]), s[v]);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = s[v];
+  }
+
   /// sin and cos of x, |x| up to 1e7: the quarter turn, then polynomials on [-pi/4, pi/4].
   static void SinCos(V x, V* sine, V* cosine) noexcept {
     const V shifted = x * Simd::Set(0.63661977236758134308) + Simd::Set(kMagic);
@@ -174,8 +199,15 @@ struct Math {
   /// x becomes sin(x - n times pi/2 * size): minimax polynomial, relative error 4e-17 before rounding.
   template <std::size_t kCount>
   static void SineFrom(const V (&n)[kCount], double size, V (&x)[kCount]) noexcept {
-    for (const double part : {1.57079625129699707031e+00, 7.54978941586159635336e-08, 5.39030285815811905290e-15})
-      for (std::size_t v = 0; v < kCount; ++v) x[v] = Less(x[v], n[v], size * part);
+    const auto less = [&](auto... parts) {
+      for (const double part : {parts...})
+        for (std::size_t v = 0; v < kCount; ++v) x[v] = Less(x[v], n[v], size * part);
+    };
+    if constexpr (Simd::kFused) {  // no product is rounded
+      less(1.57079632679489661923e+00, 6.12323399573676603587e-17);
+    } else {
+      less(1.57079625129699707031e+00, 7.54978941586159635336e-08, 5.39030285815811905290e-15);
+    }
     constexpr double kSine[] = {-7.64397029616579265158e-13, 1.60589773124442682639e-10,  -2.50521076169958777022e-08,
                                 2.75573192191632299576e-06,  -1.98412698412549741303e-04, 8.33333333333331587045e-03,
                                 -1.66666666666666657415e-01};

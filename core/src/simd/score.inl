@@ -3,26 +3,43 @@
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-void Score(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta, const double* log_scale,
-           PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
+template <std::size_t kTiles>
+void ScoreTiles(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile* theta,
+                const double* log_scale, PredictionTile* scratch, double* out) noexcept {
+  const bool described = data.tape != nullptr;
   const SumSquaresFn sum_squares = data.compiled != nullptr ? PlantTable<AllModels>::kSquares[model](data)
-                                   : data.tape != nullptr   ? &SumSquaresTape
+                                   : described              ? nullptr
                                                             : PlantTable<AllModels>::kPlainSquares[model];
-  if (noise.settings().kind != NoiseKind::kGaussian || sum_squares == nullptr ||
-      (data.tape != nullptr && noise.settings().mean != 0.0)) {
-    Predict(model, data, theta, scratch);
-    LogLikelihood(noise, data, *scratch, log_scale, out);
+  const NoiseSettings& settings = noise.settings();
+  if (settings.kind != NoiseKind::kGaussian || (described ? settings.mean != 0.0 : sum_squares == nullptr)) {
+    for (std::size_t t = 0; t < kTiles; ++t) {
+      Predict(model, data, theta[t], scratch);
+      LogLikelihood(noise, data, *scratch, log_scale + t * kTileLanes, out + t * kTileLanes);
+    }
     return;
   }
-  sum_squares(data, theta, noise.settings().mean, out);
+  if (described) {
+    SumSquaresOfTapes<kTiles>(data, theta, out);
+  } else {
+    for (std::size_t t = 0; t < kTiles; ++t) sum_squares(data, theta[t], settings.mean, out + t * kTileLanes);
+  }
   const V samples = Simd::Set(static_cast<double>(data.num_samples));
   const V constant = Simd::Set(noise.log_constant());
-  for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
+  for (std::size_t lane = 0; lane < kTiles * kTileLanes; lane += Simd::kLanes) {
     const V log_s = Simd::Load(log_scale + lane);
     const V precision = Simd::Exp2(log_s * Simd::Set(-2.0 * kLog2E));
     Simd::Store(out + lane,
                 Simd::Fma(Simd::Set(-0.5) * precision, Simd::Load(out + lane), samples * (constant - log_s)));
   }
+}
+
+void Score(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta, const double* log_scale,
+           PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
+  ScoreTiles<1>(model, noise, data, &theta, log_scale, scratch, out);
+}
+void ScoreTwo(int model, const NoiseModel& noise, const ModeData& data, const ThetaPair& theta, const double* log_scale,
+              PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
+  ScoreTiles<2>(model, noise, data, theta.data(), log_scale, scratch, out);
 }
 
 }  // namespace

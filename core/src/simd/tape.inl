@@ -13,9 +13,15 @@ namespace {
 using expression::Tape;
 using expression::TapeInstruction;
 using expression::TapeOp;
-using expression::TapeRegisters;
 
-constexpr int kTapeVectors = kTileLanes / Simd::kLanes;
+constexpr std::size_t kTapeVectors = kTileLanes / Simd::kLanes;  ///< Of a tile.
+
+/// Registers of the candidates of one or two tiles.
+template <std::size_t kTiles>
+struct alignas(64) TapeRegisters {
+  static constexpr std::size_t kLanes = kTiles * kTileLanes;
+  std::array<std::array<double, kLanes>, expression::kMaxTapeRegisters> value;
+};
 
 /// What was kept `back` samples before a place; of a negative `back` what is at the place. Between samples both the
 /// line and what is looked up in it are linear.
@@ -36,16 +42,19 @@ inline double Past(const double* lines, double place, double back) noexcept {
   return part > 0.0 ? value + part * (before(sample + 1.0) - value) : value;
 }
 
-/// One sample of a tape for a group of the candidates of a tile: as many vectors side by side as leave hardware
-/// registers for what is computed. The result of one instruction stays there for the next.
+/// One sample of a tape for a group of the candidates: as many vectors side by side as leave hardware registers for
+/// what is computed, so that what one of them waits for is the time of the others. The result of one instruction stays
+/// there for the next.
+template <std::size_t kTiles>
 class TapeGroup {
  public:
   using Vec = Simd::V;
-  static constexpr int kVectors = kTapeVectors < 8 ? kTapeVectors : 8;
-  static constexpr int kLanes = kVectors * Simd::kLanes;
+  static constexpr std::size_t kVectors = kTiles * kTapeVectors < 8 ? kTiles * kTapeVectors : 8;
+  static constexpr std::size_t kLanes = kVectors * Simd::kLanes;
 
-  static void Run(const TapeInstruction* first, const TapeInstruction* last, double* registers, const double* scalars,
-                  const double* past) noexcept {
+  /// Flat: a vector that is handed to a function lives in memory.
+  [[gnu::flatten]] static void Run(const TapeInstruction* first, const TapeInstruction* last, double* registers,
+                                   const double* scalars, const double* past) noexcept {
     const TapeGroup group(registers, scalars, past);
     Vec x[kVectors] = {};
     for (const TapeInstruction* at = first; at != last; ++at) {
@@ -61,7 +70,9 @@ class TapeGroup {
   TapeGroup(double* registers, const double* scalars, const double* past) noexcept
       : registers_(registers), scalars_(scalars), past_(past) {}
 
-  [[nodiscard]] double* Register(std::uint8_t r) const noexcept { return registers_ + r * kTileLanes; }
+  [[nodiscard]] double* Register(std::uint8_t r) const noexcept {
+    return registers_ + r * TapeRegisters<kTiles>::kLanes;
+  }
   [[nodiscard]] Vec Scalar(std::uint8_t s) const noexcept { return Simd::Set(scalars_[s]); }
   static Vec At(const double* r, std::size_t v) noexcept { return Simd::Load(r + v * Simd::kLanes); }
 
@@ -92,6 +103,17 @@ class TapeGroup {
     Each([&value, a](std::size_t v) { value[v / 4][v % 4] = a[v]; });
     for (auto& four : value) f(four);
     Each([&value, a](std::size_t v) { a[v] = value[v / 4][v % 4]; });
+  }
+  /// The lanes of the first half of a tile by the hardware's instruction, which keeps its unit busy for as long as
+  /// sixteen products, and the others by products meanwhile: the same lanes in every instruction set.
+  [[gnu::always_inline]] static void SquareRoots(Vec* a) noexcept {
+    Vec value[kVectors];
+    Each([&value, a](std::size_t v) { value[v] = a[v]; });
+    constexpr std::size_t kHalf = kTapeVectors / 2;
+    for (std::size_t v = 0; v < kVectors; ++v)
+      if (v % kTapeVectors < kHalf) value[v] = Simd::Sqrt(value[v]);
+    for (std::size_t v = kHalf; v < kVectors; v += kTapeVectors) Math::Sqrt<kHalf>(value + v);
+    Each([&value, a](std::size_t v) { a[v] = value[v]; });
   }
   template <class F>
   [[gnu::always_inline]] void Binary(Vec* a, const TapeInstruction& i, F f) const noexcept {
@@ -135,7 +157,7 @@ class TapeGroup {
       case TapeOp::kReciprocal: Unary(x, [](Vec a) { return Simd::Set(1.0) / a; }); break;
       case TapeOp::kAbs: Unary(x, [](Vec a) { return Simd::Abs(a); }); break;
       case TapeOp::kSign: Unary(x, [](Vec a) { return Math::Sign(a); }); break;
-      case TapeOp::kSqrt: Unary(x, [](Vec a) { return Simd::Sqrt(a); }); break;
+      case TapeOp::kSqrt: SquareRoots(x); break;
       case TapeOp::kExp: Long(x, [](Vec a) { return Math::Exp(a); }); break;
       case TapeOp::kExp2S: Long(x, [s = Scalar(i.b)](Vec a) { return Simd::Exp2OrNan(a * s); }); break;
       case TapeOp::kLog: Long(x, [](Vec a) { return Math::Log(a, 0.69314718055994530942); }); break;
@@ -187,18 +209,21 @@ class TapeGroup {
   const double* past_;  ///< PastLines::value.
 };
 
+template <std::size_t kTiles>
 void RunCode(const TapeInstruction* first, const TapeInstruction* last, const double* scalars, const double* past,
-             TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
-  for (std::size_t lane = 0; lane < kTileLanes; lane += TapeGroup::kLanes)
-    TapeGroup::Run(first, last, registers->value[0].data() + lane, scalars, past);
+             TapeRegisters<kTiles>* registers) noexcept ARMCMC_NONBLOCKING {
+  for (std::size_t lane = 0; lane < TapeRegisters<kTiles>::kLanes; lane += TapeGroup<kTiles>::kLanes)
+    TapeGroup<kTiles>::Run(first, last, registers->value[0].data() + lane, scalars, past);
 }
 /// What needs the sample.
+template <std::size_t kTiles>
 void RunTape(const Tape& tape, const double* scalars, const double* past,
-             TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
+             TapeRegisters<kTiles>* registers) noexcept ARMCMC_NONBLOCKING {
   RunCode(tape.code.data() + tape.once, tape.code.data() + tape.code.size(), scalars, past, registers);
 }
 /// What needs no sample.
-void StartTape(const Tape& tape, const double* scalars, TapeRegisters* registers) noexcept ARMCMC_NONBLOCKING {
+template <std::size_t kTiles>
+void StartTape(const Tape& tape, const double* scalars, TapeRegisters<kTiles>* registers) noexcept ARMCMC_NONBLOCKING {
   RunCode(tape.code.data(), tape.code.data() + tape.once, scalars, nullptr, registers);
 }
 

@@ -13,6 +13,11 @@ namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 /// Vector arithmetic in the compiler's own vector type: operators + - * / come with it.
 struct Simd {
   static constexpr int kLanes = ARMCMC_SIMD_LANES;
+#if defined(__FMA__)
+  static constexpr bool kFused = true;  ///< Fma() rounds once.
+#else
+  static constexpr bool kFused = false;
+#endif
   typedef double V __attribute__((vector_size(8 * ARMCMC_SIMD_LANES)));
   typedef std::int64_t I __attribute__((vector_size(8 * ARMCMC_SIMD_LANES)));
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace armcmc::plant_sim::expression {
 namespace {
@@ -75,6 +76,13 @@ bool ReadsPlace(const Tree& node, int place) {
                      [place](const Tree& argument) { return ReadsPlace(argument, place); });
 }
 
+bool RemembersPlaceIn(const Tree& node, int place) {
+  const bool here = HasMemory(node);
+  return std::any_of(node.arguments.begin(), node.arguments.end(), [&](const Tree& argument) {
+    return here ? ReadsPlace(argument, place) : RemembersPlaceIn(argument, place);
+  });
+}
+
 }  // namespace
 
 double Apply(const std::string& what, double a, double b, double c) { return Table().at(what)(a, b, c); }
@@ -97,6 +105,24 @@ void Expression::Bind(Tree* node, const Names& names) {
 
 bool Expression::Reads(int place) const { return ReadsPlace(tree_, place); }
 
+bool Expression::RemembersPlace(int place) const { return RemembersPlaceIn(tree_, place); }
+
+double Expression::EvaluateBetween(const std::vector<double>& values, double part) {
+  return WalkBetween(tree_, values, part);
+}
+
+double Expression::WalkBetween(const Tree& node, const std::vector<double>& values, double part) const {
+  if (node.kind == Kind::kNumber) return node.number;
+  if (node.kind == Kind::kName) return values[static_cast<std::size_t>(node.slot)];
+  if (HasMemory(node)) {
+    const Memory& memory = memories_[static_cast<std::size_t>(node.slot)];
+    return memory.last_result + part * (memory.result - memory.last_result);
+  }
+  std::array<double, 3> argument{};
+  for (std::size_t i = 0; i < node.arguments.size(); ++i) argument[i] = WalkBetween(node.arguments[i], values, part);
+  return Apply(node.text, argument[0], argument[1], argument[2]);
+}
+
 double Expression::Evaluate(const std::vector<double>& values, double dt) { return Walk(tree_, values, dt); }
 
 double Expression::Walk(const Tree& node, const std::vector<double>& values, double dt) {
@@ -104,7 +130,12 @@ double Expression::Walk(const Tree& node, const std::vector<double>& values, dou
   if (node.kind == Kind::kName) return values[static_cast<std::size_t>(node.slot)];
   std::array<double, 3> argument{};
   for (std::size_t i = 0; i < node.arguments.size(); ++i) argument[i] = Walk(node.arguments[i], values, dt);
-  if (HasMemory(node)) return Remember(node, argument[0], argument[1], dt);
+  if (HasMemory(node)) {
+    const double result = Remember(node, argument[0], argument[1], dt);
+    Memory& memory = memories_[static_cast<std::size_t>(node.slot)];
+    memory.last_result = std::exchange(memory.result, result);
+    return result;
+  }
   return Apply(node.text, argument[0], argument[1], argument[2]);
 }
 

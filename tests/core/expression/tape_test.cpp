@@ -235,10 +235,34 @@ TEST(Tape, TenThousandExpressionsAreWhatTheTreeSays) {
   EXPECT_TRUE(result.is<rc::detail::SuccessResult>()) << said.str();
 }
 
+// Half of the lanes take the hardware's root, the others products.
+TEST(Tape, RootsOfAnySizeInEveryLane) {
+  const std::vector<double> numbers = {0.0,   5e-324,  1e-310, 3e-300,  2.2e-308, 1e-200, 0.3,
+                                       0.25,  1.0,     2.0,    3.9,     1e-290,   7.0,    1e17,
+                                       1e200, 1.7e308, -1.0,   -1e-300, INFINITY, NAN,    5.0};
+  Law law("sqrt(K)");
+  for (std::size_t turn = 0; turn < numbers.size(); ++turn) {
+    for (std::size_t lane = 0; lane < kTileLanes; ++lane)
+      law.theta.value[0][lane] = numbers[(turn + 5 * lane) % numbers.size()] * (1.0 + 0.01 * static_cast<double>(lane));
+    for (const simd::Kernels* kernels : test::RunnableKernels()) {
+      const PredictionTile& tile = law.Predict(*kernels);
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+        const double x = law.theta.value[0][lane], found = tile.value[0][lane];
+        if (std::isfinite(std::sqrt(x))) {
+          EXPECT_NEAR(found, std::sqrt(x), 5e-16 * std::sqrt(x) + 1e-140) << kernels->name << lane << " " << x;
+        } else {
+          EXPECT_TRUE(test::SameBits(std::fabs(found), std::fabs(std::sqrt(x)))) << kernels->name << lane << " " << x;
+        }
+      }
+    }
+  }
+}
+
 TEST(Tape, SameBitsOnEveryFusedInstructionSet) {
   const auto sets = test::FusedKernels();
   if (sets.size() < 2) GTEST_SKIP() << "this CPU has one of them only";
-  for (const char* text : {"max(x, 0)^p * (K + B*v)", "sin(K*x)*exp(-v/tau) + atan(B)/tanh(p*x) + log(K)^p"}) {
+  for (const char* text :
+       {"max(x, 0)^p * (K + B*v)", "sin(K*x)*exp(-v/tau) + atan(B)/tanh(p*x) + log(K)^p + sqrt(B + x)"}) {
     Law law(text);
     const PredictionTile first = law.Predict(*sets[0]);
     for (const simd::Kernels* kernels : sets) {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +9,7 @@
 #include "armcmc/plant/states.hpp"
 #include "core/kernel_sets.hpp"
 #include "core/plant/described_packs.hpp"
+#include "core/plant/oscillator.hpp"
 #include "core/plant/plants.hpp"
 
 namespace armcmc::states_test {
@@ -17,52 +18,11 @@ namespace {
 using test::DescribedPack;
 using test::PlantSample;
 
-constexpr double kDt = 0.01;
-
-/// A mass on a spring, moved by a drive; the output is the place of the mass.
-PlantDescription Oscillator() {
-  PlantDescription plant;
-  plant.name = "oscillator";
-  plant.output = "y";
-  plant.law = "pos";
-  plant.signals = {{"u", "N", "drive", ""}, {"y", "m", "position", ""}};
-  plant.parameters = {{"m", "kg", "normal", 1.0, 0.5, 0.1, 5.0},
-                      {"d", "N s/m", "normal", 0.5, 0.5, 0.0, 5.0},
-                      {"k", "N/m", "normal", 20.0, 10.0, 1.0, 100.0}};
-  plant.states = {{"pos", "m", "position", "speed", "y", "", 1},
-                  {"speed", "m/s", "velocity", "(u - d*speed - k*pos)/m", "0", "", 2}};
-  plant.noise.std = 0.002;
-  return plant;
-}
-
-double Drive(double t) { return 3.0 * std::sin(2.1 * t) + 2.0 * std::sin(5.3 * t + 1.0); }
-
-/// Two states by the same method with inputs linear between samples; place and speed of the oscillator.
-struct Reference {
-  using Rate = std::function<std::array<double, 2>(const std::array<double, 2>&, double)>;
-
-  std::array<double, 2> x{};
-  std::array<double, 3> theta{1.3, 0.8, 31.0};
-  int substeps = 2;
-  Rate rate = [this](const std::array<double, 2>& s, double u) {
-    return std::array<double, 2>{s[1], (u - theta[1] * s[1] - theta[2] * s[0]) / theta[0]};
-  };
-
-  void Step(double u0, double u1) {
-    const double h = kDt / substeps;
-    for (int i = 0; i < substeps; ++i) {
-      const auto at = [&](double part) { return u0 + (i + part) / substeps * (u1 - u0); };
-      const auto moved = [&](const std::array<double, 2>& k, double by) {
-        return std::array<double, 2>{x[0] + by * k[0], x[1] + by * k[1]};
-      };
-      const auto k1 = rate(x, at(0.0));
-      const auto k2 = rate(moved(k1, 0.5 * h), at(0.5));
-      const auto k3 = rate(moved(k2, 0.5 * h), at(0.5));
-      const auto k4 = rate(moved(k3, h), at(1.0));
-      for (std::size_t s = 0; s < 2; ++s) x[s] += h / 6.0 * (k1[s] + 2.0 * k2[s] + 2.0 * k3[s] + k4[s]);
-    }
-  }
-};
+using test::Drive;
+using test::kDt;
+using test::Laid;
+using test::Oscillator;
+using test::Reference;
 
 /// Its rates are not linear, and have three steps a sample.
 PlantDescription Pendulum() {
@@ -76,20 +36,6 @@ PlantDescription Pendulum() {
                   {"speed", "1/s", "velocity", "(abs(u) - d*speed*abs(speed) - k*sin(pos))/m", "0", "", 3}};
   return plant;
 }
-
-/// A pack of the plant prepared for the kernels, all candidates alike.
-struct Laid {
-  Laid(const PlantProgram& plant, const DataPack& pack, const StateMemory* before, const std::vector<double>& theta) {
-    EXPECT_TRUE(plant.Prepare(pack, &memory, before, plant_pack.get()));
-    plant.Fill(*plant_pack, pack.num_samples, 0, data.get());
-    data->weighted = false;
-    for (std::size_t d = 0; d < theta.size(); ++d) tile.value[d].fill(theta[d]);
-  }
-  expression::FeatureMemory memory;
-  std::unique_ptr<PlantPack> plant_pack = std::make_unique<PlantPack>();
-  std::unique_ptr<ModeData> data = std::make_unique<ModeData>();
-  ThetaTile tile{};
-};
 
 TEST(States, AreIntegratedAsTheMethodSays) {
   const auto plant = test::Program(Oscillator());
@@ -191,7 +137,7 @@ TEST(States, SameBitsOnEveryFusedInstructionSet) {
       for (std::size_t lane = 0; lane < kTileLanes; ++lane)
         laid.tile.value[d][lane] *= 1.0 + 0.013 * static_cast<double>(lane);
     const NoiseModel noise(NoiseSettings{.std = 0.1});
-    alignas(64) std::array<double, kTileLanes> log_scale{}, score{}, first_score{};
+    alignas(64) std::array<double, kTileLanes> log_scale{}, score{}, first_score{}, one{};
     const auto first = std::make_unique<PredictionTile>(), other = std::make_unique<PredictionTile>();
     for (const simd::Kernels* kernels : sets) {
       const bool is_first = kernels == sets[0];
@@ -199,6 +145,16 @@ TEST(States, SameBitsOnEveryFusedInstructionSet) {
       auto& scored = is_first ? first_score : score;
       const auto scratch = std::make_unique<PredictionTile>();
       kernels->score(-1, noise, *laid.data, laid.tile, log_scale.data(), scratch.get(), scored.data());
+      // Two tiles side by side, the second one turned round.
+      ThetaPair two = {laid.tile, laid.tile};
+      for (std::size_t d = 0; d < 3; ++d) std::reverse(two[1].value[d].begin(), two[1].value[d].end());
+      alignas(64) std::array<double, 2 * kTileLanes> both_scale{}, both{};
+      kernels->score_two(-1, noise, *laid.data, two, both_scale.data(), scratch.get(), both.data());
+      kernels->score(-1, noise, *laid.data, two[1], log_scale.data(), scratch.get(), one.data());
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+        EXPECT_TRUE(test::SameBits(both[lane], scored[lane])) << kernels->name << description.name << lane;
+        EXPECT_TRUE(test::SameBits(both[kTileLanes + lane], one[lane])) << kernels->name << description.name << lane;
+      }
       for (std::size_t lane = 0; !is_first && lane < kTileLanes; ++lane) {
         EXPECT_TRUE(test::SameBits(first_score[lane], score[lane])) << description.name;
         for (std::size_t n = 0; n < 60; ++n)
@@ -224,6 +180,47 @@ TEST(States, APackThatGoesOnStartsOneIntervalBeforeItsFirstSample) {
   for (int n = 0; n < 30; ++n) {
     reference.Step(Drive((30 + n) * kDt), Drive((31 + n) * kDt));
     EXPECT_NEAR(prediction->value[static_cast<std::size_t>(n)][3], reference.x[0], 1e-13) << n;
+  }
+}
+
+/// pos' = u / m: what a state adds up says what its input does between samples.
+PlantDescription Sum(const char* between) {
+  PlantDescription plant = Oscillator();
+  plant.signals[0].unit = "kg m/s";
+  plant.signals[0].between = between;
+  plant.parameters = {{"m", "kg", "normal", 1.0, 0.5, 0.1, 5.0}};
+  plant.states = {{"pos", "m", "position", "u/m", "y", "", 1}};
+  return plant;
+}
+
+TEST(States, AnInputMayBeHeldOrSmoothBetweenSamples) {
+  const auto drive = [](double t) { return 0.5 + t - 3.0 * t * t + 7.0 * t * t * t; };
+  const auto integral = [](double t) { return 0.5 * t + t * t / 2.0 - t * t * t + 7.0 * t * t * t * t / 4.0; };
+  const auto at = [&](double t) { return PlantSample{{drive(t)}, 0.0}; };
+  for (const char* between : {"held", "smooth"}) {
+    const auto plant = test::Program(Sum(between));
+    const DataPack first = DescribedPack(*plant, 1, at, 20, kDt), second = DescribedPack(*plant, 2, at, 20, kDt);
+    StateMemory memory;
+    memory.known = true;
+    memory.state = {3.0};
+    plant->Leave(*Laid(*plant, first, nullptr, {}).plant_pack, 20, &memory);
+    const Laid laid(*plant, second, &memory, {1.0});
+    const auto prediction = std::make_unique<PredictionTile>();
+    simd::Best().predict(-1, *laid.data, laid.tile, prediction.get());
+    const bool held = std::string(between) == "held";
+    double sum = 3.0;
+    for (int n = 0; n < 20; ++n) {
+      // Intervals at the ends of what is known have a parabola.
+      const double from = (20 + n) * kDt, to = from + kDt;
+      sum += held ? kDt * drive(from) : integral(to) - integral(from);
+      EXPECT_NEAR(prediction->value[static_cast<std::size_t>(n)][5], sum, held ? 1e-13 : 5e-8) << between << n;
+      if (!held && n > 0 && n < 19) {
+        EXPECT_NEAR(
+            prediction->value[static_cast<std::size_t>(n)][5] - prediction->value[static_cast<std::size_t>(n - 1)][5],
+            integral(to) - integral(from), 1e-14)
+            << "a cubic, exactly";
+      }
+    }
   }
 }
 
@@ -260,36 +257,6 @@ TEST(States, AMeasuredOneStartsFromItsSignal) {
   EXPECT_FALSE(laid_measured.plant_pack->states.carried);
   EXPECT_EQ(laid_measured.plant_pack->states.value[0], other.y[0]);
   EXPECT_EQ(laid_measured.plant_pack->states.value[1], 3.0);
-}
-
-TEST(States, EstimatorLearnsWhatMovesThemAndGoesOnFromPackToPack) {
-  const auto plant = test::Program(Oscillator());
-  test::Rig rig(DescribedSettings(plant));
-  test::GaussianNoise noise(0.002);
-  Reference reference;
-  std::vector<double> errors;
-  double t_before = kDt;
-  for (std::int64_t seq = 1; seq <= 12; ++seq) {
-    (void)rig.Step(DescribedPack(
-        *plant, seq,
-        [&](double t) {
-          if (t > t_before + 0.5 * kDt) reference.Step(Drive(t_before), Drive(t));
-          t_before = t;
-          return PlantSample{{Drive(t)}, reference.x[0] + noise()};
-        },
-        50, kDt));
-    ASSERT_EQ(rig.status, Status::kOk) << seq;
-    if (seq < 6) continue;
-    for (std::size_t n = 0; n < 50; ++n) errors.push_back(rig.estimate().y_shown[n] - rig.result->pack.y[n]);
-  }
-  const ModeEstimate& mode = rig.estimate().modes[0];
-  for (std::size_t d = 0; d < 3; ++d) {
-    EXPECT_NEAR(mode.marginal[d].ar_ap, reference.theta[d], 5.0 * mode.marginal[d].sd) << d;
-    EXPECT_LT(mode.marginal[d].sd, 0.02 * reference.theta[d]) << d;
-  }
-  double square = 0.0;
-  for (const double e : errors) square += e * e;
-  EXPECT_LT(std::sqrt(square / static_cast<double>(errors.size())), 0.004) << "of what is shown, noise included";
 }
 
 TEST(States, AStartMayBeAParameter) {

@@ -128,6 +128,30 @@ TEST(TrajectoryModel, StatesFollowTheClosedFormAndBeginAnewInEveryRun) {
   EXPECT_LT((prediction - made.model->target()).cwiseAbs().maxCoeff(), 2e-8);
 }
 
+TEST(TrajectoryModel, AnInputMayBeHeldOrSmoothBetweenSamples) {
+  for (const char* between : {"held", "smooth"}) {
+    PlantDescription sum = Oscillator();
+    sum.signals[0].between = between;
+    sum.states[0].start = "0";
+    sum.states[1].substeps = 1;
+    Series series = Swing(90, {0, 40});
+    for (std::size_t n = 0; n < 90; ++n) series.signals[0][n] = std::pow(static_cast<double>(n % 40), 2.0);
+    const Made made = Make(sum, series);
+    VectorXd prediction;
+    // No spring, no damper: twice the integral of u.
+    ASSERT_TRUE(made.model->PredictOne(VectorXd{{-60.0, 0.0}}, &prediction));
+    double speed = 0.0, pos = 0.0;
+    for (int n = 0; n < 39; ++n) {
+      EXPECT_NEAR(prediction[40 + n], pos, 1e-9 * (1.0 + pos)) << between << n;
+      const double u = n, dt = 0.02;
+      const bool held = std::string(between) == "held";
+      // A second integral of u^2 from u to u + 1, u in samples.
+      pos += dt * speed + dt * dt * (held ? u * u / 2.0 : u * u / 2.0 + u / 3.0 + 1.0 / 12.0);
+      speed += dt * (held ? u * u : u * u + u + 1.0 / 3.0);
+    }
+  }
+}
+
 TEST(TrajectoryModel, SeveralCandidatesAtOnceAreEachAsAlone) {
   const Made made = Make(Oscillator(), Swing(100));
   Eigen::MatrixXd thetas(2, 37), predictions;

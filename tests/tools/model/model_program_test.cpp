@@ -166,6 +166,35 @@ TEST_F(ModelProgram, SaysThatRichDataTellEveryParameter) {
   EXPECT_THAT(check.out, HasSubstr("over these data"));
 }
 
+TEST_F(ModelProgram, SaysWhereDataContradictWhatAnInputDoesBetweenSamples) {
+  // x' = u - c x with c = 3, and u a command that jumps at samples.
+  const auto plant = [](const char* between) {
+    return std::string(
+               "schema = 1\nname = \"tank\"\noutput = \"y\"\nlaw = \"x\"\n[signals]\n"
+               "u = { unit = \"1/s\", between = \"") +
+           between +
+           "\" }\ny = { unit = \"1\" }\n[parameters]\nc = { unit = \"1/s\", mean = 2.0, sd = 2.0, lower = 0.0 }\n"
+           "[states]\nx = { unit = \"1\", start = \"y\", rate = \"u - c*x\" }\n[noise]\nstd = 0.01\n";
+  };
+  std::ostringstream csv;
+  csv.precision(12);
+  csv << "t,u,y\n";
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  double x = 0.0;
+  for (int n = 0; n < 1000; ++n) {
+    const double u = std::sin(0.4 * n) + std::cos(1.1 * n);
+    csv << 0.05 * n << ',' << u << ',' << x + noise(random) << '\n';
+    x = u / 3.0 + (x - u / 3.0) * std::exp(-0.15);
+  }
+  const std::string data = Write("tank.csv", csv.str());
+  const test::Outcome linear = Run({"check", Write("linear.toml", plant("linear")), "--data", data});
+  EXPECT_THAT(linear.out, HasSubstr("between samples: u with between = \"held\" explains these data better, by "));
+  const test::Outcome held = Run({"check", Write("held.toml", plant("held")), "--data", data});
+  EXPECT_EQ(held.code, 0) << held.err;
+  EXPECT_EQ(held.out.find("between samples:"), std::string::npos) << held.out;
+}
+
 TEST_F(ModelProgram, SaysWhichParametersNothingInTheDataDependsOnAndWhichMakeUpForOthers) {
   // At constant speed nothing depends on the mass, and friction is as good as an offset.
   const test::Outcome check =

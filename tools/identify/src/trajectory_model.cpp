@@ -23,6 +23,8 @@ TrajectoryModel::TrajectoryModel(std::shared_ptr<const Plant> plant, std::shared
       num_signals_(plant_->description().signals.size()),
       num_states_(plant_->states().size()) {
   ChooseParameters();
+  for (const SignalDescription& signal : plant_->description().signals)
+    between_.push_back(BetweenNamed(signal.between));
   for (const StateDescription& state : plant_->description().states) substeps_ = std::max(substeps_, state.substeps);
 
   Graph graph = plant_->graph();

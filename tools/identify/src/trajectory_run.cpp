@@ -55,6 +55,11 @@ class TrajectoryModel::Walk {
     Lanes* const state = State();
     Lanes* const past = input_.data() + (model_.num_inputs_ - model_.num_past_);
     const double h = model_.series_->dt / model_.substeps_;
+    const std::vector<std::size_t>& runs = model_.series_->runs;
+    const auto begins = [&](std::size_t k) {
+      return k == model_.num_rows() || std::binary_search(runs.begin(), runs.end(), k);
+    };
+    const bool has_earlier = row > 0 && !begins(row), has_later = !begins(row + 2);
     for (int i = 0; i < model_.substeps_; ++i) {
       std::copy_n(state, num_states, origin_.begin());
       std::fill(sum_.begin(), sum_.end(), Lanes{});
@@ -62,7 +67,8 @@ class TrajectoryModel::Walk {
         const double part = (i + kPart[stage]) / model_.substeps_;
         for (std::size_t s = 0; s < model_.num_signals_; ++s) {
           const double* const value = &model_.series_->signals[s][row];
-          input_[s].fill(value[0] + part * (value[1] - value[0]));
+          input_[s].fill(ValueBetween(model_.between_[s], has_earlier ? value - 1 : nullptr, value[0], value[1],
+                                      has_later ? value + 2 : nullptr, part));
         }
         for (std::size_t p = 0; p < model_.num_past_; ++p)
           for (std::size_t l = 0; l < kLanes; ++l) past[p][l] = before_[p][l] + part * (after_[p][l] - before_[p][l]);

@@ -9,7 +9,8 @@ void Declare(CLI::App* app, Arguments* a) {
   app->footer(
       "Examples:\n"
       "  armcmc-model list\n"
-      "  armcmc-model new my_axis --from servo_axis\n"
+      "  armcmc-model new my_axis --from " ARMCMC_NEW_FROM
+      "\n"
       "  armcmc-model check my_axis.toml\n"
       "  armcmc-model check my_axis.toml --data run.csv\n"
       "  armcmc-model check my_axis.toml --with coulomb_friction,sensor_delay\n"

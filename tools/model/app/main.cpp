@@ -52,6 +52,7 @@ int Check(const Arguments& a) {
   std::cout << PlantText(*plant);
   if (a.effects) std::cout << '\n' << FittingText(plant->description(), support::EffectsFor(file.effects));
   if (program != nullptr) std::cout << CostText(program, data);
+  if (program != nullptr && data != nullptr) std::cout << BetweenText(program, data);
   if (data != nullptr) std::cout << '\n' << IdentifiabilityText(plant, *data);
   return support::kExitOk;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
@@ -42,8 +43,9 @@ std::shared_ptr<const support::Recording> MadeUp(const Plant& plant) {
 }
 
 struct Step {
-  double ms = 0.0;  ///< Median of the adjust computation.
-  int draws = 0;    ///< Most that a pack had.
+  double ms = 0.0;            ///< Median of the adjust computation.
+  int draws = 0;              ///< Most that a pack had.
+  double log_evidence = 0.0;  ///< Of all packs, each from what the ones before tell.
 };
 
 /// Over the first packs of a recording; nothing where it has none, or where they were refused.
@@ -72,8 +74,11 @@ std::optional<Step> TimeSteps(const std::shared_ptr<const PlantProgram>& program
     ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     if (status != Status::kOk) return std::nullopt;
     estimator.Execute(*result, &estimate);
-    for (int m = 0; m < estimate.num_modes; ++m)
-      step.draws = std::max(step.draws, estimate.modes[static_cast<std::size_t>(m)].draws);
+    for (int m = 0; m < estimate.num_modes; ++m) {
+      const ModeEstimate& mode = estimate.modes[static_cast<std::size_t>(m)];
+      step.draws = std::max(step.draws, mode.draws);
+      if (mode.updated) step.log_evidence += mode.log_evidence;
+    }
   }
   if (ms.size() < kFewest) return std::nullopt;
   const auto middle = ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2);
@@ -83,6 +88,35 @@ std::optional<Step> TimeSteps(const std::shared_ptr<const PlantProgram>& program
 }
 
 }  // namespace
+
+std::string BetweenText(const std::shared_ptr<const PlantProgram>& program,
+                        const std::shared_ptr<const support::Recording>& recording) {
+  constexpr double kWorthSaying = 20.0;  // nats
+  const std::optional<Step> told = program->states().size() > 0 ? TimeSteps(program, recording) : std::optional<Step>();
+  if (!told) return "";
+  std::string text;
+  const PlantDescription& description = program->plant().description();
+  for (std::size_t s = 0; s < description.signals.size(); ++s) {
+    if (static_cast<int>(s) == program->plant().output()) continue;
+    std::string best;
+    double most = kWorthSaying;
+    for (const char* between : {"linear", "held", "smooth"}) {
+      PlantDescription other = description;
+      if (std::exchange(other.signals[s].between, between) == between) continue;
+      const std::optional<Step> step =
+          TimeSteps(std::make_shared<const PlantProgram>(std::make_shared<const Plant>(std::move(other))), recording);
+      const double more = step ? step->log_evidence - told->log_evidence : 0.0;
+      if (!(more > most)) continue;
+      best = between;
+      most = more;
+    }
+    if (best.empty()) continue;
+    const std::string& name = description.signals[s].name;
+    text.append("between samples: ").append(name).append(" with between = \"").append(best);
+    text.append("\" explains these data better, by ").append(support::Significant(most, 3)).append(" nats\n");
+  }
+  return text;
+}
 
 std::string CostText(const std::shared_ptr<const PlantProgram>& program,
                      const std::shared_ptr<const support::Recording>& recording) {

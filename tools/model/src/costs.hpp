@@ -14,4 +14,9 @@ namespace armcmc::model {
 [[nodiscard]] std::string CostText(const std::shared_ptr<const PlantProgram>& program,
                                    const std::shared_ptr<const support::Recording>& recording);
 
+/// Of a plant with states: inputs of which the first packs of a recording say that they do something else between
+/// samples than the file; empty where there is none. Runs the estimator twice an input.
+[[nodiscard]] std::string BetweenText(const std::shared_ptr<const PlantProgram>& program,
+                                      const std::shared_ptr<const support::Recording>& recording);
+
 }  // namespace armcmc::model

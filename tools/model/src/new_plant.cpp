@@ -16,7 +16,8 @@ constexpr const char* kGuide =
 # Change what stands here, then ask what was understood:  armcmc-model check FILE
 #
 #   [signals]     every measured quantity. role says what it is (position, velocity, acceleration, force, pressure,
-#                 drive, level, ...); derivative_of lets a recording do without it
+#                 drive, level, ...); derivative_of lets a recording do without it; between = "held" says that it keeps
+#                 its value until the next sample, as a command does, "smooth" that it is a curve (states see a line)
 #   output        the signal that the law explains; the law says what it would be without noise
 #   [parameters]  unit, and what is known before any data: mean and sd, or prior = "uniform" with lower and upper, or
 #                 prior = "lognormal" (mean is the median, sd that of the logarithm)

@@ -15,13 +15,14 @@ using support::TextTable;
 std::string OrDash(const std::string& text) { return text.empty() ? "-" : text; }
 
 std::string SignalsText(const Plant& plant) {
-  TextTable table({"signal", "unit", "role", "where a recording lacks it"}, TextTable::Content::kWords);
+  TextTable table({"signal", "unit", "role", "where a recording lacks it", "between samples"},
+                  TextTable::Content::kWords);
   const auto& signals = plant.description().signals;
   for (std::size_t s = 0; s < signals.size(); ++s) {
     const SignalDescription& signal = signals[s];
     const bool is_output = static_cast<int>(s) == plant.output();
     table.AddRow({signal.name + (is_output ? "  (output)" : ""), signal.unit, OrDash(signal.role),
-                  signal.derivative_of.empty() ? "-" : "rate of " + signal.derivative_of});
+                  signal.derivative_of.empty() ? "-" : "rate of " + signal.derivative_of, signal.between});
   }
   return table.ToString();
 }

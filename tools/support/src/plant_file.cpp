@@ -20,7 +20,8 @@ void ReadSignals(StrictTable root, PlantDescription* plant) {
   StrictTable signals = root.Table("signals");
   for (const std::string& name : signals.Keys()) {
     StrictTable at = signals.Table(name);
-    plant->signals.push_back({name, at.RequiredText("unit"), at.Text("role", ""), at.Text("derivative_of", "")});
+    plant->signals.push_back({name, at.RequiredText("unit"), at.Text("role", ""), at.Text("derivative_of", ""),
+                              at.Choice("between", "linear", {"linear", "held", "smooth"})});
   }
 }
 

@@ -108,7 +108,12 @@ std::string PlantFileText(const PlantDescription& plant, const std::string& comm
   out << "\n[signals]\n";
   for (const SignalDescription& s : plant.signals)
     Line(&out, s.name,
-         Inline().Text("unit", s.unit).Text("role", s.role).Text("derivative_of", s.derivative_of).Closed());
+         Inline()
+             .Text("unit", s.unit)
+             .Text("role", s.role)
+             .Text("derivative_of", s.derivative_of)
+             .Text("between", s.between == "linear" ? "" : s.between)
+             .Closed());
   if (!plant.constants.empty()) out << "\n[constants]\n";
   for (const ConstantDescription& c : plant.constants)
     Line(&out, c.name,

@@ -114,11 +114,6 @@ struct Tape {
   [[nodiscard]] int size() const noexcept { return static_cast<int>(code.size()) - once; }
 };
 
-/// Registers of one tile of candidates.
-struct alignas(64) TapeRegisters {
-  std::array<std::array<double, kTileLanes>, kMaxTapeRegisters> value;
-};
-
 /// Lines of kept samples, one behind the other: in a line entry 0 is what is further back than the line, not a number
 /// where that is not known any more; then the samples before the pack, the newest at kMaxDelaySamples; then those of
 /// the pack.

@@ -12,6 +12,7 @@ struct SignalDescription {
   std::string unit;
   std::string role;           ///< "position", "velocity", "force", ...: what effects of the catalogue ask for.
   std::string derivative_of;  ///< Signal that it is the rate of; empty: of none.
+  std::string between = {};   ///< What it does between samples, for states: "linear" (or empty), "held" or "smooth".
 };
 
 struct ConstantDescription {

@@ -8,6 +8,7 @@
 #include "armcmc/expression/graph.hpp"
 #include "armcmc/expression/tape.hpp"
 #include "armcmc/nonblocking.hpp"
+#include "armcmc/plant/between.hpp"
 #include "armcmc/plant/plant.hpp"
 #include "armcmc/plant/state_run.hpp"
 
@@ -80,6 +81,8 @@ class PlantStates {
   [[nodiscard]] double output_in_start(int state) const noexcept {
     return output_in_start_[static_cast<std::size_t>(state)];
   }
+  /// The start is a number or a signal: no parameter says what it is.
+  [[nodiscard]] bool has_given_start(int state) const noexcept { return given_start_[static_cast<std::size_t>(state)]; }
   [[nodiscard]] const expression::Tape& step() const noexcept { return step_; }
 
   /// Lays the pack out for integration.
@@ -97,8 +100,10 @@ class PlantStates {
   int size_ = 0;
   int substeps_ = 1;
   bool all_measured_ = false;
-  std::array<int, kMaxStates> measured_by_{};  ///< Signal, -1: none.
+  std::array<Between, Plant::kMaxInputs + 1> between_{};  ///< Of a signal.
+  std::array<int, kMaxStates> measured_by_{};             ///< Signal, -1: none.
   std::array<double, kMaxStates> output_in_start_{};
+  std::array<bool, kMaxStates> given_start_{};
   expression::Tape step_, start_;
   expression::FeatureProgram inputs_;   ///< What the rates need of the signals, at one point.
   expression::FeatureProgram scalars_;  ///< Those of a step, from its length and the inputs at its three points.

@@ -27,6 +27,7 @@ class DescribedError : public std::runtime_error {
 struct DescribedPlant {
   struct Signal {
     std::string name, unit, role, derivative_of;
+    std::string between = "linear";  ///< "held", "smooth": what it does between samples, for states.
   };
   struct Constant {
     std::string name;

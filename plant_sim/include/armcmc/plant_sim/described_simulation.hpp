@@ -80,13 +80,20 @@ class DescribedSimulation {
   void MakeHidden();
   [[nodiscard]] Expression Read(const std::string& key, const std::string& text, bool sees_output = false) const;
   void RefuseMemory(const std::string& key, const Expression& rate) const;
+  /// A rate, with what it remembers of signals in it.
+  [[nodiscard]] Expression ReadRate(const std::string& key, const std::string& text) const;
   [[nodiscard]] std::size_t Place(const std::string& name) const;
 
   /// Signals at the present index that come from inputs: recorded into `signals`, as the plant sees them into `seen`.
   void MoveInputs(std::vector<double>* signals, std::vector<double>* seen);
+  /// A signal at t, `part` of the way between its samples.
+  [[nodiscard]] double Between(std::size_t signal, double from, double to, double part, double t);
   void Begin();
   void Advance(const std::vector<double>& from, const std::vector<double>& to);
-  [[nodiscard]] std::vector<double> Rates(std::vector<double> frame, const std::vector<double>& state);
+  /// What rates remember goes on to the present sample.
+  void FollowSignals(double dt);
+  /// @param part  Of the way from the sample before to the present one.
+  [[nodiscard]] std::vector<double> Rates(std::vector<double> frame, const std::vector<double>& state, double part);
   void PlaceStates(const std::vector<double>& state, std::vector<double>* frame) const;
   void PlaceParameters(int mode, std::vector<double>* frame) const;
   [[nodiscard]] int ModeOf(const std::vector<double>& frame, double dt, bool with_memory);

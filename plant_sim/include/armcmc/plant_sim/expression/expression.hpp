@@ -31,8 +31,14 @@ class Expression {
   /// The same without a step of time. @pre !has_memory().
   [[nodiscard]] double EvaluateNow(const std::vector<double>& values) { return Evaluate(values, 0.0); }
 
+  /// Between the last two samples that Evaluate() went to, `part` of the way: functions with memory have values on the
+  /// line between theirs.
+  [[nodiscard]] double EvaluateBetween(const std::vector<double>& values, double part);
+
   [[nodiscard]] bool has_memory() const { return !memories_.empty(); }
   [[nodiscard]] bool Reads(int place) const;
+  /// Whether something that is remembered does.
+  [[nodiscard]] bool RemembersPlace(int place) const;
   [[nodiscard]] const Tree& tree() const { return tree_; }
 
  private:
@@ -40,10 +46,12 @@ class Expression {
     double y = 0.0, before = 0.0, elapsed = 0.0;
     std::vector<double> t, e;  ///< Of a delay.
     bool started = false;
+    double result = 0.0, last_result = 0.0;  ///< At the last two samples.
   };
 
   void Bind(Tree* node, const Names& names);
   [[nodiscard]] double Walk(const Tree& node, const std::vector<double>& values, double dt);
+  [[nodiscard]] double WalkBetween(const Tree& node, const std::vector<double>& values, double part) const;
   [[nodiscard]] double Remember(const Tree& node, double e, double tau, double dt);
 
   Tree tree_;

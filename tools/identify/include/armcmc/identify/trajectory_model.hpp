@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "armcmc/identify/lane_program.hpp"
+#include "armcmc/plant/between.hpp"
 #include "armcmc/plant/plant.hpp"
 
 namespace armcmc::identify {
@@ -98,6 +99,7 @@ class TrajectoryModel {
   std::vector<std::vector<int>> index_;  ///< [mode][parameter of the plant]
   std::size_t num_signals_, num_states_;
   int substeps_ = 1;
+  std::vector<Between> between_;  ///< Of a signal.
   LaneProgram law_, rate_, past_, start_;
   std::size_t num_past_ = 0;  ///< Outputs of past_.
   /// Inputs of the programs: signals, parameters, states, columns, what rates remember.

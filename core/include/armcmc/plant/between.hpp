@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "armcmc/nonblocking.hpp"
+
+namespace armcmc {
+
+/// What a signal does between two samples while states are integrated with it.
+enum class Between : std::uint8_t {
+  kLinear,
+  kHeld,    ///< Stays what the last sample says: a command that a computer gives.
+  kSmooth,  ///< The cubic through the four samples around; at an end of what is known the parabola through three.
+};
+
+/// From the word of a plant file; what is no word of these is kLinear.
+[[nodiscard]] constexpr Between BetweenNamed(std::string_view word) noexcept {
+  return word == "held" ? Between::kHeld : word == "smooth" ? Between::kSmooth : Between::kLinear;
+}
+
+/// Value in an interval, at `part` in [0, 1] of it.
+/// @param from, to        Samples at its ends.
+/// @param earlier, later  The sample before `from` and the one after `to`; null: not known.
+/// @rt No heap, no lock, no throw. O(1).
+[[nodiscard]] inline double ValueBetween(Between between, const double* earlier, double from, double to,
+                                         const double* later, double part) noexcept ARMCMC_NONBLOCKING {
+  if (between == Between::kHeld) return from;
+  const double linear = from + part * (to - from);
+  if (between == Between::kLinear || (earlier == nullptr && later == nullptr)) return linear;
+  // Newton's form of the polynomial through the samples there are.
+  const double before = earlier != nullptr ? to - 2.0 * from + *earlier : 0.0;  // second differences
+  const double after = later != nullptr ? *later - 2.0 * to + from : 0.0;
+  const double parabola = linear + 0.5 * part * (part - 1.0) * (earlier != nullptr ? before : after);
+  if (earlier == nullptr || later == nullptr) return parabola;
+  return parabola + part * (part * part - 1.0) / 6.0 * (after - before);
+}
+
+}  // namespace armcmc
