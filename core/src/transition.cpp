@@ -103,7 +103,8 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
 
 void Transition::Age(const PosteriorMemory& before, const PosteriorMemory& now) noexcept {
   moved_ = now.mean - before.mean;
-  widened_ = (now.covariance - before.covariance).diagonal().cwiseMax(0.0);
+  for (Eigen::Index i = 0; i < widened_.size(); ++i)
+    widened_[i] = std::fmax(now.covariance(i, i) - before.covariance(i, i), 0.0);
 }
 
 const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorMemory& previous, Mismatch* mismatch,
