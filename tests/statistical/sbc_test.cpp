@@ -15,7 +15,6 @@
 namespace armcmc::sbc_test {
 namespace {
 
-using test::ContactTruth;
 using test::MakeContactPack;
 using test::Motion;
 using test::Normal;
