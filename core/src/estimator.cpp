@@ -98,6 +98,8 @@ void Estimator::Impl::PrepareMode(const DataPack& pack, const EffectPack& effect
     composition.Fill(pack, effects, mode, data);
   }
   data->pack_share = static_cast<double>(data->num_samples) / pack.num_samples;
+  data->time_s = pack.t_last_s;
+  data->duration_s = pack.num_samples * pack.dt;
   const double rho = settings.forgetting.rho;
   data->weighted = rho > 0.0;
   // Weights by the distance from the end of the pack, within the samples of the mode.
@@ -267,6 +269,7 @@ void Estimator::Reset() noexcept {
   s.acted.fill(false);
   s.not_remembered = nullptr;
   for (auto& memory : s.memories) memory->slot[0].valid = memory->slot[1].valid = false;
+  for (auto& sampler : s.samplers) sampler->drift().Forget();
   for (auto& estimate : s.last_estimates) estimate = ModeEstimate{};
   s.ShowPrior();
   s.known_draws.fill(false);

@@ -18,6 +18,7 @@ std::size_t Estimator::SaveAdjusted(std::span<std::byte> bytes) const noexcept {
     out.PutRow(impl_->state_sd.data(), impl_->state_sd.size());
     out.Put(impl_->state_noise);
   }
+  for (const auto& sampler : impl_->samplers) sampler->drift().Save(&out);
   return out.size();
 }
 
@@ -58,6 +59,9 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
     s.state_noise = posterior.Number();
     posterior.Require(s.state_noise > 0.0);
   }
+  // Older ones end here, too: how the parameters drift is then learnt anew.
+  if (!posterior.finished())
+    for (const auto& sampler : s.samplers) sampler->drift().Restore(&posterior);
   SnapshotReader display(executed);
   s.report_mode = static_cast<int>(display.Integer(0, s.info.num_modes - 1));
   for (std::size_t m = 0; m < s.memories.size(); ++m) {

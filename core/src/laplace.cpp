@@ -66,23 +66,34 @@ double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
   return -sum;
 }
 
+/// Predictions at u, in lane 0, and a little to either side of it in each parameter d, in lanes 1 + 2 d and 2 + 2 d.
+void PredictAround(const simd::Kernels& kernels, int model, const ModeData& data, const ParameterSpace& space,
+                   const ParamVector& u, LaplaceScratch* scratch) noexcept {
+  ThetaTile& theta = scratch->theta;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(space.num_parameters); ++d) {
+    const auto value = [&](double shift) noexcept {
+      return space.Theta(static_cast<int>(d), u[static_cast<Eigen::Index>(d)] + shift);
+    };
+    theta.value[d].fill(value(0.0));
+    theta.value[d][1 + 2 * d] = value(kDifference);
+    theta.value[d][2 + 2 * d] = value(-kDifference);
+  }
+  kernels.predict(model, data, theta, &scratch->prediction);
+}
+
+/// d F_n / d u_d, after PredictAround().
+double Slope(const LaplaceScratch& scratch, std::size_t n, int d) noexcept {
+  const auto& row = scratch.prediction.value[n];
+  return (row[static_cast<std::size_t>(1 + 2 * d)] - row[static_cast<std::size_t>(2 + 2 * d)]) / (2.0 * kDifference);
+}
+
 /// Gradient and Gauss-Newton Hessian of minus the log posterior at u.
 void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
                ParamVector* gradient, ParamMatrix* hessian) noexcept {
   const int dim = space.dim;
   const int np = space.num_parameters;
-  alignas(64) double log_scale[kTileLanes];
-  SetLane(space, u, 0, &scratch->theta, log_scale);
-  for (int d = 0; d < np; ++d) {
-    ParamVector shifted = u;
-    shifted[d] = u[d] + kDifference;
-    SetLane(space, shifted, 1 + 2 * d, &scratch->theta, log_scale);
-    shifted[d] = u[d] - kDifference;
-    SetLane(space, shifted, 2 + 2 * d, &scratch->theta, log_scale);
-  }
-  for (int lane = 1 + 2 * np; lane < kTileLanes; ++lane) SetLane(space, u, lane, &scratch->theta, log_scale);
-  kernels.predict(model, data, scratch->theta, &scratch->prediction);
+  PredictAround(kernels, model, data, space, u, scratch);
 
   *gradient = Multiply(prior.precision, u - prior.mean);
   *hessian = prior.precision;
@@ -95,10 +106,7 @@ void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, co
     const double w = data.weight[in];
     const double e = (data.target[in] - row[0] - noise.settings().mean) * w;
     const double square_weight = noise.SquareWeight(e, scale);
-    for (int d = 0; d < np; ++d)
-      jacobian[static_cast<std::size_t>(d)] =
-          w * (row[static_cast<std::size_t>(1 + 2 * d)] - row[static_cast<std::size_t>(2 + 2 * d)]) /
-          (2.0 * kDifference);
+    for (int d = 0; d < np; ++d) jacobian[static_cast<std::size_t>(d)] = w * Slope(*scratch, in, d);
     for (int i = 0; i < np; ++i) {
       const double ji = square_weight * jacobian[static_cast<std::size_t>(i)];
       (*gradient)[i] -= ji * e;
@@ -116,6 +124,31 @@ void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, co
 }
 
 }  // namespace
+
+LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
+                                 const ParameterSpace& space, const ParamVector& u, double log_noise_scale,
+                                 LaplaceScratch* scratch) noexcept {
+  const int np = space.num_parameters;
+  PredictAround(kernels, model, data, space, u, scratch);
+  LocalLikelihood local{ParamVector::Zero(np), ParamMatrix::Zero(np, np)};
+  const double scale = std::exp(log_noise_scale);
+  const double information = noise.information() / (scale * scale);
+  ParamVector slope(np);
+  for (int n = 0; n < data.num_samples; ++n) {
+    const auto in = static_cast<std::size_t>(n);
+    const double w = data.weight[in];
+    const double e = (data.target[in] - scratch->prediction.value[in][0] - noise.settings().mean) * w;
+    const double score = noise.SquareWeight(e, scale) * e;
+    for (int d = 0; d < np; ++d) slope[d] = w * Slope(*scratch, in, d);
+    for (int i = 0; i < np; ++i) {
+      local.gradient[i] += slope[i] * score;
+      for (int j = 0; j <= i; ++j) local.information(i, j) += information * slope[i] * slope[j];
+    }
+  }
+  for (int i = 0; i < np; ++i)
+    for (int j = 0; j < i; ++j) local.information(j, i) = local.information(i, j);
+  return local;
+}
 
 double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                   const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,

@@ -8,6 +8,7 @@ namespace armcmc {
 ARMCMC_TRUST_NONBLOCKING_BEGIN
 
 ParamVector Multiply(const ParamMatrix& a, const ParamVector& b) noexcept ARMCMC_NONBLOCKING { return a * b; }
+ParamMatrix Product(const ParamMatrix& a, const ParamMatrix& b) noexcept ARMCMC_NONBLOCKING { return a * b; }
 ParamMatrix TimesOwnTranspose(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a * a.transpose(); }
 ParamMatrix Inverse(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a.inverse(); }
 double Determinant(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a.determinant(); }

@@ -53,7 +53,8 @@ ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerS
       noise_(noise),
       normal_table_(MarginalTable::Normal()),
       student_table_(MarginalTable::StudentT(kStudentDof)),
-      transition_(kernels_, model_, space_, noise_, &normal_table_, forgetting.partial_change) {
+      transition_(kernels_, model_, space_, noise_, &normal_table_, forgetting.partial_change),
+      drift_(kernels_, model_, space_, noise_, forgetting.drift_share) {
   // P_0 as a proposal: axis aligned, each coordinate with its own law.
   std::array<const MarginalTable*, kMaxParams> laws{};
   for (int d = 0; d < space_.dim; ++d) {
@@ -144,11 +145,13 @@ int ModeSampler::DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noex
   return std::clamp(target, SamplerSettings::kMinDraws, sampler_.max_draws);
 }
 
-Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::uint64_t pack, std::uint64_t mode,
+Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std::uint64_t pack, std::uint64_t mode,
                         Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* ws, ModeDraws* out) noexcept {
   const auto stream_of = [&](Purpose purpose) noexcept {
     return RandomStream(sampler_.seed, pack, mode * kNumPurposes + purpose);
   };
+  const PosteriorMemory& last = drift_.Carry(data, before);
+  if (before.valid) transition_.Age(before, last);
   Mismatch mismatch;
   mismatch.zeta = HUGE_VAL;  // zeta^0: the first pack is a modification
   mismatch.threshold = forgetting_.threshold;
@@ -252,8 +255,9 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& last, std::
   out->lambda = mismatch.lambda;
   out->num_samples = data.num_samples;
   FindMode(data, !use_previous, ws, out);
-  RunChain(stream_of(kAcceptStream), ws, out);
-  unfinished_ = {.previous = &previous,
+  RunChain(stream_of(kAcceptStream), pilot, ws, out);
+  unfinished_ = {.data = &data,
+                 .previous = &previous,
                  .lambda = lambda,
                  .first = pilot,
                  .mass_first = 0.0,
@@ -280,6 +284,7 @@ void ModeSampler::Remember(ClockRef clock, SamplerWorkspace* ws, PosteriorMemory
   }
   next->log_noise_scale = log_scale;
   transition_.Accept(*next, out->decision);
+  drift_.Learn(*unfinished_.data, *next, unfinished_.part, out->p_changed > 0.5, &ws->laplace);
   if (!out->known) out->known = next->informed;  // once it is, the result may be read by another thread
   remember_time_.Add(clock.Now() - start, out->draws);
 }

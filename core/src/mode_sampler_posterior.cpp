@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "armcmc/control_variates.hpp"
 #include "armcmc/density_fit.hpp"
@@ -75,13 +76,15 @@ void ModeSampler::ReduceSamplingError(int first, int last, bool use_previous, Sa
                        {&ws->group_weight[offset], &ws->first_share[offset]});  // both free until Compress
 }
 
-void ModeSampler::RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
+void ModeSampler::RunChain(const RandomStream& stream, int first, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
   const int draws = out->draws;
   std::fill(out->visits, out->visits + draws, 0);
   double* gamma = ws->group_weight.data();  // free between the fits
   kernels_.uniforms(stream.origin(), 0, 1, RoundUpToTile(draws), gamma);
-  int state = 0;
-  double state_weight = ws->weight[0];
+  // A lucky draw of the pilot, whose proposal was a poor match, would hold the chain for ever.
+  for (int k = 0; k < first; ++k) out->chain[k] = k;
+  int state = first;
+  double state_weight = ws->weight[static_cast<std::size_t>(first)];
   const double* weight = ws->weight.data();
   const auto step = [&](int k) noexcept {
     const double w = weight[k];
@@ -92,7 +95,7 @@ void ModeSampler::RunChain(const RandomStream& stream, SamplerWorkspace* ws, Mod
     out->chain[k] = state;
     return accept ? 1 : 0;
   };
-  for (int k = 0; k < out->burn_in; ++k) (void)step(k);
+  for (int k = first; k < out->burn_in; ++k) (void)step(k);
   int accepted = 0;
   for (int k = out->burn_in; k < draws; ++k) {
     accepted += step(k);
@@ -124,16 +127,41 @@ const double* ModeSampler::SpreadNoiseScale(int first, const RandomStream& strea
 
 void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept {
   // The first block of the memory, the second, or drawn anew.
-  if (unfinished_.lambda > 0.0) {
-    const int first = unfinished_.first;
-    const auto offset = static_cast<std::size_t>(first);
-    std::array<double, 2> masses{};
-    kernels_.share_prior(Prior(*unfinished_.previous, unfinished_.lambda, first, *ws), out->weight + first,
-                         RoundUpToTile(out->draws - first), ws->first_share.data() + offset, masses.data());
-    unfinished_.mass_first = masses[0];
-    unfinished_.mass_new = masses[1];
+  Unfinished& u = unfinished_;
+  const bool split = drift_.Splits(*u.previous);
+  double mass_first = 0.0;
+  u.part = u.previous->num_blocks > 1 ? Drift::Part::kWhole
+           : drift_.share() > 0.5     ? Drift::Part::kDrift
+                                      : Drift::Part::kRest;
+  if (u.lambda > 0.0) {
+    const auto offset = static_cast<std::size_t>(u.first);
+    const auto share = [&](const simd::PriorTerms& prior) noexcept ARMCMC_NONBLOCKING {
+      std::array<double, 2> masses{};
+      kernels_.share_prior(prior, out->weight + u.first, RoundUpToTile(out->draws - u.first),
+                           ws->first_share.data() + offset, masses.data());
+      return masses;
+    };
+    simd::PriorTerms prior = Prior(*u.previous, u.lambda, u.first, *ws);
+    const std::array<double, 2> masses = share(prior);
+    u.mass_first = mass_first = masses[0];
+    u.mass_new = masses[1];
+    if (split && u.mass_new >= kMinimumGroup) {
+      // Three parts, of which two can be handed on: what was drawn anew, and the rest as one.
+      std::swap(prior.initial, prior.memory[0]);
+      std::swap(prior.initial_share, prior.memory_share[0]);
+      u.mass_first = share(prior)[0];
+      u.part = Drift::Part::kWhole;
+    } else if (split) {
+      const bool first = mass_first >= 0.5;
+      u.part = first == (drift_.drifting_block() == 0) ? Drift::Part::kDrift : Drift::Part::kRest;
+      u.one_part = true;
+    }
   }
-  out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(unfinished_.mass_new, 0.0, 1.0);
+  out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(u.mass_new, 0.0, 1.0);
+  const double kept = 1.0 - out->p_changed;
+  const double drifted = drift_.drifting_block() == 0 ? mass_first : kept - mass_first;
+  out->p_drifted = split ? std::clamp(drifted, 0.0, kept) : kept * drift_.share();
+  out->drift_rate = drift_.rate();
 }
 
 void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {
@@ -172,6 +200,13 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
   };
   if (!use_previous) {
     fit_group(1.0, 1.0, 0.0);
+  } else if (unfinished_.one_part) {
+    // Of rest and drift the more probable: where the other is, relative to it, Drift knows.
+    if (mass_first >= 0.5) {
+      fit_group(mass_first, 0.0, 1.0);
+    } else {
+      fit_group(1.0 - mass_first, 1.0, -1.0);
+    }
   } else if (mass_first >= 0.5) {
     fit_group(mass_first, 0.0, 1.0);
     fit_group(1.0 - mass_first, 1.0, -1.0);

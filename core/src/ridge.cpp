@@ -69,8 +69,10 @@ int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, c
   if (!(to > from)) return 0;
   count = std::clamp(count, kFewestAnchors, kRidgeAnchors);
   const double step = (to - from) / count;
-  // Outward from the mode in both directions, each fit starting where its two neighbours point to.
-  const int middle = std::clamp(static_cast<int>((fit.mean[j] - from) / step), 0, count - 1);
+  // Outward from the mode in both directions, each fit starting where its two neighbours point to. Of an even number of
+  // anchors two are as near to the mode: rounding must not choose.
+  constexpr double kNearer = 1e-6;
+  const int middle = std::clamp(static_cast<int>((fit.mean[j] - from) / step + kNearer), 0, count - 1);
   int written = 0;
   for (const int direction : {1, -1}) {
     ParamVector start = fit.mean;

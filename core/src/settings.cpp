@@ -175,6 +175,8 @@ void EstimatorSettings::Validate() const {
   Open("forgetting.lambda_max", forgetting.lambda_max, 0.0, 1.0);
   Closed("forgetting.rho", forgetting.rho, 0.0, 1.0);
   Closed("forgetting.min_samples", forgetting.min_samples, 1, kMaxPackSamples);
+  if (!(forgetting.drift_share >= 0.0 && forgetting.drift_share < 1.0))
+    Fail("forgetting.drift_share", forgetting.drift_share, "[0, 1)");
   Open("sampler.epsilon", sampler.epsilon, 0.0, 1.0);
   Open("sampler.delta", sampler.delta, 0.0, 1.0);
   Closed("sampler.max_draws", sampler.max_draws, SamplerSettings::kMinDraws, kMaxDraws);

@@ -34,6 +34,27 @@ void Reported(const ModelInfo& info, const PlantConstants& constants, const Para
   }
 }
 
+/// Expected speeds of the reported quantities where every standardised coordinate moves at the rate of the draws.
+void DriftRates(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+                const ModeDraws& draws, std::array<double, kMaxReported>* rate) noexcept {
+  constexpr double kStep = 1e-4;
+  rate->fill(0.0);
+  for (int d = 0; d < space.num_parameters; ++d) {
+    std::array<std::array<double, kMaxReported>, 2> reported{};
+    for (std::size_t side = 0; side < 2; ++side) {
+      std::array<double, kMaxParams> theta{};
+      for (int j = 0; j < space.num_parameters; ++j)
+        theta[static_cast<std::size_t>(j)] = space.Theta(j, draws.mode_u[static_cast<std::size_t>(j)]);
+      theta[static_cast<std::size_t>(d)] += (side == 0 ? -kStep : kStep) * space.scale[static_cast<std::size_t>(d)];
+      info.Report(theta.data(), constants, reported[side].data());
+    }
+    for (std::size_t r = 0; r < kMaxReported; ++r) {
+      const double slope = (reported[1][r] - reported[0][r]) / (2.0 * kStep);
+      (*rate)[r] = std::hypot((*rate)[r], draws.drift_rate * slope);
+    }
+  }
+}
+
 struct MeanAndSd {
   double mean, sd;
 };
@@ -151,6 +172,8 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
   estimate->acceptance = draws.acceptance;
   estimate->log_evidence = draws.log_evidence;
   estimate->p_changed = draws.p_changed;
+  estimate->p_drifted = draws.p_drifted;
+  DriftRates(info, constants, space, draws, &estimate->drift_rate);
   estimate->ess = ChainEss(draws);
 
   const double total = draws.draws - draws.burn_in;

@@ -29,7 +29,9 @@ Transition::Transition(const simd::Kernels& kernels, int model, const ParameterS
       space_(space),
       noise_(noise),
       normal_table_(normal_table),
-      partial_change_(partial_change) {}
+      partial_change_(partial_change),
+      moved_(ParamVector::Zero(space.dim)),
+      widened_(ParamVector::Zero(space.dim)) {}
 
 Transition::Hypothesis Transition::Judge(const ModeData& data, const ParamVector& mean, const ParamMatrix& covariance,
                                          const ParamVector& start, LaplaceScratch* scratch) const noexcept {
@@ -62,8 +64,13 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
                               LaplaceScratch* scratch) noexcept {
   // After a modification the posterior that it made is no base: it may be of a pack that holds the jump.
   const bool from_stable = just_modified_ && stable_;
-  const ParamVector base = from_stable ? stable_mean_ : previous.mean;
-  const ParamMatrix covariance = from_stable ? stable_covariance_ : previous.covariance;
+  ParamVector base = previous.mean;
+  ParamMatrix covariance = previous.covariance;
+  if (from_stable) {
+    base = stable_mean_ + moved_;
+    covariance = stable_covariance_;
+    covariance.diagonal() += widened_;
+  }
   std::array<Hypothesis, PosteriorMemory::kMaxBlocks> best;
   for (auto& h : best) h.log_evidence = -HUGE_VAL;
   const auto offer = [&](const Hypothesis& h) noexcept ARMCMC_NONBLOCKING {
@@ -94,6 +101,12 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
   return true;
 }
 
+void Transition::Age(const PosteriorMemory& before, const PosteriorMemory& now) noexcept {
+  moved_ = now.mean - before.mean;
+  for (Eigen::Index i = 0; i < widened_.size(); ++i)
+    widened_[i] = std::fmax(now.covariance(i, i) - before.covariance(i, i), 0.0);
+}
+
 const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorMemory& previous, Mismatch* mismatch,
                                           double* share, LaplaceScratch* scratch) noexcept {
   restarted_ = false;
@@ -116,7 +129,13 @@ const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorM
 void Transition::Accept(const PosteriorMemory& next, Decision decision) noexcept {
   // A pack that started again is the first of the new plant alone; another such start would lose what it taught.
   just_modified_ = decision == Decision::kModification && !restarted_;
-  if (just_modified_) return;
+  if (just_modified_) {
+    if (stable_) {
+      stable_mean_ += moved_;
+      stable_covariance_.diagonal() += widened_;
+    }
+    return;
+  }
   stable_ = next.informed;
   stable_mean_ = next.mean;
   stable_covariance_ = next.covariance;

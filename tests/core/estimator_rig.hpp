@@ -66,6 +66,7 @@ inline void ExpectSameBits(const Estimate& a, const Estimate& b) {
     EXPECT_EQ(p.k_min, q.k_min);
     EXPECT_TRUE(SameBits(p.zeta, q.zeta) && SameBits(p.lambda, q.lambda) && SameBits(p.ess, q.ess));
     EXPECT_TRUE(SameBits(p.log_evidence, q.log_evidence) && SameBits(p.acceptance, q.acceptance));
+    EXPECT_TRUE(SameBits(p.p_drifted, q.p_drifted) && SameBits(p.drift_rate[0], q.drift_rate[0]));
     EXPECT_TRUE(SameBits(p.p_changed, q.p_changed) && SameBits(p.noise_std, q.noise_std));
     static_assert(sizeof(MarginalSummary) == (12 + kHistogramBins) * sizeof(double), "no padding to compare");
     // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c): the bits are meant

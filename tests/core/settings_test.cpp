@@ -65,6 +65,7 @@ const std::vector<Wrong> kWrong{
     {"forgetting.threshold", "= 0", [](EstimatorSettings& s) { s.forgetting.threshold = 0.0; }},
     {"forgetting.threshold", "nan", [](EstimatorSettings& s) { s.forgetting.threshold = kNan; }},
     {"forgetting.mu", "inf", [](EstimatorSettings& s) { s.forgetting.mu = kInfinity; }},
+    {"forgetting.drift_share", "= 1", [](EstimatorSettings& s) { s.forgetting.drift_share = 1.0; }},
     {"forgetting.lambda_max", "= 1", [](EstimatorSettings& s) { s.forgetting.lambda_max = 1.0; }},
     {"forgetting.rho", "= 1.5 is outside [0, 1]", [](EstimatorSettings& s) { s.forgetting.rho = 1.5; }},
     {"forgetting.min_samples", "= 0", [](EstimatorSettings& s) { s.forgetting.min_samples = 0; }},

@@ -112,6 +112,7 @@ class LinearPosterior {
 
 TEST(SoftActuator, EvidenceAndPosteriorOfTwoPacksEqualTheClosedForm) {
   EstimatorSettings settings = test::ActuatorSettings();
+  settings.forgetting.drift_share = 0.0;
   for (NoiseSettings& noise : settings.noise) noise.estimate_std = false;
   Rig rig(settings);
   LinearPosterior exact(settings);

@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
+#include "armcmc/drift.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "support/packs.hpp"
@@ -12,7 +15,6 @@
 namespace armcmc::sbc_test {
 namespace {
 
-using test::ContactTruth;
 using test::MakeContactPack;
 using test::Motion;
 using test::Normal;
@@ -31,10 +33,55 @@ std::array<double, 3> DrawTruth(const EstimatorSettings& s, Normal* normal) {
   return theta;
 }
 
+/// What the three-part prior says of a pack's parameters: they stay, drift or change.
+class Truth {
+ public:
+  Truth(const EstimatorSettings& settings, const ParameterSpace& space, Normal* normal)
+      : settings_(settings), space_(space), normal_(normal) {
+    Draw();
+    Begin();
+  }
+  [[nodiscard]] const std::array<double, 3>& theta() const { return theta_; }
+
+  void Pass(double elapsed_s) {
+    if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
+    if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s)) Begin();
+    if (law_.rate == 0.0) return;
+    // Small steps of the speed's own process, within bounds.
+    constexpr int kSteps = 100;
+    const double step = elapsed_s / kSteps;
+    for (int k = 0; k < kSteps; ++k)
+      for (std::size_t d = 0; d < 3; ++d) {
+        const double kept = std::exp(-step / law_.persistence);
+        theta_[d] += step * speed_[d] * space_.scale[d];
+        theta_[d] = std::clamp(theta_[d], settings_.parameters[d].lower, settings_.parameters[d].upper);
+        speed_[d] = kept * speed_[d] + law_.rate * std::sqrt(1.0 - kept * kept) * (*normal_)();
+      }
+  }
+
+ private:
+  void Draw() { theta_ = DrawTruth(settings_, normal_); }
+  void Begin() {
+    const double share = settings_.forgetting.drift_share;
+    const bool drifts = normal_->Uniform() < share;
+    const int h = drifts ? 1 + static_cast<int>((Drift::kHypotheses - 1) * normal_->Uniform()) : 0;
+    law_ = Drift::Of(h, share);
+    for (double& v : speed_) v = law_.rate * (*normal_)();
+  }
+
+  const EstimatorSettings& settings_;
+  const ParameterSpace& space_;
+  Normal* normal_;
+  std::array<double, 3> theta_{}, speed_{};
+  Drift::Hypothesis law_;
+};
+
 using Histogram = std::array<std::array<int, kBins>, 3>;
 
 /// Rank histograms of simulation-based calibration (Talts et al. 2018) over `simulations` sequences of `packs` packs.
-Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs, std::uint64_t seed) {
+/// @param moves  The prior that parameters move by from pack to pack; null: they stay.
+Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs, std::uint64_t seed,
+                         const EstimatorSettings* moves = nullptr) {
   Histogram histogram{};
   Normal normal(seed);
   settings.sampler.seed = seed;
@@ -43,13 +90,24 @@ Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs,
   const ParameterSpace space(settings, settings.noise[0]);
   for (int sim = 0; sim < simulations; ++sim) {
     estimator.Reset();
-    const std::array<double, 3> theta = DrawTruth(settings, &normal);
+    std::array<double, 3> theta{};
+    std::optional<Truth> truth;
+    if (moves != nullptr) {
+      theta = truth.emplace(*moves, space, &normal).theta();
+    } else {
+      theta = DrawTruth(settings, &normal);
+    }
     const Motion motion{0.6 + 0.6 * normal.Uniform(), 0.1 + 0.4 * normal.Uniform(), 1.0 + 6.0 * normal.Uniform(),
                         6.28 * normal.Uniform()};
-    for (int k = 1; k <= packs; ++k)  // pack numbers select the random numbers: every pack has its own
+    for (int k = 1; k <= packs; ++k) {  // pack numbers select the random numbers: every pack has its own
+      if (truth && k > 1) {
+        truth->Pass(test::kPackSamples * test::kSampleInterval);
+        theta = truth->theta();
+      }
       estimator.Adjust(
           MakeContactPack(sim * packs + k, motion, {theta[0], theta[1], theta[2]}, settings.noise[0].std, &normal), 0,
           {}, result.get());
+    }
     const ModeDraws& draws = result->modes[0];
     const int first = draws.burn_in;
     for (std::size_t d = 0; d < 3; ++d) {
@@ -89,6 +147,37 @@ TEST(SimulationBasedCalibration, RanksAfterThreePacksOfTheRecursionAreUniform) {
 TEST(LongSimulationBasedCalibration, RanksAfterFivePacksOfTheRecursionAreUniform) {
   const Histogram h = RankHistograms(BuiltinSettings("hunt_crossley"), 2000, 5, 12);
   for (const auto& counts : h) EXPECT_LT(ChiSquare(counts), kPass);
+}
+
+/// The decision whether a change is tried looks at the data; without it the prior of every pack is the same mixture.
+EstimatorSettings ThreeParts() {
+  EstimatorSettings s = BuiltinSettings("hunt_crossley");
+  s.forgetting.drift_share = 0.5;
+  s.forgetting.lambda_max = 0.97;
+  s.forgetting.mu = s.forgetting.threshold = 1e6;
+  return s;
+}
+
+TEST(SimulationBasedCalibration, RanksOfParametersThatStayDriftAndChangeAreUniform) {
+  const EstimatorSettings settings = ThreeParts();
+  const Histogram h = RankHistograms(settings, 300, 6, 13, &settings);
+  for (const auto& counts : h) EXPECT_LT(ChiSquare(counts), kPass);
+}
+
+TEST(LongSimulationBasedCalibration, RanksOfParametersThatStayDriftAndChangeAreUniform) {
+  const EstimatorSettings settings = ThreeParts();
+  const Histogram h = RankHistograms(settings, 2000, 20, 14, &settings);
+  for (const auto& counts : h) EXPECT_LT(ChiSquare(counts), kPass);
+}
+
+TEST(SimulationBasedCalibration, FailsWhenDriftIsSwitchedOff) {
+  const EstimatorSettings moves = ThreeParts();
+  EstimatorSettings broken = moves;
+  broken.forgetting.drift_share = 0.0;
+  const Histogram h = RankHistograms(broken, 200, 6, 13, &moves);
+  double worst = 0.0;
+  for (const auto& counts : h) worst = std::fmax(worst, ChiSquare(counts));
+  EXPECT_GT(worst, kFail);
 }
 
 TEST(SimulationBasedCalibration, FailsWhenTheProposalRatioIsDropped) {

@@ -44,6 +44,7 @@ TEST(EstimatorConfig, AnEmptyFileIsTheBuiltInModel) {
   }
   EXPECT_EQ(read.noise[0].std, built_in.noise[0].std);
   EXPECT_EQ(read.forgetting.threshold, built_in.forgetting.threshold);
+  EXPECT_EQ(read.forgetting.drift_share, built_in.forgetting.drift_share);
   EXPECT_TRUE(read.forgetting.partial_change);
   EXPECT_EQ(read.sampler.seed, built_in.sampler.seed);
   EXPECT_EQ(read.sampler.rule, built_in.sampler.rule);
@@ -81,6 +82,7 @@ mu = 0.1
 lambda_max = 0.9
 rho = 0.01
 min_samples = 7
+drift_share = 0.3
 partial_change = false
 [sampler]
 epsilon = 0.02
@@ -113,6 +115,7 @@ seed = 42
   EXPECT_EQ(s.forgetting.lambda_max, 0.9);
   EXPECT_EQ(s.forgetting.rho, 0.01);
   EXPECT_EQ(s.forgetting.min_samples, 7);
+  EXPECT_EQ(s.forgetting.drift_share, 0.3);
   EXPECT_FALSE(s.forgetting.partial_change);
   EXPECT_EQ(s.sampler.epsilon, 0.02);
   EXPECT_EQ(s.sampler.delta, 0.8);
@@ -209,6 +212,7 @@ TEST(EstimatorConfig, ValuesOutOfRangeAreErrors) {
                            "[forgetting]\nlambda_max = 1.5",
                            "[forgetting]\nrho = -1",
                            "[forgetting]\nmin_samples = 0",
+                           "[forgetting]\ndrift_share = 1.0",
                            "[forgetting]\npartial_change = 1",
                            "[sampler]\nepsilon = 0",
                            "[sampler]\ndelta = 1",

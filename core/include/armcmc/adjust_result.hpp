@@ -24,7 +24,9 @@ struct ModeDraws {
   int burn_in = 0;  ///< Iterations thrown away: half, or the pilot where that is longer.
   bool truncated = false;
   double acceptance = 0.0, kish_ess = 0.0, log_evidence = 0.0, p_changed = 0.0;
-  int mode_index = 0;                       ///< Candidate with the highest posterior density.
+  double p_drifted = 0.0;   ///< Posterior probability that the parameters drift; 1 - p_changed - p_drifted: they stay.
+  double drift_rate = 0.0;  ///< Expected before the pack, prior standard deviations per s.
+  int mode_index = 0;       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
   bool point_is_mode = false;               ///< mode_u is the point estimate whatever the decision (least squares).
   int dim = 0;

@@ -24,6 +24,19 @@ struct LaplaceScratch {
   PredictionTile prediction;
 };
 
+/// The log-likelihood of a pack about u, as far as the parameters go (the noise scale stays where it is):
+///
+///   log L(v) = log L(u) + gradient' (v - u) - (v - u)' information (v - u) / 2
+struct LocalLikelihood {
+  ParamVector gradient;     ///< [num_parameters]
+  ParamMatrix information;  ///< Fisher's, which unlike the curvature does not depend on the noise of the pack.
+};
+/// @param u  [num_parameters] @rt No heap, no lock, no throw. One batch.
+[[nodiscard]] LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const ModeData& data,
+                                               const NoiseModel& noise, const ParameterSpace& space,
+                                               const ParamVector& u, double log_noise_scale,
+                                               LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+
 /// Mode and curvature of likelihood x Gaussian prior by a bounded number of Gauss-Newton steps:
 ///
 ///   H = J' W J + P,   step = (H + mu diag H)^-1 [J' W e + P (m - u)]

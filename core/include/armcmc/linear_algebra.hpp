@@ -20,6 +20,8 @@ using ParamMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMa
 
 /// A b.
 [[nodiscard]] ParamVector Multiply(const ParamMatrix& a, const ParamVector& b) noexcept ARMCMC_NONBLOCKING;
+/// A B.
+[[nodiscard]] ParamMatrix Product(const ParamMatrix& a, const ParamMatrix& b) noexcept ARMCMC_NONBLOCKING;
 /// A A'.
 [[nodiscard]] ParamMatrix TimesOwnTranspose(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
 /// A^-1; not finite where A is singular.

@@ -25,6 +25,8 @@ inline constexpr int kTileLanes = 32;   ///< Candidates scored side by side.
 struct alignas(64) ModeData {
   int num_samples = 0;
   double pack_share = 1.0;                       ///< num_samples over the samples of the whole pack, in (0, 1].
+  double time_s = 0.0;                           ///< Plant time of the last sample of the whole pack.
+  double duration_s = 0.0;                       ///< Of the whole pack.
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.

@@ -7,6 +7,7 @@
 
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/draw_pace.hpp"
+#include "armcmc/drift.hpp"
 #include "armcmc/finish_time.hpp"
 #include "armcmc/forgetting.hpp"
 #include "armcmc/laplace.hpp"
@@ -51,9 +52,13 @@ class SamplerWorkspace {
 
 /// One ARMCMC step of one mode (algorithm steps 1 to 7).
 ///
-///   target    exp(log_likelihood(u)) prior_t(u),   prior_t = lambda P(u | D^{t-1}) + (1 - lambda) P_0(u)
-///   proposal  q = lambda_q P(u | D^{t-1}) + (1 - lambda_q) g(u)
+///   target    exp(log_likelihood(u)) prior_t(u),   prior_t = lambda P(u) + (1 - lambda) P_0(u)
+///   proposal  q = lambda_q P(u) + (1 - lambda_q) g(u)
 ///   weight    w = likelihood prior_t / q,   alpha = min(1, w(u*) / w(u))
+///
+/// P is the posterior after the pack before, P(u | D^{t-1}), as time has left it: at rest or drifting (Drift), so that
+/// prior_t has three parts, of parameters that persisted, drifted or changed, with probabilities lambda pi_0,
+/// lambda (1 - pi_0) and 1 - lambda. A modification has a prior of its own (Transition).
 ///
 /// g is data driven: first Laplace fits of this pack (against the previous posterior and against P_0) with heavy tails,
 /// for a pilot run of kPilotDraws candidates; then mostly a straightened, whitened histogram of the pilot's weighted
@@ -100,6 +105,7 @@ class ModeSampler {
   [[nodiscard]] const MarginalTable& shared_table() const noexcept { return normal_table_; }
   /// What is trusted across a change: part of what a snapshot holds.
   [[nodiscard]] Transition& transition() noexcept { return transition_; }
+  [[nodiscard]] Drift& drift() noexcept { return drift_; }
 
  private:
   /// Draws after a pilot that there was no time to finish. made + DrawsInHaste(made) rises with every round of more
@@ -114,10 +120,14 @@ class ModeSampler {
 
   /// What Run() leaves to Remember().
   struct Unfinished {
+    const ModeData* data = nullptr;
     const PosteriorMemory* previous = nullptr;
     double lambda = 0.0;                      ///< Its share in the prior.
     int first = 0;                            ///< Draw that counts, after the pilot.
     double mass_first = 0.0, mass_new = 0.0;  ///< Of the first block of `previous`, and of what was drawn anew.
+    /// Of what was carried on through time, where rest and drift are two blocks: only the more probable is handed on.
+    bool one_part = false;
+    Drift::Part part = Drift::Part::kRest;
     RandomStream noise_stream;
   };
 
@@ -182,7 +192,9 @@ class ModeSampler {
   /// Control variates on the weights [first, last) of the result; the chain keeps its own.
   void ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
                            ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
-  void RunChain(const RandomStream& stream, SamplerWorkspace* ws, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
+  /// The chain over the draws from `first` on, the first after the pilot.
+  void RunChain(const RandomStream& stream, int first, SamplerWorkspace* ws,
+                ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
   void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
@@ -205,6 +217,7 @@ class ModeSampler {
   NoiseModel noise_;
   MarginalTable normal_table_, student_table_;
   Transition transition_;
+  Drift drift_;
   std::array<MarginalTable, kMaxParams> uniform_tables_;
   DensityBlock initial_block_;  ///< P_0 as a proposal component.
   DensityBlock laplace_fresh_;

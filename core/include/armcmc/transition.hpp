@@ -18,18 +18,20 @@ namespace simd {
 struct Kernels;
 }
 
-/// How the parameters of one mode may have moved since the last pack: what the posterior before a pack becomes before
-/// it meets that pack.
+/// How the parameters of one mode may have changed since the last pack: what the posterior before a pack becomes before
+/// it meets that pack. Time has already passed in it, so that P is what Drift makes of P(u | D^{t-1}): at rest with
+/// probability pi_0, drifting with 1 - pi_0.
 ///
-///   persisted        prior = P(u | D^{t-1})                   the paper's reinforcement
-///   changed in part  prior = P(u_others | D^{t-1}) P_0(u_j)   one coordinate j drawn anew: a parameter or the noise
-///   changed          prior = P_0                              the paper's modification
+///   persisted, drifted  prior = lambda P(u) + (1 - lambda) P_0   the paper's reinforcement
+///   changed in part     prior = P(u_others) P_0(u_j)             one coordinate j drawn anew: a parameter or the noise
+///   changed             prior = P_0                              the paper's modification
 ///
 /// A partial change competes with P_0 after a modification, so that one parameter's jump does not lose the others. The
 /// pack that holds the jump is a mixture of two plants and teaches nothing: the one pack after it may start again from
 /// what was known before both.
 ///
-/// Without partial changes (ForgettingSettings::partial_change) a modification is the paper's: P_0 alone.
+/// Without partial changes (ForgettingSettings::partial_change) a modification is the paper's: P_0 alone. Without drift
+/// (ForgettingSettings::drift_share = 0) P is P(u | D^{t-1}), and the rule as a whole is the paper's.
 ///
 /// Evidences are Laplace approximations: they choose the prior; the posterior under it is then sampled exactly.
 class Transition {
@@ -37,8 +39,12 @@ class Transition {
   Transition(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
              const MarginalTable* normal_table, bool partial_change);
 
+  /// Time has passed over the posterior before a pack: what is trusted across a change moves on as much.
+  /// @rt No heap, no lock, no throw. O(dim).
+  void Age(const PosteriorMemory& before, const PosteriorMemory& now) noexcept ARMCMC_NONBLOCKING;
+
   /// Chooses the prior of a pack.
-  /// @param previous  Posterior before the pack.
+  /// @param previous  Posterior before the pack, as Drift::Carry() returns it.
   /// @param[in,out] mismatch  Becomes a modification when the pack contradicts what the last modification made.
   /// @param[out] share  Of the returned memory in the prior; the rest is P_0. 0: P_0 alone.
   /// @return `previous`, or a memory of this object, valid until the next call.
@@ -84,6 +90,7 @@ class Transition {
   bool stable_ = false;  ///< stable_mean_ and stable_covariance_ are the last posterior that a reinforcement confirmed.
   ParamVector stable_mean_;
   ParamMatrix stable_covariance_;
+  ParamVector moved_, widened_;  ///< By time, since the pack before: of the mean, and of the variances.
   bool just_modified_ = false;
   bool restarted_ = false;  ///< This pack starts again from what was known before the last one.
 };

@@ -192,6 +192,7 @@ std::vector<SettingDifference> DifferencesOf(const EstimatorSettings& a, const E
   add("forgetting.lambda_max", Number(f.lambda_max), Number(g.lambda_max));
   add("forgetting.rho", Number(f.rho), Number(g.rho));
   add("forgetting.min_samples", std::to_string(f.min_samples), std::to_string(g.min_samples));
+  add("forgetting.drift_share", Number(f.drift_share), Number(g.drift_share));
   add("forgetting.partial_change", YesNo(f.partial_change), YesNo(g.partial_change));
   const SamplerSettings &s = a.sampler, &r = b.sampler;
   add("sampler.draws", Rule(s), Rule(r));

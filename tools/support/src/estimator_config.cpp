@@ -31,6 +31,7 @@ void ReadForgetting(StrictTable table, ForgettingSettings* forgetting) {
   forgetting->lambda_max = table.Number("lambda_max", forgetting->lambda_max, 0.0, 1.0);
   forgetting->rho = table.Number("rho", forgetting->rho, 0.0, 1.0);
   forgetting->min_samples = static_cast<int>(table.Integer("min_samples", forgetting->min_samples, 1, kMaxPackSamples));
+  forgetting->drift_share = table.Number("drift_share", forgetting->drift_share, 0.0, 1.0 - 1e-9);
   forgetting->partial_change = table.Boolean("partial_change", forgetting->partial_change);
 }
 

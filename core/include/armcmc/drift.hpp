@@ -1,0 +1,147 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "armcmc/laplace.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/parameter_space.hpp"
+#include "armcmc/posterior_memory.hpp"
+
+namespace armcmc {
+
+class SnapshotReader;
+class SnapshotWriter;
+namespace simd {
+struct Kernels;
+}
+
+/// How the parameters of one mode drift, learnt from the packs.
+///
+/// Each hypothesis h lets the standardised parameters u move with a speed w that is forgotten within tau_h:
+///
+///   du/dt = w,   dw = -w / tau_h dt + s_h sqrt(2 / tau_h) dW,   w ~ N(0, s_h^2) in the long run
+///
+/// s_h is the rate, in standard deviations of the prior per second, the same for all parameters. h = 0 is rest, s = 0.
+/// The others are all pairs of kRates and kPersistence: a walk whose steps are forgotten within a second, and a trend.
+/// A random walk alone does not do: of a steady drift it would have to be told anew in every pack, lags behind, and
+/// finds the explanation with the smallest steps along what the data do not tell apart, with intervals that miss it.
+///
+/// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
+///
+///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, newcomers from the whole bank at a speed of
+///            their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
+///   bounds   a parameter that would become wider than P_0, by c > 1 in variance, comes back to it: variance and mean
+///            divided by c. After a long time nothing but P_0 is known of what drifts
+///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
+///            pi_h times the evidence of that, with every filter updated by the same a, H, m
+///   sampled  the whole bank is moved and stretched, by the affine map that leads from what the prior of the pack and
+///            this expansion make of rest, or of drift, to the sampled posterior: where the law is linear that is none,
+///            and where it is not the bank says how rest and drift lie to each other, and the draws say where
+///
+/// Of a sampled posterior only the more probable of rest and drift is handed on, P: its draws each with the
+/// probability that they came from there. Before the next pack it becomes
+///
+///   pi_0 P_rest(u) + (1 - pi_0) P_drift(u)
+///
+/// each of them P moved and stretched by an affine map to where the bank has that part then, and to its covariance:
+/// drawable and with a density like P itself, and the convolution with the drift where P is Gaussian. (Of one parameter
+/// P_drift is the mixture of the hypotheses; of several a product of such marginals would be further from theirs than
+/// the affine map.) While drift is improbable (kNegligible) P stays as it is, to the bit.
+///
+/// The noise scale is no coordinate of the bank: its memory is loose as it is (ModeSampler::SpreadNoiseScale).
+class Drift {
+ public:
+  static constexpr std::array<double, 5> kRates{0.003, 0.01, 0.03, 0.1, 0.3};  ///< s, prior standard deviations per s.
+  static constexpr std::array<double, 2> kPersistence{1.0, 30.0};              ///< tau, s.
+  static constexpr double kSwitching = 0.01;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
+  static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
+  static constexpr int kHypotheses = 1 + static_cast<int>(kRates.size() * kPersistence.size());
+
+  /// Of what the bank holds.
+  enum class Part : std::uint8_t { kWhole, kRest, kDrift };
+
+  struct Hypothesis {
+    double rate = 0.0, persistence = 1.0, prior = 1.0;
+  };
+  /// Hypothesis h where drift has the probability `share`, spread evenly over the drifting ones.
+  [[nodiscard]] static Hypothesis Of(int h, double share) noexcept ARMCMC_NONBLOCKING;
+
+  /// @param share  Prior probability that the plant drifts, in [0, 1). 0: it rests, and Carry() changes nothing.
+  Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise, double share);
+
+  /// What the posterior after the last pack has become by the time of this one.
+  /// @return `last`, or a memory of this object, valid until the next call.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^2 + dim^3).
+  const PosteriorMemory& Carry(const ModeData& data, const PosteriorMemory& last) noexcept ARMCMC_NONBLOCKING;
+  /// Whether `memory` is one posterior at rest and drifting, and not two posteriors.
+  [[nodiscard]] bool Splits(const PosteriorMemory& memory) const noexcept { return &memory == &carried_ && split_; }
+  /// Which block of a memory that is split drifts.
+  [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
+
+  /// After Carry(): what the pack taught.
+  /// @param next     Posterior after it.
+  /// @param part     What its first block was fitted to.
+  /// @param renewed  The parameters did not come from where they were: the bank starts again around `next`, with the
+  /// rates that it knows.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
+  void Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool renewed,
+             LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+
+  /// As of the last Carry(): probability of drift before the pack, and the expected rate, prior standard deviations per
+  /// second.
+  [[nodiscard]] double share() const noexcept { return share_; }
+  [[nodiscard]] double rate() const noexcept { return rate_; }
+
+  void Forget() noexcept ARMCMC_NONBLOCKING;
+  /// For Restore(), which is equal to the bit.
+  void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
+
+ private:
+  /// Mean and covariance of u and w, in blocks; `weight` is pi_h.
+  struct Filter {
+    double weight = 0.0;
+    ParamVector u, w;
+    ParamMatrix uu, uw, ww;
+  };
+  using Bank = std::array<Filter, kHypotheses>;
+  struct Moments {
+    double weight = 0.0;
+    ParamVector mean;
+    ParamMatrix covariance;
+  };
+
+  [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
+  void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
+  /// @return false when some number is not finite.
+  bool Update(const LocalLikelihood& local, const ParamVector& centre) noexcept ARMCMC_NONBLOCKING;
+  bool Recentre(const LocalLikelihood& local, const PosteriorMemory& next) noexcept ARMCMC_NONBLOCKING;
+  /// Block `to` of what is carried on: a block of `last`, moved and stretched as from `from` to a part of the bank.
+  bool Move(const PosteriorMemory& last, Part part, const Moments& from, int block, int to) noexcept ARMCMC_NONBLOCKING;
+  /// Block `to` of what is carried on, of one parameter: the mixture of the hypotheses that drift.
+  void Mix(const Moments& part, int to) noexcept ARMCMC_NONBLOCKING;
+  bool SetMoments(const PosteriorMemory& last, Part part, const Moments& from) noexcept ARMCMC_NONBLOCKING;
+
+  const simd::Kernels& kernels_;
+  int model_;
+  const ParameterSpace& space_;
+  const NoiseModel& noise_;
+  int dim_;  ///< Parameters; the noise scale, where sampled, comes after them.
+  std::array<Hypothesis, kHypotheses> hypotheses_;
+  bool enabled_;
+  bool started_ = false;
+  double time_s_ = 0.0;  ///< Of the pack that `bank_` has learnt from.
+  Bank bank_;            ///< After that pack.
+  Bank predicted_;       ///< Before the next one.
+  double share_ = 0.0, rate_ = 0.0;
+  Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
+  bool split_ = false;
+  int drifting_block_ = 1;
+  PosteriorMemory carried_;
+};
+
+}  // namespace armcmc

@@ -1,0 +1,385 @@
+#include "armcmc/drift.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "armcmc/density_fit.hpp"
+#include "armcmc/linear_algebra.hpp"
+#include "armcmc/snapshot.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kMixedReach = 6.0;  // standard deviations
+constexpr double kMixedTail = 1e-3;  // of a normal law in a mixture, and share below which a hypothesis is left out
+constexpr double kSmallestWeight = 1e-30;  // of a hypothesis: none is ever beyond return
+
+void MakeSymmetric(ParamMatrix* m) noexcept {
+  for (Eigen::Index i = 0; i < m->rows(); ++i)
+    for (Eigen::Index j = 0; j < i; ++j) (*m)(i, j) = (*m)(j, i) = 0.5 * ((*m)(i, j) + (*m)(j, i));
+}
+
+/// A with A C A' = R. @return false where C or R is no covariance.
+bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noexcept {
+  ParamMatrix root;
+  if (!c.allFinite() || !r.allFinite() || !CholeskyFactor(c, &root)) return false;
+  const ParamMatrix inverse = Inverse(root);
+  ParamMatrix relative = Product(Product(inverse, r), inverse.transpose());
+  MakeSymmetric(&relative);
+  const SymmetricEigen eigen = EigenOfSymmetric(relative);
+  if (!eigen.converged || !(eigen.values[0] > 0.0)) return false;
+  ParamMatrix stretched = eigen.vectors;
+  for (Eigen::Index i = 0; i < stretched.cols(); ++i) stretched.col(i) *= std::sqrt(eigen.values[i]);
+  *a = Product(Product(root, Product(stretched, eigen.vectors.transpose())), inverse);
+  return a->allFinite();
+}
+
+}  // namespace
+
+Drift::Hypothesis Drift::Of(int h, double share) noexcept {
+  if (h == 0) return {.rate = 0.0, .persistence = 1.0, .prior = 1.0 - share};
+  const auto i = static_cast<std::size_t>(h - 1);
+  return {.rate = kRates[i % kRates.size()],
+          .persistence = kPersistence[i / kRates.size()],
+          .prior = share / (kHypotheses - 1)};
+}
+
+Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
+             double share)
+    : kernels_(kernels),
+      model_(model),
+      space_(space),
+      noise_(noise),
+      dim_(space.num_parameters),
+      enabled_(share > 0.0) {
+  for (int h = 0; h < kHypotheses; ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share);
+}
+
+void Drift::Forget() noexcept {
+  started_ = split_ = false;
+  share_ = rate_ = 0.0;
+}
+
+Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
+  const Eigen::Index dim = bank[0].u.size();
+  Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim), .covariance = ParamMatrix::Zero(dim, dim)};
+  const std::size_t first = part == Part::kDrift ? 1 : 0;
+  const std::size_t end = part == Part::kRest ? 1 : bank.size();
+  for (std::size_t h = first; h < end; ++h) {
+    m.weight += bank[h].weight;
+    m.mean += bank[h].weight * bank[h].u;
+  }
+  m.mean /= m.weight;
+  for (std::size_t h = first; h < end; ++h) {
+    const ParamVector apart = bank[h].u - m.mean;
+    const double share = bank[h].weight / m.weight;
+    for (Eigen::Index i = 0; i < dim; ++i)
+      for (Eigen::Index j = 0; j < dim; ++j) m.covariance(i, j) += share * (bank[h].uu(i, j) + apart[i] * apart[j]);
+  }
+  return m;
+}
+
+void Drift::Predict(double elapsed_s) noexcept {
+  const double stays = std::exp(-kSwitching * elapsed_s);
+  const Moments all = MomentsOf(bank_, Part::kWhole);
+  for (std::size_t h = 0; h < bank_.size(); ++h) {
+    const Hypothesis& law = hypotheses_[h];
+    const Filter& before = bank_[h];
+    Filter& f = predicted_[h];
+    f = before;
+    // Newcomers: anywhere in the bank, at a speed of the hypothesis' own law.
+    const double speed = law.rate * law.rate;
+    const double old = stays * before.weight;
+    const double fresh = (1.0 - stays) * law.prior;
+    f.weight = std::fmax(old + fresh, kSmallestWeight);
+    const double p = old / f.weight;
+    const double q = 1.0 - p;
+    const ParamVector apart = all.mean - before.u;
+    f.u += q * apart;
+    f.w *= p;
+    for (int i = 0; i < dim_; ++i)
+      for (int j = 0; j < dim_; ++j) {
+        f.uu(i, j) = p * before.uu(i, j) + q * all.covariance(i, j) + p * q * apart[i] * apart[j];
+        f.uw(i, j) = p * before.uw(i, j) - p * q * apart[i] * before.w[j];
+        f.ww(i, j) = p * before.ww(i, j) + (i == j ? q * speed : 0.0) + p * q * before.w[i] * before.w[j];
+      }
+    if (h == 0) continue;
+    const double t = law.persistence;
+    const double phi = std::exp(-elapsed_s / t);
+    const double b = t * (1.0 - phi);
+    const double noise_w = speed * (1.0 - phi * phi);
+    const double noise_uw = speed * t * (1.0 - phi) * (1.0 - phi);
+    const double noise_u = std::fmax(speed * t * (2.0 * (elapsed_s - b) - b * (1.0 - phi)), 0.0);
+    const ParamVector variance = f.uu.diagonal();
+    f.u += b * f.w;
+    for (int i = 0; i < dim_; ++i)
+      for (int j = 0; j <= i; ++j)
+        f.uu(i, j) = f.uu(j, i) =
+            f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j ? noise_u : 0.0);
+    for (int i = 0; i < dim_; ++i)
+      for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j ? noise_uw : 0.0);
+    f.w *= phi;
+    f.ww *= phi * phi;
+    for (int i = 0; i < dim_; ++i) f.ww(i, i) += noise_w;
+    for (int i = 0; i < dim_; ++i) {
+      const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
+      const double shrink = std::sqrt(kept);
+      f.u[i] *= kept;
+      f.uu.row(i) *= shrink;
+      f.uu.col(i) *= shrink;
+      f.uw.row(i) *= shrink;
+    }
+  }
+}
+
+void Drift::Mix(const Moments& part, int to) noexcept {
+  const auto b = static_cast<std::size_t>(to);
+  MarginalTable& table = carried_.tables[b][0];
+  DensityBlock& block = carried_.block[b];
+  constexpr int kNodes = 2 * static_cast<int>(kMixedReach * MarginalTable::kNodesPerUnit) + 1;
+  std::array<double, kNodes> values{};
+  const double sd = std::sqrt(part.covariance(0, 0));
+  const auto add = [&](double share, double mean, double spread) noexcept ARMCMC_NONBLOCKING {
+    const double per_sd = 1.0 / std::fmax(spread, 1.0 / MarginalTable::kNodesPerUnit);
+    for (int n = 0; n < kNodes; ++n) {
+      const double z = (n / MarginalTable::kNodesPerUnit - kMixedReach - mean) * per_sd;
+      values[static_cast<std::size_t>(n)] += share * per_sd * std::exp(-0.5 * z * z);
+    }
+  };
+  add(kMixedTail, 0.0, 1.0);
+  for (std::size_t h = 1; h < predicted_.size(); ++h) {
+    const Filter& f = predicted_[h];
+    const double share = f.weight / part.weight;
+    if (share > kMixedTail) add(share, (f.u[0] - part.mean[0]) / sd, std::sqrt(f.uu(0, 0)) / sd);
+  }
+  table.Build(values.data(), kNodes, -kMixedReach);
+  SetElliptic(part.mean, part.covariance, 1.0 / std::sqrt(table.Variance()), &table, &block);
+  block.center[0] = -block.scale[0] * table.Mean();
+}
+
+bool Drift::Move(const PosteriorMemory& last, Part part, const Moments& from, int block, int to) noexcept {
+  const Moments target = MomentsOf(predicted_, part);
+  ParamMatrix map;
+  if (!MapBetween(from.covariance, target.covariance, &map)) return false;
+  const ParamMatrix inverse = Inverse(map);
+  const double determinant = std::fabs(Determinant(map));
+  if (!inverse.allFinite() || !(determinant > 0.0)) return false;
+  const DensityBlock& source = last.block[static_cast<std::size_t>(block)];
+  if (part == Part::kDrift && source.dim == 1) {
+    Mix(target, to);
+    return true;
+  }
+  DensityBlock& moved = carried_.block[static_cast<std::size_t>(to)];
+  moved = source;
+  moved.axis_aligned = false;
+  // W' = W A^-1, and A W^-1 for its inverse; the noise scale stays where it is.
+  for (int i = 0; i < dim_; ++i) {
+    const auto ii = static_cast<std::size_t>(i);
+    moved.mean[ii] = target.mean[i];
+    for (int j = 0; j < dim_; ++j)
+      moved.mean[ii] += map(i, j) * (source.mean[static_cast<std::size_t>(j)] - from.mean[j]);
+    for (std::size_t r = 0; r < static_cast<std::size_t>(source.dim); ++r) {
+      double whiten = 0.0;
+      double unwhiten = 0.0;
+      for (int k = 0; k < dim_; ++k) {
+        whiten += source.whiten[r][static_cast<std::size_t>(k)] * inverse(k, i);
+        unwhiten += map(i, k) * source.unwhiten[static_cast<std::size_t>(k)][r];
+      }
+      moved.whiten[r][ii] = whiten;
+      moved.unwhiten[ii][r] = unwhiten;
+    }
+  }
+  moved.norm = source.norm / determinant;
+  return std::isfinite(moved.norm);
+}
+
+bool Drift::SetMoments(const PosteriorMemory& last, Part part, const Moments& from) noexcept {
+  const Moments target = MomentsOf(predicted_, part);
+  ParamMatrix map;
+  if (!MapBetween(from.covariance, target.covariance, &map)) return false;
+  ParamMatrix whole_map = ParamMatrix::Identity(last.mean.size(), last.mean.size());
+  whole_map.topLeftCorner(dim_, dim_) = map;
+  carried_.covariance = Product(Product(whole_map, last.covariance), whole_map.transpose());
+  MakeSymmetric(&carried_.covariance);
+  carried_.mean = last.mean;
+  carried_.mean.head(dim_) = target.mean + Multiply(map, last.mean.head(dim_) - from.mean);
+  return IsPositiveDefinite(carried_.covariance);
+}
+
+const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last) noexcept {
+  split_ = false;
+  share_ = rate_ = 0.0;
+  if (!last.valid) started_ = false;
+  if (!started_) return last;
+  // A plant whose time starts anew has waited nobody knows how long: a pack at least.
+  const double since = data.time_s - time_s_;
+  Predict(since > 0.0 ? since : data.duration_s);
+  double total = 0.0;
+  for (std::size_t h = 0; h < predicted_.size(); ++h) {
+    total += predicted_[h].weight;
+    rate_ += predicted_[h].weight * hypotheses_[h].rate;
+  }
+  share_ = 1.0 - predicted_[0].weight / total;
+  rate_ /= total;
+
+  const Moments from{
+      .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
+  carried_.valid = true;
+  carried_.informed = last.informed;
+  carried_.log_noise_scale = last.log_noise_scale;
+  carried_.weight = last.weight;
+  carried_.num_blocks = last.num_blocks;
+  const bool rests = share_ < kNegligible;
+  if (rests && fitted_ == Part::kRest) return last;
+  if (last.num_blocks == 1 && !rests && share_ < 1.0 - kNegligible) {
+    // The more probable one first.
+    drifting_block_ = share_ > 0.5 ? 0 : 1;
+    if (!Move(last, Part::kDrift, from, 0, drifting_block_) || !Move(last, Part::kRest, from, 0, 1 - drifting_block_) ||
+        !SetMoments(last, Part::kWhole, from))
+      return last;
+    carried_.num_blocks = 2;
+    carried_.weight = {std::fmax(share_, 1.0 - share_), std::fmin(share_, 1.0 - share_)};
+    split_ = true;
+    return carried_;
+  }
+  // Two posteriors, of parameters that stayed and of some that changed, stay two.
+  const Part part = last.num_blocks > 1 ? Part::kWhole : rests ? Part::kRest : Part::kDrift;
+  for (int b = 0; b < last.num_blocks; ++b)
+    if (!Move(last, part, from, b, b)) return last;
+  return SetMoments(last, part, from) ? carried_ : last;
+}
+
+void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
+  for (std::size_t h = 0; h < bank_.size(); ++h) {
+    Filter& f = bank_[h];
+    if (!with_speeds) {
+      f.weight = hypotheses_[h].prior;
+      f.w = ParamVector::Zero(dim_);
+      f.ww = ParamMatrix::Identity(dim_, dim_);
+      f.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+    } else {
+      f = predicted_[h];
+    }
+    f.u = next.mean.head(dim_);
+    f.uu = next.covariance.topLeftCorner(dim_, dim_);
+    f.uw = ParamMatrix::Zero(dim_, dim_);
+  }
+}
+
+bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noexcept {
+  const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
+  std::array<double, kHypotheses> log_weight{};
+  double top = -HUGE_VAL;
+  for (std::size_t h = 0; h < bank_.size(); ++h) {
+    Filter& f = bank_[h];
+    f = predicted_[h];
+    // P = C (1 + H C)^-1, and what u learns w learns through their covariance.
+    ParamMatrix spread = Product(local.information, f.uu);
+    spread += identity;
+    const ParamMatrix t = Inverse(spread);
+    const ParamVector apart = f.u - centre;
+    const ParamVector pulled = Multiply(local.information, apart);
+    const ParamVector residual = local.gradient - pulled;
+    const ParamVector step = Multiply(t, residual);
+    const ParamVector move = Multiply(f.uu, step);
+    log_weight[h] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
+                    0.5 * residual.dot(move) - 0.5 * std::log(std::fmax(Determinant(spread), 1e-300));
+    if (!std::isfinite(log_weight[h])) return false;
+    top = std::fmax(top, log_weight[h]);
+    f.u += move;
+    f.w += Multiply(f.uw.transpose(), step);
+    f.ww -= Product(Product(f.uw.transpose(), Product(t, local.information)), f.uw);
+    f.uw = Product(t.transpose(), f.uw);
+    f.uu = Product(f.uu, t);
+    MakeSymmetric(&f.uu);
+    MakeSymmetric(&f.ww);
+    if (!f.u.allFinite() || !f.w.allFinite() || !f.uu.allFinite() || !f.uw.allFinite() || !f.ww.allFinite())
+      return false;
+  }
+  double sum = 0.0;
+  for (std::size_t h = 0; h < bank_.size(); ++h) {
+    bank_[h].weight = std::exp(log_weight[h] - top);
+    sum += bank_[h].weight;
+  }
+  for (Filter& f : bank_) f.weight = std::fmax(f.weight / sum, kSmallestWeight);
+  return true;
+}
+
+bool Drift::Recentre(const LocalLikelihood& local, const PosteriorMemory& next) noexcept {
+  // What the sampler's prior becomes where the likelihood is as expanded.
+  Moments now = MomentsOf(predicted_, fitted_);
+  ParamMatrix spread = Product(local.information, now.covariance);
+  spread += ParamMatrix::Identity(dim_, dim_);
+  const ParamVector pulled = Multiply(local.information, now.mean - next.mean.head(dim_));
+  now.covariance = Product(now.covariance, Inverse(spread));
+  MakeSymmetric(&now.covariance);
+  now.mean += Multiply(now.covariance, local.gradient - pulled);
+  ParamMatrix map;
+  if (!MapBetween(now.covariance, next.covariance.topLeftCorner(dim_, dim_), &map)) return false;
+  for (Filter& f : bank_) {
+    f.u = next.mean.head(dim_) + Multiply(map, f.u - now.mean);
+    f.uu = Product(Product(map, f.uu), map.transpose());
+    MakeSymmetric(&f.uu);
+    f.uw = Product(map, f.uw);
+  }
+  return true;
+}
+
+void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool renewed,
+                  LaplaceScratch* scratch) noexcept {
+  if (!enabled_ || !next.valid || !next.informed) return;
+  time_s_ = data.time_s;
+  fitted_ = part;
+  const bool known = started_;
+  started_ = true;
+  if (known && !renewed) {
+    const ParamVector centre = next.mean.head(dim_);
+    const LocalLikelihood local =
+        ExpandLikelihood(kernels_, model_, data, noise_, space_, centre, next.log_noise_scale, scratch);
+    if (Update(local, centre) && Recentre(local, next)) return;
+  }
+  Start(next, known);
+}
+
+void Drift::Save(SnapshotWriter* out) const noexcept {
+  out->PutFlag(started_);
+  if (!started_) return;
+  out->Put(time_s_);
+  out->Put(static_cast<std::int64_t>(fitted_));
+  const auto put = [out](const auto& m) noexcept ARMCMC_NONBLOCKING {
+    out->PutRow(m.data(), static_cast<std::size_t>(m.size()));
+  };
+  for (const Filter& f : bank_) {
+    out->Put(f.weight);
+    put(f.u);
+    put(f.w);
+    put(f.uu);
+    put(f.uw);
+    put(f.ww);
+  }
+}
+
+void Drift::Restore(SnapshotReader* in) noexcept {
+  Forget();
+  const bool started = in->Flag();
+  if (!started) return;
+  time_s_ = in->Number();
+  fitted_ = static_cast<Part>(in->Integer(0, static_cast<std::int64_t>(Part::kDrift)));
+  const auto take = [in, this](auto* m, Eigen::Index columns) noexcept ARMCMC_NONBLOCKING {
+    m->resize(dim_, columns);
+    in->Row(m->data(), static_cast<std::size_t>(m->size()));
+  };
+  for (Filter& f : bank_) {
+    f.weight = in->Number();
+    take(&f.u, 1);
+    take(&f.w, 1);
+    take(&f.uu, dim_);
+    take(&f.uw, dim_);
+    take(&f.ww, dim_);
+    in->Require(f.weight > 0.0 && in->good() && IsPositiveDefinite(f.uu));
+  }
+  started_ = enabled_ && in->good();
+}
+
+}  // namespace armcmc

@@ -1,0 +1,317 @@
+#include "armcmc/drift.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "armcmc/density_fit.hpp"
+#include "core/estimator_rig.hpp"
+#include "simd/kernels.hpp"
+#include "support/alloc_counter.hpp"
+
+namespace armcmc::drift_test {
+namespace {
+
+using test::Rig;
+
+constexpr double kPackDuration = test::kPackSamples * test::kSampleInterval;
+
+EstimatorSettings Quick(double drift_share = ForgettingSettings{}.drift_share) {
+  EstimatorSettings s = BuiltinSettings("hunt_crossley");
+  s.forgetting.drift_share = drift_share;
+  s.sampler.rule = DrawRule::kFixed;
+  s.sampler.fixed_draws = 4000;
+  return s;
+}
+
+/// A well excited contact whose parameters move at a constant speed from `from_s` to `to_s`.
+class Contact {
+ public:
+  test::ContactTruth speed;  ///< Per second.
+  test::ContactTruth start{};
+  double from_s = 0.0, to_s = 1e9;
+
+  explicit Contact(const test::ContactTruth& moves = {0.0, 0.0, 0.0}) : speed(moves) {}
+
+  [[nodiscard]] test::ContactTruth At(double t) const {
+    const double moved = std::clamp(t, from_s, to_s) - from_s;
+    return {start.k + speed.k * moved, start.b + speed.b * moved, start.p + speed.p * moved};
+  }
+  /// Plant time of its end.
+  [[nodiscard]] static double End(std::int64_t seq) { return static_cast<double>(seq) * kPackDuration; }
+
+  DataPack Pack(std::int64_t seq) {
+    constexpr test::Motion kMotion{.depth = 1.0, .swing = 0.5, .hertz = 1.3, .phase = 0.0};
+    return test::FillContactPack(
+        seq, [&](double t) { return kMotion.At(t); },
+        [&](double t, const test::Place& at) { return At(t).Force(at.x, at.v) + 0.1 * normal_(); });
+  }
+
+ private:
+  test::Normal normal_{7};
+};
+
+const test::ContactTruth kDrift{.k = 0.1, .b = -0.05, .p = 0.01};
+
+TEST(Drift, OfAPlantAtRestIsUnlearnt) {
+  Contact contact;
+  Rig rig(Quick());
+  for (std::int64_t seq = 1; seq <= 80; ++seq) {
+    const ModeEstimate& e = rig.Step(contact.Pack(seq)).modes[0];
+    EXPECT_EQ(e.decision, seq == 1 ? Decision::kModification : Decision::kReinforcement) << "pack " << seq;
+  }
+  const ModeEstimate& e = rig.estimate().modes[0];
+  EXPECT_LT(e.p_drifted, 0.02);
+  EXPECT_LT(e.drift_rate[0], 0.002) << "N/m^p per s";
+}
+
+TEST(Drift, IsFollowedAndItsRateLearnt) {
+  Contact contact(kDrift);
+  Rig rig(Quick()), at_rest(Quick(0.0));
+  for (std::int64_t seq = 1; seq <= 80; ++seq) {
+    const DataPack pack = contact.Pack(seq);
+    rig.Step(pack);
+    at_rest.Step(pack);
+  }
+  const ModeEstimate &e = rig.estimate().modes[0], &late = at_rest.estimate().modes[0];
+  const test::ContactTruth truth = contact.At(contact.End(80));
+  const std::array<double, 3> theta{truth.k, truth.b, truth.p};
+  EXPECT_GT(e.p_drifted, 0.98);
+  EXPECT_LT(e.p_changed, 0.01);
+  EXPECT_GT(e.drift_rate[0], 0.3 * kDrift.k);
+  EXPECT_LT(e.drift_rate[0], 3.0 * kDrift.k);
+  double with = 0.0;
+  double without = 0.0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const MarginalSummary& m = e.marginal[d];
+    EXPECT_LT(std::fabs(m.ar_ap - theta[d]), 3.0 * m.sd) << d;
+    with += std::fabs(m.ar_ap - theta[d]) / theta[d];
+    without += std::fabs(late.marginal[d].ar_ap - theta[d]) / theta[d];
+  }
+  EXPECT_LT(with, 0.5 * without);
+}
+
+TEST(Drift, ThatStopsIsUnlearnt) {
+  Contact contact(kDrift);
+  contact.to_s = 4.0;
+  Rig rig(Quick());
+  double most = 0.0;
+  for (std::int64_t seq = 1; seq <= 160; ++seq) {
+    rig.Step(contact.Pack(seq));
+    most = std::fmax(most, rig.estimate().modes[0].p_drifted);
+  }
+  EXPECT_GT(most, 0.98);
+  EXPECT_LT(rig.estimate().modes[0].p_drifted, 0.5);
+}
+
+TEST(Drift, AJumpOnTopIsFollowedAndTheDriftGoesOn) {
+  Contact contact(kDrift);
+  Rig rig(Quick());
+  constexpr double kJump = -2.0;
+  for (std::int64_t seq = 1; seq <= 72; ++seq) {
+    DataPack pack = contact.Pack(seq);
+    for (std::size_t n = 0; seq > 60 && n < test::kPackSamples; ++n) {
+      const double t = contact.End(seq - 1) + static_cast<double>(n) * test::kSampleInterval;
+      pack.y[n] += kJump * std::pow(pack.u[n][0], contact.At(t).p);
+    }
+    const ModeEstimate& e = rig.Step(pack).modes[0];
+    if (seq != 62 && seq != 72) continue;
+    const double truth = contact.At(contact.End(seq)).k + kJump;
+    EXPECT_LT(std::fabs(e.marginal[0].ar_ap - truth), 4.0 * e.marginal[0].sd) << "pack " << seq;
+    EXPECT_LT(e.marginal[0].sd, 0.15) << "pack " << seq;
+    if (seq == 72) {
+      EXPECT_GT(e.p_drifted, 0.9);
+    }
+  }
+}
+
+TEST(Drift, WithoutItTimeHasNoSay) {
+  // The paper's rule: what was learnt persists or changes, however long ago it was.
+  EstimatorSettings paper = Quick(0.0);
+  paper.forgetting.partial_change = false;
+  Contact contact;
+  Rig soon(paper), late(paper);
+  for (std::int64_t seq = 1; seq <= 20; ++seq) {
+    DataPack pack = contact.Pack(seq);
+    soon.Step(pack);
+    if (seq == 20) pack.t_last_s += 3600.0;
+    late.Step(pack);
+  }
+  const ModeEstimate &a = soon.estimate().modes[0], &b = late.estimate().modes[0];
+  EXPECT_EQ(a.p_drifted, 0.0);
+  EXPECT_EQ(a.drift_rate[0], 0.0);
+  for (std::size_t d = 0; d < 3; ++d)
+    EXPECT_TRUE(test::SameBits(a.marginal[d].ar_ap, b.marginal[d].ar_ap) &&
+                test::SameBits(a.marginal[d].sd, b.marginal[d].sd));
+}
+
+TEST(Drift, AContactThatReturnsLaterMeetsAWiderPrior) {
+  // All parameters have moved a little while nobody looked, which after a tenth of a second is a change.
+  Contact contact;
+  Rig soon(Quick()), late(Quick());
+  for (std::int64_t seq = 1; seq <= 30; ++seq) {
+    const DataPack pack = contact.Pack(seq);
+    soon.Step(pack);
+    late.Step(pack);
+  }
+  Contact moved;
+  moved.start = {4.3, 2.1, 1.75};
+  DataPack pack = moved.Pack(31);
+  soon.Step(pack);
+  pack.t_last_s += 60.0;
+  late.Step(pack);
+  const ModeEstimate &changed = soon.estimate().modes[0], &drifted = late.estimate().modes[0];
+  EXPECT_EQ(changed.decision, Decision::kModification);
+  EXPECT_EQ(drifted.decision, Decision::kReinforcement);
+  EXPECT_GT(drifted.p_drifted, 0.9);
+  EXPECT_LT(std::fabs(drifted.marginal[0].ar_ap - 4.3), 4.0 * drifted.marginal[0].sd);
+}
+
+TEST(Drift, ARestartGoesOnToTheBitAndAnOlderSnapshotIsTaken) {
+  Contact contact(kDrift);
+  Rig whole(Quick()), resumed(Quick()), older(Quick());
+  for (std::int64_t seq = 1; seq <= 50; ++seq) whole.Step(contact.Pack(seq));
+  ASSERT_GT(whole.estimate().modes[0].p_drifted, 0.9);
+  std::vector<std::byte> adjusted(Estimator::kSnapshotBytes), executed(Estimator::kSnapshotBytes);
+  adjusted.resize(whole.estimator.SaveAdjusted(adjusted));
+  executed.resize(whole.estimator.SaveExecuted(executed));
+  ASSERT_TRUE(resumed.estimator.Restore(adjusted, executed));
+  constexpr std::size_t kFilter = 1 + 2 * 3 + 3 * 9;  // numbers of three parameters
+  constexpr std::size_t kDriftBytes = 1 + (2 + Drift::kHypotheses * kFilter) * sizeof(double);
+  ASSERT_TRUE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes), executed));
+  EXPECT_FALSE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes + 1), executed));
+  ASSERT_TRUE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes), executed));
+  for (std::int64_t seq = 51; seq <= 56; ++seq) {
+    const DataPack pack = contact.Pack(seq);
+    whole.Step(pack);
+    resumed.Step(pack);
+    older.Step(pack);
+    test::ExpectSameBits(whole.estimate(), resumed.estimate());
+    EXPECT_LT(older.estimate().modes[0].p_drifted, seq == 51 ? 0.2 : 1.0) << "learnt anew";
+  }
+}
+
+TEST(Drift, AllocatesNothing) {
+  if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
+  Contact contact(kDrift);
+  Rig rig(Quick());
+  std::vector<DataPack> packs;
+  for (std::int64_t seq = 1; seq <= 40; ++seq) packs.push_back(contact.Pack(seq));
+  const test::AllocCounter guard;
+  for (const DataPack& pack : packs) rig.Step(pack);
+  EXPECT_EQ(guard.count() + guard.frees(), 0);
+  EXPECT_GT(rig.estimate().modes[0].p_drifted, 0.5) << "else little was tried";
+}
+
+/// A bank that has learnt from nothing yet, around a Gaussian posterior of the contact's parameters.
+class Bank {
+ public:
+  explicit Bank(double share)
+      : settings_(BuiltinSettings("hunt_crossley")),
+        space_(settings_, settings_.noise[0]),
+        noise_(settings_.noise[0]),
+        normal_(MarginalTable::Normal()),
+        drift(simd::Best(), 0, space_, noise_, share) {
+    posterior.valid = posterior.informed = true;
+    posterior.num_blocks = 1;
+    posterior.weight = {1.0, 0.0};
+    posterior.mean = ParamVector::Zero(3);
+    posterior.mean << 0.4, -0.1, 0.2;
+    posterior.covariance = ParamMatrix::Zero(3, 3);
+    posterior.covariance << 0.04, -0.03, 0.004, -0.03, 0.05, 0.001, 0.004, 0.001, 0.002;
+    SetElliptic(posterior.mean, posterior.covariance, 1.0, &normal_, &posterior.block[0]);
+    scratch_ = std::make_unique<LaplaceScratch>();
+    drift.Learn(data, posterior, Drift::Part::kRest, true, scratch_.get());
+  }
+
+ private:
+  EstimatorSettings settings_;
+  ParameterSpace space_;
+  NoiseModel noise_;
+  MarginalTable normal_;
+  std::unique_ptr<LaplaceScratch> scratch_;
+
+ public:
+  Drift drift;
+  PosteriorMemory posterior;
+  ModeData data;
+};
+
+TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
+  Bank bank(0.3);
+  bank.data.time_s = 2.0;
+  const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+  ASSERT_TRUE(bank.drift.Splits(carried));
+  ASSERT_EQ(carried.num_blocks, 2);
+  EXPECT_EQ(bank.drift.drifting_block(), 1);
+  EXPECT_NEAR(carried.weight[0], 0.7, 1e-12);
+  EXPECT_NEAR(bank.drift.share(), 0.3, 1e-12);
+  // Rest is as it was; drift as wide as the mean over its hypotheses of an integrated Ornstein-Uhlenbeck process.
+  double grown = 0.0;
+  for (int h = 1; h < Drift::kHypotheses; ++h) {
+    const Drift::Hypothesis law = Drift::Of(h, 1.0);
+    const double t = law.persistence;
+    grown += law.prior * 2.0 * law.rate * law.rate * t * (2.0 - t * (1.0 - std::exp(-2.0 / t)));
+  }
+  const ParamMatrix rest = CovarianceOf(carried.block[0]), drift = CovarianceOf(carried.block[1]);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_NEAR(rest(i, j), bank.posterior.covariance(i, j), 1e-6);
+      // Pulled back to P_0 by what was lost: by the fastest walk a fifth of its growth.
+      EXPECT_NEAR(drift(i, j) - bank.posterior.covariance(i, j), i == j ? grown : 0.0, 0.25 * grown) << i << j;
+    }
+}
+
+TEST(DriftPrior, DensitiesAreThoseOfTheirDraws) {
+  Bank bank(0.3);
+  bank.data.time_s = 1.0;
+  const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+  ASSERT_EQ(carried.num_blocks, 2);
+  test::Normal random(3);
+  // E[g(u) / p(u)] = 1 of draws from p, for any density g inside it.
+  for (std::size_t b = 0; b < 2; ++b) {
+    const DensityBlock& block = carried.block[b];
+    const ParamVector mean = MeanOf(block);
+    const ParamMatrix precision = Inverse(CovarianceOf(block)) * 1.3;
+    const double norm = std::sqrt(Determinant(precision) / std::pow(2.0 * M_PI, 3.0));
+    constexpr int kDraws = 20'000;
+    double sum = 0.0;
+    for (int k = 0; k < kDraws; ++k) {
+      const std::array<double, 3> uniforms{random.Uniform(), random.Uniform(), random.Uniform()};
+      std::array<double, 3> u{};
+      block.Draw(uniforms.data(), u.data());
+      const ParamVector apart = ParamVector(Eigen::Map<const Eigen::Vector3d>(u.data())) - mean;
+      sum += norm * std::exp(-0.5 * apart.dot(precision * apart)) / block.Density(u.data());
+    }
+    EXPECT_NEAR(sum / kDraws, 1.0, 0.02) << b;
+  }
+}
+
+TEST(DriftPrior, IsThePosteriorItselfWhereDriftIsImprobable) {
+  Bank bank(0.5 * Drift::kNegligible);
+  bank.data.time_s = 0.1;
+  EXPECT_EQ(&bank.drift.Carry(bank.data, bank.posterior), &bank.posterior);
+  Bank never(0.0);
+  never.data.time_s = 1e6;
+  EXPECT_EQ(&never.drift.Carry(never.data, never.posterior), &never.posterior);
+}
+
+TEST(DriftPrior, NeverGetsWiderThanTheInitialOne) {
+  for (const double hours : {0.01, 1.0, 1e6}) {
+    Bank bank(0.9);
+    bank.data.time_s = 3600.0 * hours;
+    const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+    ASSERT_TRUE(bank.drift.Splits(carried));
+    const ParamMatrix c = CovarianceOf(carried.block[static_cast<std::size_t>(bank.drift.drifting_block())]);
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_LT(c(d, d), 1.1) << hours;
+      EXPECT_GT(c(d, d), hours > 1e3 ? 0.9 : 0.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::drift_test

@@ -1,0 +1,218 @@
+// The whole recursion of a plant with one parameter against an offline filter that shares no code with it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "armcmc/drift.hpp"
+#include "core/estimator_rig.hpp"
+#include "core/plant/described_packs.hpp"
+#include "core/plant/plants.hpp"
+
+namespace armcmc::drift_filter_test {
+namespace {
+
+constexpr double kMean = 2.0, kSd = 1.0;  // of the prior of the parameter
+constexpr double kNoise = 0.3;
+constexpr double kDuration = 0.1;  // of a pack, s
+constexpr int kPacks = 160;
+
+/// y = a x.
+std::shared_ptr<const PlantProgram> Plant() {
+  PlantDescription plant;
+  plant.name = "gain";
+  plant.output = "y";
+  plant.law = "a*x";
+  plant.signals = {{"x", "1", "input", ""}, {"y", "V", "output", ""}};
+  plant.parameters = {{"a", "V", "normal", kMean, kSd, kMean - 7.0 * kSd, kMean + 7.0 * kSd}};
+  plant.noise.std = kNoise;
+  return test::Program(plant);
+}
+
+/// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, and when the parameter changed,
+/// (u, w) is Gaussian; of these histories, which grow in number with every pack, thousands are kept, the most probable
+/// ones.
+class Histories {
+ public:
+  explicit Histories(double share) : share_(share) {
+    for (int h = 0; h < Drift::kHypotheses; ++h) noise_[static_cast<std::size_t>(h)] = Noise(Drift::Of(h, share));
+  }
+
+  /// @param persisted  Share of what did not change in the prior of the pack. 0: a modification.
+  /// @param xx, xy     Sums over the pack.
+  void Add(double persisted, double xx, double xy) {
+    std::vector<History> next;
+    const double stays = std::exp(-Drift::kSwitching * kDuration);
+    if (histories_.empty()) {
+      // What begins with the first pack moves from then on.
+      for (int h = 0; h < Drift::kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
+    } else {
+      for (const History& old : histories_) {
+        std::vector<History> moved;
+        History same = old;
+        same.weight *= stays;
+        moved.push_back(same);
+        for (int h = 0; h < Drift::kHypotheses; ++h) {
+          History begun = Begin(h, old);
+          begun.weight *= 1.0 - stays;
+          moved.push_back(begun);
+        }
+        for (const History& m : moved) {
+          History kept = Pass(m);
+          History changed = kept;
+          kept.weight *= persisted;
+          changed.weight *= 1.0 - persisted;
+          changed.u = changed.uw = 0.0;
+          changed.uu = 1.0;
+          if (kept.weight > 0.0) next.push_back(kept);
+          if (changed.weight > 0.0) next.push_back(changed);
+        }
+      }
+    }
+    double top = -HUGE_VAL;
+    std::vector<double> log_weight;
+    for (History& h : next) {
+      // y = a x + e, a = kMean + kSd u: information and pull in u.
+      const double information = kSd * kSd * xx / (kNoise * kNoise);
+      const double pull = kSd * (xy - kMean * xx) / (kNoise * kNoise);
+      const double gain = 1.0 / (1.0 + h.uu * information);
+      const double residual = pull - information * h.u;
+      log_weight.push_back(std::log(h.weight) + 0.5 * std::log(gain) + pull * h.u - 0.5 * information * h.u * h.u +
+                           0.5 * gain * h.uu * residual * residual);
+      top = std::fmax(top, log_weight.back());
+      h.w += h.uw * gain * residual;
+      h.u += h.uu * gain * residual;
+      h.ww -= h.uw * h.uw * gain * information;
+      h.uw *= gain;
+      h.uu *= gain;
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < next.size(); ++i) sum += next[i].weight = std::exp(log_weight[i] - top);
+    for (History& h : next) h.weight /= sum;
+    std::sort(next.begin(), next.end(), [](const History& a, const History& b) { return a.weight > b.weight; });
+    constexpr std::size_t kMost = 4000;
+    if (next.size() > kMost) next.resize(kMost);
+    histories_ = std::move(next);
+  }
+
+  [[nodiscard]] double Mean() const {
+    double sum = 0.0, total = 0.0;
+    for (const History& h : histories_) {
+      total += h.weight;
+      sum += h.weight * h.u;
+    }
+    return kMean + kSd * sum / total;
+  }
+  [[nodiscard]] double Sd() const {
+    double square = 0.0, total = 0.0;
+    const double mean = (Mean() - kMean) / kSd;
+    for (const History& h : histories_) {
+      total += h.weight;
+      square += h.weight * (h.uu + (h.u - mean) * (h.u - mean));
+    }
+    return kSd * std::sqrt(square / total);
+  }
+  [[nodiscard]] double Drifting() const {
+    double drifting = 0.0, total = 0.0;
+    for (const History& h : histories_) {
+      total += h.weight;
+      drifting += h.law > 0 ? h.weight : 0.0;
+    }
+    return drifting / total;
+  }
+
+ private:
+  struct History {
+    double weight;
+    int law;
+    double u, w, uu, uw, ww;
+  };
+
+  [[nodiscard]] History Begin(int h, History from) const {
+    const Drift::Hypothesis law = Drift::Of(h, share_);
+    from.weight *= law.prior;
+    from.law = h;
+    from.w = from.uw = 0.0;
+    from.ww = law.rate * law.rate;
+    return from;
+  }
+  [[nodiscard]] History Pass(History h) const {
+    if (h.law == 0) return h;
+    const Noise& noise = noise_[static_cast<std::size_t>(h.law)];
+    const double t = Drift::Of(h.law, share_).persistence;
+    const double phi = std::exp(-kDuration / t), b = t * (1.0 - phi);
+    h.uu += 2.0 * b * h.uw + b * b * h.ww + noise.uu;
+    h.u += b * h.w;
+    h.uw = phi * (h.uw + b * h.ww) + noise.uw;
+    h.ww = phi * phi * h.ww + noise.ww;
+    h.w *= phi;
+    return h;
+  }
+
+  /// What a speed that is known where the pack before ended adds until this one ends.
+  struct Noise {
+    double uu = 0.0, uw = 0.0, ww = 0.0;
+    Noise() = default;
+    /// By small steps: nothing of the estimator's closed form.
+    explicit Noise(const Drift::Hypothesis& law) {
+      constexpr int kSteps = 2000;
+      constexpr double kStep = kDuration / kSteps;
+      const double kept = std::exp(-kStep / law.persistence);
+      for (int k = 0; k < kSteps; ++k) {
+        uu += 2.0 * kStep * uw + kStep * kStep * ww;
+        uw = kept * (uw + kStep * ww);
+        ww = kept * kept * ww + law.rate * law.rate * (1.0 - kept * kept);
+      }
+    }
+  };
+
+  std::array<Noise, Drift::kHypotheses> noise_;
+  double share_;
+  std::vector<History> histories_;
+};
+
+TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
+  const auto plant = Plant();
+  EstimatorSettings settings = DescribedSettings(plant);
+  settings.gap_watch.enabled = false;
+  settings.forgetting.partial_change = false;  // with one parameter a change in part is a change
+  settings.forgetting.drift_share = 0.3;
+  test::Rig rig(settings);
+  Histories exact(settings.forgetting.drift_share);
+  test::Normal normal(31);
+  double mean = 0.0, sd = 0.0, share = 0.0;
+  int modifications = 0;
+  for (std::int64_t seq = 1; seq <= kPacks; ++seq) {
+    double xx = 0.0, xy = 0.0;
+    const DataPack pack = test::DescribedPack(*plant, seq, [&](double t) {
+      // At rest, then a drift, which goes on through a jump, and stops.
+      const double a = 1.2 + 0.15 * (std::clamp(t, 4.0, 12.0) - 4.0) - (t > 9.0 ? 2.0 : 0.0);
+      test::PlantSample s;
+      s.u[0] = 0.5 + 0.4 * std::sin(9.0 * t);
+      s.y = a * s.u[0] + kNoise * normal();
+      xx += s.u[0] * s.u[0];
+      xy += s.u[0] * s.y;
+      return s;
+    });
+    const ModeEstimate& e = rig.Step(pack).modes[0];
+    modifications += e.decision == Decision::kModification ? 1 : 0;
+    exact.Add(e.decision == Decision::kModification ? 0.0 : e.lambda, xx, xy);
+    mean += std::pow((e.marginal[0].ar_ap - exact.Mean()) / exact.Sd(), 2) / kPacks;
+    sd += std::pow(e.marginal[0].is_sd / exact.Sd() - 1.0, 2) / kPacks;
+    if (e.decision == Decision::kReinforcement) share = std::fmax(share, std::fabs(e.p_drifted - exact.Drifting()));
+  }
+  RecordProperty("mean_sd", std::to_string(std::sqrt(mean)));
+  RecordProperty("sd_relative", std::to_string(std::sqrt(sd)));
+  RecordProperty("share", std::to_string(share));
+  EXPECT_LT(std::sqrt(mean), 0.1);
+  EXPECT_LT(std::sqrt(sd), 0.06);
+  EXPECT_LT(share, 0.15);
+  EXPECT_EQ(modifications, 2);
+}
+
+}  // namespace
+}  // namespace armcmc::drift_filter_test
