@@ -217,7 +217,10 @@ Calibration Calibrate(const CalibrationRequest& request) {
   const bool tries_rho = request.settings.num_effects == 0;
   Runner run(request, 2 + (tries_rho ? static_cast<int>(kRhos.size()) : 0) + 2);
   c.settings.forgetting.threshold = kNever;
+  // At rest, so that no parameter follows what is noise; the threshold is found with the drift that acts later.
+  const double drift_share = std::exchange(c.settings.forgetting.drift_share, 0.0);
   CalibrateNoise(&run, &c);
+  c.settings.forgetting.drift_share = drift_share;
   if (std::none_of(c.noise.begin(), c.noise.end(), [](const ModeNoise& n) { return n.calibrated; }))
     throw support::InputError("the recording cannot be calibrated from: mode " + c.noise.front().mode + ": " +
                               c.noise.front().why_not + " after the first " + std::to_string(kSettlePacks));
