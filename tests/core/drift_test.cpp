@@ -161,7 +161,7 @@ TEST(Drift, AContactThatReturnsLaterMeetsAWiderPrior) {
   moved.start = {4.3, 2.1, 1.75};
   DataPack pack = moved.Pack(31);
   soon.Step(pack);
-  pack.t_last_s += 60.0;
+  pack.t_last_s += 600.0;
   late.Step(pack);
   const ModeEstimate &changed = soon.estimate().modes[0], &drifted = late.estimate().modes[0];
   EXPECT_EQ(changed.decision, Decision::kModification);

@@ -29,15 +29,15 @@ TEST_F(LiveModel, TheEstimatorRunsItAndFindsTheHiddenEffect) {
   const Outcome gap = RunProgram(Program("armcmc-gap"), {"--data", dir_ / "run.csv", "--out", dir_ / "gap"});
   ASSERT_EQ(gap.code, 0) << gap.err;
   ASSERT_THAT(gap.out, ::testing::HasSubstr("Missing: force_bias"));
-  const double truth = ReadJson(dir_ / "truth.json")["effects"][0]["parameters"]["force"]["value"];
-
   auto estimator = StartEstimator({"--model", dir_ / "gap/model.toml"});
   ASSERT_EQ(Play("4", hide), 40u) << estimator->err();
   Finish(estimator.get());
+  // A shorter run has a stronger effect for the same gap: the one that was played last.
+  const double truth = ReadJson(dir_ / "truth.json")["effects"][0]["parameters"]["force"]["value"];
   const estimate_t last = recorder_->estimates().back();
   ASSERT_EQ(last.n_params, 4);
   EXPECT_THAT(reinterpret_cast<const char*>(last.param_name[3]), ::testing::StartsWith("force_bias"));
-  EXPECT_NEAR(last.ar_map[3], truth, 0.2 * std::abs(truth));
+  EXPECT_NEAR(last.ar_map[3], truth, 0.05 * std::abs(truth));
 
   // The same model on the recorded run, by the replay: the same numbers to the bit.
   const Outcome replay = RunProgram(
