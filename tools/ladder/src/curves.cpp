@@ -29,18 +29,21 @@ constexpr double kOutermost = 0.001;  // of the rows, where a state or signal se
 EffectForm Along(const std::string& x, const std::string& unit, const std::string& size, EffectTerm term,
                  std::vector<EffectNeed> needs) {
   const bool time = x == "t";
-  const std::string low = time ? "start" : "low_" + x, range = time ? "record" : "range_" + x;
+  const std::string of_x = time ? "s" : x, low = time ? "start" : "low_" + x;
+  const std::string spacing = (time ? "record/" : "range_" + x + '/') + std::to_string(kBumps - 1);
   EffectForm form;
   form.variant = true;  // all forms side by side
   form.needs = std::move(needs);
-  form.constants.push_back({"w", time ? "s" : x, "2.4*" + range + '/' + std::to_string(kBumps - 1)});
+  form.constants.push_back({"w", of_x, "2.4*" + spacing});
   for (int k = 0; k < kBumps; ++k) {
-    const std::string number = std::to_string(k + 1), middle = "m" + number;
-    form.constants.push_back(
-        {middle, time ? "s" : x, low + " + " + std::to_string(k) + '*' + range + '/' + std::to_string(kBumps - 1)});
+    const std::string number = std::to_string(k + 1);
+    std::string middle = low;
+    middle.append(" + ").append(std::to_string(k)).append("*").append(spacing);
+    form.constants.push_back({"m" + number, of_x, std::move(middle)});
     form.parameters.push_back({"c" + number, unit, "normal", "0", size, "", "", "0"});
-    term.formula +=
-        (term.formula.empty() ? "c" : " + c") + number + "*max(1 - ((" + x + " - " + middle + ")/w)^2, 0)^4";
+    if (!term.formula.empty()) term.formula += " + ";
+    term.formula.append("c").append(number).append("*max(1 - ((").append(x);
+    term.formula.append(" - m").append(number).append(")/w)^2, 0)^4");
   }
   form.terms.push_back(std::move(term));
   return form;
@@ -63,6 +66,7 @@ EffectNeed Used(const std::string& name, const std::string& kind) {
 DataScales WithRanges(DataScales scales, const std::vector<Feature>& features, const std::vector<Index>& rows) {
   for (const Feature& feature : features) {
     std::vector<double> sorted;
+    sorted.reserve(rows.size());
     for (const Index n : rows) sorted.push_back(feature.value[n]);
     std::sort(sorted.begin(), sorted.end());
     const auto at = static_cast<std::size_t>(kOutermost * static_cast<double>(sorted.size()));
