@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "armcmc/expression/compile.hpp"
@@ -237,9 +238,28 @@ TEST(Tape, TenThousandExpressionsAreWhatTheTreeSays) {
 
 // Half of the lanes take the hardware's root, the others products.
 TEST(Tape, RootsOfAnySizeInEveryLane) {
-  const std::vector<double> numbers = {0.0,   5e-324,  1e-310, 3e-300,  2.2e-308, 1e-200, 0.3,
-                                       0.25,  1.0,     2.0,    3.9,     1e-290,   7.0,    1e17,
-                                       1e200, 1.7e308, -1.0,   -1e-300, INFINITY, NAN,    5.0};
+  using Limits = std::numeric_limits<double>;
+  const std::vector<double> numbers = {0.0,
+                                       5e-324,
+                                       1e-310,
+                                       3e-300,
+                                       2.2e-308,
+                                       1e-200,
+                                       0.3,
+                                       0.25,
+                                       1.0,
+                                       2.0,
+                                       3.9,
+                                       1e-290,
+                                       7.0,
+                                       1e17,
+                                       1e200,
+                                       1.7e308,
+                                       -1.0,
+                                       -1e-300,
+                                       Limits::infinity(),
+                                       Limits::quiet_NaN(),
+                                       5.0};
   Law law("sqrt(K)");
   for (std::size_t turn = 0; turn < numbers.size(); ++turn) {
     for (std::size_t lane = 0; lane < kTileLanes; ++lane)
