@@ -169,14 +169,20 @@ void SumSquaresOfTapes(const ModeData& data, const ThetaTile* theta, double* out
     return std::all_of(data.error_tape, data.error_tape + data.num_tapes,
                        [=](const Tape& tape) { return ((tape.shape == shapes) || ...); });
   };
-  const auto shaped = [&](auto sum_squares) {
-    for (std::size_t t = 0; t < kTiles; ++t) sum_squares(data, theta[t], out + t * kTileLanes);
-  };
   const bool several = data.num_tapes > 1;
+  const auto shaped = [&](auto power) {  // no pointers to functions: what they do is not known to be bounded
+    for (std::size_t t = 0; t < kTiles; ++t) {
+      double* const sums = out + t * kTileLanes;
+      if (several)
+        SumShapeSquares<kWeighted, decltype(power)::value, true>(data, theta[t], sums);
+      else
+        SumShapeSquares<kWeighted, decltype(power)::value, false>(data, theta[t], sums);
+    }
+  };
   if (are(TapeShape::kLinear)) {
-    shaped(several ? &SumShapeSquares<kWeighted, false, true> : &SumShapeSquares<kWeighted, false, false>);
+    shaped(std::false_type{});
   } else if (are(TapeShape::kLinear, TapeShape::kPower)) {
-    shaped(several ? &SumShapeSquares<kWeighted, true, true> : &SumShapeSquares<kWeighted, true, false>);
+    shaped(std::true_type{});
   } else if constexpr (kTapesInPairs) {
     SumTapeSquares<kWeighted, kTiles>(data, theta, out);
   } else {
