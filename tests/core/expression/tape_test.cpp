@@ -8,6 +8,7 @@
 
 #include "armcmc/expression/compile.hpp"
 #include "armcmc/expression/features.hpp"
+#include "core/estimator_rig.hpp"
 #include "core/expression/plant_words.hpp"
 #include "core/expression/tree_walk.hpp"
 #include "core/kernel_sets.hpp"
