@@ -54,38 +54,58 @@ inline PlantDescription AxisPlant() {
   return plant;
 }
 
-/// A mass on a spring and a damper u, y: 1 kg, 0.6 N s/m, `spring` (20 N/m), driven by `felt` of a sum of sines, from
-/// rest; 40 s at 50 Hz, a noise of 3 mm on the place. The last 30 % are kept apart.
-inline ladder::Dataset SwingData(
-    const std::function<double(double)>& felt,
-    const std::function<double(double)>& spring = [](double pos) { return 20.0 * pos; }) {
+/// What is simulated from an input alone, 50 Hz; the last 30 % are kept apart.
+struct SimulatedRun {
+  int rows;
+  double noise;  ///< Standard deviation on what is measured.
+  unsigned seed;
+  std::function<double(double t)> drive;
+  std::function<void(double u, double step)> advance;  ///< By one step of the integration, a twentieth of a sample.
+  std::function<double()> shown;                       ///< What is measured, without noise.
+};
+
+inline ladder::Dataset DataOf(const SimulatedRun& run) {
   constexpr int kSteps = 20;  // of an interval
   constexpr double kDt = 0.02, kStep = kDt / kSteps;
-  const auto drive = [](double t) {
-    return 5.0 * std::sin(1.3 * t) + 4.0 * std::sin(3.1 * t + 1.0) + 3.0 * std::sin(5.7 * t + 2.0);
-  };
   auto series = std::make_shared<identify::Series>();
   series->dt = kDt;
   series->runs = {0};
   series->signals.resize(2);
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> noise(0.0, 0.003);
+  std::mt19937_64 random(run.seed);
+  std::normal_distribution<double> noise(0.0, run.noise);
   ladder::Dataset data;
-  double pos = 0.0, speed = 0.0;
-  for (int n = 0; n < 2000; ++n) {
+  for (int n = 0; n < run.rows; ++n) {
     const double t = kDt * n;
     series->t.push_back(t);
-    series->signals[0].push_back(drive(t));
-    series->signals[1].push_back(pos + noise(random));
-    data.training.push_back(n < 1400 ? 1 : 0);
-    data.held_out.push_back(n < 1400 ? 0 : 1);
-    for (int i = 0; i < kSteps; ++i) {  // semi-implicit, fine enough
-      speed += kStep * (felt(drive(t + (i + 0.5) * kStep)) - 0.6 * speed - spring(pos));
-      pos += kStep * speed;
-    }
+    series->signals[0].push_back(run.drive(t));
+    series->signals[1].push_back(run.shown() + noise(random));
+    data.training.push_back(10 * n < 7 * run.rows ? 1 : 0);
+    data.held_out.push_back(10 * n < 7 * run.rows ? 0 : 1);
+    for (int i = 0; i < kSteps; ++i) run.advance(run.drive(t + (i + 0.5) * kStep), kStep);
   }
   data.series = std::move(series);
   return data;
+}
+
+/// A mass on a spring and a damper u, y: 1 kg, 0.6 N s/m, `spring` (20 N/m), driven by `felt` of a sum of sines, from
+/// rest; 40 s, a noise of 3 mm on the place.
+inline ladder::Dataset SwingData(
+    const std::function<double(double)>& felt,
+    const std::function<double(double)>& spring = [](double pos) { return 20.0 * pos; }) {
+  double pos = 0.0, speed = 0.0;
+  return DataOf({.rows = 2000,
+                 .noise = 0.003,
+                 .seed = 7,
+                 .drive =
+                     [](double t) {
+                       return 5.0 * std::sin(1.3 * t) + 4.0 * std::sin(3.1 * t + 1.0) + 3.0 * std::sin(5.7 * t + 2.0);
+                     },
+                 .advance =
+                     [&](double u, double step) {  // semi-implicit, fine enough
+                       speed += step * (felt(u) - 0.6 * speed - spring(pos));
+                       pos += step * speed;
+                     },
+                 .shown = [&] { return pos; }});
 }
 
 /// The swing without anything hidden.
@@ -105,35 +125,18 @@ inline PlantDescription SwingPlant() {
 }
 
 /// A motor u, w: 70 rad/s^2/V, which `gain` scales at a speed w under a voltage u, a time constant of 0.25 s, driven by
-/// a sum of sines, from rest; 20 s at 50 Hz, a noise of 0.3 rad/s on the speed. The last 30 % are kept apart.
+/// a sum of sines, from rest; 20 s, a noise of 0.3 rad/s on the speed.
 inline ladder::Dataset MotorData(const std::function<double(double w, double u)>& gain) {
-  constexpr int kSteps = 20;  // of an interval
-  constexpr double kDt = 0.02, kStep = kDt / kSteps;
-  const auto drive = [](double t) {
-    return 3.5 * std::sin(0.9 * t) + 2.5 * std::sin(3.7 * t + 1.0) + 2.0 * std::sin(11.0 * t + 2.0);
-  };
-  auto series = std::make_shared<identify::Series>();
-  series->dt = kDt;
-  series->runs = {0};
-  series->signals.resize(2);
-  std::mt19937_64 random(11);
-  std::normal_distribution<double> noise(0.0, 0.3);
-  ladder::Dataset data;
   double w = 0.0;
-  for (int n = 0; n < 1000; ++n) {
-    const double t = kDt * n;
-    series->t.push_back(t);
-    series->signals[0].push_back(drive(t));
-    series->signals[1].push_back(w + noise(random));
-    data.training.push_back(n < 700 ? 1 : 0);
-    data.held_out.push_back(n < 700 ? 0 : 1);
-    for (int i = 0; i < kSteps; ++i) {
-      const double u = drive(t + (i + 0.5) * kStep);
-      w += kStep * (70.0 * gain(w, u) * u - w / 0.25);
-    }
-  }
-  data.series = std::move(series);
-  return data;
+  return DataOf({.rows = 1000,
+                 .noise = 0.3,
+                 .seed = 11,
+                 .drive =
+                     [](double t) {
+                       return 3.5 * std::sin(0.9 * t) + 2.5 * std::sin(3.7 * t + 1.0) + 2.0 * std::sin(11.0 * t + 2.0);
+                     },
+                 .advance = [&](double u, double step) { w += step * (70.0 * gain(w, u) * u - w / 0.25); },
+                 .shown = [&] { return w; }});
 }
 
 /// The motor without anything hidden.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -53,10 +52,8 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
       if (!rival) continue;
       c.ruled_out = again = true;
       if (rung->as_if.empty()) rung->as_if = rival->as_if;
-      char times[32];
-      std::snprintf(times, sizeof(times), "%.1f", rival->times);
-      notes->push_back(c.candidate.entry->name + " was not named: it acts as if " + rival->as_if + ", which leaves " +
-                       times + " times less and has another shape");
+      notes->push_back(c.candidate.entry->name + " was not named: it acts as if " + rival->as_if + ", which " +
+                       rival->why);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 namespace armcmc::ladder {
@@ -89,6 +90,12 @@ Comparison Compare(const View& view, const Contender& c, const Trial& base_trial
     return kind == GroupKind::kFold ? of_sums : std::min(of_sums, Median(ratios[kind]));
   };
   return {ratio(GroupKind::kFold), ratio(GroupKind::kBlock), ratio(GroupKind::kRegion)};
+}
+
+std::string LeavesLess(double times) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "leaves %.1f times less squared error on data left out", times);
+  return text;
 }
 
 bool BetterEverywhere(const Contender& a, const Contender& b) {

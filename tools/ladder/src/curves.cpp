@@ -19,7 +19,6 @@ constexpr int kBumps = 8;
 constexpr std::size_t kFitted = 4;    // of those that act differently
 constexpr double kAlike = 0.02;       // of the square of what one takes away: the other takes it as well
 constexpr double kAsWell = 1.5;       // times what the best one leaves
-constexpr double kFarBetter = 2.0;    // times less than what it rules out leaves
 constexpr double kOff = 0.1;          // of the square of what an effect leaves: as well copied as one can ask
 constexpr double kOutermost = 0.001;  // of the rows, where a state or signal seldom is
 
@@ -94,15 +93,14 @@ std::string AsIf(const Contender& curve) {
   const EffectForm& form = curve.candidate.form();
   const EffectTerm& term = form.terms.front();
   const std::map<std::string, std::string>& symbols = curve.candidate.binding.symbols;
-  const bool over_time = term.formula.find("(t - ") != std::string::npos;
+  // A need beside the parameter is what is followed.
+  const bool over_time = form.needs.size() == (term.slot == "parameter" ? 1 : 0);
   const std::string followed = over_time ? "time" : symbols.at(form.needs.back().name);
   if (term.slot == "parameter") return symbols.at(term.of) + " followed " + followed + " by a curve";
   if (term.slot == "input") return "the plant got a curve of " + followed;
   return "a curve of " + followed + " were added to the " +
          (term.slot == "rate" ? "rate of " + symbols.at(term.of) : "output");
 }
-
-}  // namespace
 
 EffectEntry CurveEntry() {
   EffectEntry entry;
@@ -119,6 +117,12 @@ EffectEntry CurveEntry() {
   entry.forms.push_back(Along("u", "u", "u", {"input", "u", "u"}, {Used("u", "signal")}));
   return entry;
 }
+
+}  // namespace
+
+Curves::Curves(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, const Trial& base,
+               const DataScales& scales)
+    : plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{CurveEntry()} {}
 
 std::vector<Candidate> Curves::MostPromising() const {
   const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.looked_at);
@@ -205,7 +209,6 @@ void Curves::Judge(Contender* curve) {
 }
 
 std::string Curves::Best() {
-  constexpr double kLargerPart = 0.5;
   if (!fitted_) FitThem();
   if (fitted_->empty() || fitted_->front().closed < kLargerPart) return "";
   Contender& best = fitted_->front();
@@ -227,7 +230,7 @@ std::optional<Rival> Curves::RivalOf(const Contender& c) {
     Judge(&curve);
     const double times = c.alone.folds / std::max(curve.alone.folds, 1e-12);
     if (times < kFarBetter || !BetterEverywhere(curve, c)) continue;
-    rival = Rival{AsIf(curve), times};
+    rival = Rival{AsIf(curve), LeavesLess(times) + ", and has another shape"};
   }
   return rival;
 }

@@ -5,28 +5,21 @@
 #include <vector>
 
 #include "armcmc/ladder/climb.hpp"
+#include "rival.hpp"
 
 namespace armcmc::ladder {
-
-/// What explains more than an effect does, and is none.
-struct Rival {
-  std::string as_if;  ///< "K followed w by a curve"
-  double times;       ///< What the effect leaves over what this leaves, squared errors on data left out.
-};
 
 /// What no catalogue has a formula for: something of the law that is not constant but follows one quantity by a curve.
 ///
 /// The curve is sum_k c_k max(1 - ((x - m_k) / w)^2, 0)^4, bumps over the range of x, which is a signal, a state or
 /// time. It is added to a parameter, the output, an input (of itself) or the rate of a state.
-[[nodiscard]] EffectEntry CurveEntry();
-
-/// The curves that explain most of what a model leaves. Fitted when they are first asked for.
+///
+/// These are the curves that explain most of what a model leaves. Fitted when they are first asked for.
 class Curves {
  public:
   /// All outlive it.
   Curves(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, const Trial& base,
-         const DataScales& scales)
-      : plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{CurveEntry()} {}
+         const DataScales& scales);
 
   /// The curve that rules a contender out; nothing where none does.
   /// @pre c.trial.judged.
@@ -47,7 +40,7 @@ class Curves {
   const View& view_;
   const Trial& base_;
   const DataScales& scales_;
-  std::vector<EffectEntry> entries_;
+  std::vector<EffectEntry> entries_;              ///< Of all curves.
   std::optional<std::vector<Contender>> fitted_;  ///< Best first.
 };
 

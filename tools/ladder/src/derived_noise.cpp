@@ -61,7 +61,7 @@ std::optional<Rival> DerivedNoise::RivalOf(const Contender& c) {
   if (!best_ || !BetterEverywhere(best_->contender, c)) return std::nullopt;
   char text[64];
   std::snprintf(text, sizeof(text), "signals that are rates of others were smoother, over %.2g s", best_->sd);
-  return Rival{text, c.alone.folds / std::max(best_->contender.alone.folds, 1e-12)};
+  return Rival{text, LeavesLess(c.alone.folds / std::max(best_->contender.alone.folds, 1e-12))};
 }
 
 }  // namespace armcmc::ladder

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "armcmc/ladder/climb.hpp"
-#include "curves.hpp"
+#include "rival.hpp"
 
 namespace armcmc::ladder {
 

@@ -23,11 +23,9 @@ constexpr double kLikely = 0.95;       // the same where few events show it: nam
 constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effect is named first
 constexpr double kAlike = 1.01;        // times the least error: as good
 constexpr double kTie = 0.05;          // share of bootstrap samples that another family may win
-constexpr double kLargerPart = 0.5;    // squared error that a name of a new family leaves at most
 constexpr double kBeside = 0.95;       // squared error that a name reaches where both may bend, in two of three senses,
 constexpr double kFarBeside = 0.8;     // or in one, losing in none, where few events show it or bending feigns it
 constexpr double kLeavesAsMuch = 1.5;  // times what the named one leaves: kin that are not excluded
-constexpr double kFarBetter = 2.0;     // times less than the simple one leaves: a larger effect that is a rival of it
 constexpr double kLoses = 1.1;         // squared error in regions that says: it is not that
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }

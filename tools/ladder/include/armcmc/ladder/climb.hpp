@@ -91,9 +91,9 @@ struct ClimbRequest {
 ///    stand on what is not known. So each of them shows the form of it that predicts best.
 /// 4. Nothing simpler to say. What leaves more than noise is ruled out by a curve: one part of the law that follows one
 ///    quantity in a way that no formula of the catalogue has, leaves less than half, is better wherever it is looked
-///    for, and does not hold the effect: its best copy of what the effect predicts is off by more than a quarter of
-///    what the effect leaves. So it is where the model as it is leaves less on smoother signals, of those that are
-///    rates of others: their noise is what is unexplained.
+///    for, and does not hold the effect: its best copy of what the effect predicts is off by more than a tenth of
+///    the squared error that the effect leaves. So it is where the model as it is leaves less on smoother signals, of
+///    those that are rates of others: their noise is what is unexplained.
 /// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain; and where a
 ///    later rung names it again in the same place and it is an effect of which two are pieces of a curve that is none
 ///    of theirs, as plays are of a spring that stiffens.

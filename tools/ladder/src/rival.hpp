@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace armcmc::ladder {
+
+/// What explains more than an effect does, and is none.
+struct Rival {
+  std::string as_if;  ///< "K followed w by a curve"
+  std::string why;    ///< "leaves 4.5 times less squared error on data left out, and has another shape"
+};
+
+}  // namespace armcmc::ladder
