@@ -57,6 +57,19 @@ struct Reference {
   }
 };
 
+/// The reference sampled one time after the other, with noise on the place.
+struct ReferenceRun {
+  PlantSample At(double t) {
+    if (t > t_before + 0.5 * kDt) reference.Step(Drive(t_before), Drive(t));
+    t_before = t;
+    return {{Drive(t)}, reference.x[0] + noise()};
+  }
+
+  Reference reference;
+  GaussianNoise noise{0.002};
+  double t_before = kDt;
+};
+
 /// A pack of the plant prepared for the kernels, all candidates alike.
 struct Laid {
   Laid(const PlantProgram& plant, const DataPack& pack, const StateMemory* before, const std::vector<double>& theta) {

@@ -60,27 +60,19 @@ double Distance(const ModeEstimate& mode, std::size_t d) {
 TEST(StateFilter, EstimatorLearnsWhatMovesThemAndGoesOnFromPackToPack) {
   const auto plant = test::Program(Oscillator());
   test::Rig rig(DescribedSettings(plant));
-  test::GaussianNoise noise(0.002);
-  Reference reference;
+  test::ReferenceRun run;
   std::vector<double> errors;
-  double t_before = kDt;
   for (std::int64_t seq = 1; seq <= 12; ++seq) {
     (void)rig.Step(DescribedPack(
-        *plant, seq,
-        [&](double t) {
-          if (t > t_before + 0.5 * kDt) reference.Step(Drive(t_before), Drive(t));
-          t_before = t;
-          return PlantSample{{Drive(t)}, reference.x[0] + noise()};
-        },
-        50, kDt));
+        *plant, seq, [&](double t) { return run.At(t); }, 50, kDt));
     ASSERT_EQ(rig.status, Status::kOk) << seq;
     if (seq < 6) continue;
     for (std::size_t n = 0; n < 50; ++n) errors.push_back(rig.estimate().y_shown[n] - rig.result->pack.y[n]);
   }
   const ModeEstimate& mode = rig.estimate().modes[0];
   for (std::size_t d = 0; d < 3; ++d) {
-    EXPECT_NEAR(mode.marginal[d].ar_ap, reference.theta[d], 5.0 * mode.marginal[d].sd) << d;
-    EXPECT_LT(mode.marginal[d].sd, 0.02 * reference.theta[d]) << d;
+    EXPECT_NEAR(mode.marginal[d].ar_ap, run.reference.theta[d], 5.0 * mode.marginal[d].sd) << d;
+    EXPECT_LT(mode.marginal[d].sd, 0.02 * run.reference.theta[d]) << d;
   }
   double square = 0.0;
   for (const double e : errors) square += e * e;

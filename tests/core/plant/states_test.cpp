@@ -265,19 +265,11 @@ TEST(States, AStartMayBeAParameter) {
   description.states[0].start = "x0";
   const auto plant = test::Program(description);
   test::Rig rig(DescribedSettings(plant));
-  test::GaussianNoise noise(0.002);
-  Reference reference;
-  reference.x = {0.6, 0.0};
-  double t_before = kDt;
+  test::ReferenceRun run;
+  run.reference.x = {0.6, 0.0};
   for (std::int64_t seq = 1; seq <= 4; ++seq) {
     (void)rig.Step(DescribedPack(
-        *plant, seq,
-        [&](double t) {
-          if (t > t_before + 0.5 * kDt) reference.Step(Drive(t_before), Drive(t));
-          t_before = t;
-          return PlantSample{{Drive(t)}, reference.x[0] + noise()};
-        },
-        50, kDt));
+        *plant, seq, [&](double t) { return run.At(t); }, 50, kDt));
     if (seq > 1) continue;  // the packs after it say nothing on how the first one began
     const MarginalSummary& x0 = rig.estimate().modes[0].marginal[3];
     EXPECT_NEAR(x0.ar_ap, 0.6, 5.0 * x0.sd);
@@ -285,7 +277,7 @@ TEST(States, AStartMayBeAParameter) {
   }
   const ModeEstimate& mode = rig.estimate().modes[0];
   for (std::size_t d = 0; d < 3; ++d)
-    EXPECT_NEAR(mode.marginal[d].ar_ap, reference.theta[d], 5.0 * mode.marginal[d].sd);
+    EXPECT_NEAR(mode.marginal[d].ar_ap, run.reference.theta[d], 5.0 * mode.marginal[d].sd);
 }
 
 TEST(States, ParametersOfAModeAreThatModesInRatesToo) {
