@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "armcmc/density_block.hpp"
+#include "armcmc/expression/operation.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -113,6 +114,9 @@ struct Kernels {
 
   /// First k with the largest a[k] b[k], all of them >= 0; b may be null, which is 1.
   int (*largest_product)(const double* a, const double* b, int count) noexcept ARMCMC_NONBLOCKING;
+
+  /// See expression::Elementary().
+  bool (*elementary)(expression::Op op, std::size_t count, const double* a, double* out) noexcept ARMCMC_NONBLOCKING;
 };
 
 /// The best set that this CPU runs, chosen once.

@@ -217,6 +217,7 @@ void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, i
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
 
 #include "simd/density.inl"
+#include "simd/elementary.inl"
 #include "simd/moments.inl"
 #include "simd/score.inl"
 #include "simd/weights.inl"

@@ -27,5 +27,6 @@ const Kernels kAvx2Kernels = {"avx2",
                               &avx2::LargestInside,
                               &avx2::Weigh,
                               &avx2::SharePrior,
-                              &avx2::LargestProduct};
+                              &avx2::LargestProduct,
+                              &avx2::Elementary};
 }  // namespace armcmc::simd

@@ -27,5 +27,6 @@ const Kernels kAvx512Kernels = {"avx512",
                                 &avx512::LargestInside,
                                 &avx512::Weigh,
                                 &avx512::SharePrior,
-                                &avx512::LargestProduct};
+                                &avx512::LargestProduct,
+                                &avx512::Elementary};
 }  // namespace armcmc::simd

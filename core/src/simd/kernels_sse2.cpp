@@ -27,5 +27,6 @@ const Kernels kSse2Kernels = {"sse2",
                               &sse2::LargestInside,
                               &sse2::Weigh,
                               &sse2::SharePrior,
-                              &sse2::LargestProduct};
+                              &sse2::LargestProduct,
+                              &sse2::Elementary};
 }  // namespace armcmc::simd

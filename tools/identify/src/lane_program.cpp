@@ -4,18 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "armcmc/expression/elementary.hpp"
 #include "armcmc/expression/evaluate.hpp"
-
-// One more version of what follows for processors with wider vectors, the same to the bit: no operation is fused. Not
-// under sanitizers, which have to start before such a choice is made.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define ARMCMC_FOR_WIDER_LANES __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
-#else
-#define ARMCMC_FOR_WIDER_LANES
-#endif
-/// Inside of such a function, so that it takes part.
-#define ARMCMC_INSIDE __attribute__((always_inline)) inline
+#include "wider_lanes.hpp"
 
 namespace armcmc::identify {
 namespace {
@@ -66,15 +57,24 @@ ARMCMC_INSIDE void ForAll(std::size_t count, const double* __restrict a, const d
   }
 }
 
+ARMCMC_INSIDE void Copy(const double* __restrict from, double* __restrict to) {
+  for (std::size_t l = 0; l < kLanes; ++l) to[l] = from[l];
+}
+
 /// a^(whole + 0.5 if half), by as few multiplications as there are bits.
+/// @param square  Room; memory, since what stands in registers by parts is waited for when it is read as a whole.
 ARMCMC_INSIDE void PowerOfAll(std::size_t count, const double* __restrict a, int whole, bool half,
-                              double* __restrict out) {
+                              double* __restrict square, double* __restrict out) {
+  // A loop that is unrolled before it is made of vectors is made of parts of vectors.
+#pragma GCC unroll 1
   for (std::size_t i = 0; i < count; ++i) out[i] = half ? std::sqrt(a[i]) : 1.0;
-  std::array<double, kTile * kLanes> square;
-  std::copy_n(a, count, square.begin());
+#pragma GCC unroll 1
+  for (std::size_t i = 0; i < count; ++i) square[i] = a[i];
   for (int bits = whole; bits > 0; bits >>= 1) {
     if ((bits & 1) != 0)
+#pragma GCC unroll 1
       for (std::size_t i = 0; i < count; ++i) out[i] *= square[i];
+#pragma GCC unroll 1
     for (std::size_t i = 0; i < count; ++i) square[i] *= square[i];
   }
 }
@@ -97,9 +97,12 @@ ARMCMC_INSIDE void Apply(Op op, std::size_t count, const double* a, const double
     case Op::kStep: return ForAll<Op::kStep>(count, a, b, c, out);
     case Op::kIf: return ForAll<Op::kIf>(count, a, b, c, out);
     default:
+      if (expression::Elementary(op, count, a, out)) return;
       for (std::size_t i = 0; i < count; ++i) out[i] = expression::Evaluate(op, a[i], b[i], c[i]);
   }
 }
+
+static_assert(kLanes % expression::kElementaryStride == 0);
 
 /// What is left of the state after a sample, and the weight of the argument at the sample before.
 void LowpassWeights(double tau, double dt, double* decay, double* weight) {
@@ -173,7 +176,8 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
       i.index = static_cast<std::size_t>(node.index);
       i.varies = i.time ? Varies::kBySample : inputs[i.index];
     }
-    if (expression::InfoOf(i.op).memory) {
+    i.memory = expression::InfoOf(i.op).memory;
+    if (i.memory) {
       i.steady = i.op == Op::kLowpass && place[static_cast<std::size_t>(node.argument[1])].varies == Varies::kByLane;
       i.index = num_memories_++;
       i.varies = Varies::kByBoth;
@@ -194,101 +198,124 @@ bool LaneProgram::Reads(std::size_t signal) const {
 LaneRun LaneProgram::Begin(const Lanes* input, double dt) const {
   LaneRun run;
   run.dt = dt;
-  run.block.resize(num_blocks_);
+  run.one.resize(num_blocks_ + 1);
+  run.tile.resize(num_blocks_ + 1);
   run.slot.resize(num_memories_);
   run.line.resize(num_delays_);
   for (const Instruction& i : once_) {
-    std::array<double, kTile* kLanes>& value = run.block[i.block].value;
-    if (i.op == Op::kNumber)
-      value.fill(i.value);
-    else if (i.op == Op::kSymbol)
-      for (std::size_t r = 0; r < kTile; ++r)
-        std::copy(input[i.index].begin(), input[i.index].end(),
-                  value.begin() + static_cast<std::ptrdiff_t>(r * kLanes));
-    else
-      Compute(i, kTile, run.block.data());
+    if (i.op == Op::kNumber) run.one[i.block].value.fill(i.value);
+    if (i.op == Op::kSymbol) Copy(input[i.index].data(), run.one[i.block].value.data());
   }
+  ComputeOnce(&run.one);
+  for (const Instruction& i : once_)
+    for (std::size_t r = 0; r < kTile; ++r)
+      Copy(run.one[i.block].value.data(), run.tile[i.block].value.data() + r * kLanes);
   for (const Instruction& i : each_) {
     if (!i.steady) continue;
     LaneRun::Slot& slot = run.slot[i.index];
     for (std::size_t l = 0; l < kLanes; ++l)
-      LowpassWeights(run.block[i.argument[1]].value[l], dt, &slot.decay[l], &slot.weight[l]);
+      LowpassWeights(run.one[i.argument[1]].value[l], dt, &slot.decay[l], &slot.weight[l]);
   }
   return run;
 }
 
-ARMCMC_FOR_WIDER_LANES
-void LaneProgram::Compute(const Instruction& i, std::size_t samples, Block* blocks) {
-  const double* const a = blocks[i.argument[0]].value.data();
-  const double* const b = blocks[i.argument[1]].value.data();
-  const double* const c = blocks[i.argument[2]].value.data();
-  double* const out = blocks[i.block].value.data();
-  if (i.varies != Varies::kBySample && i.power >= 0) return PowerOfAll(samples * kLanes, a, i.power, i.half, out);
-  if (i.varies != Varies::kBySample) return Apply(i.op, samples * kLanes, a, b, c, out);
-  for (std::size_t r = 0; r < samples * kLanes; r += kLanes)
+/// With `kSamples` known where this is compiled, an instruction is a few vectors and no loop.
+template <std::size_t kSamples>
+ARMCMC_INSIDE void LaneProgram::Compute(const Instruction& i, Blocks<kSamples>* blocks) {
+  const double* const a = (*blocks)[i.argument[0]].value.data();
+  const double* const b = (*blocks)[i.argument[1]].value.data();
+  const double* const c = (*blocks)[i.argument[2]].value.data();
+  double* const out = (*blocks)[i.block].value.data();
+  if (i.varies != Varies::kBySample && i.power >= 0)
+    return PowerOfAll(kSamples * kLanes, a, i.power, i.half, blocks->back().value.data(), out);
+  if (i.varies != Varies::kBySample) return Apply(i.op, kSamples * kLanes, a, b, c, out);
+  for (std::size_t r = 0; r < kSamples * kLanes; r += kLanes)
     std::fill_n(out + r, kLanes, expression::Evaluate(i.op, a[r], b[r], c[r]));
+}
+
+template <std::size_t kSamples>
+ARMCMC_INSIDE void LaneProgram::Walk(const Lanes* input, std::size_t stride, const double* t, LaneRun* run,
+                                     Blocks<kSamples>* blocks, Lanes* out) const {
+  for (const Instruction& i : each_) {
+    double* const value = (*blocks)[i.block].value.data();
+    if (i.op == Op::kSymbol && i.time)
+      for (std::size_t r = 0; r < kSamples; ++r) std::fill_n(value + r * kLanes, kLanes, t[r]);
+    else if (i.op == Op::kSymbol)
+      for (std::size_t r = 0; r < kSamples; ++r) Copy(input[i.index * stride + r].data(), value + r * kLanes);
+    else if (i.memory)
+      for (std::size_t r = 0; r < kSamples; ++r)
+        Remember(i, run->empty && r == 0, (*blocks)[i.argument[0]].value.data() + r * kLanes,
+                 (*blocks)[i.argument[1]].value.data() + r * kLanes, run, value + r * kLanes);
+    else
+      Compute<kSamples>(i, blocks);
+  }
+  for (std::size_t o = 0; o < outputs_.size(); ++o)
+    for (std::size_t r = 0; r < kSamples; ++r)
+      Copy((*blocks)[outputs_[o]].value.data() + r * kLanes, out[o * stride + r].data());
+}
+
+ARMCMC_FOR_WIDER_LANES
+void LaneProgram::WalkOne(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const {
+  Walk<1>(input, stride, t, run, &run->one, out);
+}
+
+ARMCMC_FOR_WIDER_LANES
+void LaneProgram::WalkTile(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const {
+  Walk<kTile>(input, stride, t, run, &run->tile, out);
+}
+
+ARMCMC_FOR_WIDER_LANES
+void LaneProgram::ComputeOnce(Blocks<1>* blocks) const {
+  for (const Instruction& i : once_)
+    if (i.op != Op::kNumber && i.op != Op::kSymbol) Compute<1>(i, blocks);
 }
 
 void LaneProgram::Evaluate(std::size_t samples, const Lanes* input, std::size_t stride, const double* t, LaneRun* run,
                            Lanes* out) const {
-  Block* const blocks = run->block.data();
-  for (const Instruction& i : each_) {
-    double* const value = blocks[i.block].value.data();
-    if (i.op == Op::kSymbol && i.time)
-      for (std::size_t r = 0; r < samples; ++r) std::fill_n(value + r * kLanes, kLanes, t[r]);
-    else if (i.op == Op::kSymbol)
-      for (std::size_t r = 0; r < samples; ++r)
-        std::copy_n(input[i.index * stride + r].data(), kLanes, value + r * kLanes);
-    else if (expression::InfoOf(i.op).memory)
-      Remember(i, samples, run);
-    else
-      Compute(i, samples, blocks);
+  if (samples == kTile) {
+    WalkTile(input, stride, t, run, out);
+    run->empty = false;
+    return;
   }
-  for (std::size_t o = 0; o < outputs_.size(); ++o)
-    for (std::size_t r = 0; r < samples; ++r)
-      std::copy_n(blocks[outputs_[o]].value.data() + r * kLanes, kLanes, out[o * stride + r].data());
-  run->empty = run->empty && samples == 0;
+  for (std::size_t r = 0; r < samples; ++r) {
+    WalkOne(input + r, stride, t + r, run, out + r);
+    run->empty = false;
+  }
 }
 
 ARMCMC_FOR_WIDER_LANES
-void LaneProgram::Remember(const Instruction& instruction, std::size_t samples, LaneRun* run) {
+void LaneProgram::Remember(const Instruction& instruction, bool first, const double* e, const double* tau, LaneRun* run,
+                           double* y) {
   LaneRun::Slot& slot = run->slot[instruction.index];
   const double dt = run->dt;
-  for (std::size_t r = 0; r < samples; ++r) {
-    const double* const e = run->block[instruction.argument[0]].value.data() + r * kLanes;
-    const double* const tau = run->block[instruction.argument[1]].value.data() + r * kLanes;
-    double* const y = run->block[instruction.block].value.data() + r * kLanes;
-    const bool first = run->empty && r == 0;
-    if (first) {
-      std::copy_n(e, kLanes, slot.before.data());
-      slot.state = instruction.op == Op::kLowpass ? slot.before : Lanes{};
-    }
-    switch (instruction.op) {
-      case Op::kLowpass:
-        if (!instruction.steady)
-          for (std::size_t l = 0; l < kLanes; ++l) LowpassWeights(tau[l], dt, &slot.decay[l], &slot.weight[l]);
-        for (std::size_t l = 0; l < kLanes && !first; ++l)
-          slot.state[l] = slot.state[l] * slot.decay[l] + slot.before[l] * (slot.weight[l] - slot.decay[l]) +
-                          e[l] * (1.0 - slot.weight[l]);
-        std::copy_n(slot.state.data(), kLanes, y);
-        break;
-      case Op::kIntegral:
-        for (std::size_t l = 0; l < kLanes; ++l)
-          y[l] = slot.state[l] += first ? 0.0 : 0.5 * dt * (slot.before[l] + e[l]);
-        break;
-      case Op::kPrevious: std::copy_n(slot.before.data(), kLanes, y); break;
-      case Op::kElapsed:
-        for (std::size_t l = 0; l < kLanes; ++l) y[l] = slot.state[l] += first ? 0.0 : dt;
-        break;
-      default: {
-        std::vector<Lanes>& line = run->line[instruction.line];
-        line.emplace_back();
-        std::copy_n(e, kLanes, line.back().data());
-        for (std::size_t l = 0; l < kLanes; ++l) y[l] = Delayed(line, l, tau[l], dt);
-      }
-    }
+  if (first) {
     std::copy_n(e, kLanes, slot.before.data());
+    slot.state = instruction.op == Op::kLowpass ? slot.before : Lanes{};
   }
+  switch (instruction.op) {
+    case Op::kLowpass:
+      if (!instruction.steady)
+        for (std::size_t l = 0; l < kLanes; ++l) LowpassWeights(tau[l], dt, &slot.decay[l], &slot.weight[l]);
+      for (std::size_t l = 0; l < kLanes && !first; ++l)
+        slot.state[l] = slot.state[l] * slot.decay[l] + slot.before[l] * (slot.weight[l] - slot.decay[l]) +
+                        e[l] * (1.0 - slot.weight[l]);
+      std::copy_n(slot.state.data(), kLanes, y);
+      break;
+    case Op::kIntegral:
+      for (std::size_t l = 0; l < kLanes; ++l) y[l] = slot.state[l] += first ? 0.0 : 0.5 * dt * (slot.before[l] + e[l]);
+      break;
+    case Op::kPrevious: std::copy_n(slot.before.data(), kLanes, y); break;
+    case Op::kElapsed:
+      for (std::size_t l = 0; l < kLanes; ++l) y[l] = slot.state[l] += first ? 0.0 : dt;
+      break;
+    default: {
+      std::vector<Lanes>& line = run->line[instruction.line];
+      line.emplace_back();
+      std::copy_n(e, kLanes, line.back().data());
+      for (std::size_t l = 0; l < kLanes; ++l) y[l] = Delayed(line, l, tau[l], dt);
+    }
+  }
+  std::copy_n(e, kLanes, slot.before.data());
 }
 
 }  // namespace armcmc::identify

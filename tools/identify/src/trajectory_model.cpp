@@ -65,8 +65,10 @@ TrajectoryModel::TrajectoryModel(std::shared_ptr<const Plant> plant, std::shared
   law_ = LaneProgram(graph, {with_columns}, inputs);
   first_state_ = num_signals_ + parameters_.size();
   num_inputs_ = inputs.size();
-  for (std::size_t s = 0; s < num_signals_; ++s)
+  for (std::size_t s = 0; s < num_signals_; ++s) {
     if (law_.Reads(s)) law_reads_.push_back(s);
+    if (rate_.Reads(s)) rate_reads_.push_back(s);
+  }
   num_past_ = past.size();
 }
 

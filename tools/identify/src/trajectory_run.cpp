@@ -5,8 +5,30 @@
 #include <limits>
 
 #include "armcmc/identify/trajectory_model.hpp"
+#include "wider_lanes.hpp"
 
 namespace armcmc::identify {
+namespace {
+
+// What is written in parts of a vector is waited for where it is read as a whole: so these, too, are made of vectors.
+
+/// sum = a + factor b; sum may be a or b.
+ARMCMC_FOR_WIDER_LANES
+void AddScaled(std::size_t count, const Lanes* a, double factor, const Lanes* b, Lanes* sum) {
+  for (std::size_t s = 0; s < count; ++s) {
+#pragma GCC ivdep
+#pragma GCC unroll 1
+    for (std::size_t l = 0; l < kLanes; ++l) sum[s][l] = a[s][l] + factor * b[s][l];
+  }
+}
+
+ARMCMC_FOR_WIDER_LANES
+void Fill(double value, Lanes* lanes) {
+#pragma GCC unroll 1
+  for (std::size_t l = 0; l < kLanes; ++l) (*lanes)[l] = value;
+}
+
+}  // namespace
 
 /// States of candidates from sample to sample, and what their rates remember.
 class TrajectoryModel::Walk {
@@ -45,7 +67,7 @@ class TrajectoryModel::Walk {
 
  private:
   void SetSignals(std::size_t row) {
-    for (std::size_t s = 0; s < model_.num_signals_; ++s) input_[s].fill(model_.series_->signals[s][row]);
+    for (std::size_t s = 0; s < model_.num_signals_; ++s) Fill(model_.series_->signals[s][row], &input_[s]);
   }
 
   /// Classical Runge-Kutta from `row` to the next.
@@ -65,23 +87,20 @@ class TrajectoryModel::Walk {
       std::fill(sum_.begin(), sum_.end(), Lanes{});
       for (std::size_t stage = 0; stage < kPart.size(); ++stage) {
         const double part = (i + kPart[stage]) / model_.substeps_;
-        for (std::size_t s = 0; s < model_.num_signals_; ++s) {
+        for (const std::size_t s : model_.rate_reads_) {
           const double* const value = &model_.series_->signals[s][row];
-          input_[s].fill(ValueBetween(model_.between_[s], has_earlier ? value - 1 : nullptr, value[0], value[1],
-                                      has_later ? value + 2 : nullptr, part));
+          Fill(ValueBetween(model_.between_[s], has_earlier ? value - 1 : nullptr, value[0], value[1],
+                            has_later ? value + 2 : nullptr, part),
+               &input_[s]);
         }
         for (std::size_t p = 0; p < model_.num_past_; ++p)
           for (std::size_t l = 0; l < kLanes; ++l) past[p][l] = before_[p][l] + part * (after_[p][l] - before_[p][l]);
-        if (stage > 0)
-          for (std::size_t s = 0; s < num_states; ++s)
-            for (std::size_t l = 0; l < kLanes; ++l) state[s][l] = origin_[s][l] + kPart[stage] * h * rate_[s][l];
+        if (stage > 0) AddScaled(num_states, origin_.data(), kPart[stage] * h, rate_.data(), state);
         const double t = model_.series_->t[row] + part * model_.series_->dt;
         model_.rate_.Evaluate(1, input_.data(), 1, &t, &rate_run_, rate_.data());
-        for (std::size_t s = 0; s < num_states; ++s)
-          for (std::size_t l = 0; l < kLanes; ++l) sum_[s][l] += kWeight[stage] * rate_[s][l];
+        AddScaled(num_states, sum_.data(), kWeight[stage], rate_.data(), sum_.data());
       }
-      for (std::size_t s = 0; s < num_states; ++s)
-        for (std::size_t l = 0; l < kLanes; ++l) state[s][l] = origin_[s][l] + h / 6.0 * sum_[s][l];
+      AddScaled(num_states, origin_.data(), h / 6.0, sum_.data(), state);
     }
   }
 
@@ -123,8 +142,8 @@ void TrajectoryModel::Run(const Eigen::MatrixXd& thetas, Eigen::Index first, Eig
       const std::size_t n = only != nullptr ? static_cast<std::size_t>((*only)[k + r]) : k + r;
       row[r] = n;
       t[r] = series_->t[n];
-      for (const std::size_t s : law_reads_) input[s * kTile + r].fill(series_->signals[s][n]);
-      for (std::size_t c = 0; c < columns_.size(); ++c) input[(first_column + c) * kTile + r].fill(columns_[c][n]);
+      for (const std::size_t s : law_reads_) Fill(series_->signals[s][n], &input[s * kTile + r]);
+      for (std::size_t c = 0; c < columns_.size(); ++c) Fill(columns_[c][n], &input[(first_column + c) * kTile + r]);
       if (num_states_ == 0) continue;
       walk.To(n, begins && r == 0);
       for (std::size_t s = 0; s < num_states_; ++s) input[(first_state_ + s) * kTile + r] = walk.State()[s];

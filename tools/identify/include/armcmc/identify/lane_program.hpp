@@ -25,8 +25,10 @@ enum class Varies : std::uint8_t {
 
 /// What the evaluation of a program carries from sample to sample.
 struct LaneRun {
+  /// [sample][lane], and a line more where there are several samples: memory of one page offset would be waited for.
+  template <std::size_t kSamples>
   struct alignas(64) Block {
-    std::array<double, kTile * kLanes> value;  ///< [sample][lane]
+    std::array<double, kSamples * kLanes + (kSamples > 1 ? 8 : 0)> value;
   };
   struct Slot {
     Lanes state{};            ///< Of a low pass or an integral.
@@ -35,7 +37,8 @@ struct LaneRun {
   };
   double dt = 1.0;                       ///< s
   bool empty = true;                     ///< No sample yet.
-  std::vector<Block> block;              ///< Zero, then one of every instruction.
+  std::vector<Block<1>> one;             ///< Zero, one of every instruction, room: of one sample,
+  std::vector<Block<kTile>> tile;        ///< and of several.
   std::vector<Slot> slot;                ///< Of every function with memory.
   std::vector<std::vector<Lanes>> line;  ///< [delay][sample of the run]
 
@@ -71,13 +74,15 @@ class LaneProgram {
   [[nodiscard]] bool Reads(std::size_t signal) const;
 
  private:
-  using Block = LaneRun::Block;
+  template <std::size_t kSamples>
+  using Blocks = std::vector<LaneRun::Block<kSamples>>;
   struct Instruction {
     expression::Op op = expression::Op::kNumber;
     std::array<std::size_t, expression::kMaxArguments> argument{};  ///< Blocks.
     std::size_t block = 0;                                          ///< That it fills.
     double value = 0.0;
     bool time = false;
+    bool memory = false;
     Varies varies = Varies::kByLane;
     int power = -1;         ///< Whole part of a constant exponent that is made of multiplications; else -1.
     bool half = false;      ///< And one half.
@@ -85,8 +90,16 @@ class LaneProgram {
     std::size_t index = 0;  ///< Of a signal; of a memory.
     std::size_t line = 0;   ///< Of a delay.
   };
-  static void Compute(const Instruction& instruction, std::size_t samples, Block* blocks);
-  static void Remember(const Instruction& instruction, std::size_t samples, LaneRun* run);
+  template <std::size_t kSamples>
+  static void Compute(const Instruction& instruction, Blocks<kSamples>* blocks);
+  template <std::size_t kSamples>
+  void Walk(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Blocks<kSamples>* blocks,
+            Lanes* out) const;
+  void WalkOne(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const;
+  void WalkTile(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const;
+  void ComputeOnce(Blocks<1>* blocks) const;
+  static void Remember(const Instruction& instruction, bool first, const double* e, const double* tau, LaneRun* run,
+                       double* y);
 
   std::vector<Instruction> once_, each_;  ///< Computed once a run of candidates; at each sample.
   std::vector<std::size_t> outputs_;      ///< Blocks.

@@ -104,8 +104,8 @@ class TrajectoryModel {
   std::size_t num_past_ = 0;  ///< Outputs of past_.
   /// Inputs of the programs: signals, parameters, states, columns, what rates remember.
   std::size_t first_state_ = 0, num_inputs_ = 0;
-  std::vector<std::size_t> law_reads_;        ///< Signals.
-  std::vector<std::vector<double>> columns_;  ///< That the law reads instead of signals.
+  std::vector<std::size_t> law_reads_, rate_reads_;  ///< Signals.
+  std::vector<std::vector<double>> columns_;         ///< That the law reads instead of signals.
   Eigen::VectorXd target_;
   std::vector<std::uint8_t> active_;
 };
