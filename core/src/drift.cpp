@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "armcmc/density_fit.hpp"
 #include "armcmc/linear_algebra.hpp"
@@ -12,8 +13,8 @@ namespace armcmc {
 namespace {
 
 constexpr double kMixedReach = 6.0;  // standard deviations
-constexpr double kMixedTail = 1e-3;  // of a normal law in a mixture, and share below which a hypothesis is left out
-constexpr double kSmallestWeight = 1e-30;  // of a hypothesis: none is ever beyond return
+constexpr double kMixedTail = 1e-3;  // of a normal law in a mixture
+constexpr double kLeftOut = 1e-5;    // share below which a filter is no part of it
 
 void MakeSymmetric(ParamMatrix* m) noexcept {
   for (Eigen::Index i = 0; i < m->rows(); ++i)
@@ -39,10 +40,8 @@ bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noex
 
 Drift::Hypothesis Drift::Of(int h, double share) noexcept {
   if (h == 0) return {.rate = 0.0, .persistence = 1.0, .prior = 1.0 - share};
-  const auto i = static_cast<std::size_t>(h - 1);
-  return {.rate = kRates[i % kRates.size()],
-          .persistence = kPersistence[i / kRates.size()],
-          .prior = share / (kHypotheses - 1)};
+  const Law& law = kDrifts[static_cast<std::size_t>(h - 1)];
+  return {.rate = law.rate, .persistence = law.persistence, .prior = share * law.share};
 }
 
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
@@ -57,80 +56,111 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
 }
 
 void Drift::Forget() noexcept {
-  started_ = split_ = false;
+  started_ = split_ = mixed_ = false;
   share_ = rate_ = 0.0;
 }
 
 Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
-  const Eigen::Index dim = bank[0].u.size();
+  const Eigen::Index dim = bank.back().u.size();
   Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim), .covariance = ParamMatrix::Zero(dim, dim)};
-  const std::size_t first = part == Part::kDrift ? 1 : 0;
-  const std::size_t end = part == Part::kRest ? 1 : bank.size();
-  for (std::size_t h = first; h < end; ++h) {
-    m.weight += bank[h].weight;
-    m.mean += bank[h].weight * bank[h].u;
+  for (std::size_t i = 0; i < bank.size(); ++i) {
+    if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
+    m.weight += bank[i].weight;
+    m.mean += bank[i].weight * bank[i].u;
   }
   m.mean /= m.weight;
-  for (std::size_t h = first; h < end; ++h) {
-    const ParamVector apart = bank[h].u - m.mean;
-    const double share = bank[h].weight / m.weight;
+  for (std::size_t f = 0; f < bank.size(); ++f) {
+    if (!IsOf(part, f) || !(bank[f].weight > 0.0)) continue;
+    const ParamVector apart = bank[f].u - m.mean;
+    const double share = bank[f].weight / m.weight;
     for (Eigen::Index i = 0; i < dim; ++i)
-      for (Eigen::Index j = 0; j < dim; ++j) m.covariance(i, j) += share * (bank[h].uu(i, j) + apart[i] * apart[j]);
+      for (Eigen::Index j = 0; j < dim; ++j) m.covariance(i, j) += share * (bank[f].uu(i, j) + apart[i] * apart[j]);
   }
   return m;
 }
 
-void Drift::Predict(double elapsed_s) noexcept {
-  const double stays = std::exp(-kSwitching * elapsed_s);
-  const Moments all = MomentsOf(bank_, Part::kWhole);
-  for (std::size_t h = 0; h < bank_.size(); ++h) {
-    const Hypothesis& law = hypotheses_[h];
-    const Filter& before = bank_[h];
-    Filter& f = predicted_[h];
-    f = before;
-    // Newcomers: anywhere in the bank, at a speed of the hypothesis' own law.
-    const double speed = law.rate * law.rate;
-    const double old = stays * before.weight;
-    const double fresh = (1.0 - stays) * law.prior;
-    f.weight = std::fmax(old + fresh, kSmallestWeight);
-    const double p = old / f.weight;
+void Drift::Merge(Filter* from, Filter* to) noexcept {
+  const double whole = from->weight + to->weight;
+  if (to->weight > 0.0 && from->weight > 0.0) {
+    const double p = to->weight / whole;
     const double q = 1.0 - p;
-    const ParamVector apart = all.mean - before.u;
-    f.u += q * apart;
-    f.w *= p;
-    for (int i = 0; i < dim_; ++i)
-      for (int j = 0; j < dim_; ++j) {
-        f.uu(i, j) = p * before.uu(i, j) + q * all.covariance(i, j) + p * q * apart[i] * apart[j];
-        f.uw(i, j) = p * before.uw(i, j) - p * q * apart[i] * before.w[j];
-        f.ww(i, j) = p * before.ww(i, j) + (i == j ? q * speed : 0.0) + p * q * before.w[i] * before.w[j];
+    const ParamVector apart = from->u - to->u;
+    const ParamVector faster = from->w - to->w;
+    const Eigen::Index dim = apart.size();
+    for (Eigen::Index i = 0; i < dim; ++i)
+      for (Eigen::Index j = 0; j < dim; ++j) {
+        to->uu(i, j) = p * to->uu(i, j) + q * from->uu(i, j) + p * q * apart[i] * apart[j];
+        to->uw(i, j) = p * to->uw(i, j) + q * from->uw(i, j) + p * q * apart[i] * faster[j];
+        to->ww(i, j) = p * to->ww(i, j) + q * from->ww(i, j) + p * q * faster[i] * faster[j];
       }
-    if (h == 0) continue;
-    const double t = law.persistence;
-    const double phi = std::exp(-elapsed_s / t);
-    const double b = t * (1.0 - phi);
-    const double noise_w = speed * (1.0 - phi * phi);
-    const double noise_uw = speed * t * (1.0 - phi) * (1.0 - phi);
-    const double noise_u = std::fmax(speed * t * (2.0 * (elapsed_s - b) - b * (1.0 - phi)), 0.0);
-    const ParamVector variance = f.uu.diagonal();
-    f.u += b * f.w;
-    for (int i = 0; i < dim_; ++i)
-      for (int j = 0; j <= i; ++j)
-        f.uu(i, j) = f.uu(j, i) =
-            f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j ? noise_u : 0.0);
-    for (int i = 0; i < dim_; ++i)
-      for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j ? noise_uw : 0.0);
-    f.w *= phi;
-    f.ww *= phi * phi;
-    for (int i = 0; i < dim_; ++i) f.ww(i, i) += noise_w;
-    for (int i = 0; i < dim_; ++i) {
-      const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
-      const double shrink = std::sqrt(kept);
-      f.u[i] *= kept;
-      f.uu.row(i) *= shrink;
-      f.uu.col(i) *= shrink;
-      f.uw.row(i) *= shrink;
-    }
+    to->u += q * apart;
+    to->w += q * faster;
+  } else if (from->weight > 0.0) {
+    *to = *from;
   }
+  to->weight = whole;
+  from->weight = 0.0;
+}
+
+void Drift::GrowOlder() noexcept {
+  for (std::size_t g = kMergeAfter.size(); g-- > 0;)
+    for (std::size_t h = 0; h < kHypotheses && packs_ % kMergeAfter[g] == 0; ++h)
+      Merge(&predicted_[g * kHypotheses + h], &predicted_[(g + 1) * kHypotheses + h]);
+}
+
+void Drift::AddNewcomers(double share) noexcept {
+  const Moments all = MomentsOf(predicted_, Part::kWhole);
+  for (Filter& f : predicted_) f.weight *= 1.0 - share;
+  // Anywhere in the bank, at a speed of the hypothesis' own law.
+  for (std::size_t h = 0; h < kHypotheses; ++h) {
+    Filter fresh{.weight = share * hypotheses_[h].prior * all.weight,
+                 .u = all.mean,
+                 .w = ParamVector::Zero(dim_),
+                 .uu = all.covariance,
+                 .uw = ParamMatrix::Zero(dim_, dim_),
+                 .ww = ParamMatrix::Identity(dim_, dim_)};
+    fresh.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+    Merge(&fresh, &predicted_[h]);
+  }
+}
+
+void Drift::Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
+  Filter& f = *filter;
+  const double speed = law.rate * law.rate;
+  const double t = law.persistence;
+  const double phi = std::exp(-elapsed_s / t);
+  const double b = t * (1.0 - phi);
+  const double noise_w = speed * (1.0 - phi * phi);
+  const double noise_uw = speed * t * (1.0 - phi) * (1.0 - phi);
+  const double noise_u = std::fmax(speed * t * (2.0 * (elapsed_s - b) - b * (1.0 - phi)), 0.0);
+  const ParamVector variance = f.uu.diagonal();
+  f.u += b * f.w;
+  for (int i = 0; i < dim_; ++i)
+    for (int j = 0; j <= i; ++j)
+      f.uu(i, j) = f.uu(j, i) =
+          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j ? noise_u : 0.0);
+  for (int i = 0; i < dim_; ++i)
+    for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j ? noise_uw : 0.0);
+  f.w *= phi;
+  f.ww *= phi * phi;
+  for (int i = 0; i < dim_; ++i) f.ww(i, i) += noise_w;
+  for (int i = 0; i < dim_; ++i) {
+    const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
+    const double shrink = std::sqrt(kept);
+    f.u[i] *= kept;
+    f.uu.row(i) *= shrink;
+    f.uu.col(i) *= shrink;
+    f.uw.row(i) *= shrink;
+  }
+}
+
+void Drift::Predict(double elapsed_s) noexcept {
+  predicted_ = bank_;
+  GrowOlder();
+  AddNewcomers(1.0 - std::exp(-kSwitching * elapsed_s));
+  for (std::size_t i = 0; i < predicted_.size(); ++i)
+    if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
+      Pass(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);
 }
 
 void Drift::Mix(const Moments& part, int to) noexcept {
@@ -148,10 +178,10 @@ void Drift::Mix(const Moments& part, int to) noexcept {
     }
   };
   add(kMixedTail, 0.0, 1.0);
-  for (std::size_t h = 1; h < predicted_.size(); ++h) {
-    const Filter& f = predicted_[h];
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    const Filter& f = predicted_[i];
     const double share = f.weight / part.weight;
-    if (share > kMixedTail) add(share, (f.u[0] - part.mean[0]) / sd, std::sqrt(f.uu(0, 0)) / sd);
+    if (IsOf(Part::kDrift, i) && share > kLeftOut) add(share, (f.u[0] - part.mean[0]) / sd, std::sqrt(f.uu(0, 0)) / sd);
   }
   table.Build(values.data(), kNodes, -kMixedReach);
   SetElliptic(part.mean, part.covariance, 1.0 / std::sqrt(table.Variance()), &table, &block);
@@ -168,6 +198,7 @@ bool Drift::Move(const PosteriorMemory& last, Part part, const Moments& from, in
   const DensityBlock& source = last.block[static_cast<std::size_t>(block)];
   if (part == Part::kDrift && source.dim == 1) {
     Mix(target, to);
+    mixed_ = true;
     return true;
   }
   DensityBlock& moved = carried_.block[static_cast<std::size_t>(to)];
@@ -208,7 +239,7 @@ bool Drift::SetMoments(const PosteriorMemory& last, Part part, const Moments& fr
 }
 
 const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last) noexcept {
-  split_ = false;
+  split_ = mixed_ = false;
   share_ = rate_ = 0.0;
   if (!last.valid) started_ = false;
   if (!started_) return last;
@@ -216,11 +247,13 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   const double since = data.time_s - time_s_;
   Predict(since > 0.0 ? since : data.duration_s);
   double total = 0.0;
-  for (std::size_t h = 0; h < predicted_.size(); ++h) {
-    total += predicted_[h].weight;
-    rate_ += predicted_[h].weight * hypotheses_[h].rate;
+  double drifts = 0.0;
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    total += predicted_[i].weight;
+    if (IsOf(Part::kDrift, i)) drifts += predicted_[i].weight;
+    rate_ += predicted_[i].weight * hypotheses_[HypothesisOf(i)].rate;
   }
-  share_ = 1.0 - predicted_[0].weight / total;
+  share_ = drifts / total;
   rate_ /= total;
 
   const Moments from{
@@ -251,15 +284,16 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
 }
 
 void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
-  for (std::size_t h = 0; h < bank_.size(); ++h) {
-    Filter& f = bank_[h];
-    if (!with_speeds) {
-      f.weight = hypotheses_[h].prior;
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    Filter& f = bank_[i];
+    if (with_speeds) {
+      f = predicted_[i];
+    } else {
+      const Hypothesis& law = hypotheses_[HypothesisOf(i)];
+      f.weight = i / kHypotheses + 1 == kGenerations ? law.prior : 0.0;
       f.w = ParamVector::Zero(dim_);
       f.ww = ParamMatrix::Identity(dim_, dim_);
-      f.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
-    } else {
-      f = predicted_[h];
+      f.ww *= law.rate * law.rate;
     }
     f.u = next.mean.head(dim_);
     f.uu = next.covariance.topLeftCorner(dim_, dim_);
@@ -269,11 +303,12 @@ void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
 
 bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noexcept {
   const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
-  std::array<double, kHypotheses> log_weight{};
+  std::array<double, kFilters> log_weight{};
   double top = -HUGE_VAL;
-  for (std::size_t h = 0; h < bank_.size(); ++h) {
-    Filter& f = bank_[h];
-    f = predicted_[h];
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    Filter& f = bank_[i];
+    f = predicted_[i];
+    if (!(f.weight > 0.0)) continue;
     // P = C (1 + H C)^-1, and what u learns w learns through their covariance.
     ParamMatrix spread = Product(local.information, f.uu);
     spread += identity;
@@ -283,10 +318,10 @@ bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noex
     const ParamVector residual = local.gradient - pulled;
     const ParamVector step = Multiply(t, residual);
     const ParamVector move = Multiply(f.uu, step);
-    log_weight[h] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
+    log_weight[i] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
                     0.5 * residual.dot(move) - 0.5 * std::log(std::fmax(Determinant(spread), 1e-300));
-    if (!std::isfinite(log_weight[h])) return false;
-    top = std::fmax(top, log_weight[h]);
+    if (!std::isfinite(log_weight[i])) return false;
+    top = std::fmax(top, log_weight[i]);
     f.u += move;
     f.w += Multiply(f.uw.transpose(), step);
     f.ww -= Product(Product(f.uw.transpose(), Product(t, local.information)), f.uw);
@@ -298,26 +333,30 @@ bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noex
       return false;
   }
   double sum = 0.0;
-  for (std::size_t h = 0; h < bank_.size(); ++h) {
-    bank_[h].weight = std::exp(log_weight[h] - top);
-    sum += bank_[h].weight;
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    if (bank_[i].weight > 0.0) bank_[i].weight = std::exp(log_weight[i] - top);
+    sum += bank_[i].weight;
   }
-  for (Filter& f : bank_) f.weight = std::fmax(f.weight / sum, kSmallestWeight);
+  for (Filter& f : bank_) f.weight /= sum;
   return true;
 }
 
 bool Drift::Recentre(const LocalLikelihood& local, const PosteriorMemory& next) noexcept {
-  // What the sampler's prior becomes where the likelihood is as expanded.
-  Moments now = MomentsOf(predicted_, fitted_);
-  ParamMatrix spread = Product(local.information, now.covariance);
-  spread += ParamMatrix::Identity(dim_, dim_);
-  const ParamVector pulled = Multiply(local.information, now.mean - next.mean.head(dim_));
-  now.covariance = Product(now.covariance, Inverse(spread));
-  MakeSymmetric(&now.covariance);
-  now.mean += Multiply(now.covariance, local.gradient - pulled);
+  // What the sampler's prior becomes where the likelihood is as expanded: the bank itself, or a Gaussian with its
+  // moments.
+  Moments now = MomentsOf(mixed_ && fitted_ == Part::kDrift ? bank_ : predicted_, fitted_);
+  if (!mixed_ || fitted_ != Part::kDrift) {
+    ParamMatrix spread = Product(local.information, now.covariance);
+    spread += ParamMatrix::Identity(dim_, dim_);
+    const ParamVector pulled = Multiply(local.information, now.mean - next.mean.head(dim_));
+    now.covariance = Product(now.covariance, Inverse(spread));
+    MakeSymmetric(&now.covariance);
+    now.mean += Multiply(now.covariance, local.gradient - pulled);
+  }
   ParamMatrix map;
   if (!MapBetween(now.covariance, next.covariance.topLeftCorner(dim_, dim_), &map)) return false;
   for (Filter& f : bank_) {
+    if (!(f.weight > 0.0)) continue;
     f.u = next.mean.head(dim_) + Multiply(map, f.u - now.mean);
     f.uu = Product(Product(map, f.uu), map.transpose());
     MakeSymmetric(&f.uu);
@@ -333,6 +372,7 @@ void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, 
   fitted_ = part;
   const bool known = started_;
   started_ = true;
+  packs_ = known ? packs_ + 1 : 0;
   if (known && !renewed) {
     const ParamVector centre = next.mean.head(dim_);
     const LocalLikelihood local =
@@ -346,6 +386,7 @@ void Drift::Save(SnapshotWriter* out) const noexcept {
   out->PutFlag(started_);
   if (!started_) return;
   out->Put(time_s_);
+  out->Put(packs_);
   out->Put(static_cast<std::int64_t>(fitted_));
   const auto put = [out](const auto& m) noexcept ARMCMC_NONBLOCKING {
     out->PutRow(m.data(), static_cast<std::size_t>(m.size()));
@@ -365,6 +406,7 @@ void Drift::Restore(SnapshotReader* in) noexcept {
   const bool started = in->Flag();
   if (!started) return;
   time_s_ = in->Number();
+  packs_ = in->Integer(0, std::numeric_limits<std::int64_t>::max());
   fitted_ = static_cast<Part>(in->Integer(0, static_cast<std::int64_t>(Part::kDrift)));
   const auto take = [in, this](auto* m, Eigen::Index columns) noexcept ARMCMC_NONBLOCKING {
     m->resize(dim_, columns);
@@ -377,7 +419,7 @@ void Drift::Restore(SnapshotReader* in) noexcept {
     take(&f.uu, dim_);
     take(&f.uw, dim_);
     take(&f.ww, dim_);
-    in->Require(f.weight > 0.0 && in->good() && IsPositiveDefinite(f.uu));
+    in->Require(f.weight >= 0.0 && in->good() && IsPositiveDefinite(f.uu));
   }
   started_ = enabled_ && in->good();
 }

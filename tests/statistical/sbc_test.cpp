@@ -63,8 +63,9 @@ class Truth {
   void Draw() { theta_ = DrawTruth(settings_, normal_); }
   void Begin() {
     const double share = settings_.forgetting.drift_share;
-    const bool drifts = normal_->Uniform() < share;
-    const int h = drifts ? 1 + static_cast<int>((Drift::kHypotheses - 1) * normal_->Uniform()) : 0;
+    double left = normal_->Uniform();
+    int h = 0;
+    while (h + 1 < Drift::kHypotheses && left > Drift::Of(h, share).prior) left -= Drift::Of(h++, share).prior;
     law_ = Drift::Of(h, share);
     for (double& v : speed_) v = law_.rate * (*normal_)();
   }

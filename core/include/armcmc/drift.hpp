@@ -25,14 +25,19 @@ struct Kernels;
 ///   du/dt = w,   dw = -w / tau_h dt + s_h sqrt(2 / tau_h) dW,   w ~ N(0, s_h^2) in the long run
 ///
 /// s_h is the rate, in standard deviations of the prior per second, the same for all parameters. h = 0 is rest, s = 0.
-/// The others are all pairs of kRates and kPersistence: a walk whose steps are forgotten within a second, and a trend.
-/// A random walk alone does not do: of a steady drift it would have to be told anew in every pack, lags behind, and
-/// finds the explanation with the smallest steps along what the data do not tell apart, with intervals that miss it.
+/// The others are kDrifts: walks, whose steps are forgotten within some packs, and trends. A walk alone does not do: of
+/// a steady drift it would have to be told anew in every pack, lags behind, and finds the explanation with the smallest
+/// steps along what the data do not tell apart, with intervals that miss it. Trends alone are late where steps are
+/// forgotten, and intervals miss those; what lies in between, a second, does neither well and takes from both.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
 ///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, newcomers from the whole bank at a speed of
 ///            their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
+///   age      some packs tell a newcomer from what was there, and the next one does not: each hypothesis has a filter
+///   for
+///            each generation, which joins the older one every kMergeAfter packs, by moments. Joined at once, newcomers
+///            that the data refute would lend their spread to those that they do not
 ///   bounds   a parameter that would become wider than P_0, by c > 1 in variance, comes back to it: variance and mean
 ///            divided by c. After a long time nothing but P_0 is known of what drifts
 ///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
@@ -54,11 +59,26 @@ struct Kernels;
 /// The noise scale is no coordinate of the bank: its memory is loose as it is (ModeSampler::SpreadNoiseScale).
 class Drift {
  public:
-  static constexpr std::array<double, 5> kRates{0.003, 0.01, 0.03, 0.1, 0.3};  ///< s, prior standard deviations per s.
-  static constexpr std::array<double, 2> kPersistence{1.0, 30.0};              ///< tau, s.
+  struct Law {
+    double rate;         ///< s, prior standard deviations per s.
+    double persistence;  ///< tau, s.
+    double share;        ///< Of the prior of drift.
+  };
+  static constexpr std::array<Law, 9> kDrifts{{{0.03, 0.3, 0.05},
+                                               {0.1, 0.3, 0.05},
+                                               {0.3, 0.3, 0.05},
+                                               {1.0, 0.3, 0.05},
+                                               {0.003, 30.0, 0.16},
+                                               {0.01, 30.0, 0.16},
+                                               {0.03, 30.0, 0.16},
+                                               {0.1, 30.0, 0.16},
+                                               {0.3, 30.0, 0.16}}};
   static constexpr double kSwitching = 0.01;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
   static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
-  static constexpr int kHypotheses = 1 + static_cast<int>(kRates.size() * kPersistence.size());
+  static constexpr int kHypotheses = 1 + static_cast<int>(kDrifts.size());
+  static constexpr std::array<int, 3> kMergeAfter{5, 15, 45};  ///< Packs; of the latest first.
+  static constexpr int kGenerations = 1 + static_cast<int>(kMergeAfter.size());
+  static constexpr int kFilters = kGenerations * kHypotheses;
 
   /// Of what the bank holds.
   enum class Part : std::uint8_t { kWhole, kRest, kDrift };
@@ -66,7 +86,7 @@ class Drift {
   struct Hypothesis {
     double rate = 0.0, persistence = 1.0, prior = 1.0;
   };
-  /// Hypothesis h where drift has the probability `share`, spread evenly over the drifting ones.
+  /// Hypothesis h where drift has the probability `share`.
   [[nodiscard]] static Hypothesis Of(int h, double share) noexcept ARMCMC_NONBLOCKING;
 
   /// @param share  Prior probability that the plant drifts, in [0, 1). 0: it rests, and Carry() changes nothing.
@@ -101,20 +121,31 @@ class Drift {
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
  private:
-  /// Mean and covariance of u and w, in blocks; `weight` is pi_h.
+  /// Mean and covariance of u and w, in blocks; `weight` is its part of pi_h. 0: empty, the rest says nothing.
   struct Filter {
     double weight = 0.0;
     ParamVector u, w;
     ParamMatrix uu, uw, ww;
   };
-  using Bank = std::array<Filter, kHypotheses>;
+  /// Generation by generation, the latest first: in each a filter of every hypothesis.
+  using Bank = std::array<Filter, kFilters>;
   struct Moments {
     double weight = 0.0;
     ParamVector mean;
     ParamMatrix covariance;
   };
 
+  [[nodiscard]] static std::size_t HypothesisOf(std::size_t filter) noexcept { return filter % kHypotheses; }
+  [[nodiscard]] static bool IsOf(Part part, std::size_t filter) noexcept {
+    return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
+  }
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
+  /// Moves the moments of `from` into `to`, and empties it.
+  static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
+  void GrowOlder() noexcept ARMCMC_NONBLOCKING;
+  void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;
+  /// u and w of one filter after a time without data.
+  void Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
   /// @return false when some number is not finite.
@@ -134,12 +165,14 @@ class Drift {
   std::array<Hypothesis, kHypotheses> hypotheses_;
   bool enabled_;
   bool started_ = false;
-  double time_s_ = 0.0;  ///< Of the pack that `bank_` has learnt from.
-  Bank bank_;            ///< After that pack.
-  Bank predicted_;       ///< Before the next one.
+  double time_s_ = 0.0;     ///< Of the pack that `bank_` has learnt from.
+  std::int64_t packs_ = 0;  ///< That it has learnt from.
+  Bank bank_;               ///< After that pack.
+  Bank predicted_;          ///< Before the next one.
   double share_ = 0.0, rate_ = 0.0;
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
   bool split_ = false;
+  bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;
   PosteriorMemory carried_;
 };
