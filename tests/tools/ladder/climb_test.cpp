@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "armcmc/support/effect_library.hpp"
+#include "armcmc/support/plant_file.hpp"
+#include "support/paths.hpp"
 #include "tools/ladder/made_data.hpp"
 
 namespace armcmc::ladder::climb_test {
@@ -239,6 +241,16 @@ TEST(Climb, AnOffsetThatComesAndGoesIsNotNoise) {
                                   }));
   EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
   EXPECT_FALSE(ladder.complete);
+}
+
+TEST(Climb, AWeirIsAnOverflowAndNoMode) {
+  const Plant tanks = support::ReadPlant(test::SourceDir() / "core/plants/two_tanks/plant.toml");
+  const auto weir = [](double level) { return 0.2 * std::pow(std::max(level - 5.0, 0.0), 1.5); };
+  const Ladder ladder = ClimbWith({"overflow", "flexible_mode"}, test::TanksData(weir), tanks.description());
+  ASSERT_GE(ladder.rungs.size(), 2u);
+  for (const Rung& rung : ladder.rungs)
+    for (const std::string& name : NamesOf(rung)) EXPECT_EQ(name, "overflow");
+  EXPECT_LT(ladder.final_trial.fit.error_sd, 0.05);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ inline PlantDescription AxisPlant() {
   return plant;
 }
 
-/// What is simulated from an input alone, 50 Hz; the last 30 % are kept apart.
+/// What is simulated from an input alone; the last 30 % are kept apart.
 struct SimulatedRun {
   int rows;
   double noise;  ///< Standard deviation on what is measured.
@@ -62,26 +62,27 @@ struct SimulatedRun {
   std::function<double(double t)> drive;
   std::function<void(double u, double step)> advance;  ///< By one step of the integration, a twentieth of a sample.
   std::function<double()> shown;                       ///< What is measured, without noise.
+  double dt = 0.02;                                    ///< s
 };
 
 inline ladder::Dataset DataOf(const SimulatedRun& run) {
   constexpr int kSteps = 20;  // of an interval
-  constexpr double kDt = 0.02, kStep = kDt / kSteps;
+  const double step = run.dt / kSteps;
   auto series = std::make_shared<identify::Series>();
-  series->dt = kDt;
+  series->dt = run.dt;
   series->runs = {0};
   series->signals.resize(2);
   std::mt19937_64 random(run.seed);
   std::normal_distribution<double> noise(0.0, run.noise);
   ladder::Dataset data;
   for (int n = 0; n < run.rows; ++n) {
-    const double t = kDt * n;
+    const double t = run.dt * n;
     series->t.push_back(t);
     series->signals[0].push_back(run.drive(t));
     series->signals[1].push_back(run.shown() + noise(random));
     data.training.push_back(10 * n < 7 * run.rows ? 1 : 0);
     data.held_out.push_back(10 * n < 7 * run.rows ? 0 : 1);
-    for (int i = 0; i < kSteps; ++i) run.advance(run.drive(t + (i + 0.5) * kStep), kStep);
+    for (int i = 0; i < kSteps; ++i) run.advance(run.drive(t + (i + 0.5) * step), step);
   }
   data.series = std::move(series);
   return data;
@@ -150,6 +151,28 @@ inline PlantDescription MotorPlant() {
   plant.states = {{"speed", "rad/s", "velocity", "K*u - speed/T", "0", "", 1}};
   plant.noise.std = 0.3;
   return plant;
+}
+
+/// Two tanks in a cascade u, y, the upper fed by a pump, the level of the lower measured; of what is `spilled` by the
+/// upper, half reaches the lower. 20 minutes, a noise of 0.03 V on the level.
+inline ladder::Dataset TanksData(const std::function<double(double level)>& spilled) {
+  double upper = 3.0, lower = 2.5;
+  return DataOf({.rows = 600,
+                 .noise = 0.03,
+                 .seed = 5,
+                 .drive =
+                     [](double t) {
+                       const double step = std::floor(t / 80.0), chaos = 43758.5 * std::sin(12.9898 * step);
+                       return 0.5 + 4.5 * (chaos - std::floor(chaos));
+                     },
+                 .advance =
+                     [&](double u, double step) {
+                       const double over = spilled(upper), passes = 0.05 * std::sqrt(upper);
+                       upper += step * (0.04 * u - passes - over);
+                       lower += step * (passes - 0.045 * std::sqrt(lower) + 0.5 * over);
+                     },
+                 .shown = [&] { return lower; },
+                 .dt = 2.0});
 }
 
 }  // namespace armcmc::test

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kMostJudged = 8;  // of a rung, by closing: what is far behind is not named anyway
 constexpr int kBootstrap = 400;
+constexpr std::size_t kAnywhere = 8;   // starts of all parameters of what runs freely
 constexpr double kSure = 0.99;         // share of bootstrap samples in which it does
 constexpr double kLikely = 0.95;       // the same where few events show it: named, provisionally
 constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effect is named first
@@ -88,19 +89,27 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
   constexpr double kWorthIt = 0.25, kNoGain = 0.05;
   std::vector<Contender>& all = rung->contenders;
   const Eigen::VectorXd error = rung->base.model->target() - rung->base.fit.prediction;
-  std::vector<std::string> not_tried(all.size());
   // With what remembers and what does not: quick parts of two kinds.
   std::array<std::optional<QuickBase>, 2> bases;
+  const auto quick = [&](const Contender& c) -> std::optional<QuickBase>& {
+    return bases[Remembers(*c.candidate.plant) ? 1 : 0];
+  };
   for (const Contender& c : all)
-    if (std::optional<QuickBase>& base = bases[Remembers(*c.candidate.plant) ? 1 : 0]; !base) {
+    if (std::optional<QuickBase>& base = quick(c); !base) {
       base.emplace(QuickBase{QuickPart(*c.candidate.plant, data, error), 0.0});
       base->square = Square(Refine(plant, base->data, rung->base.fit.theta));
     }
+  // From what the model so far has, or from anywhere where `known` is empty.
+  const auto try_from = [&](const Eigen::VectorXd& known, std::size_t starts, Contender* c) {
+    Trial trial = Try(c->candidate.plant, quick(*c)->data, known, starts);
+    if (!trial.fit.valid || (c->trial.fit.valid && !(trial.fit.cost < c->trial.fit.cost))) return;
+    c->trial = std::move(trial);
+    c->closed = std::clamp(1.0 - Square(c->trial) / quick(*c)->square, 0.0, 1.0);
+  };
+  std::vector<std::string> not_tried(all.size());
   InParallel(all.size(), [&](std::size_t i) {
     try {
-      const QuickBase& base = *bases[Remembers(*all[i].candidate.plant) ? 1 : 0];
-      all[i].trial = Try(all[i].candidate.plant, base.data, rung->base.fit.theta, StartsFor(all[i]));
-      if (all[i].trial.fit.valid) all[i].closed = std::clamp(1.0 - Square(all[i].trial) / base.square, 0.0, 1.0);
+      try_from(rung->base.fit.theta, StartsFor(all[i]), &all[i]);
     } catch (const PlantError& why) {  // as a rate that would have to remember a state
       not_tried[i] = all[i].candidate.entry->name + " was not tried: " + why.what();
     }
@@ -115,6 +124,8 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
   const double quick_best = best_closing();
   InParallel(all.size(), [&](std::size_t i) {
     if (!all[i].trial.fit.valid || all[i].closed < kWorthIt * quick_best) return;
+    // What runs freely may have been bent by what is missing so far that no fit finds back from there.
+    if (IsSimulated(plant->description())) try_from({}, kAnywhere, &all[i]);
     all[i].trial = Refine(all[i].candidate.plant, data, all[i].trial.fit.theta);
     all[i].refined = all[i].trial.fit.valid;
     all[i].closed = all[i].refined ? std::clamp(1.0 - Square(all[i].trial) / Square(rung->base), 0.0, 1.0) : 0.0;
