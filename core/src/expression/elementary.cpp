@@ -4,8 +4,8 @@
 
 namespace armcmc::expression {
 
-bool Elementary(Op op, std::size_t count, const double* a, double* out) noexcept ARMCMC_NONBLOCKING {
-  return simd::Best().elementary(op, count, a, out);
+bool Elementary(Op op, std::size_t count, const double* a, const double* b, double* out) noexcept ARMCMC_NONBLOCKING {
+  return simd::Best().elementary(op, count, a, b, out);
 }
 
 }  // namespace armcmc::expression

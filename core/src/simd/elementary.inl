@@ -19,9 +19,14 @@ void ForEachVector(std::size_t count, const double* a, double* out, F f) noexcep
   for (std::size_t i = 0; i < count; i += Simd::kLanes) Simd::Store(out + i, f(Simd::Load(a + i)));
 }
 
-bool Elementary(expression::Op op, std::size_t count, const double* a, double* out) noexcept ARMCMC_NONBLOCKING {
+bool Elementary(expression::Op op, std::size_t count, const double* a, const double* b,
+                double* out) noexcept ARMCMC_NONBLOCKING {
   using expression::Op;
   switch (op) {
+    case Op::kPower:
+      for (std::size_t i = 0; i < count; i += Simd::kLanes)
+        Simd::Store(out + i, Math::Power(Simd::Load(a + i), Simd::Load(b + i)));
+      return true;
     case Op::kExp: ForEachVector(count, a, out, [](V x) { return Math::Exp(x); }); return true;
     case Op::kLog: ForEachVector(count, a, out, [](V x) { return Math::Log(x, kLn2); }); return true;
     case Op::kSin: ForVectors(count, a, out, [](V(&x)[2]) { Math::Sin(x); }); return true;

@@ -116,7 +116,8 @@ struct Kernels {
   int (*largest_product)(const double* a, const double* b, int count) noexcept ARMCMC_NONBLOCKING;
 
   /// See expression::Elementary().
-  bool (*elementary)(expression::Op op, std::size_t count, const double* a, double* out) noexcept ARMCMC_NONBLOCKING;
+  bool (*elementary)(expression::Op op, std::size_t count, const double* a, const double* b,
+                     double* out) noexcept ARMCMC_NONBLOCKING;
 };
 
 /// The best set that this CPU runs, chosen once.

@@ -33,7 +33,7 @@ TEST(Elementary, AgreesWithTheLibrary) {
     for (const Op op : {Op::kExp, Op::kLog, Op::kSin, Op::kCos, Op::kTan, Op::kAtan, Op::kTanh}) {
       const std::vector<double> a = Arguments(op);
       std::vector<double> out(kCount);
-      ASSERT_TRUE(kernels->elementary(op, kCount, a.data(), out.data()));
+      ASSERT_TRUE(kernels->elementary(op, kCount, a.data(), nullptr, out.data()));
       for (std::size_t i = 0; i < kCount; ++i) {
         const double expected = expression::Evaluate(op, a[i], 0.0, 0.0);
         // The reduction of large angles, which a tangent magnifies, keeps some 1e-15 of a turn.
@@ -44,18 +44,34 @@ TEST(Elementary, AgreesWithTheLibrary) {
     }
 }
 
+TEST(Elementary, PowersAreThoseOfTheLibrary) {
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    std::vector<double> base(kCount), exponent(kCount), out(kCount);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      base[i] = i == 0 ? 0.0 : std::pow(10.0, 12.0 * static_cast<double>(i) / kCount - 6.0);
+      exponent[i] = 0.3 + 2.0 * std::sin(static_cast<double>(i));
+    }
+    exponent[0] = 0.5;
+    ASSERT_TRUE(kernels->elementary(Op::kPower, kCount, base.data(), exponent.data(), out.data()));
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const double expected = std::pow(base[i], exponent[i]);
+      EXPECT_NEAR(out[i], expected, 1e-13 * expected) << base[i] << "^" << exponent[i] << ", " << kernels->name;
+    }
+  }
+}
+
 TEST(Elementary, WhatIsNoNumberStaysNone) {
   for (const Op op : {Op::kExp, Op::kLog, Op::kSin, Op::kCos, Op::kTan, Op::kAtan, Op::kTanh}) {
     std::vector<double> x(expression::kElementaryStride, std::numeric_limits<double>::quiet_NaN());
-    ASSERT_TRUE(expression::Elementary(op, x.size(), x.data(), x.data()));
+    ASSERT_TRUE(expression::Elementary(op, x.size(), x.data(), nullptr, x.data()));
     for (const double value : x) EXPECT_TRUE(std::isnan(value)) << expression::InfoOf(op).name;
   }
 }
 
 TEST(Elementary, TakesNoOtherOperation) {
   std::vector<double> a(expression::kElementaryStride, 2.0), out(a.size(), 7.0);
-  for (const Op op : {Op::kAdd, Op::kPower, Op::kSqrt, Op::kAsin, Op::kLowpass}) {
-    EXPECT_FALSE(expression::Elementary(op, a.size(), a.data(), out.data()));
+  for (const Op op : {Op::kAdd, Op::kSqrt, Op::kAsin, Op::kLowpass}) {
+    EXPECT_FALSE(expression::Elementary(op, a.size(), a.data(), a.data(), out.data()));
     EXPECT_EQ(out.front(), 7.0);
   }
 }

@@ -97,7 +97,7 @@ ARMCMC_INSIDE void Apply(Op op, std::size_t count, const double* a, const double
     case Op::kStep: return ForAll<Op::kStep>(count, a, b, c, out);
     case Op::kIf: return ForAll<Op::kIf>(count, a, b, c, out);
     default:
-      if (expression::Elementary(op, count, a, out)) return;
+      if (op != Op::kPower && expression::Elementary(op, count, a, nullptr, out)) return;
       for (std::size_t i = 0; i < count; ++i) out[i] = expression::Evaluate(op, a[i], b[i], c[i]);
   }
 }
@@ -166,8 +166,11 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
       i.varies = first ? argument.varies : Both(i.varies, argument.varies);
       first = false;
     }
-    if (i.op == Op::kPower && graph.at(node.argument[1]).op == Op::kNumber) {
+    const bool power = i.op == Op::kPower, constant_power = power && graph.at(node.argument[1]).op == Op::kNumber;
+    i.root = power && !constant_power;
+    if (constant_power) {
       const double exponent = graph.at(node.argument[1]).value;
+      i.root = exponent != std::floor(exponent);
       i.half = exponent - std::floor(exponent) == 0.5;
       if (exponent > 0.0 && exponent < kMostMultiplied && (i.half || exponent == std::floor(exponent)))
         i.power = static_cast<int>(exponent);
@@ -228,6 +231,8 @@ ARMCMC_INSIDE void LaneProgram::Compute(const Instruction& i, Blocks<kSamples>* 
   double* const out = (*blocks)[i.block].value.data();
   if (i.varies != Varies::kBySample && i.power >= 0)
     return PowerOfAll(kSamples * kLanes, a, i.power, i.half, blocks->back().value.data(), out);
+  if (i.varies != Varies::kBySample && i.root)
+    return static_cast<void>(expression::Elementary(i.op, kSamples * kLanes, a, b, out));
   if (i.varies != Varies::kBySample) return Apply(i.op, kSamples * kLanes, a, b, c, out);
   for (std::size_t r = 0; r < kSamples * kLanes; r += kLanes)
     std::fill_n(out + r, kLanes, expression::Evaluate(i.op, a[r], b[r], c[r]));

@@ -10,10 +10,12 @@ namespace armcmc::expression {
 /// What `count` has to be a multiple of in Elementary().
 inline constexpr std::size_t kElementaryStride = 16;
 
-/// out[i] = op(a[i]) by vector instructions, for exp, log, sin, cos, tan, atan and tanh: within some 1e-15 of the
-/// larger of the result and 1, sines and their kin for |a| up to 1e7. As the laws of packs are computed.
+/// out[i] = op(a[i], b[i]) by vector instructions, for exp, log, sin, cos, tan, atan, tanh and powers: within some
+/// 1e-15 of the larger of the result and 1; sines and their kin for |a| up to 1e7, exp up to 1e300, and powers of what
+/// is not negative, of the rest not a number. As the laws of packs are computed.
+/// @param b  Of powers; else anything, as null.
 /// @return false of other operations: nothing was done.
 /// @rt No heap, no lock, no throw; O(count).
-bool Elementary(Op op, std::size_t count, const double* a, double* out) noexcept ARMCMC_NONBLOCKING;
+bool Elementary(Op op, std::size_t count, const double* a, const double* b, double* out) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc::expression

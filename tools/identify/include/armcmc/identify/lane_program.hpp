@@ -86,6 +86,7 @@ class LaneProgram {
     Varies varies = Varies::kByLane;
     int power = -1;         ///< Whole part of a constant exponent that is made of multiplications; else -1.
     bool half = false;      ///< And one half.
+    bool root = false;      ///< A power that negative numbers do not have, or with an exponent that may be any.
     bool steady = false;    ///< A low pass whose time constant varies by lane at most.
     std::size_t index = 0;  ///< Of a signal; of a memory.
     std::size_t line = 0;   ///< Of a delay.
