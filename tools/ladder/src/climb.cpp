@@ -34,9 +34,10 @@ struct Rivals {
   DerivedNoise noise;
   Curves curves;
 
-  [[nodiscard]] std::optional<Rival> Of(const Contender& c) {
+  /// @param exact  It leaves noise alone, so that no curve has another shape. Noise may still be what it explains.
+  [[nodiscard]] std::optional<Rival> Of(const Contender& c, bool exact) {
     const std::optional<Rival> rival = noise.RivalOf(c);
-    return rival ? rival : curves.RivalOf(c);
+    return rival || exact ? rival : curves.RivalOf(c);
   }
 };
 
@@ -47,8 +48,7 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
     Name(view, floor, open, rung);
     for (const std::size_t i : rung->named) {
       Contender& c = rung->contenders[i];
-      if (!LeavesMore(view, c.trial, floor)) continue;
-      const std::optional<Rival> rival = rivals->Of(c);
+      const std::optional<Rival> rival = rivals->Of(c, !LeavesMore(view, c.trial, floor));
       if (!rival) continue;
       c.ruled_out = again = true;
       if (rung->as_if.empty()) rung->as_if = rival->as_if;
