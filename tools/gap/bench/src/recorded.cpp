@@ -11,28 +11,15 @@
 
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "armcmc/gap_bench/strata.hpp"
+#include "plants/registry.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
 
-/// A quantity in a real recording: a sum of columns.
-struct Source {
-  const char* name;
-  const char* file;
-  const char* time;
-  double second;                                        ///< Of the time column, s.
-  std::vector<std::pair<std::string, double>> columns;  ///< With their factors.
-  double until_s;                                       ///< The part from the beginning that is taken.
-};
-
-const std::vector<Source> kMotions = {
-    {"servo_axis", "emps_estimation.csv", "t_s", 1.0, {{"q_meas_m", 1.0}}, 1e9},
-    {"friction_damper", "brfd_friction_backlash.csv", "t_s", 1.0, {{"disp_in", 1.0}}, 15.5},
-    {"pneumatic_stroke", "pneumatic_seal_friction.csv", "t_ms", 1e-3, {{"position_mm", 1.0}}, 72.0},
-    {"indentation", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"height_m", -1.0}, {"deflection_m", -1.0}}, 4.8}};
 /// A cantilever far from the surface: the broad line of its resonance, red noise, and a disturbance of 179.3 Hz with
 /// its harmonics, which is periodic and may be named.
-const Source kNoise = {"cantilever_noise", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"force_N", 1.0}}, 3.0};
+const RecordedSource kNoise = {
+    "cantilever_noise", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"force_N", 1.0}}, 3.0};
 const std::vector<std::string> kOwn = {"periodic_disturbance"};
 
 constexpr double kInterval = 1e-3, kDuration = 20.0;  // s
@@ -42,7 +29,7 @@ struct Samples {
   std::vector<double> t, value;
 };
 
-Samples Read(const std::filesystem::path& folder, const Source& source) {
+Samples Read(const std::filesystem::path& folder, const RecordedSource& source) {
   support::CsvRequest request;
   request.columns = {source.time};
   for (const auto& column : source.columns) request.columns.push_back(column.first);
@@ -127,7 +114,7 @@ void AddRecorded(const std::filesystem::path& recordings, const std::vector<std:
   const std::filesystem::path noise_file = Write(builder->folder(), kNoise.name, "e", noise);
   std::vector<std::string> hidden = {"none"};
   hidden.insert(hidden.end(), effects.begin(), effects.end());
-  for (const Source& source : kMotions) {
+  for (const RecordedSource& source : Motions()) {
     Samples motion = Even(Read(recordings, source), kInterval);
     PressToDepth(&motion.value);
     const std::filesystem::path file = Write(builder->folder(), source.name, "x", motion);
