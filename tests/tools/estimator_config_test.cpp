@@ -168,8 +168,15 @@ TEST(EstimatorConfig, NoiseOfOneModeOverridesTheOthers) {
 }
 
 TEST(EstimatorConfig, ConstantsBelongToTheActuator) {
-  EXPECT_EQ(Read(kActuator + "[model.constants]\nq1 = 0.07\n").constants.q1, 0.07);
+  const EstimatorSettings s = Read(kActuator + "[model.constants]\np_atm = 1e5\nq1 = 0.07\n");
+  EXPECT_EQ(ConstantOf(s, "q1"), 0.07);
+  EXPECT_EQ(ConstantOf(s, "p_atm"), 1e5);
+  EXPECT_EQ(ConstantOf(s, "q2"), ConstantOf(BuiltinSettings("soft_actuator"), "q2"));
+  EXPECT_TRUE(std::isnan(ConstantOf(s, "q4")));
   EXPECT_THAT(ErrorOf(kHunt + "[model.constants]\nq1 = 0.07\n"), HasSubstr("model.constants"));
+  EXPECT_THAT(ErrorOf(kActuator + "[model.constants]\nq4 = 0.07\n"),
+              AllOf(HasSubstr("f.toml:5"), HasSubstr("model.constants.q4"), HasSubstr("p_atm, p_supply, q1, q2, q3")));
+  EXPECT_THAT(ErrorOf(kActuator + "[model.constants]\nq2 = -1.0\n"), HasSubstr("model.constants.q2"));
 }
 
 TEST(EstimatorConfig, WhatIsRegressedCanBeChosenForTheActuator) {

@@ -51,7 +51,7 @@ void ExpectSameModel(const EstimatorSettings& a, const EstimatorSettings& b) {
   EXPECT_EQ(a.model, b.model);
   for (std::size_t d = 0; d < static_cast<std::size_t>(a.num_parameters); ++d)
     ExpectSamePrior(a.parameters[d], b.parameters[d]);
-  EXPECT_EQ(a.constants.q1, b.constants.q1);
+  EXPECT_EQ(a.constants, b.constants);
   EXPECT_EQ(a.pressure_rate, b.pressure_rate);
   EXPECT_EQ(a.noise[0].kind, b.noise[0].kind);
   EXPECT_EQ(a.noise[0].std, b.noise[0].std);

@@ -21,7 +21,9 @@ std::size_t Index(int i) noexcept { return static_cast<std::size_t>(i); }
 }  // namespace
 
 FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
-    : empty(false), p_atm(settings.constants.p_atm), supply(settings.constants.p_supply - settings.constants.p_atm) {
+    : empty(false),
+      p_atm(ActuatorConstants(settings.constants).p_atm),
+      supply(ActuatorConstants(settings.constants).p_supply - p_atm) {
   const ParameterSettings& gain = settings.parameters[0];
   const bool normal = gain.prior == PriorKind::kNormal;
   least_gain = kLeastGainShare * (normal ? std::max(std::fabs(gain.mean), gain.sd)

@@ -151,11 +151,10 @@ std::string ModelFileText(const EstimatorSettings& settings, const std::string& 
     WritePrior(p, "\n", out);
     out << '\n';
   }
-  if (facts.model->compiled != nullptr && facts.model->compiled->uses_constants) {
-    const PlantConstants& c = settings.constants;
-    out << "\n[constants]\np_atm = " << Text(c.p_atm) << "\np_supply = " << Text(c.p_supply) << "\nq1 = " << Text(c.q1)
-        << "\nq2 = " << Text(c.q2) << "\nq3 = " << Text(c.q3) << '\n';
-  }
+  const std::span<const ConstantInfo> constants = ConstantsOf(*facts.model);
+  if (!constants.empty()) out << "\n[constants]\n";
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    out << constants[i].name << " = " << Text(settings.constants[i]) << '\n';
   for (std::size_t m = 0; m < facts.modes.size(); ++m) WriteNoise(facts.modes[m], settings.noise[m], out);
   for (int e = 0; e < settings.num_effects; ++e)
     WriteEffect(settings.effects[static_cast<std::size_t>(e)], *facts.model, out);
