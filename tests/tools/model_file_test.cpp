@@ -7,6 +7,7 @@
 #include <string>
 
 #include "armcmc/support/estimator_config.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 #include "plants/hunt_crossley/effects.hpp"
 #include "plants/hunt_crossley/model.hpp"
 #include "support/paths.hpp"
@@ -79,7 +80,8 @@ TEST_F(ModelFile, EveryEffectReadsBackToTheBit) {
     settings.noise[0].std = 0.1 + 1e-17 * k;
     settings.noise[0].estimate_std = k % 2 == 0;
     EffectSettings& effect = settings.effects[0];
-    effect = MakeEffect(HuntCrossley::kInfo, std::string(info->name), {.force = 0.7, .length = 3e-3, .speed = 0.011});
+    effect = MakeEffect(HuntCrossley::kInfo, std::string(info->name),
+                        ContactScales{.force = 0.7, .length = 3e-3, .speed = 0.011});
     effect.gate = static_cast<EffectGate>(k++ % 5);
     effect.from_s = effect.gate == EffectGate::kFrom ? 12.1 : 0.0;
     effect.until_s = effect.gate == EffectGate::kUntil ? 7.3 : 0.0;

@@ -34,7 +34,7 @@ FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
     term[Index(index)] = {first_amplitude, effect.gate, effect.from_s, effect.until_s};
     const EffectInfo& info = *FlowEffects::kInfos[Index(index)];
     first_amplitude += info.num_amplitudes;
-    head_moves = head_moves || (info.needs.pressure && info.slot != EffectSlot::kAdditive);
+    head_moves = head_moves || effect.name == PressureBias::kInfo.name || effect.name == SupplyDroop::kInfo.name;
     if (effect.name == std::string_view(ValveLag::kInfo.name)) {
       const ParameterSettings& tau = effect.amplitudes[0];
       longest_lag = tau.upper;
