@@ -213,8 +213,8 @@ void EstimatorSettings::Validate() const {
     Closed("baseline.particles", baseline.particles, SamplerSettings::kMinDraws, sampler.max_draws);
   Closed("baseline.pf_updates", baseline.pf_updates, 1, kMaxPackSamples);
   Closed("baseline.pf_jitter", baseline.pf_jitter, 0.0, 1.0);
-  if (pressure_rate && (info.compiled == nullptr || info.compiled->rate_unit.empty()))
-    throw std::invalid_argument("model.pressure_rate: '" + model + "' has no pressure; remove it");
+  if (regress_rate && (info.compiled == nullptr || info.compiled->rate_unit.empty()))
+    throw std::invalid_argument("model.regress_rate: '" + model + "' has no rate to regress; remove it");
   if (num_effects > 0 && (method == Method::kRls || (method == Method::kParticleFilter && baseline.pf_updates > 1)))
     throw std::invalid_argument("this method takes no effects: remove them or choose method = \"armcmc\"");
   Open("gap_watch.false_alarm_rate", gap_watch.false_alarm_rate, 0.0, 1.0);

@@ -49,7 +49,7 @@ std::uint64_t SnapshotIdentity(const EstimatorSettings& s) noexcept {
     for (const double v : {n.std, n.mean, n.std_log_sd, n.dof, n.outlier_weight, n.outlier_scale}) hash.Add(v);
   }
   for (const double v : s.constants) hash.Add(v);
-  hash.Add(s.pressure_rate ? 1 : 0);
+  hash.Add(s.regress_rate ? 1 : 0);
   hash.Add(s.num_effects);
   for (int i = 0; i < s.num_effects; ++i) {
     const EffectSettings& e = s.effects[static_cast<std::size_t>(i)];

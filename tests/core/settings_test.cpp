@@ -83,7 +83,7 @@ const std::vector<Wrong> kWrong{
     {"sampler.lambda_q_min", "lambda_q_max", [](EstimatorSettings& s) { s.sampler.lambda_q_min = 0.9; }},
     {"gap_watch.false_alarm_rate", "= 0", [](EstimatorSettings& s) { s.gap_watch.false_alarm_rate = 0.0; }},
     {"gap_watch.tolerance", "= 2", [](EstimatorSettings& s) { s.gap_watch.tolerance = 2.0; }},
-    {"model.pressure_rate", "has no pressure", [](EstimatorSettings& s) { s.pressure_rate = true; }},
+    {"model.regress_rate", "has no rate to regress", [](EstimatorSettings& s) { s.regress_rate = true; }},
     {"takes no effects", "",
      [](EstimatorSettings& s) {
        s.method = Method::kRls;

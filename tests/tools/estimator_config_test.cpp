@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "armcmc/estimator.hpp"
@@ -180,12 +181,16 @@ TEST(EstimatorConfig, ConstantsBelongToTheActuator) {
 }
 
 TEST(EstimatorConfig, WhatIsRegressedCanBeChosenForTheActuator) {
-  EXPECT_FALSE(Read(kActuator).pressure_rate);
-  EXPECT_TRUE(Read(kActuator + "pressure_rate = true\n").pressure_rate);
-  EXPECT_FALSE(Read(kActuator + "pressure_rate = false\n").pressure_rate);
-  EXPECT_THAT(ErrorOf(kHunt + "pressure_rate = true\n"),
-              AllOf(HasSubstr("f.toml:4"), HasSubstr("hunt_crossley has no pressure")));
-  EXPECT_THAT(ErrorOf(kActuator + "pressure_rat = true\n"), HasSubstr("did you mean pressure_rate?"));
+  EXPECT_FALSE(Read(kActuator).regress_rate);
+  for (const std::string key : {"regress_rate", "pressure_rate"}) {
+    EXPECT_TRUE(Read(kActuator + key + " = true\n").regress_rate) << key;
+    EXPECT_FALSE(Read(kActuator + key + " = false\n").regress_rate) << key;
+    EXPECT_THAT(ErrorOf(kHunt + key + " = true\n"),
+                AllOf(HasSubstr("f.toml:4"), HasSubstr("model." + key), HasSubstr("has no rate to regress")));
+  }
+  EXPECT_THAT(ErrorOf(kActuator + "pressure_rate = true\nregress_rate = true\n"),
+              HasSubstr("another word for regress_rate"));
+  EXPECT_THAT(ErrorOf(kActuator + "regres_rate = true\n"), HasSubstr("did you mean regress_rate?"));
 }
 
 TEST(EstimatorConfig, TheModelOfTheCommandLineWins) {

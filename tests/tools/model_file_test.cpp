@@ -53,7 +53,7 @@ void ExpectSameModel(const EstimatorSettings& a, const EstimatorSettings& b) {
   for (std::size_t d = 0; d < static_cast<std::size_t>(a.num_parameters); ++d)
     ExpectSamePrior(a.parameters[d], b.parameters[d]);
   EXPECT_EQ(a.constants, b.constants);
-  EXPECT_EQ(a.pressure_rate, b.pressure_rate);
+  EXPECT_EQ(a.regress_rate, b.regress_rate);
   EXPECT_EQ(a.noise[0].kind, b.noise[0].kind);
   EXPECT_EQ(a.noise[0].std, b.noise[0].std);
   EXPECT_EQ(a.noise[0].estimate_std, b.noise[0].estimate_std);
@@ -96,8 +96,8 @@ TEST_F(ModelFile, EveryEffectReadsBackToTheBit) {
 
 TEST_F(ModelFile, TheActuatorReadsBack) {
   EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
-  for (const bool pressure_rate : {true, false}) {
-    settings.pressure_rate = pressure_rate;
+  for (const bool regress_rate : {true, false}) {
+    settings.regress_rate = regress_rate;
     ExpectSameModel(ReadModel(Write(ModelFileText(settings))), settings);
   }
 }

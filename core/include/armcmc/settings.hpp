@@ -138,10 +138,11 @@ struct EstimatorSettings {
   Method method = Method::kArmcmc;
   BaselineSettings baseline;
   PlantConstants constants{};
-  /// Of a plant with a valve flow: what is regressed is the pressure rate and not the flow, for data whose noise is
-  /// that of the pressure rate's sensor: in the flow it multiplies the parameters that are sought, which biases them
-  /// and tells nothing of how precise a sample is. Effects of the valve flow are always estimated so.
-  bool pressure_rate = false;
+  /// Of a plant that has a `rate_unit` (CompiledPlant): what is regressed is the rate that the law divides by, and not
+  /// the law's own target, for data whose noise is that of the rate's sensor: in the target it multiplies the
+  /// parameters that are sought, which biases them and tells nothing of how precise a sample is. Effects of such a
+  /// plant are always estimated so.
+  bool regress_rate = false;
   std::array<EffectSettings, kMaxEffects> effects;  ///< Each at most once.
   int num_effects = 0;
   GapWatchSettings gap_watch;  ///< Changes no estimate.

@@ -55,7 +55,7 @@ void Excite(EstimatorSettings* s) {
 constexpr ModelVariant kVariants[] = {{"soft_actuator_excited", &Excite}};
 
 std::unique_ptr<EffectRows> MakeFlowRows(const EstimatorSettings& settings) {
-  if (settings.num_effects == 0 && !settings.pressure_rate) return nullptr;
+  if (settings.num_effects == 0 && !settings.regress_rate) return nullptr;
   return std::make_unique<FlowRows>(FlowPlan(settings, settings.num_parameters));
 }
 

@@ -121,7 +121,7 @@ void ApplyModelFile(const std::string& path, EstimatorSettings* settings) {
   const ModelFacts facts = FactsOf(*settings);
   ReadParameters(root.Table("parameters"), settings);
   ReadConstants(root, *facts.model, settings);
-  ReadPressureRate(root, *facts.model, settings);
+  ReadRegressRate(root, *facts.model, settings);
   ReadNoise(root.Table("noise"), facts.modes, settings);
   ReadEffects(root, *facts.model, settings);
   root.Finish();
@@ -143,8 +143,8 @@ std::string ModelFileText(const EstimatorSettings& settings, const std::string& 
   const ModelFacts facts = FactsOf(settings);
   std::ostringstream out;
   out << "schema = 1\nbase = \"" << (base.empty() ? settings.model : base) << "\"\n";
-  if (facts.model->compiled != nullptr && facts.model->compiled->uses_constants)
-    out << "pressure_rate = " << (settings.pressure_rate ? "true" : "false") << '\n';
+  if (facts.model->compiled != nullptr && !facts.model->compiled->rate_unit.empty())
+    out << "regress_rate = " << (settings.regress_rate ? "true" : "false") << '\n';
   for (int d = 0; d < settings.num_parameters; ++d) {
     const ParameterSettings& p = settings.parameters[static_cast<std::size_t>(d)];
     out << "\n[parameters." << p.name << "]\n";

@@ -28,8 +28,8 @@ void ReadNoise(StrictTable noise, const std::vector<std::string>& modes, Estimat
 [[nodiscard]] std::span<const ConstantInfo> ConstantsOf(const ModelInfo& model);
 /// [.constants] of a plant that has some, where `holder` is the table that it is in.
 void ReadConstants(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings);
-/// `pressure_rate` of a plant that has one, beside its constants.
-void ReadPressureRate(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings);
+/// `regress_rate` (or `pressure_rate`, as it is called, too) of a plant that has one, beside its constants.
+void ReadRegressRate(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings);
 /// [[effect]]: name, when, from_s or until_s, the shapes as numbers, the priors of the amplitudes as tables. Replaces
 /// the effects of the settings when there is one.
 void ReadEffects(StrictTable& root, const ModelInfo& model, EstimatorSettings* settings);

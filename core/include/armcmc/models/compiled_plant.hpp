@@ -67,7 +67,7 @@ struct CompiledPlant {
   bool law_is_output;
   std::string_view no_contact_as;  ///< Why effects cannot act in contact or in free motion only; empty: they can.
   std::span<const ConstantInfo> constants;  ///< kMaxConstants at most.
-  std::string_view rate_unit;   ///< Of what EstimatorSettings::pressure_rate has regressed; empty: it has no pressure.
+  std::string_view rate_unit;   ///< Of what EstimatorSettings::regress_rate has regressed; empty: it has none.
   std::string_view offline_as;  ///< Why some of `effects` do not run online; {} in it stands for the formula.
   std::span<const EffectInfo* const> effects;  ///< Its catalogue.
   std::span<const ModelVariant> variants;
