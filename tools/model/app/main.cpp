@@ -28,7 +28,7 @@ std::shared_ptr<const support::Recording> ReadData(const Arguments& a) {
   if (a.data.empty()) return nullptr;
   if (!a.data.ends_with(".toml"))
     return std::make_shared<const support::Recording>(
-        support::ReadRecordedCsv(a.data, support::FindPlantFile(a.plant).string(), false));
+        support::ReadRecordedCsv(a.data, support::FindPlantFile(a.plant).string(), a.skip_bad));
   auto recording = std::make_shared<const support::Recording>(support::ReadRecording(a.data, a.data_dir));
   const Plant plant = support::ReadPlant(support::FindPlantFile(a.plant));
   if (recording->fingerprint != plant.fingerprint())
