@@ -110,9 +110,11 @@ void LowpassWeights(double tau, double dt, double* decay, double* weight) {
 }
 
 /// The value `tau` before the newest, linear between samples; before the first sample, the first.
-double Delayed(const std::vector<Lanes>& line, std::size_t lane, double tau, double dt) {
+/// @param held  Not linear, but the last sample before.
+double Delayed(const std::vector<Lanes>& line, std::size_t lane, double tau, double dt, bool held) {
+  constexpr double kRounding = 1e-6;  // a whole number of samples that was computed is one
   const auto newest = static_cast<double>(line.size() - 1);
-  const double asked = tau / dt;
+  const double asked = held ? std::ceil(tau / dt - kRounding) : tau / dt;
   if (std::isnan(asked)) return asked;
   const double at = newest - std::clamp(asked, 0.0, newest);
   const auto whole = static_cast<std::size_t>(at);
@@ -152,6 +154,7 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
     i.op = node.op;
     i.value = node.value;
     i.time = node.kind == expression::SymbolKind::kTime;
+    i.interval = i.op == Op::kSymbol && node.kind == expression::SymbolKind::kInterval;
     i.block = num_blocks_++;
     bool constant = i.op != Op::kSymbol, first = true;
     for (std::size_t a = 0; a < expression::kMaxArguments; ++a) {
@@ -169,11 +172,12 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
       if (exponent > 0.0 && exponent < kMostMultiplied && (i.half || exponent == std::floor(exponent)))
         i.power = static_cast<int>(exponent);
     }
-    if (i.op == Op::kSymbol) {
+    if (i.op == Op::kSymbol && !i.interval) {
       i.index = static_cast<std::size_t>(node.index);
       i.varies = i.time ? Varies::kBySample : inputs[i.index];
     }
     if (expression::InfoOf(i.op).memory) {
+      i.held = node.argument[2] >= 0;
       i.steady = i.op == Op::kLowpass && place[static_cast<std::size_t>(node.argument[1])].varies == Varies::kByLane;
       i.index = num_memories_++;
       i.varies = Varies::kByBoth;
@@ -199,8 +203,8 @@ LaneRun LaneProgram::Begin(const Lanes* input, double dt) const {
   run.line.resize(num_delays_);
   for (const Instruction& i : once_) {
     std::array<double, kTile* kLanes>& value = run.block[i.block].value;
-    if (i.op == Op::kNumber)
-      value.fill(i.value);
+    if (i.op == Op::kNumber || i.interval)
+      value.fill(i.interval ? dt : i.value);
     else if (i.op == Op::kSymbol)
       for (std::size_t r = 0; r < kTile; ++r)
         std::copy(input[i.index].begin(), input[i.index].end(),
@@ -268,13 +272,15 @@ void LaneProgram::Remember(const Instruction& instruction, std::size_t samples, 
         if (!instruction.steady)
           for (std::size_t l = 0; l < kLanes; ++l) LowpassWeights(tau[l], dt, &slot.decay[l], &slot.weight[l]);
         for (std::size_t l = 0; l < kLanes && !first; ++l)
-          slot.state[l] = slot.state[l] * slot.decay[l] + slot.before[l] * (slot.weight[l] - slot.decay[l]) +
-                          e[l] * (1.0 - slot.weight[l]);
+          slot.state[l] = slot.state[l] * slot.decay[l] +
+                          slot.before[l] * ((instruction.held ? 1.0 : slot.weight[l]) - slot.decay[l]) +
+                          (instruction.held ? 0.0 : e[l] * (1.0 - slot.weight[l]));
         std::copy_n(slot.state.data(), kLanes, y);
         break;
       case Op::kIntegral:
         for (std::size_t l = 0; l < kLanes; ++l)
-          y[l] = slot.state[l] += first ? 0.0 : 0.5 * dt * (slot.before[l] + e[l]);
+          y[l] = slot.state[l] +=
+              first ? 0.0 : dt * (instruction.held ? slot.before[l] : 0.5 * (slot.before[l] + e[l]));
         break;
       case Op::kPrevious: std::copy_n(slot.before.data(), kLanes, y); break;
       case Op::kElapsed:
@@ -284,7 +290,7 @@ void LaneProgram::Remember(const Instruction& instruction, std::size_t samples, 
         std::vector<Lanes>& line = run->line[instruction.line];
         line.emplace_back();
         std::copy_n(e, kLanes, line.back().data());
-        for (std::size_t l = 0; l < kLanes; ++l) y[l] = Delayed(line, l, tau[l], dt);
+        for (std::size_t l = 0; l < kLanes; ++l) y[l] = Delayed(line, l, tau[l], dt, instruction.held);
       }
     }
     std::copy_n(e, kLanes, slot.before.data());

@@ -71,7 +71,8 @@ class TrajectoryModel::Walk {
                                       has_later ? value + 2 : nullptr, part));
         }
         for (std::size_t p = 0; p < model_.num_past_; ++p)
-          for (std::size_t l = 0; l < kLanes; ++l) past[p][l] = before_[p][l] + part * (after_[p][l] - before_[p][l]);
+          for (std::size_t l = 0; l < kLanes; ++l)
+            past[p][l] = before_[p][l] + (model_.past_held_[p] ? 0.0 : part) * (after_[p][l] - before_[p][l]);
         if (stage > 0)
           for (std::size_t s = 0; s < num_states; ++s)
             for (std::size_t l = 0; l < kLanes; ++l) state[s][l] = origin_[s][l] + kPart[stage] * h * rate_[s][l];
