@@ -53,7 +53,12 @@ int Check(const Arguments& a) {
   if (a.effects) std::cout << '\n' << FittingText(plant->description(), support::EffectsFor(file.effects));
   if (program != nullptr) std::cout << CostText(program, data);
   if (program != nullptr && data != nullptr) std::cout << BetweenText(program, data);
-  if (data != nullptr) std::cout << '\n' << IdentifiabilityText(plant, *data);
+  if (data == nullptr) return support::kExitOk;
+  try {
+    std::cout << '\n' << IdentifiabilityText(plant, *data);
+  } catch (const PlantError& error) {
+    std::cout << "which parameters these data tell cannot be said: " << error.what() << '\n';
+  }
   return support::kExitOk;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "armcmc/identify/step_error.hpp"
+#include "armcmc/plant/error.hpp"
 #include "armcmc/plant/program.hpp"
 #include "armcmc/plant/states.hpp"
 
@@ -45,7 +46,7 @@ void StepCheck::Add(const DataPack& pack) {
   }
 }
 
-std::string StepCheck::Warning(const Estimator& estimator, const Estimate& last) const {
+std::string StepCheck::Warning(const Estimator& estimator, const Estimate& last) const try {
   if (plant_ == nullptr || series_.num_rows() == 0) return "";
   const auto plant = std::make_shared<const Plant>(plant_->plant().description());
   const identify::TrajectoryModel model(plant, std::make_shared<const identify::Series>(series_));
@@ -58,6 +59,8 @@ std::string StepCheck::Warning(const Estimator& estimator, const Estimate& last)
   const double noise_sd = last.modes[0].noise_std;
   if (!theta.allFinite() || !(noise_sd > 0.0)) return "";
   return identify::StepErrorText(identify::StepErrorOf(*plant, series_, theta, noise_sd), series_.dt, noise_sd);
+} catch (const PlantError&) {
+  return "";  // the estimator can run more than whole recordings can
 }
 
 }  // namespace armcmc::replay
