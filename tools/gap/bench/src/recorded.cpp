@@ -50,10 +50,12 @@ Samples Read(const std::filesystem::path& folder, const RecordedSource& source) 
 Samples Even(const Samples& samples, double interval) {
   Samples even;
   std::size_t at = 0;
-  for (double t = 0.0; t <= samples.t.back() - samples.t.front(); t += interval) {
+  const auto rows = static_cast<std::size_t>((samples.t.back() - samples.t.front()) / interval) + 1;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double t = static_cast<double>(i) * interval;
     while (at + 2 < samples.t.size() && samples.t[at + 1] - samples.t.front() < t) ++at;
     const double share = (t + samples.t.front() - samples.t[at]) / (samples.t[at + 1] - samples.t[at]);
-    even.t.push_back(static_cast<double>(even.t.size()) * interval);
+    even.t.push_back(t);
     even.value.push_back(std::lerp(samples.value[at], samples.value[at + 1], std::clamp(share, 0.0, 1.0)));
   }
   return even;
@@ -81,7 +83,7 @@ void Detrend(std::vector<double>* e) {
 /// @return its path.
 std::filesystem::path Write(const std::filesystem::path& folder, const std::string& name, const std::string& column,
                             const Samples& samples) {
-  const std::filesystem::path path = std::filesystem::absolute(folder / "scenarios" / (name + ".csv"));
+  std::filesystem::path path = std::filesystem::absolute(folder / "scenarios" / (name + ".csv"));
   std::filesystem::create_directories(path.parent_path());
   std::ofstream file(path, std::ios::binary);
   file << "t," << column << '\n';
