@@ -50,7 +50,7 @@ std::string Toml(double value) { return Json(value).dump(); }
 
 }  // namespace
 
-PlantProcess::PlantProcess(std::filesystem::path program, std::filesystem::path folder)
+PlantProcess::PlantProcess(const std::filesystem::path& program, const std::filesystem::path& folder)
     : program_(std::filesystem::absolute(program)), folder_(std::filesystem::absolute(folder)) {
   std::filesystem::create_directories(folder_);
 }
