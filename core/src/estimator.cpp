@@ -18,10 +18,9 @@ int ModelIndex(const EstimatorSettings& settings) {
   return FindModel(settings.model);
 }
 
-/// Recursive least squares needs a law that is linear in its parameters: the valve flow's is, the pressure rate's is
-/// not.
+/// Recursive least squares needs a law that is linear in its parameters: a plant's own is, that of the rate is not.
 EstimatorSettings Regressed(EstimatorSettings settings) {
-  settings.pressure_rate = settings.pressure_rate && settings.method != Method::kRls;
+  settings.regress_rate = settings.regress_rate && settings.method != Method::kRls;
   return settings;
 }
 

@@ -1,6 +1,7 @@
 #include "armcmc/settings.hpp"
 
 #include <cmath>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 
@@ -118,6 +119,15 @@ void ValidateEffects(const EstimatorSettings& s, const ModelInfo& model) {
                                 " are possible: remove an effect or fix the noise scale");
 }
 
+void ValidateConstants(const EstimatorSettings& s, std::span<const ConstantInfo> constants) {
+  for (std::size_t i = 0; i < constants.size(); ++i) {
+    const ConstantInfo& c = constants[i];
+    const std::string key = "constants." + std::string(c.name);
+    Closed(key, s.constants[i], c.least, c.most);
+    if (!c.above.empty()) Open(key, s.constants[i], ConstantOf(s, c.above), HUGE_VAL);
+  }
+}
+
 EstimatorSettings DefaultsOf(const ModelInfo& info) {
   EstimatorSettings s;
   s.model = info.name;
@@ -128,6 +138,8 @@ EstimatorSettings DefaultsOf(const ModelInfo& info) {
     s.parameters[i] = {std::string(p.name), PriorKind::kNormal, p.mean, p.sd, p.lower, p.upper};
   }
   for (auto& noise : s.noise) noise.std = info.default_noise_std;
+  const std::span<const ConstantInfo> constants = info.compiled->constants;
+  for (std::size_t i = 0; i < constants.size(); ++i) s.constants[i] = constants[i].value;
   return s;
 }
 
@@ -148,6 +160,16 @@ EffectSettings MakeEffect(const ModelInfo& model, const std::string& name, const
   for (std::size_t i = 0; i < static_cast<std::size_t>(info.num_shapes); ++i)
     effect.shapes[i] = info.shapes[i].typical * info.shapes[i].unit_size(scales);
   return effect;
+}
+
+double ConstantOf(const EstimatorSettings& settings, std::string_view name) noexcept {
+  const int model = FindModel(settings.model);
+  if (model < 0 || settings.plant != nullptr) return std::nan("");
+  const std::span<const ConstantInfo> constants =
+      CompiledModels()[static_cast<std::size_t>(model)]->compiled->constants;
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    if (constants[i].name == name) return settings.constants[i];
+  return std::nan("");
 }
 
 void EstimatorSettings::Validate() const {
@@ -191,17 +213,13 @@ void EstimatorSettings::Validate() const {
     Closed("baseline.particles", baseline.particles, SamplerSettings::kMinDraws, sampler.max_draws);
   Closed("baseline.pf_updates", baseline.pf_updates, 1, kMaxPackSamples);
   Closed("baseline.pf_jitter", baseline.pf_jitter, 0.0, 1.0);
-  if (pressure_rate && (info.compiled == nullptr || info.compiled->rate_unit.empty()))
-    throw std::invalid_argument("model.pressure_rate: '" + model + "' has no pressure; remove it");
+  if (regress_rate && (info.compiled == nullptr || info.compiled->rate_unit.empty()))
+    throw std::invalid_argument("model.regress_rate: '" + model + "' has no rate to regress; remove it");
   if (num_effects > 0 && (method == Method::kRls || (method == Method::kParticleFilter && baseline.pf_updates > 1)))
     throw std::invalid_argument("this method takes no effects: remove them or choose method = \"armcmc\"");
   Open("gap_watch.false_alarm_rate", gap_watch.false_alarm_rate, 0.0, 1.0);
   Closed("gap_watch.tolerance", gap_watch.tolerance, 0.0, 1.0);
-  Open("constants.p_atm", constants.p_atm, 0.0, HUGE_VAL);
-  Open("constants.p_supply", constants.p_supply, constants.p_atm, HUGE_VAL);
-  Open("constants.q1", constants.q1, -HUGE_VAL, HUGE_VAL);
-  Open("constants.q2", constants.q2, -HUGE_VAL, HUGE_VAL);
-  Open("constants.q3", constants.q3, -HUGE_VAL, HUGE_VAL);
+  if (info.compiled != nullptr) ValidateConstants(*this, info.compiled->constants);
 }
 
 EstimatorSettings DescribedSettings(std::shared_ptr<const PlantProgram> plant) {

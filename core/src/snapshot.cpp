@@ -7,8 +7,8 @@
 namespace armcmc {
 namespace {
 
-/// Changed whenever Save() writes something else.
-constexpr std::int64_t kLayout = 2;
+/// Changed whenever Save() writes something else, or the settings are told apart by something else.
+constexpr std::int64_t kLayout = 3;
 
 /// FNV-1a, 64 bits.
 class Hash {
@@ -48,9 +48,8 @@ std::uint64_t SnapshotIdentity(const EstimatorSettings& s) noexcept {
     hash.Add(n.estimate_std ? 1 : 0);
     for (const double v : {n.std, n.mean, n.std_log_sd, n.dof, n.outlier_weight, n.outlier_scale}) hash.Add(v);
   }
-  const PlantConstants& c = s.constants;
-  for (const double v : {c.p_atm, c.p_supply, c.q1, c.q2, c.q3}) hash.Add(v);
-  hash.Add(s.pressure_rate ? 1 : 0);
+  for (const double v : s.constants) hash.Add(v);
+  hash.Add(s.regress_rate ? 1 : 0);
   hash.Add(s.num_effects);
   for (int i = 0; i < s.num_effects; ++i) {
     const EffectSettings& e = s.effects[static_cast<std::size_t>(i)];

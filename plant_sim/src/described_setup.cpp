@@ -48,6 +48,10 @@ void DescribedSimulation::MakeNames() {
   add("states", plant_.states);
   add("let", plant_.lets);
   names_.emplace_back("t");
+  held_.assign(names_.size(), false);
+  for (std::size_t s = 0; s < plant_.signals.size(); ++s) held_[s] = plant_.signals[s].between == "held";
+  const auto constants = held_.begin() + static_cast<std::ptrdiff_t>(plant_.signals.size());
+  std::fill_n(constants, plant_.constants.size() + plant_.parameters.size(), true);
   frame_.assign(names_.size(), 0.0);
   for (const DescribedPlant::Constant& constant : plant_.constants) frame_[Place(constant.name)] = constant.value;
 }
@@ -128,9 +132,9 @@ void DescribedSimulation::MakeTruth() {
 }
 
 DescribedSimulation::Expression DescribedSimulation::Read(const std::string& key, const std::string& text,
-                                                          bool sees_output) const {
+                                                          bool sees_output, bool is_rate) const {
   try {
-    Expression expression(text, names_);
+    Expression expression(text, names_, held_, is_rate);
     if (!sees_output && expression.Reads(output_))
       throw DescribedError(key, 0, "reads the output, which is not known before it is simulated");
     return expression;
@@ -152,6 +156,7 @@ void DescribedSimulation::MakeExpressions() {
     }
     for (const DescribedPlant::Parameter& parameter : plant_.parameters)
       late = late || (parameter.per_mode && value.Reads(static_cast<int>(Place(parameter.name))));
+    held_[Place(let.name)] = value.is_held();
     lets_.push_back(std::move(value));
     late_.push_back(late);
     remembers_.push_back(remembers);
@@ -185,7 +190,7 @@ void DescribedSimulation::MakeExpressions() {
 }
 
 DescribedSimulation::Expression DescribedSimulation::ReadRate(const std::string& key, const std::string& text) const {
-  Expression rate = Read(key, text);
+  Expression rate = Read(key, text, false, true);
   const auto reads_let = [&](const auto& which) {
     for (std::size_t l = 0; l < lets_.size(); ++l)
       if (which[l] && rate.Reads(static_cast<int>(Place(plant_.lets[l].name)))) return true;
@@ -196,7 +201,7 @@ DescribedSimulation::Expression DescribedSimulation::ReadRate(const std::string&
   std::string whole = text;
   for (auto let = plant_.lets.rbegin(); let != plant_.lets.rend(); ++let)
     whole = std::regex_replace(whole, std::regex("\\b" + let->name + "\\b"), "(" + let->text + ")");
-  rate = Read(key, whole);
+  rate = Read(key, whole, false, true);
   for (std::size_t place = 0; place + 1 < names_.size(); ++place) {
     if (!rate.RemembersPlace(static_cast<int>(place))) continue;
     const bool signal = place < plant_.signals.size();

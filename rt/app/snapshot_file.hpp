@@ -27,7 +27,7 @@ struct Snapshot {
   std::vector<std::byte> adjusted, executed;
 };
 
-inline constexpr std::uint32_t kSnapshotVersion = 2;
+inline constexpr std::uint32_t kSnapshotVersion = 3;
 
 [[nodiscard]] std::vector<std::byte> EncodeSnapshot(const Snapshot& snapshot);
 

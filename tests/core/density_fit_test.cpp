@@ -4,91 +4,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <random>
 #include <vector>
 
 #include "armcmc/rng.hpp"
-#include "bend_fit.hpp"
-#include "core/kernel_sets.hpp"
+#include "core/weighted_sample.hpp"
 
 namespace armcmc::density_fit_test {
 namespace {
 
-std::normal_distribution<double> normal;  // keeps a number back, which must not reach the next test
-
-/// Draws with weights, padded as the fit wants them, and the storage of a fit to them.
-class Sample {
- public:
-  Sample(int dim, int size, const std::function<void(std::mt19937_64&, double*)>& draw, unsigned seed = 1) {
-    std::mt19937_64 generator(seed);
-    normal.reset();
-    const auto padded = static_cast<std::size_t>((size + kTileLanes - 1) / kTileLanes * kTileLanes);
-    weight.assign(padded, 0.0);
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) row[d].assign(padded, 0.0);
-    for (std::size_t r = 0; r < kRows; ++r) {
-      room[r].resize(padded);
-      scratch[r] = room[r].data();
-    }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(size); ++k) {
-      double u[kMaxParams];
-      draw(generator, u);
-      for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) row[d][k] = u[d];
-      weight[k] = 1.0;
-    }
-    draws.dim = dim;
-    draws.size = size;
-  }
-
-  double Fit(const FitOptions& options = {}) {
-    for (std::size_t d = 0; d < static_cast<std::size_t>(draws.dim); ++d) draws.u[d] = row[d].data();
-    draws.weight = weight.data();
-    return FitBlock(simd::Best(), draws, options, scratch, tables, &block);
-  }
-
-  [[nodiscard]] double Mean(std::size_t d) const {
-    double sum = 0.0, total = 0.0;
-    for (std::size_t k = 0; k < weight.size(); ++k) {
-      sum += weight[k] * row[d][k];
-      total += weight[k];
-    }
-    return sum / total;
-  }
-  [[nodiscard]] double Covariance(std::size_t i, std::size_t j) const {
-    const double a = Mean(i), b = Mean(j);
-    double sum = 0.0, total = 0.0;
-    for (std::size_t k = 0; k < weight.size(); ++k) {
-      sum += weight[k] * (row[i][k] - a) * (row[j][k] - b);
-      total += weight[k];
-    }
-    return sum / total;
-  }
-
-  static constexpr std::size_t kRows = kMaxParams + 2;  // as the fit asks for
-  WeightedDraws draws;
-  std::vector<double> row[kMaxParams], weight, room[kRows];
-  double* scratch[kRows] = {};
-  MarginalTable tables[kMaxParams];
-  DensityBlock block;
-};
+using Sample = test::WeightedSample;
+using test::drawn_normal;
 
 void Correlated(std::mt19937_64& g, double* u) {
-  const double a = normal(g), b = normal(g), c = normal(g);
+  const double a = drawn_normal(g), b = drawn_normal(g), c = drawn_normal(g);
   u[0] = 100.0 + 2.0 * a;
   u[1] = -3.0 + 0.5 * a + 0.01 * b;
   u[2] = 1e-6 * (c + 0.3 * b);
 }
 
 void Banana(std::mt19937_64& g, double* u) {
-  const double a = normal(g);
+  const double a = drawn_normal(g);
   u[0] = a;
-  u[1] = 0.8 * (a * a - 1.0) + 0.2 * normal(g);
+  u[1] = 0.8 * (a * a - 1.0) + 0.2 * drawn_normal(g);
 }
 
 TEST(FitBlock, MeanAndCovarianceEqualThoseOfTheDraws) {
   Sample s(3, 5001, Correlated);
   std::mt19937_64 generator(8);
-  for (std::size_t k = 0; k < 5001; ++k) s.weight[k] = std::exp(0.5 * normal(generator));
+  for (std::size_t k = 0; k < 5001; ++k) s.weight[k] = std::exp(0.5 * drawn_normal(generator));
   const double ess = s.Fit();
   EXPECT_GT(ess, 1000.0);
   const double unbiased = 1.0 / (1.0 - 1.0 / ess);
@@ -108,7 +52,7 @@ TEST(FitBlock, MeanAndCovarianceEqualThoseOfTheDraws) {
 
 TEST(FitBlock, LawItselfHasTheMeanAndVarianceOfTheDraws) {
   // One coordinate: nothing bends, so that the moments of the tabulated marginal are those of the block.
-  Sample s(1, 3000, [](std::mt19937_64& g, double* u) { u[0] = 7.0 + std::exp(0.5 * normal(g)); });
+  Sample s(1, 3000, [](std::mt19937_64& g, double* u) { u[0] = 7.0 + std::exp(0.5 * drawn_normal(g)); });
   const double ess = s.Fit();
   const double spread = s.block.unwhiten[0][0];
   const double mean = s.block.mean[0] + spread * (s.block.center[0] + s.block.scale[0] * s.tables[0].Mean());
@@ -141,7 +85,7 @@ TEST(FitBlock, WritesNothingForDegenerateWeights) {
 
 TEST(FitBlock, CoordinateWithoutSpreadStaysFinite) {
   Sample s(2, 500, [](std::mt19937_64& g, double* u) {
-    u[0] = normal(g);
+    u[0] = drawn_normal(g);
     u[1] = 4.0;
   });
   s.Fit();
@@ -170,7 +114,7 @@ Scores HeldOutScores(const std::function<void(std::mt19937_64&, double*)>& draw,
   DensityBlock gaussian;
   SetElliptic(mean, covariance, 1.0, &table, &gaussian);
   std::mt19937_64 generator(99);
-  normal.reset();
+  drawn_normal.reset();
   Scores scores;
   constexpr int kFresh = 4000;
   for (int k = 0; k < kFresh; ++k) {
@@ -186,8 +130,8 @@ Scores HeldOutScores(const std::function<void(std::mt19937_64&, double*)>& draw,
 TEST(FitBlock, BentRidgeScoresNearlyAsItsOwnLaw) {
   // Long, thin and curved, as K and p are under poor excitation.
   const auto ridge = [](std::mt19937_64& g, double* u) {
-    u[0] = normal(g);
-    u[1] = -u[0] + 0.1 * (u[0] * u[0] - 1.0) + 0.03 * normal(g);
+    u[0] = drawn_normal(g);
+    u[1] = -u[0] + 0.1 * (u[0] * u[0] - 1.0) + 0.03 * drawn_normal(g);
   };
   const Scores scores = HeldOutScores(ridge, [](const double* u) {
     const double z = (u[1] + u[0] - 0.1 * (u[0] * u[0] - 1.0)) / 0.03;
@@ -235,7 +179,7 @@ void ExpectDensityOfItsDraws(const Sample& s) {
 TEST(FitBlock, BentDensityIsThatOfItsDraws) {
   Sample s(3, 4000, [](std::mt19937_64& g, double* u) {
     Banana(g, u);
-    u[2] = 0.5 * u[0] + 0.4 * u[0] * u[1] + 0.7 * normal(g);
+    u[2] = 0.5 * u[0] + 0.4 * u[0] * u[1] + 0.7 * drawn_normal(g);
   });
   s.Fit();
   EXPECT_TRUE(s.block.bent);
@@ -244,8 +188,8 @@ TEST(FitBlock, BentDensityIsThatOfItsDraws) {
 
 TEST(FitBlock, TaperedDensityIsThatOfItsDraws) {
   Sample s(2, 4000, [](std::mt19937_64& g, double* u) {
-    u[0] = normal(g);
-    u[1] = 2.0 * u[0] + 0.5 * std::exp(0.4 * u[0]) * normal(g);
+    u[0] = drawn_normal(g);
+    u[1] = 2.0 * u[0] + 0.5 * std::exp(0.4 * u[0]) * drawn_normal(g);
   });
   s.Fit();
   EXPECT_TRUE(s.block.tapered);
@@ -270,7 +214,7 @@ TEST(FitBlock, DoesNotDependOnTheScaleOfACoordinate) {
 }
 
 TEST(FitBlock, InflationWidensEveryCoordinate) {
-  Sample s(1, 4000, [](std::mt19937_64& g, double* u) { u[0] = normal(g); });
+  Sample s(1, 4000, [](std::mt19937_64& g, double* u) { u[0] = drawn_normal(g); });
   s.Fit();
   const double scale = s.block.scale[0];
   s.Fit({.inflation = 1.5});
@@ -331,77 +275,6 @@ TEST(SetElliptic, IsTheGaussianItIsAskedFor) {
   const double expected = std::exp(-0.5 * square) / (2.0 * M_PI * std::sqrt(det));
   EXPECT_NEAR(block.Density(u) / expected, 1.0, 0.01) << "tabulated at 8 nodes a standard deviation";
   EXPECT_LT((CovarianceOf(block) - covariance).cwiseAbs().maxCoeff(), 1e-12);
-}
-
-/// A block that whitens the law exactly, so that the draws' own covariance is only near the identity.
-DensityBlock Whitened(int dim) {
-  static const MarginalTable table = MarginalTable::Normal();
-  DensityBlock block;
-  SetElliptic(ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim), 1.0, &table, &block);
-  return block;
-}
-
-TEST(FitBends, StraightDrawsAreNotTakenForBentWhateverTheirScatter) {
-  // Their variances differ from one by more than a bend has to take out.
-  int bent = 0;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    Sample s(
-        6, 4096,
-        [](std::mt19937_64& g, double* u) {
-          for (int d = 0; d < 6; ++d) u[d] = normal(g);
-        },
-        seed);
-    for (std::size_t d = 0; d < 6; ++d) s.draws.u[d] = s.row[d].data();
-    s.draws.weight = s.weight.data();
-    DensityBlock block = Whitened(6);
-    bent += FitBends(simd::Best(), s.draws, s.scratch, &block) ? 1 : 0;
-    EXPECT_EQ(block.bent, block.tapered) << seed;
-  }
-  EXPECT_LE(bent, 1);  // a taper in a thousand
-}
-
-TEST(FitBends, FindsTheInteractionsOfCoordinatesStraightenedOneAfterTheOther) {
-  // e_2 hangs on e_1 and its square, e_3 on e_2 as straightened, e_1 c and c: all in one pass over the draws.
-  Sample s(4, 4096, [](std::mt19937_64& g, double* u) {
-    const double c = normal(g), e1 = normal(g), e2 = 0.1 * normal(g), e3 = 0.1 * normal(g);
-    u[0] = c;
-    u[1] = e1 + 0.3 * c * c;
-    u[2] = e2 + 0.5 * e1 + 0.2 * e1 * e1 - 0.4 * c;
-    u[3] = e3 + 3.0 * e2 + 0.6 * e1 * c;
-  });
-  for (std::size_t d = 0; d < 4; ++d) s.draws.u[d] = s.row[d].data();
-  s.draws.weight = s.weight.data();
-  DensityBlock block = Whitened(4);  // the axes stay u's, since their variances are equal
-  for (std::size_t i = 0; i < 4; ++i) {
-    block.whiten[i].fill(0.0);
-    block.unwhiten[i].fill(0.0);
-    block.whiten[i][i] = block.unwhiten[i][i] = 1.0;
-  }
-  ASSERT_TRUE(FitBends(simd::Best(), s.draws, s.scratch, &block));
-  EXPECT_NEAR(block.linear[2][1], 0.5, 0.02);
-  EXPECT_NEAR(block.square[2], 0.2, 0.02);
-  EXPECT_NEAR(block.linear[3][2], 3.0, 0.1);
-  EXPECT_NEAR(block.linear[3][1], 0.0, 0.05);
-  EXPECT_NEAR(block.cross[3], 0.6, 0.02);
-}
-
-TEST(FitBends, FindsAThicknessThatChangesAlongTheRidge) {
-  Sample s(2, 4096, [](std::mt19937_64& g, double* u) {
-    u[0] = normal(g);
-    u[1] = std::exp(0.4 * u[0]) * normal(g);
-  });
-  for (std::size_t d = 0; d < 2; ++d) s.draws.u[d] = s.row[d].data();
-  s.draws.weight = s.weight.data();
-  DensityBlock block = Whitened(2);
-  for (std::size_t i = 0; i < 2; ++i) {
-    block.whiten[i].fill(0.0);
-    block.unwhiten[i].fill(0.0);
-    block.whiten[i][i] = block.unwhiten[i][i] = 1.0;
-  }
-  ASSERT_TRUE(FitBends(simd::Best(), s.draws, s.scratch, &block));
-  ASSERT_TRUE(block.tapered);
-  EXPECT_NEAR(block.thickness[1][0], 0.4, 0.06);
-  EXPECT_NEAR(block.thickness[1][1], 0.0, 0.05);
 }
 
 /// Largest difference between a marginal's density and the normal one, within three standard deviations.

@@ -53,7 +53,7 @@ std::unique_ptr<Batch> ActuatorBatch(unsigned seed) {
     const bool filling = n < 60;
     b->pack.u[n] = {filling ? 0.05 : 0.0, filling ? 0.0 : 0.05, Uniform(g, 102e3, 200e3), Uniform(g, -1e6, 1e6)};
   }
-  SoftActuator::Prepare(b->pack, {}, 0, &b->data);
+  SoftActuator::Prepare(b->pack, ActuatorConstants{}, 0, &b->data);
   for (std::size_t l = 0; l < kTileLanes; ++l) {
     b->theta.value[0][l] = Uniform(g, -5e-3, 5e-3);
     b->theta.value[1][l] = Uniform(g, -5e-8, 5e-8);
@@ -93,7 +93,7 @@ TEST(PredictKernel, ValveFlowEqualsTheFormula) {
     kernels->predict(kSoftActuator, b->data, b->theta, &b->tile);
     for (std::size_t n = 0; n < 60; ++n)
       for (std::size_t l = 0; l < kTileLanes; ++l) {
-        const long double pdot = Wide(b->pack.u[n][3]), over = Wide(b->pack.u[n][2]) - Wide(PlantConstants{}.p_atm);
+        const long double pdot = Wide(b->pack.u[n][3]), over = Wide(b->pack.u[n][2]) - Wide(ActuatorConstants{}.p_atm);
         const long double a = pdot * Wide(b->theta.value[0][l]), c = pdot * over * Wide(b->theta.value[1][l]);
         ASSERT_NEAR(b->tile.value[n][l], static_cast<double>(a + c),
                     static_cast<double>(1e-13L * (std::fabs(a) + std::fabs(c))))

@@ -19,8 +19,8 @@ using Outputs = std::array<double, kMaxPackSamples>;
 constexpr int kSamples = 100;
 constexpr double kDt = 1e-3;
 
-PlantConstants Excited() {
-  PlantConstants constants;
+ActuatorConstants Excited() {
+  ActuatorConstants constants;
   constants.q1 = 0.0704;
   return constants;
 }
@@ -28,7 +28,7 @@ PlantConstants Excited() {
 /// Truth of the excited actuator: gain form of the two modes.
 ShownEstimates Truth() {
   ShownEstimates shown;
-  const double p_atm = PlantConstants{}.p_atm;
+  const double p_atm = ActuatorConstants{}.p_atm;
   shown.known = {true, true};
   shown.theta[0] = {-2.14e-4 + 6.12e-9 * p_atm, 6.12e-9};
   shown.theta[1] = {-9.76e-5 - 1.9e-9 * p_atm, -1.9e-9};
@@ -75,9 +75,9 @@ class ReferenceActuator {
     for (std::size_t i = 0; i < 3; ++i) state_[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
   }
 
-  PlantConstants constants_ = Excited();
+  ActuatorConstants constants_ = Excited();
   ShownEstimates truth_ = Truth();
-  State state_{PlantConstants{}.p_atm, 0.0, 0.0};
+  State state_{ActuatorConstants{}.p_atm, 0.0, 0.0};
   int sample_ = 0;
 };
 

@@ -83,12 +83,7 @@ const std::vector<Wrong> kWrong{
     {"sampler.lambda_q_min", "lambda_q_max", [](EstimatorSettings& s) { s.sampler.lambda_q_min = 0.9; }},
     {"gap_watch.false_alarm_rate", "= 0", [](EstimatorSettings& s) { s.gap_watch.false_alarm_rate = 0.0; }},
     {"gap_watch.tolerance", "= 2", [](EstimatorSettings& s) { s.gap_watch.tolerance = 2.0; }},
-    {"constants.p_atm", "= -1", [](EstimatorSettings& s) { s.constants.p_atm = -1.0; }},
-    {"constants.p_supply", "= 1000", [](EstimatorSettings& s) { s.constants.p_supply = 1000.0; }},
-    {"constants.q1", "nan", [](EstimatorSettings& s) { s.constants.q1 = kNan; }},
-    {"constants.q2", "nan", [](EstimatorSettings& s) { s.constants.q2 = kNan; }},
-    {"constants.q3", "inf", [](EstimatorSettings& s) { s.constants.q3 = kInfinity; }},
-    {"model.pressure_rate", "has no pressure", [](EstimatorSettings& s) { s.pressure_rate = true; }},
+    {"model.regress_rate", "has no rate to regress", [](EstimatorSettings& s) { s.regress_rate = true; }},
     {"takes no effects", "",
      [](EstimatorSettings& s) {
        s.method = Method::kRls;
@@ -103,6 +98,27 @@ const std::vector<Wrong> kWrong{
        s.num_effects = 1;
      }},
 };
+
+TEST(EstimatorSettings, ConstantsAreThoseThatThePlantDeclares) {
+  const auto error = [](std::size_t constant, double value) -> std::string {
+    EstimatorSettings settings = BuiltinSettings("soft_actuator");
+    settings.constants[constant] = value;
+    try {
+      settings.Validate();
+    } catch (const std::invalid_argument& wrong) {
+      return wrong.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(error(0, -1.0), AllOf(HasSubstr("constants.p_atm"), HasSubstr("= -1")));
+  EXPECT_THAT(error(1, 1000.0), AllOf(HasSubstr("constants.p_supply"), HasSubstr("= 1000"), HasSubstr("101325")));
+  EXPECT_THAT(error(2, kNan), AllOf(HasSubstr("constants.q1"), HasSubstr("nan")));
+  EXPECT_THAT(error(3, -1.0), AllOf(HasSubstr("constants.q2"), HasSubstr("= -1")));
+  EXPECT_THAT(error(4, kInfinity), AllOf(HasSubstr("constants.q3"), HasSubstr("inf")));
+  EXPECT_EQ(error(5, kNan), "") << "it has five";
+  EXPECT_EQ(ConstantOf(BuiltinSettings("soft_actuator"), "p_supply"), 800e3);
+  EXPECT_TRUE(std::isnan(ConstantOf(BuiltinSettings("hunt_crossley"), "p_supply")));
+}
 
 TEST(EstimatorSettings, ValidateNamesKeyValueAndRangeOfWhatIsWrong) {
   for (const Wrong& wrong : kWrong) {

@@ -187,7 +187,8 @@ TEST(SnapshotIdentity, IsThatOfTheQuestionAndNotOfTheSampler) {
               s->num_effects = 1;
             }),
             same);
-  EXPECT_NE(identity_with([](auto* s) { s->pressure_rate = true; }), same);
+  EXPECT_NE(identity_with([](auto* s) { s->constants[0] += 1.0; }), same);
+  EXPECT_NE(identity_with([](auto* s) { s->regress_rate = true; }), same);
   EXPECT_NE(SnapshotIdentity(BuiltinSettings("soft_actuator")),
             SnapshotIdentity(BuiltinSettings("soft_actuator_excited")));
 }

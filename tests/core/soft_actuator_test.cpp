@@ -60,7 +60,7 @@ TEST(SoftActuator, ReportsTheGainAndThePaperParametersConsistently) {
   Rig rig(test::ActuatorSettings());
   for (std::int64_t seq = 1; seq <= 3; ++seq) rig.Step(Actuator{}.Pack(seq, 100));
   const auto& m = rig.estimate().modes[0].marginal;
-  EXPECT_NEAR(m[2].ar_ap, m[0].ar_ap - m[1].ar_ap * PlantConstants{}.p_atm, 1e-12);
+  EXPECT_NEAR(m[2].ar_ap, m[0].ar_ap - m[1].ar_ap * ActuatorConstants{}.p_atm, 1e-12);
   EXPECT_NEAR(m[1].ar_ap, 6.12e-9, 4.0 * m[1].sd);
   EXPECT_NEAR(m[2].ar_ap, -2.14e-4, 4.0 * m[2].sd);
 }
@@ -105,7 +105,7 @@ class LinearPosterior {
  private:
   Eigen::Vector2d scale_;
   double noise_std_;
-  PlantConstants constants_;
+  ActuatorConstants constants_;
   Eigen::Matrix2d precision_ = Eigen::Matrix2d::Identity();
   Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
 };

@@ -20,17 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files that name a plant outside its slice. This list only ever gets shorter: a file that is on it without need fails
-/// the test, too.
-const std::set<std::string> kStillNameOne = {
-    // The benchmark hides effects in the paper's plants, and in recordings of others.
-    "tools/gap/bench/include/armcmc/gap_bench/case.hpp",
-    "tools/gap/bench/src/plant.cpp",
-    "tools/gap/bench/src/recorded.cpp",
-    "tools/gap/bench/src/score.cpp",
-    "tools/gap/bench/src/summary.cpp",
-};
-
 /// Lower case, without what may stand between the words of a name: "Hunt-Crossley" becomes "huntcrossley".
 std::string Spoken(std::string_view text) {
   std::string spoken;
@@ -76,7 +65,6 @@ TEST(PlantNames, AreFoundInEverySpelling) {
 TEST(PlantNames, StandInTheirSlicesOnly) {
   const std::vector<std::string> plants = Plants();
   ASSERT_GE(plants.size(), 2U);
-  std::set<std::string> found;
   int files = 0;
   for (const char* room : {"core", "rt", "tools", "plant_sim"})
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(SourceDir() / room)) {
@@ -90,15 +78,11 @@ TEST(PlantNames, StandInTheirSlicesOnly) {
       for (int number = 1; std::getline(text, line); ++number)
         for (const std::string& plant : plants) {
           if (IsInSliceOf(path, plant) || !Names(line, plant)) continue;
-          found.insert(path.generic_string());
-          if (!kStillNameOne.contains(path.generic_string()))
-            ADD_FAILURE() << path.generic_string() << ':' << number << ": names " << plant
-                          << " outside its slice: " << line;
+          ADD_FAILURE() << path.generic_string() << ':' << number << ": names " << plant
+                        << " outside its slice: " << line;
         }
     }
   EXPECT_GT(files, 300);
-  for (const std::string& file : kStillNameOne)
-    EXPECT_TRUE(found.contains(file)) << file << " names no plant any more: take it off the list";
 }
 
 }  // namespace

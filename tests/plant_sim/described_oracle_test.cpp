@@ -97,5 +97,37 @@ TEST(DescribedOracle, TheWholeLanguageMeansTheSame) {
   }
 }
 
+TEST(DescribedOracle, WhatIsHeldBetweenSamplesMeansTheSame) {
+  const std::string head = R"(schema = 1
+name = "words"
+output = "y"
+[signals]
+x = { unit = "1", between = "held" }
+y = { unit = "1" }
+[constants]
+w = { value = 0.05, unit = "s" }
+[parameters]
+a = { unit = "1", mean = 1.3, sd = 0.1 }
+[noise]
+std = 1.0
+[let]
+l = "x^2 + 0.5"
+[states]
+T = { unit = "1", start = "0", substeps = 4, rate = "(a*delay(x, 0.0137) - T)/w" }
+[[mode]]
+name = "m"
+law = ")";
+  for (const char* law :
+       {"a*lowpass(x, 0.02) + lowpass(l, 0.3)", "a*delay(x, 0.0137) + delay(l, 0.05)",
+        "integral(a*x*l)/w + integral(x)/w + lowpass(delay(x, 0.0137), 0.02)", "T", "delay(T, 0.05)"}) {
+    const std::string text = head + law + "\"\n";
+    const DescribedPlant mine = ReadDescribedPlant(support::StrictTable::FromText(text, law));
+    DescribedScenario scenario = UsualScenario(mine);
+    scenario.inputs["x"].amplitude = 0.8;
+    SCOPED_TRACE(law);
+    ExpectTheSame(mine, support::PlantFromText(text, law), scenario);
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::plant_sim::described_oracle_test

@@ -98,6 +98,29 @@ TEST(PlantExpression, RemembersExactlyWhatIsLinearBetweenSamples) {
   EXPECT_NEAR(Samples("if(x > 2, integral(x), 0)", ramp)[4], 0.4 + 1.5 * 0.16, 1e-15);
 }
 
+TEST(PlantExpression, RemembersExactlyWhatIsHeldBetweenSamples) {
+  const std::vector<double> x = {1.0, 2.0, 4.0, 3.0, 5.0};
+  const auto samples = [&x](const std::string& text) {
+    Expression expression(text, {"x"}, {true});
+    std::vector<double> out;
+    for (std::size_t n = 0; n < x.size(); ++n) out.push_back(expression.Evaluate({x[n]}, n == 0 ? 0.0 : 0.1));
+    return out;
+  };
+  const auto near = [](const std::vector<double>& values) {
+    return testing::Pointwise(testing::DoubleNear(1e-14), values);
+  };
+  EXPECT_THAT(samples("integral(2*x)"), near({0.0, 0.2, 0.6, 1.4, 2.0}));
+  EXPECT_THAT(samples("delay(x, 0.15)"), near({1.0, 1.0, 1.0, 2.0, 4.0}));
+  EXPECT_THAT(samples("delay(x, 0.2)"), near({1.0, 1.0, 1.0, 2.0, 4.0}));
+  const double decay = std::exp(-0.1 / 0.25);
+  const std::vector<double> y = samples("lowpass(x, 0.25)"), late = samples("integral(delay(x, 0.05))");
+  for (std::size_t n = 1; n < x.size(); ++n) {
+    EXPECT_NEAR(y[n], y[n - 1] * decay + x[n - 1] * (1.0 - decay), 1e-14);
+    EXPECT_NEAR(late[n] - late[n - 1], 0.05 * (x[n - 1] + x[n > 1 ? n - 2 : 0]), 1e-14) << "half of either";
+  }
+  EXPECT_THAT(samples("integral(x + elapsed())"), near({0.0, 0.155, 0.47, 0.845, 1.28})) << "is not held";
+}
+
 TEST(PlantExpression, DerivativesOfTimeAreThoseOfCentralDifferences) {
   for (const char* text :
        {"3*t^3 - t/2 + 7", "sin(2*t)*exp(-t)", "1/(1 + t^2)", "sqrt(1 + t)", "log(2 + t) + log2(3 + t) + log10(4 + t)",

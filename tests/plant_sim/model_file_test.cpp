@@ -302,7 +302,7 @@ double WorstFlow(const std::vector<FlowCase>& cases, double from_s) {
       composition.Fill(pack, *effects, mode, data.get());
       const std::size_t m = mode == 0 ? 0 : 2;
       const double slope = scenario.schedule.Value(static_cast<int>(m) + 1, 0.0);
-      theta.value[0].fill(scenario.schedule.Value(static_cast<int>(m), 0.0) + slope * settings.constants.p_atm);
+      theta.value[0].fill(scenario.schedule.Value(static_cast<int>(m), 0.0) + slope * ConstantOf(settings, "p_atm"));
       theta.value[1].fill(slope);
       simd::kSse2Kernels.predict(FindModel("soft_actuator"), *data, theta, tile.get());
       for (std::size_t k = 0; k < static_cast<std::size_t>(data->num_samples); ++k, ++compared) {

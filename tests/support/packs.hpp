@@ -106,7 +106,7 @@ inline DataPack MakeContactPack(std::int64_t seq, const Motion& motion, const Co
 
 /// The excited actuator: pressure swings over tens of kPa; mode 0 (u_c) in the first `filling` samples, then mode 1.
 struct Actuator {
-  double p_atm = PlantConstants{}.p_atm;
+  double p_atm = ActuatorConstants{}.p_atm;
   std::array<double, 2> gain{-2.14e-4 + 6.12e-9 * p_atm, -9.76e-5 - 1.9e-9 * p_atm};
   std::array<double, 2> slope{6.12e-9, -1.9e-9};
   double noise_std = 0.1;  ///< Of the valve flow, sqrt(Pa).
@@ -116,7 +116,7 @@ struct Actuator {
     DataPack pack = BlankPack(SoftActuator::kInfo.plant, seq);
     std::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(seq));
     std::normal_distribution<double> noise(0.0, noise_std);
-    const PlantConstants constants;
+    const ActuatorConstants constants;
     for (std::size_t n = 0; n < kPackSamples; ++n) {
       const double t = kSampleInterval * (static_cast<double>(seq * kPackSamples) + static_cast<double>(n));
       const double p = p_atm + 40e3 + 30e3 * std::sin(40.0 * t);

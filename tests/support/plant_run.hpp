@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "armcmc/expression/features.hpp"
+#include "armcmc/plant/held.hpp"
 #include "armcmc/plant/plant.hpp"
 
 namespace armcmc::test {
 
 /// A described plant with numbers for its parameters, over a whole recording: states by Runge-Kutta, inputs linear
-/// between samples, functions with memory from sample to sample. Slow and plain: what composed plants are compared by.
+/// or held between samples, functions with memory from sample to sample. Slow and plain: what composed plants are
+/// compared by.
 class PlantRun {
  public:
   PlantRun(const Plant& plant, const std::map<std::string, double>& values) : plant_(plant), graph_(plant.graph()) {
@@ -40,6 +42,10 @@ class PlantRun {
       if (InfoOf(graph_.at(n).op).memory &&
           std::any_of(rates.begin(), rates.end(), [&](int rate) { return graph_.DependsOn(rate, n); }))
         memories.push_back(n);
+    held_ = HeldSignals(plant_.description());
+    HeldNodes held(&graph_, held_);
+    held_.resize(held_.size() + num_states, false);
+    for (const int memory : memories) held_.push_back(held.Is(memory));
     const expression::FeatureProgram memory_program(graph_, memories);
     for (std::size_t m = 0; m < memories.size(); ++m)
       remembered[memories[m]] = graph_.Symbol(expression::SymbolKind::kSignal, num_signals_ + int(num_states) + int(m));
@@ -89,7 +95,7 @@ class PlantRun {
     const double h = dt / substeps;
     const auto rate = [&](double part, const std::vector<double>& x) {
       std::vector<double> now(from.size()), dx(x.size());
-      for (std::size_t i = 0; i < from.size(); ++i) now[i] = from[i] + part * (to[i] - from[i]);
+      for (std::size_t i = 0; i < from.size(); ++i) now[i] = from[i] + (held_[i] ? 0.0 : part) * (to[i] - from[i]);
       std::copy(x.begin(), x.end(), now.begin() + num_signals_);
       rates.Evaluate({now.data(), t + part * dt, dt}, nullptr, dx.data());
       return dx;
@@ -112,6 +118,7 @@ class PlantRun {
   expression::Graph graph_;
   std::map<int, int> fixed_;
   int num_signals_ = 0;
+  std::vector<bool> held_;  ///< Of the inputs.
 };
 
 }  // namespace armcmc::test

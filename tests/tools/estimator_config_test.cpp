@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "armcmc/estimator.hpp"
@@ -168,17 +169,28 @@ TEST(EstimatorConfig, NoiseOfOneModeOverridesTheOthers) {
 }
 
 TEST(EstimatorConfig, ConstantsBelongToTheActuator) {
-  EXPECT_EQ(Read(kActuator + "[model.constants]\nq1 = 0.07\n").constants.q1, 0.07);
+  const EstimatorSettings s = Read(kActuator + "[model.constants]\np_atm = 1e5\nq1 = 0.07\n");
+  EXPECT_EQ(ConstantOf(s, "q1"), 0.07);
+  EXPECT_EQ(ConstantOf(s, "p_atm"), 1e5);
+  EXPECT_EQ(ConstantOf(s, "q2"), ConstantOf(BuiltinSettings("soft_actuator"), "q2"));
+  EXPECT_TRUE(std::isnan(ConstantOf(s, "q4")));
   EXPECT_THAT(ErrorOf(kHunt + "[model.constants]\nq1 = 0.07\n"), HasSubstr("model.constants"));
+  EXPECT_THAT(ErrorOf(kActuator + "[model.constants]\nq4 = 0.07\n"),
+              AllOf(HasSubstr("f.toml:5"), HasSubstr("model.constants.q4"), HasSubstr("p_atm, p_supply, q1, q2, q3")));
+  EXPECT_THAT(ErrorOf(kActuator + "[model.constants]\nq2 = -1.0\n"), HasSubstr("model.constants.q2"));
 }
 
 TEST(EstimatorConfig, WhatIsRegressedCanBeChosenForTheActuator) {
-  EXPECT_FALSE(Read(kActuator).pressure_rate);
-  EXPECT_TRUE(Read(kActuator + "pressure_rate = true\n").pressure_rate);
-  EXPECT_FALSE(Read(kActuator + "pressure_rate = false\n").pressure_rate);
-  EXPECT_THAT(ErrorOf(kHunt + "pressure_rate = true\n"),
-              AllOf(HasSubstr("f.toml:4"), HasSubstr("hunt_crossley has no pressure")));
-  EXPECT_THAT(ErrorOf(kActuator + "pressure_rat = true\n"), HasSubstr("did you mean pressure_rate?"));
+  EXPECT_FALSE(Read(kActuator).regress_rate);
+  for (const std::string key : {"regress_rate", "pressure_rate"}) {
+    EXPECT_TRUE(Read(kActuator + key + " = true\n").regress_rate) << key;
+    EXPECT_FALSE(Read(kActuator + key + " = false\n").regress_rate) << key;
+    EXPECT_THAT(ErrorOf(kHunt + key + " = true\n"),
+                AllOf(HasSubstr("f.toml:4"), HasSubstr("model." + key), HasSubstr("has no rate to regress")));
+  }
+  EXPECT_THAT(ErrorOf(kActuator + "pressure_rate = true\nregress_rate = true\n"),
+              HasSubstr("another word for regress_rate"));
+  EXPECT_THAT(ErrorOf(kActuator + "regres_rate = true\n"), HasSubstr("did you mean regress_rate?"));
 }
 
 TEST(EstimatorConfig, TheModelOfTheCommandLineWins) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "armcmc/support/estimator_config.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 #include "plants/hunt_crossley/effects.hpp"
 #include "plants/hunt_crossley/model.hpp"
 #include "support/paths.hpp"
@@ -51,8 +52,8 @@ void ExpectSameModel(const EstimatorSettings& a, const EstimatorSettings& b) {
   EXPECT_EQ(a.model, b.model);
   for (std::size_t d = 0; d < static_cast<std::size_t>(a.num_parameters); ++d)
     ExpectSamePrior(a.parameters[d], b.parameters[d]);
-  EXPECT_EQ(a.constants.q1, b.constants.q1);
-  EXPECT_EQ(a.pressure_rate, b.pressure_rate);
+  EXPECT_EQ(a.constants, b.constants);
+  EXPECT_EQ(a.regress_rate, b.regress_rate);
   EXPECT_EQ(a.noise[0].kind, b.noise[0].kind);
   EXPECT_EQ(a.noise[0].std, b.noise[0].std);
   EXPECT_EQ(a.noise[0].estimate_std, b.noise[0].estimate_std);
@@ -79,7 +80,8 @@ TEST_F(ModelFile, EveryEffectReadsBackToTheBit) {
     settings.noise[0].std = 0.1 + 1e-17 * k;
     settings.noise[0].estimate_std = k % 2 == 0;
     EffectSettings& effect = settings.effects[0];
-    effect = MakeEffect(HuntCrossley::kInfo, std::string(info->name), {.force = 0.7, .length = 3e-3, .speed = 0.011});
+    effect = MakeEffect(HuntCrossley::kInfo, std::string(info->name),
+                        ContactScales{.force = 0.7, .length = 3e-3, .speed = 0.011});
     effect.gate = static_cast<EffectGate>(k++ % 5);
     effect.from_s = effect.gate == EffectGate::kFrom ? 12.1 : 0.0;
     effect.until_s = effect.gate == EffectGate::kUntil ? 7.3 : 0.0;
@@ -94,8 +96,8 @@ TEST_F(ModelFile, EveryEffectReadsBackToTheBit) {
 
 TEST_F(ModelFile, TheActuatorReadsBack) {
   EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
-  for (const bool pressure_rate : {true, false}) {
-    settings.pressure_rate = pressure_rate;
+  for (const bool regress_rate : {true, false}) {
+    settings.regress_rate = regress_rate;
     ExpectSameModel(ReadModel(Write(ModelFileText(settings))), settings);
   }
 }

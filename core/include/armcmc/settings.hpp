@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/effects/effect.hpp"
@@ -100,14 +101,10 @@ struct BaselineSettings {
   double pf_jitter = 0.05;         ///< Random walk of a parameter, prior standard deviations a pack, >= 0.
 };
 
-/// Constants of the plant that are known, not estimated.
-struct PlantConstants {
-  double p_atm = 101'325.0;  ///< Pa
-  double p_supply = 800e3;   ///< Pa
-  double q1 = 1408.5;        ///< rad/s^2 per unit of p - p_atm
-  double q2 = 132.28;        ///< 1/s
-  double q3 = 3319.4;        ///< 1/s^2
-};
+inline constexpr int kMaxConstants = 8;  ///< Of one compiled plant.
+/// Constants that are known, not estimated: as many as the compiled plant declares (CompiledPlant::constants), in its
+/// order. Those of a described plant stand in its file.
+using PlantConstants = std::array<double, kMaxConstants>;
 
 /// When an effect acts.
 enum class EffectGate : std::uint8_t {
@@ -140,11 +137,12 @@ struct EstimatorSettings {
   SamplerSettings sampler;
   Method method = Method::kArmcmc;
   BaselineSettings baseline;
-  PlantConstants constants;
-  /// Of a plant with a valve flow: what is regressed is the pressure rate and not the flow, for data whose noise is
-  /// that of the pressure rate's sensor: in the flow it multiplies the parameters that are sought, which biases them
-  /// and tells nothing of how precise a sample is. Effects of the valve flow are always estimated so.
-  bool pressure_rate = false;
+  PlantConstants constants{};
+  /// Of a plant that has a `rate_unit` (CompiledPlant): what is regressed is the rate that the law divides by, and not
+  /// the law's own target, for data whose noise is that of the rate's sensor: in the target it multiplies the
+  /// parameters that are sought, which biases them and tells nothing of how precise a sample is. Effects of such a
+  /// plant are always estimated so.
+  bool regress_rate = false;
   std::array<EffectSettings, kMaxEffects> effects;  ///< Each at most once.
   int num_effects = 0;
   GapWatchSettings gap_watch;  ///< Changes no estimate.
@@ -156,6 +154,9 @@ struct EstimatorSettings {
 /// Settings of a built-in model with its default priors, bounds and noise.
 /// @throws std::invalid_argument listing the known names.
 [[nodiscard]] EstimatorSettings BuiltinSettings(const std::string& model);
+
+/// A constant of the compiled plant that the settings are of; NaN: it has none of that name.
+[[nodiscard]] double ConstantOf(const EstimatorSettings& settings, std::string_view name) noexcept;
 
 /// Settings of a described plant with the priors and the noise of its file.
 [[nodiscard]] EstimatorSettings DescribedSettings(std::shared_ptr<const PlantProgram> plant);

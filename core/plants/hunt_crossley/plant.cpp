@@ -62,7 +62,7 @@ constinit const CompiledPlant kContactPlant{
     .output_word = "force",
     .law_is_output = true,
     .no_contact_as = "",
-    .uses_constants = false,
+    .constants = {},
     .rate_unit = "",
     .offline_as = "",
     .effects = ContactEffects::kInfos,

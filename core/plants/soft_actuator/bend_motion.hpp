@@ -3,7 +3,7 @@
 #include <array>
 
 #include "armcmc/nonblocking.hpp"
-#include "armcmc/settings.hpp"
+#include "plants/soft_actuator/constants.hpp"
 
 namespace armcmc {
 
@@ -19,7 +19,7 @@ class BendMotion {
     double rate = 0.0;   ///< alpha', rad/s
   };
 
-  explicit BendMotion(const PlantConstants& constants) noexcept : constants_(constants) {}
+  explicit BendMotion(const ActuatorConstants& constants) noexcept : constants_(constants) {}
 
   /// Sample interval of the steps that follow, s > 0. @rt A fixed number of products of 4 x 4 matrices when it changes.
   void SetInterval(double dt) noexcept ARMCMC_NONBLOCKING;
@@ -36,7 +36,7 @@ class BendMotion {
   }
 
  private:
-  PlantConstants constants_;
+  ActuatorConstants constants_;
   double dt_ = 0.0;
   std::array<double, 4> transition_{};  ///< exp(A dt), row major.
   std::array<double, 4> gain_{};        ///< Effect of p - p_atm at the start and the end of a step.

@@ -9,7 +9,7 @@
 
 namespace armcmc {
 
-BendPredictor::BendPredictor(const ModelInfo& info, const PlantConstants& constants, const FlowPlan& flow)
+BendPredictor::BendPredictor(const ModelInfo& info, const ActuatorConstants& constants, const FlowPlan& flow)
     : info_(info), constants_(constants), flow_(flow), motion_(constants) {}
 
 bool BendPredictor::NextPressure(const Input& input, const ShownEstimates& shown, const State& state,

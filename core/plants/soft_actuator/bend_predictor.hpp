@@ -27,7 +27,7 @@ class BendPredictor final : public OutputPredictor {
   static constexpr int kBacklogPacks = 8;
 
   /// @param info  Must outlive this.
-  BendPredictor(const ModelInfo& info, const PlantConstants& constants, const FlowPlan& flow = {});
+  BendPredictor(const ModelInfo& info, const ActuatorConstants& constants, const FlowPlan& flow = {});
 
   /// Forgets the state: the next pack starts both runs from its measurements.
   void Reset() noexcept ARMCMC_NONBLOCKING override { last_seq_ = -1; }
@@ -72,7 +72,7 @@ class BendPredictor final : public OutputPredictor {
   void Bend(double next_p, State* state) const noexcept ARMCMC_NONBLOCKING;
 
   const ModelInfo& info_;
-  PlantConstants constants_;
+  ActuatorConstants constants_;
   FlowPlan flow_;
   BendMotion motion_;
   std::int64_t last_seq_ = -1, last_run_ = 0;

@@ -21,7 +21,9 @@ std::size_t Index(int i) noexcept { return static_cast<std::size_t>(i); }
 }  // namespace
 
 FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
-    : empty(false), p_atm(settings.constants.p_atm), supply(settings.constants.p_supply - settings.constants.p_atm) {
+    : empty(false),
+      p_atm(ActuatorConstants(settings.constants).p_atm),
+      supply(ActuatorConstants(settings.constants).p_supply - p_atm) {
   const ParameterSettings& gain = settings.parameters[0];
   const bool normal = gain.prior == PriorKind::kNormal;
   least_gain = kLeastGainShare * (normal ? std::max(std::fabs(gain.mean), gain.sd)
@@ -32,7 +34,7 @@ FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
     term[Index(index)] = {first_amplitude, effect.gate, effect.from_s, effect.until_s};
     const EffectInfo& info = *FlowEffects::kInfos[Index(index)];
     first_amplitude += info.num_amplitudes;
-    head_moves = head_moves || (info.needs.pressure && info.slot != EffectSlot::kAdditive);
+    head_moves = head_moves || effect.name == PressureBias::kInfo.name || effect.name == SupplyDroop::kInfo.name;
     if (effect.name == std::string_view(ValveLag::kInfo.name)) {
       const ParameterSettings& tau = effect.amplitudes[0];
       longest_lag = tau.upper;

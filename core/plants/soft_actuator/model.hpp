@@ -4,6 +4,7 @@
 
 #include "armcmc/model.hpp"
 #include "armcmc/nonblocking.hpp"
+#include "plants/soft_actuator/constants.hpp"
 
 namespace armcmc {
 
@@ -28,7 +29,7 @@ struct SoftActuator {
                      double* reported) noexcept ARMCMC_NONBLOCKING {
     reported[0] = theta[0];
     reported[1] = theta[1];
-    reported[2] = theta[0] - theta[1] * constants.p_atm;
+    reported[2] = theta[0] - theta[1] * ActuatorConstants(constants).p_atm;
   }
 
   static constexpr ModelInfo kInfo{
@@ -50,14 +51,15 @@ struct SoftActuator {
   };
 
   /// sign(dp) sqrt|dp| of the valve that mode opens; sqrt(Pa).
-  static double Head(double p, int mode, const PlantConstants& constants) noexcept {
+  static double Head(double p, int mode, const ActuatorConstants& constants) noexcept {
     const double dp = mode == 0 ? constants.p_supply - p : p - constants.p_atm;
     return std::copysign(std::sqrt(std::fabs(dp)), dp);
   }
 
   /// Features: 0 pdot, 1 pdot (p - p_atm).
-  static void Prepare(const DataPack& pack, const PlantConstants& constants, int mode,
+  static void Prepare(const DataPack& pack, const PlantConstants& values, int mode,
                       ModeData* data) noexcept ARMCMC_NONBLOCKING {
+    const ActuatorConstants constants(values);
     int m = 0;
     for (int n = 0; n < pack.num_samples; ++n) {
       if (ModeOf(pack, n) != mode) continue;

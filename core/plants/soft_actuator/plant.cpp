@@ -7,6 +7,7 @@
 #include "armcmc/models/plain_ops.hpp"
 #include "plants/soft_actuator/bend_predictor.hpp"
 #include "plants/soft_actuator/bend_watch.hpp"
+#include "plants/soft_actuator/constants.hpp"
 #include "plants/soft_actuator/effects.hpp"
 #include "plants/soft_actuator/flow_rows.hpp"
 #include "plants/soft_actuator/gap_family.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 /// Inflow through a constant gain g: u_c sqrt(p_s - p) = g pdot.
 void TypicalActuation(double t, std::size_t n, DataPack* pack) noexcept ARMCMC_NONBLOCKING {
-  constexpr double kSupply = 800e3, kAtmosphere = 101'325.0, kGain = 4e-4;
+  constexpr double kSupply = ActuatorConstants().p_supply, kAtmosphere = ActuatorConstants().p_atm, kGain = 4e-4;
   const double p = kAtmosphere + 1.0 + std::sin(5.0 * t);
   const double pdot = 5.0 * std::cos(5.0 * t);
   pack->u[n][0] = pdot > 0.0 ? kGain * pdot / std::sqrt(kSupply - p) : 0.0;
@@ -27,7 +28,8 @@ void TypicalActuation(double t, std::size_t n, DataPack* pack) noexcept ARMCMC_N
   pack->y[n] = 0.42 * (p - kAtmosphere);
 }
 
-RatePair PressureRate(const double* theta, const DataPack& pack, int n, const PlantConstants& constants) noexcept {
+RatePair PressureRate(const double* theta, const DataPack& pack, int n, const PlantConstants& values) noexcept {
+  const ActuatorConstants constants(values);
   const int mode = SoftActuator::ModeOf(pack, n);
   const auto& u = pack.u[static_cast<std::size_t>(n)];
   const double gain = theta[0] + theta[1] * (u[2] - constants.p_atm);
@@ -41,7 +43,9 @@ void Excite(EstimatorSettings* s) {
   // While the pressure stands still, the noise of the measured pdot makes a pack prefer g = 0 by some 20 nats: that
   // is no change of the valve.
   s->forgetting.lambda_max = 1.0 - 1e-12;
-  s->constants.q1 = 0.0704;  // rad/s^2 per Pa, so that tens of kPa bend it by a radian
+  ActuatorConstants constants(s->constants);
+  constants.q1 = 0.0704;  // rad/s^2 per Pa, so that tens of kPa bend it by a radian
+  s->constants = constants;
   for (auto& noise : s->noise) {
     noise.std = 0.25;  // sqrt(Pa): sensor noise of 500 Pa/s on pdot times a gain of 5e-4
     noise.estimate_std = true;
@@ -51,7 +55,7 @@ void Excite(EstimatorSettings* s) {
 constexpr ModelVariant kVariants[] = {{"soft_actuator_excited", &Excite}};
 
 std::unique_ptr<EffectRows> MakeFlowRows(const EstimatorSettings& settings) {
-  if (settings.num_effects == 0 && !settings.pressure_rate) return nullptr;
+  if (settings.num_effects == 0 && !settings.regress_rate) return nullptr;
   return std::make_unique<FlowRows>(FlowPlan(settings, settings.num_parameters));
 }
 
@@ -74,7 +78,7 @@ constinit const CompiledPlant kActuatorPlant{
     .output_word = "angle",
     .law_is_output = false,
     .no_contact_as = "an actuator has no contact",
-    .uses_constants = true,
+    .constants = kActuatorConstants,
     .rate_unit = kRateUnit,
     .offline_as = "it acts on the bending angle ({}), and the estimator estimates the valve flow",
     .effects = ActuatorEffects::kInfos,

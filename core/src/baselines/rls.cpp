@@ -101,7 +101,7 @@ void RlsFilter::ToDraw(const ParamVector& z, double* u) const noexcept {
 void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept {
   const ParameterSpace& s = parts_.space;
   const double noise = std::exp(s.log_noise_scale), mean = parts_.noise.settings().mean;
-  const bool of_rate = parts_.settings.pressure_rate;
+  const bool of_rate = parts_.settings.regress_rate;
   ParamVector phi(dim_);
   for (int n = 0; n < data.num_samples; ++n) {
     const auto i = static_cast<std::size_t>(n);
@@ -110,7 +110,7 @@ void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const Para
     if (form_ != nullptr) {
       if (!form_->row(data, i, noise, &phi, &y, &r)) continue;
     } else {
-      // The noise of a pressure rate, its mean included, is in what is measured of it and not in the valve flow.
+      // The noise of a rate, its mean included, is in what is measured of it and not in the target.
       const double share = of_rate && data.feature[0][i] != 0.0 ? 1.0 - mean / data.feature[0][i] : 1.0;
       for (int d = 0; d < dim_; ++d) {
         const auto id = static_cast<std::size_t>(d);
@@ -175,9 +175,9 @@ Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mo
   const ParameterSpace& s = parts_.space;
   const ParamVector old_z = z_;
   const ParamMatrix old_p = p_;
-  // Of a pressure rate once more, with the weights that the pack's own gains give: before the first pack nothing is
+  // Of a rate once more, with the weights that the pack's own gains give: before the first pack nothing is
   // known of them.
-  const int passes = prediction_ != nullptr ? kLinearisations : parts_.settings.pressure_rate ? 2 : 1;
+  const int passes = prediction_ != nullptr ? kLinearisations : parts_.settings.regress_rate ? 2 : 1;
   for (int pass = 0; pass < passes && z_.allFinite() && p_.allFinite(); ++pass) Again(data, old_z, old_p);
   if (!z_.allFinite() || !p_.allFinite()) {
     z_ = old_z;

@@ -11,23 +11,26 @@
 namespace armcmc::expression {
 namespace {
 
-double Lowpass(FeatureMemory::Slot* slot, double e, double tau, double dt) noexcept ARMCMC_NONBLOCKING {
+double Lowpass(FeatureMemory::Slot* slot, double e, double tau, double dt, bool held) noexcept ARMCMC_NONBLOCKING {
   const double ratio = tau > 0.0 ? dt / tau : std::numeric_limits<double>::infinity();
   const double decay = std::exp(-ratio);
   // (1 - e^-r) / r, which is 1 where nothing decays.
   const double mean = ratio > 0.0 ? -std::expm1(-ratio) / ratio : 1.0;
-  slot->state = slot->state * decay + slot->before * (mean - decay) + e * (1.0 - mean);
+  slot->state = held ? slot->state * decay + slot->before * (1.0 - decay)
+                     : slot->state * decay + slot->before * (mean - decay) + e * (1.0 - mean);
   slot->before = e;
   return slot->state;
 }
 
 /// The value `tau` before the newest of `samples`; not a number where the line does not reach back so far.
-double Delayed(const std::array<double, kMaxDelaySamples>& line, int samples, double tau,
-               double dt) noexcept ARMCMC_NONBLOCKING {
+double Delayed(const std::array<double, kMaxDelaySamples>& line, int samples, double tau, double dt,
+               bool held) noexcept ARMCMC_NONBLOCKING {
   const int kept = std::min(samples, kMaxDelaySamples);
   const double asked = tau / dt;
   if (asked > kept - 1 && samples >= kMaxDelaySamples) return std::numeric_limits<double>::quiet_NaN();
-  const double back = std::clamp(asked, 0.0, static_cast<double>(kept - 1));
+  constexpr double kRounding = 1e-6;  // a whole number of samples that was computed is one
+  const double whole_back = held ? std::ceil(asked - kRounding) : asked;
+  const double back = std::clamp(whole_back, 0.0, static_cast<double>(kept - 1));
   const int whole = std::min(static_cast<int>(back), kept - 1);
   const double part = back - whole;
   const auto at = [&](int k) { return line[static_cast<std::size_t>((samples - 1 - k) % kMaxDelaySamples)]; };
@@ -56,6 +59,7 @@ FeatureProgram::FeatureProgram(const Graph& graph, const std::vector<int>& outpu
     i.index = static_cast<std::int16_t>(node.index);
     for (std::size_t a = 0; a < kMaxArguments; ++a)
       i.argument[a] = node.argument[a] < 0 ? std::int16_t{-1} : place[static_cast<std::size_t>(node.argument[a])];
+    i.held = InfoOf(node.op).memory && node.argument[2] >= 0;
     if (InfoOf(node.op).memory) i.index = static_cast<std::int16_t>(num_memories_++);
     if (node.op == Op::kDelay) i.line = static_cast<std::int16_t>(num_delays_++);
     place[static_cast<std::size_t>(n)] = static_cast<std::int16_t>(code_.size());
@@ -98,9 +102,9 @@ void FeatureProgram::Evaluate(const FeatureInput& input, FeatureMemory* memory,
     const double e = argument(0);
     if (first) slot = {i.op == Op::kLowpass ? e : 0.0, e};
     switch (i.op) {
-      case Op::kLowpass: value[n] = first ? e : Lowpass(&slot, e, argument(1), dt); break;
+      case Op::kLowpass: value[n] = first ? e : Lowpass(&slot, e, argument(1), dt, i.held); break;
       case Op::kIntegral:
-        slot.state += 0.5 * dt * (slot.before + e);
+        slot.state += i.held ? dt * slot.before : 0.5 * dt * (slot.before + e);
         slot.before = e;
         value[n] = slot.state;
         break;
@@ -115,7 +119,7 @@ void FeatureProgram::Evaluate(const FeatureInput& input, FeatureMemory* memory,
       default: {  // delay
         auto& line = memory->line[static_cast<std::size_t>(i.line)];
         line[static_cast<std::size_t>(memory->samples % kMaxDelaySamples)] = e;
-        value[n] = first ? e : Delayed(line, memory->samples + 1, argument(1), dt);
+        value[n] = first ? e : Delayed(line, memory->samples + 1, argument(1), dt, i.held);
       }
     }
   }

@@ -235,10 +235,10 @@ int Graph::Derivative(int node, int by, std::map<int, int>* known) {  // NOLINT(
     case Op::kLowpass:
     case Op::kDelay:
       if (DependsOn(b, by)) return -1;
-      result = Make(n.op, d[0], b);
+      result = Make(n.op, d[0], b, c);
       break;
     case Op::kIntegral:
-    case Op::kPrevious: result = Make(n.op, d[0]); break;
+    case Op::kPrevious: result = Make(n.op, d[0], -1, c); break;
     default:  // conditions, sign, step: flat between their jumps
       result = Number(0.0);
   }

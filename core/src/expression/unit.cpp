@@ -20,7 +20,7 @@ struct Named {
 };
 
 // A unit of the SI stands before others of its size: Text() takes the first that fits.
-constexpr std::array<Named, 42> kNamed{{
+constexpr std::array<Named, 46> kNamed{{
     {"m", 1.0, {1, 0, 0, 0, 0, 0, 0}, true},
     {"g", 1e-3, {0, 1, 0, 0, 0, 0, 0}, true},
     {"s", 1.0, {0, 0, 1, 0, 0, 0, 0}, true},
@@ -63,6 +63,10 @@ constexpr std::array<Named, 42> kNamed{{
     {"psi", 6894.757293168361, {-1, 1, -2, 0, 0, 0, 0}, false},
     {"in", 0.0254, {1, 0, 0, 0, 0, 0, 0}, false},
     {"lbf", 4.4482216152605, {1, 1, -2, 0, 0, 0, 0}, false},
+    {"mmHg", 133.322387415, {-1, 1, -2, 0, 0, 0, 0}, false},
+    {"Ah", 3600.0, {0, 0, 1, 1, 0, 0, 0}, true},
+    {"Wh", 3600.0, {2, 1, -2, 0, 0, 0, 0}, true},
+    {"\xce\xa9", 1.0, {2, 1, -3, -2, 0, 0, 0}, true},
 }};
 
 struct Prefix {

@@ -134,7 +134,12 @@ void PlantProgram::CompileModes() {
     return plant_->description().law.empty() ? "mode[" + std::to_string(active_[a]) + "].law" : std::string("law");
   };
   std::vector<int> scalars;
-  Remembered remembered(&graph_, static_cast<int>(plant_->states().size()));
+  std::vector<Remembered::State> states;
+  // In a mode a parameter means that mode's value; in a passive one that of the last mode that is none.
+  for (const PlantState& state : plant_->states())
+    states.push_back({OfActingMode([&](std::size_t a) { return InMode(state.rate, a); }),
+                      OfActingMode([&](std::size_t a) { return InMode(state.start, a); }), state.measured_by >= 0});
+  Remembered remembered(&graph_, std::move(states), HeldSignals(plant_->description()));
   std::vector<int> laws;
   const auto add_law = [&](int node, const std::string& key) {
     try {
@@ -203,22 +208,18 @@ void PlantProgram::CompileFeatures(const std::vector<int>& scalars, const Rememb
 }
 
 void PlantProgram::CompileStates(Remembered* remembered, std::vector<int>* scalars) {
-  std::vector<int> rates, starts;
+  std::vector<int> rates;
   for (std::size_t s = 0; s < plant_->states().size(); ++s) {
-    const PlantState& state = plant_->states()[s];
-    // In a mode a parameter means that mode's value; in a passive one that of the last mode that is none.
-    const int rate = OfActingMode([&](std::size_t a) { return InMode(state.rate, a); });
     try {
-      rates.push_back(remembered->InRate(rate));
+      rates.push_back(remembered->InRate(remembered->of_plant()[s].rate));
     } catch (const std::logic_error& error) {  // length_error, invalid_argument
       throw PlantError("states." + plant_->description().states[s].name + ".rate", 0,
                        std::string("the rate ") + error.what());
     }
-    starts.push_back(OfActingMode([&](std::size_t a) { return InMode(state.start, a); }));
   }
   for (const RememberedState& state : remembered->states()) rates.push_back(remembered->RateOf(state));
   if (rates.empty()) return;
-  states_ = PlantStates(*plant_, &graph_, rates, remembered->Starts(std::move(starts)), remembered->states(),
+  states_ = PlantStates(*plant_, &graph_, rates, remembered->Starts(), remembered->states(), remembered->Held(),
                         static_cast<int>(sampled_.size()), scalars);
 }
 

@@ -77,12 +77,13 @@ int Remembered::ShiftedAnew(int node, Op op, int tau, bool in_rate) {  // NOLINT
   if (!at.varies) return node;
   if (!at.sampled) {
     if (op == Op::kDelay && graph_.at(tau).sampled) return PastOf(node, Visit(tau, in_rate));
-    const int shifted = graph_.Make(op, node, tau);
+    const bool held = op == Op::kDelay && !in_rate && held_.Is(node);
+    const int shifted = graph_.Make(op, node, tau, held ? graph_.Number(1.0) : -1);
     return in_rate ? Visit(shifted, true) : shifted;
   }
   const std::string name(expression::InfoOf(op).name);
   if (at.op == Op::kSymbol)
-    throw std::invalid_argument("takes " + name + "() of a state: take it of the inputs in the state's rate instead");
+    return LateState(at.index, op == Op::kDelay ? Visit(tau, true) : graph_.Symbol(SymbolKind::kInterval, 0));
   if (at.op == Op::kLowpass && !graph_.at(at.argument[1]).varies)
     return AddState(Shifted(at.argument[0], op, tau, true), Visit(at.argument[1], true));
   if (at.op == Op::kDelay && op == Op::kDelay)
@@ -101,17 +102,54 @@ int Remembered::AddState(int argument, int tau) {
     return state.argument == argument && state.tau == tau;
   });
   if (found != states_.end()) return graph_.Symbol(SymbolKind::kState, found->state);
-  const int state = num_states_ + static_cast<int>(states_.size());
-  if (state >= kMaxStates)
-    throw std::length_error("needs more than " + std::to_string(kMaxStates) +
-                            " states, of which each lowpass() and integral() of something sampled is one");
-  states_.push_back({state, argument, tau});
-  return graph_.Symbol(SymbolKind::kState, state);
+  return NewState({.argument = argument, .tau = tau});
 }
 
-int Remembered::Input(int node) {
+int Remembered::NewState(const RememberedState& state) {
+  const int number = static_cast<int>(of_plant_.size() + states_.size());
+  if (number >= kMaxStates)
+    throw std::length_error("needs more than " + std::to_string(kMaxStates) +
+                            " states, of which each lowpass() and integral() of something sampled is one, and each "
+                            "state again that delay() or previous() asks for, with those that move it");
+  states_.push_back(state);
+  states_.back().state = number;
+  return graph_.Symbol(SymbolKind::kState, number);
+}
+
+int Remembered::LateState(int state, int tau) {  // NOLINT(misc-no-recursion): as deep as there are states
+  if (const auto known = late_.find({state, tau}); known != late_.end())
+    return graph_.Symbol(SymbolKind::kState, known->second);
+  const State& of = of_plant_[static_cast<std::size_t>(state)];
+  if (of.measured)
+    throw std::invalid_argument("takes delay() or previous() of a state that is measured: take it of its signal");
+  if (std::find(open_.begin(), open_.end(), state) != open_.end())
+    throw std::invalid_argument("takes delay() of a state that moves itself late, which takes more than states");
+  const int symbol = NewState({.late = state});
+  const std::size_t place = states_.size() - 1;
+  late_.emplace(std::pair(state, tau), states_[place].state);
+  open_.push_back(state);
+  // It stands still until its first sample is tau ago; the interval in which it begins to move counts with its share.
+  const int interval = graph_.Symbol(SymbolKind::kInterval, 0);
+  const int end = Input(graph_.Make(Op::kAdd, graph_.Make(Op::kElapsed), interval), true);
+  const int share = graph_.Make(Op::kDivide, graph_.Make(Op::kSubtract, end, tau), interval);
+  const int gate = graph_.Make(Op::kMin, graph_.Number(1.0), graph_.Make(Op::kMax, graph_.Number(0.0), share));
+  const int rate = graph_.Make(Op::kMultiply, gate, Shifted(of.rate, Op::kDelay, tau, true));
+  open_.pop_back();
+  states_[place].rate = rate;
+  return symbol;
+}
+
+int Remembered::Input(int node, bool held) {
   const int place = PlaceIn(&inputs_, node, PlantPoint::kMaxRemembered, "functions with memory in rates");
+  if (inputs_held_.size() < inputs_.size()) inputs_held_.push_back(held || held_.Is(node));
   return graph_.Symbol(SymbolKind::kSignal, PlantPoint::kFirstRemembered + place);
+}
+
+std::vector<bool> Remembered::Held() {
+  std::vector<bool> held = inputs_held_;
+  held.resize(PlantPoint::kMaxRemembered, false);
+  for (const int line : lines_) held.push_back(held_.Is(line));
+  return held;
 }
 
 int Remembered::PastOf(int node, int tau) {
@@ -121,19 +159,24 @@ int Remembered::PastOf(int node, int tau) {
 }
 
 int Remembered::RateOf(const RememberedState& state) {
+  if (state.late >= 0) return state.rate;
   if (state.tau < 0) return state.argument;
   const int symbol = graph_.Symbol(SymbolKind::kState, state.state);
   return graph_.Make(Op::kDivide, graph_.Make(Op::kSubtract, state.argument, symbol), state.tau);
 }
 
-std::vector<int> Remembered::Starts(std::vector<int> starts) {
+std::vector<int> Remembered::Starts() {
+  std::vector<int> starts;
+  for (const State& state : of_plant_) starts.push_back(state.start);
   std::map<int, int> by;
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     by.emplace(graph_.Symbol(SymbolKind::kSignal, PlantPoint::kFirstRemembered + static_cast<int>(i)), inputs_[i]);
   for (std::size_t s = 0; s < starts.size(); ++s)
     by.emplace(graph_.Symbol(SymbolKind::kState, static_cast<int>(s)), starts[s]);
   for (const RememberedState& state : states_) {
-    starts.push_back(state.tau < 0 ? graph_.Number(0.0) : graph_.Substitute(state.argument, by));
+    starts.push_back(state.late >= 0 ? starts[static_cast<std::size_t>(state.late)]
+                     : state.tau < 0 ? graph_.Number(0.0)
+                                     : graph_.Substitute(state.argument, by));
     by.emplace(graph_.Symbol(SymbolKind::kState, state.state), starts.back());
   }
   return starts;

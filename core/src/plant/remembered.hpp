@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "armcmc/expression/graph.hpp"
+#include "armcmc/plant/held.hpp"
 #include "armcmc/plant/states.hpp"
 
 namespace armcmc {
@@ -14,28 +15,39 @@ namespace armcmc {
 /// Functions with memory of a plant's laws and rates, brought into forms that a tape can run.
 ///
 /// - `lowpass(e, tau)`, `integral(e)` of what a parameter or a state changes: a further state, exact between samples.
-/// - `delay(e, tau)`, `previous(e)` of such an e: e of delayed signals, f(delay(u, tau), theta).
+/// - `delay(e, tau)`, `previous(e)` of such an e: e of delayed signals, f(delay(u, tau), theta); of a state: a further
+///   state that is driven by them.
 /// - `delay(u, tau)` of signals alone by a tau that is sampled: u is kept, and every candidate looks its own sample up.
-/// - Any of signals alone: in a law a feature; in a rate an input that is linear between samples.
+/// - Any of signals alone: in a law a feature; in a rate an input that is linear or held between samples.
 class Remembered {
  public:
-  /// @param num_states  Of the plant; those that are added come behind them.
-  Remembered(expression::Graph* graph, int num_states) : graph_(*graph), num_states_(num_states) {}
+  /// A state of the plant; those that are added come behind them.
+  struct State {
+    int rate = -1, start = -1;  ///< Nodes.
+    bool measured = false;      ///< Each pack begins with a signal.
+  };
+  /// @param held  [signal] Those that are, between samples.
+  Remembered(expression::Graph* graph, std::vector<State> states, std::vector<bool> held)
+      : graph_(*graph), of_plant_(std::move(states)), held_(graph, std::move(held)) {}
 
   /// The law, or the rate, without functions with memory that a tape cannot run.
   /// @throws std::invalid_argument, std::length_error saying what is not possible.
   [[nodiscard]] int InLaw(int node) { return Visit(node, false); }
   [[nodiscard]] int InRate(int node) { return Visit(node, true); }
 
+  [[nodiscard]] const std::vector<State>& of_plant() const noexcept { return of_plant_; }
   /// States that were added, in an order in which each needs those before it alone.
   [[nodiscard]] const std::vector<RememberedState>& states() const noexcept { return states_; }
   /// Rate of an added state, for others that read it between samples.
   [[nodiscard]] int RateOf(const RememberedState& state);
-  /// Starts of the added states. @param starts  Of the plant's.
-  [[nodiscard]] std::vector<int> Starts(std::vector<int> starts);
+  /// Starts of all states.
+  [[nodiscard]] std::vector<int> Starts();
 
   /// Functions with memory that rates read as inputs: input i is the signal PlantPoint::kFirstRemembered + i.
   [[nodiscard]] const std::vector<int>& inputs() const noexcept { return inputs_; }
+  /// Whether it is held between samples: of an input; of a place in a line, behind kMaxRemembered of those. A rate that
+  /// looks a held signal up from where the sample stands has its mean until the next one.
+  [[nodiscard]] std::vector<bool> Held();
   /// What is kept to be looked up: the newest sample of line i stands at the signal PlantPoint::kFirstPosition + i.
   [[nodiscard]] const std::vector<int>& lines() const noexcept { return lines_; }
 
@@ -47,15 +59,22 @@ class Remembered {
   int Shifted(int node, expression::Op op, int tau, bool in_rate);
   int ShiftedAnew(int node, expression::Op op, int tau, bool in_rate);
   int AddState(int argument, int tau);
-  int Input(int node);
+  int NewState(const RememberedState& state);
+  int LateState(int state, int tau);
+  /// @param held  Between samples, though it may not be made of what is.
+  int Input(int node, bool held = false);
   int PastOf(int node, int tau);
 
   expression::Graph& graph_;
-  int num_states_;
+  std::vector<State> of_plant_;
   std::map<std::pair<int, bool>, int> known_;
   std::map<std::tuple<int, expression::Op, int, bool>, int> shifted_;
   std::vector<RememberedState> states_;
   std::vector<int> inputs_, lines_;
+  std::vector<bool> inputs_held_;
+  HeldNodes held_;
+  std::map<std::pair<int, int>, int> late_;  ///< State and tau to the late one.
+  std::vector<int> open_;                    ///< States whose late ones are being made.
 };
 
 }  // namespace armcmc

@@ -67,6 +67,7 @@ void RungeKutta::MakeExact(const std::vector<RememberedState>& remembered, std::
   const auto minus = [this](int a, int b) { return graph_.Make(Op::kSubtract, a, b); };
   const auto over = [this](int a, int b) { return graph_.Make(Op::kDivide, a, b); };
   for (const RememberedState& one : remembered) {
+    if (one.late >= 0) continue;
     const auto s = static_cast<std::size_t>(one.state);
     const int a = At(one.argument, states_, 0);
     const int b = At(one.argument, *results, 2);

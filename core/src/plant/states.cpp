@@ -24,17 +24,20 @@ constexpr int kMaxStepInputs = 64;  ///< Of the rates, at one point.
 
 PlantStates::PlantStates(const Plant& plant, expression::Graph* graph, const std::vector<int>& rates,
                          const std::vector<int>& starts, const std::vector<RememberedState>& remembered,
-                         int num_parameters, std::vector<int>* scalars)
+                         const std::vector<bool>& held_inputs, int num_parameters, std::vector<int>* scalars)
     : size_(static_cast<int>(rates.size())) {
   all_measured_ = true;
   const auto& signals = plant.description().signals;
   for (std::size_t s = 0; s < signals.size(); ++s) between_[s] = BetweenNamed(signals[s].between);
+  for (std::size_t i = 0; i < held_inputs.size(); ++i)
+    if (held_inputs[i]) between_[PlantPoint::kFirstRemembered + i] = Between::kHeld;
   const int output = plant.NodeOf(expression::SymbolKind::kSignal, plant.output());
   for (std::size_t s = 0; s < rates.size(); ++s) {
     const bool of_plant = s < plant.states().size();
     measured_by_[s] = of_plant ? plant.states()[s].measured_by : -1;
     all_measured_ = all_measured_ && measured_by_[s] >= 0;
-    given_start_[s] = of_plant && measured_by_[s] < 0 && !graph->at(starts[s]).sampled;
+    const bool is_state = of_plant || remembered[s - plant.states().size()].late >= 0;
+    given_start_[s] = is_state && measured_by_[s] < 0 && !graph->at(starts[s]).sampled;
     const int slope = measured_by_[s] < 0 ? graph->Differentiate(starts[s], output) : -1;
     output_in_start_[s] = measured_by_[s] == plant.output()      ? 1.0
                           : slope >= 0 && graph->IsNumber(slope) ? graph->at(slope).value
@@ -126,9 +129,8 @@ bool PlantStates::Prepare(const DataPack& pack, const PlantPoint::Values* point,
     for (int p = 0; p <= points; ++p) {
       const double part = static_cast<double>(p) / points;
       for (std::size_t s = 0; s < between.size(); ++s)
-        between[s] =
-            ValueBetween(s < between_.size() ? between_[s] : Between::kLinear, has_earlier ? &earlier[s] : nullptr,
-                         from[s], to[s], has_later ? &later[s] : nullptr, part);
+        between[s] = ValueBetween(between_[s], has_earlier ? &earlier[s] : nullptr, from[s], to[s],
+                                  has_later ? &later[s] : nullptr, part);
       inputs_.Evaluate({between.data(), first_t + (i + part) * pack.dt, pack.dt}, nullptr,
                        given.data() + 1 + static_cast<std::size_t>(p == 0 ? 0 : 2 - p % 2) * width);
       if (p == 0 || p % 2 == 1) continue;

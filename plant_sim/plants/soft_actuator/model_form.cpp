@@ -3,15 +3,15 @@
 namespace armcmc::plant_sim {
 
 const ModelForm& ActuatorModelForm() {
-  static const ModelForm form{
-      {"soft_actuator", "soft_actuator_excited"},
-      {"parameters", "constants", "pressure_rate"},  // one prior serves both valves: it says nothing on either
-      {{"pressure_bias", "constant", {"bias"}, {}, ModelEffect::Same},
-       {"valve_lag", "spool", {"tau"}, {}, ModelEffect::Same},
-       {"valve_dead_band", "rescaled", {"width"}, {}, ModelEffect::Same},
-       {"supply_droop", "opening", {"droop"}, {}, ModelEffect::Same},
-       {"leak", "linear", {"rate"}, {}, ModelEffect::Same}},
-      true};
+  // One prior serves both valves, which says nothing on either.
+  static const ModelForm form{{"soft_actuator", "soft_actuator_excited"},
+                              {"parameters", "constants", "regress_rate", "pressure_rate"},
+                              {{"pressure_bias", "constant", {"bias"}, {}, ModelEffect::Same},
+                               {"valve_lag", "spool", {"tau"}, {}, ModelEffect::Same},
+                               {"valve_dead_band", "rescaled", {"width"}, {}, ModelEffect::Same},
+                               {"supply_droop", "opening", {"droop"}, {}, ModelEffect::Same},
+                               {"leak", "linear", {"rate"}, {}, ModelEffect::Same}},
+                              true};
   return form;
 }
 

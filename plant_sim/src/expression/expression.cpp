@@ -70,6 +70,28 @@ double Between(const std::vector<double>& t, const std::vector<double>& e, doubl
   return e[i - 1] + (at - t[i - 1]) / (t[i] - t[i - 1]) * (e[i] - e[i - 1]);
 }
 
+/// The value at a time of what is held from sample to sample.
+double HeldAt(const std::vector<double>& t, const std::vector<double>& e, double at) {
+  constexpr double kRounding = 1e-6;  // of an interval: a whole number of them that was computed is one
+  const double interval = t.size() > 1 ? t[1] - t[0] : 0.0;
+  const auto after = std::upper_bound(t.begin(), t.end(), at + kRounding * interval);
+  return after == t.begin() ? e.front() : e[static_cast<std::size_t>(after - t.begin()) - 1];
+}
+
+void MarkHeld(Tree* node, const Names& names, const std::vector<bool>& held) {
+  for (Tree& argument : node->arguments) MarkHeld(&argument, names, held);
+  const auto is_held = [](const Tree& argument) { return argument.held; };
+  const auto place = static_cast<std::size_t>(std::find(names.begin(), names.end(), node->text) - names.begin());
+  if (node->kind == Kind::kNumber)
+    node->held = true;
+  else if (node->kind == Kind::kName)
+    node->held = place < held.size() && held[place];
+  else if (HasMemory(*node))
+    node->held = (node->text == "delay" || node->text == "previous") && node->arguments[0].held;
+  else
+    node->held = std::all_of(node->arguments.begin(), node->arguments.end(), is_held);
+}
+
 bool ReadsPlace(const Tree& node, int place) {
   if (node.kind == Kind::kName) return node.slot == place;
   return std::any_of(node.arguments.begin(), node.arguments.end(),
@@ -87,9 +109,13 @@ bool RemembersPlaceIn(const Tree& node, int place) {
 
 double Apply(const std::string& what, double a, double b, double c) { return Table().at(what)(a, b, c); }
 
-Expression::Expression(std::string_view text, const Names& names) : tree_(Parse(text)) { Bind(&tree_, names); }
+Expression::Expression(std::string_view text, const Names& names, const std::vector<bool>& held, bool is_rate)
+    : tree_(Parse(text)) {
+  MarkHeld(&tree_, names, held);
+  Bind(&tree_, names, held, is_rate);
+}
 
-void Expression::Bind(Tree* node, const Names& names) {
+void Expression::Bind(Tree* node, const Names& names, const std::vector<bool>& held, bool integrated) {
   if (node->kind == Kind::kName) {
     const auto at = std::find(names.begin(), names.end(), node->text);
     if (at == names.end())
@@ -100,7 +126,10 @@ void Expression::Bind(Tree* node, const Names& names) {
     node->slot = static_cast<int>(memories_.size());
     memories_.emplace_back();
   }
-  for (Tree& argument : node->arguments) Bind(&argument, names);
+  const bool integrates = node->text == "lowpass" || node->text == "integral";
+  node->takes_held =
+      HasMemory(*node) && !node->arguments.empty() && node->arguments[0].held && (integrates || !integrated);
+  for (Tree& argument : node->arguments) Bind(&argument, names, held, integrated || (integrates && node->takes_held));
 }
 
 bool Expression::Reads(int place) const { return ReadsPlace(tree_, place); }
@@ -116,7 +145,7 @@ double Expression::WalkBetween(const Tree& node, const std::vector<double>& valu
   if (node.kind == Kind::kName) return values[static_cast<std::size_t>(node.slot)];
   if (HasMemory(node)) {
     const Memory& memory = memories_[static_cast<std::size_t>(node.slot)];
-    return memory.last_result + part * (memory.result - memory.last_result);
+    return memory.last_result + (node.held ? 0.0 : part) * (memory.result - memory.last_result);
   }
   std::array<double, 3> argument{};
   for (std::size_t i = 0; i < node.arguments.size(); ++i) argument[i] = WalkBetween(node.arguments[i], values, part);
@@ -149,18 +178,20 @@ double Expression::Remember(const Tree& node, double e, double tau, double dt) {
   if (node.text == "elapsed") return memory.elapsed;
   if (node.text == "previous") return a;
   if (node.text == "integral") {
-    if (!first) memory.y += dt * (a + e) / 2.0;
+    if (!first) memory.y += dt * (node.takes_held ? a : (a + e) / 2.0);
     return memory.y;
   }
   if (node.text == "delay") {
     memory.t.push_back(memory.elapsed);
     memory.e.push_back(e);
-    return Between(memory.t, memory.e, memory.elapsed - tau);
+    return node.takes_held ? HeldAt(memory.t, memory.e, memory.elapsed - tau)
+                           : Between(memory.t, memory.e, memory.elapsed - tau);
   }
   if (first || !(tau > 0.0)) return memory.y = e;
   const double decay = std::exp(-dt / tau);
   const double mean = -std::expm1(-dt / tau) * tau / dt;
-  memory.y = memory.y * decay + a * (mean - decay) + e * (1.0 - mean);
+  memory.y =
+      node.takes_held ? memory.y * decay + a * (1.0 - decay) : memory.y * decay + a * (mean - decay) + e * (1.0 - mean);
   return memory.y;
 }
 

@@ -10,6 +10,7 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/settings.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 #include "plants/hunt_crossley/model.hpp"
 
 namespace armcmc::test {
@@ -179,8 +180,8 @@ inline std::vector<HiddenEffect> Catalogue() {
 
 /// The settings of an estimator that knows the effect, with a prior that does not know its size.
 inline EffectSettings SettingsOf(const HiddenEffect& hidden) {
-  EffectSettings effect =
-      MakeEffect(HuntCrossley::kInfo, hidden.name, {.force = 5.0, .length = 1.0, .speed = 2.0, .acceleration = 8.0});
+  EffectSettings effect = MakeEffect(HuntCrossley::kInfo, hidden.name,
+                                     ContactScales{.force = 5.0, .length = 1.0, .speed = 2.0, .acceleration = 8.0});
   effect.gate = hidden.gate;
   effect.from_s = hidden.from_s;
   effect.until_s = hidden.until_s;

@@ -31,7 +31,7 @@ EstimatorSettings With(std::initializer_list<const char*> names) {
 
 TEST(EffectSettings, TheCatalogueIsValidAtAnyScale) {
   for (const EffectInfo* info : ContactEffects::kInfos)
-    for (const EffectScales& scales : {EffectScales{}, EffectScales{5.0, 2e-3, 0.01, 0.3, 10.0}}) {
+    for (const ContactScales& scales : {ContactScales{}, ContactScales{5.0, 2e-3, 0.01, 0.3, 10.0}}) {
       EstimatorSettings settings = BuiltinSettings("hunt_crossley");
       settings.effects[0] = MakeEffect(HuntCrossley::kInfo, std::string(info->name), scales);
       settings.num_effects = 1;
@@ -42,10 +42,11 @@ TEST(EffectSettings, TheCatalogueIsValidAtAnyScale) {
 }
 
 TEST(EffectSettings, PriorsFollowTheSizeOfTheData) {
-  const EffectSettings small = MakeEffect(HuntCrossley::kInfo, "viscous_friction", {.force = 2.0, .speed = 0.01});
+  const EffectSettings small =
+      MakeEffect(HuntCrossley::kInfo, "viscous_friction", ContactScales{.force = 2.0, .speed = 0.01});
   EXPECT_DOUBLE_EQ(small.amplitudes[0].sd, 0.2 * 2.0 / 0.01);
   EXPECT_EQ(small.amplitudes[0].lower, 0.0);
-  EXPECT_DOUBLE_EQ(MakeEffect(HuntCrossley::kInfo, "adhesion", {.length = 1e-3}).shapes[0], 0.2e-3);
+  EXPECT_DOUBLE_EQ(MakeEffect(HuntCrossley::kInfo, "adhesion", ContactScales{.length = 1e-3}).shapes[0], 0.2e-3);
 }
 
 TEST(EffectSettings, UnknownNameListsTheCatalogue) {

@@ -114,16 +114,16 @@ TEST(FlowEstimator, AChamberAtRestDoesNotLookLikeAnotherValve) {
 }
 
 /// A method after all packs, told the noise in the unit of what it regresses.
-std::unique_ptr<Rig> AfterMeasured(const ValveSeries& series, Method method, bool pressure_rate, int pf_updates = 1) {
+std::unique_ptr<Rig> AfterMeasured(const ValveSeries& series, Method method, bool regress_rate, int pf_updates = 1) {
   EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
   settings.method = method;
-  settings.pressure_rate = pressure_rate;
+  settings.regress_rate = regress_rate;
   settings.forgetting.threshold = 1e9;  // nothing changes: all data count
   settings.forgetting.lambda_max = 1.0 - 1e-12;
   settings.baseline.recall = true;
   settings.baseline.rls_forgetting = 1.0;
   settings.baseline.pf_updates = pf_updates;
-  for (NoiseSettings& noise : settings.noise) noise.std = series.rate_noise * (pressure_rate ? 1.0 : 5e-4);
+  for (NoiseSettings& noise : settings.noise) noise.std = series.rate_noise * (regress_rate ? 1.0 : 5e-4);
   auto rig = std::make_unique<Rig>(settings);
   for (const DataPack& pack : series.Packs()) rig->Step(pack);
   return rig;

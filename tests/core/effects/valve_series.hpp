@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "armcmc/settings.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 #include "plants/soft_actuator/model.hpp"
 #include "support/packs.hpp"
 
@@ -109,8 +110,9 @@ inline EstimatorSettings WithFlowEffects(const std::vector<FlowCase>& cases) {
   EstimatorSettings settings = BuiltinSettings("soft_actuator_excited");
   for (NoiseSettings& noise : settings.noise) noise.std = 500.0;
   for (const FlowCase& one : cases)
-    settings.effects[static_cast<std::size_t>(settings.num_effects++)] = MakeEffect(
-        SoftActuator::kInfo, one.name, {.pressure = 5e4, .pressure_rate = 3e4, .opening = 0.03, .supply = 7e5});
+    settings.effects[static_cast<std::size_t>(settings.num_effects++)] =
+        MakeEffect(SoftActuator::kInfo, one.name,
+                   ActuatorScales{.pressure = 5e4, .pressure_rate = 3e4, .opening = 0.03, .supply = 7e5});
   return settings;
 }
 

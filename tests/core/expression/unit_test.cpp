@@ -27,6 +27,10 @@ TEST(Unit, TheSameQuantityInOtherWords) {
   same("m\xc2\xb2", "m^2");
   same("\xc2\xb5m", "um");
   same("-", "1");
+  same("mAh", "3.6 C");
+  same("kWh", "3.6 MJ");
+  same("mmHg", "133.322387415 Pa");
+  same("k\xce\xa9", "kOhm");
 }
 
 TEST(Unit, OfOtherSizeOrDimension) {

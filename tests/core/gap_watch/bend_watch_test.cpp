@@ -51,7 +51,7 @@ class BendRig {
     return 1e-3 * samples * static_cast<double>(watch_.state().alarm_seq);
   }
   [[nodiscard]] BendWatch& watch() { return watch_; }
-  [[nodiscard]] const PlantConstants& constants() const { return settings_.constants; }
+  [[nodiscard]] ActuatorConstants constants() const { return settings_.constants; }
 
   Law law = Nothing;
   Law measure = [](double, const BendMotion::State& state) { return state.angle; };
@@ -67,7 +67,7 @@ class BendRig {
     constexpr int kSteps = 10;
     const double h = 1e-3 / kSteps;
     const auto acceleration = [&](double t, const BendMotion::State& s) {
-      const PlantConstants& c = settings_.constants;
+      const ActuatorConstants c(settings_.constants);
       return c.q1 * (Pressure(t) - c.p_atm) - c.q2 * s.rate - c.q3 * s.angle + law(t, s);
     };
     for (int i = 0; i < kSteps; ++i) {  // the midpoint rule

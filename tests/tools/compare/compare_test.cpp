@@ -43,7 +43,7 @@ TEST(Differences, EveryKindOfSettingIsSeenAndEqualOnesAreNot) {
   EXPECT_EQ(one([](auto* s) { s->sampler.seed = 7; }), "sampler.seed: 24301 -> 7");
   EXPECT_EQ(one([](auto* s) { s->parameters[0].upper = 9.0; }),
             "model.parameters.K: 2.5 ± 2 in [0, 8] -> 2.5 ± 2 in [0, 9]");
-  EXPECT_EQ(one([](auto* s) { s->pressure_rate = true; }), "model.pressure_rate: false -> true");
+  EXPECT_EQ(one([](auto* s) { s->regress_rate = true; }), "model.regress_rate: false -> true");
   EXPECT_EQ(one([](auto* s) { s->effects[0] = Friction(), s->num_effects = 1; }), "effects: none -> coulomb_friction");
 }
 

@@ -77,7 +77,7 @@ TEST(ActuatorEquation, MotionOfTheBendHoldsNoneOfTheNoiseThatIsToBeExplained) {
 TEST(ActuatorSignals, SmoothThePressureWithoutRoundingTheCornersOfTheValves) {
   const Recording clean = RecordPlant("soft_actuator_excited", {}, 3, 4.0, false);
   const Recording noisy = RecordPlant("soft_actuator_excited", {}, 3, 4.0);
-  const PlantConstants constants = BuiltinSettings("soft_actuator_excited").constants;
+  const ActuatorConstants constants = BuiltinSettings("soft_actuator_excited").constants;
   const Vector truth = clean.Column("p").array() - constants.p_atm;
   const Vector error = ActuatorSignals(noisy, kWindow, constants).at(Role::kPressure) - truth;
   EXPECT_LT(Rms(error), 12.0);  // of 50 Pa
@@ -90,7 +90,7 @@ TEST(ActuatorSignals, SmoothThePressureWithoutRoundingTheCornersOfTheValves) {
 
 TEST(BendSimulation, IsExactForAConstantPressure) {
   // From rest: alpha = q1 p / q3 (1 + (s2 e^(s1 t) - s1 e^(s2 t)) / (s1 - s2)), s1, s2 the poles.
-  const PlantConstants c = BuiltinSettings("soft_actuator_excited").constants;
+  const ActuatorConstants c = BuiltinSettings("soft_actuator_excited").constants;
   const double dt = 2e-3, p = 4e4;
   const Eigen::Index rows = 300;
   const Vector t = Vector::LinSpaced(rows, 0.0, dt * static_cast<double>(rows - 1));
@@ -119,7 +119,7 @@ Vector Somewhere(const EffectForm& form, Vector theta) {
 }
 
 TEST(BendSimulation, RunsAbreastAreThoseOneByOneToTheBit) {
-  const PlantConstants constants = BuiltinSettings("soft_actuator_excited").constants;
+  const ActuatorConstants constants = BuiltinSettings("soft_actuator_excited").constants;
   const auto equation = ActuatorEquation(kBend);
   const Signals s = equation->Prepare(RecordPlant("soft_actuator_excited", {}, 6, 1.0), kWindow);
   const BendSimulation simulation(constants, s.dt);

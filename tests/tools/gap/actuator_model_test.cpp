@@ -73,9 +73,9 @@ double WorstDifference(const Named& named, const EstimatorSettings& settings, do
     pack.num_inputs = 4;
     for (Eigen::Index n = 0; n < kPack; ++n) {
       const double u = s.at(Role::kOpening)[first + n];
-      pack.u[static_cast<std::size_t>(n)] = {std::max(u, 0.0), std::max(-u, 0.0),
-                                             s.at(Role::kPressure)[first + n] + settings.constants.p_atm,
-                                             s.output[first + n]};
+      pack.u[static_cast<std::size_t>(n)] = {
+          std::max(u, 0.0), std::max(-u, 0.0),
+          s.at(Role::kPressure)[first + n] + ActuatorConstants(settings.constants).p_atm, s.output[first + n]};
     }
     pack.t_last_s = s.t[first + kPack - 1];
     EXPECT_TRUE(composition.Prepare(pack, effects.get()));

@@ -69,7 +69,7 @@ TEST(ExcitedActuator, ArmcmcIsAheadOnEveryParameterAndItsIntervalsHold) {
   int modifications = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     const auto csv = Simulated(kFirstSeed + static_cast<std::uint64_t>(seed), folder.path());
-    const Recording recording = ReadRecording(csv, SoftActuator::kInfo.plant, settings.constants.p_atm);
+    const Recording recording = ReadRecording(csv, SoftActuator::kInfo.plant, ConstantOf(settings, "p_atm"));
     for (const MethodSpec& spec : methods) {
       const Trace trace = RunMethod(recording, spec);
       const ActuatorScore s = ScoreActuator(recording, trace, Point::kMap, spec.settings);

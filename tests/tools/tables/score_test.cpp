@@ -71,7 +71,7 @@ TEST(ScoreActuator, ComparesGainAndFlow) {
   r.plant = SoftActuator::kInfo.plant;
   r.u[0].assign(501, 1e-6);
   r.u[1].assign(501, 0.0);
-  r.u[2].assign(501, settings.constants.p_atm);
+  r.u[2].assign(501, ConstantOf(settings, "p_atm"));
   r.u[3].assign(501, 2.0);
   r.y.assign(501, 0.0);
   r.target.assign(501, 2.0 * 4e-4);

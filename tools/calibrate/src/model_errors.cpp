@@ -17,7 +17,7 @@ double ModelErrors::Of(const DataPack& pack, const std::array<ModeEstimate, kMax
   std::array<double, kMaxParams> theta{};
   for (std::size_t d = 0; d < static_cast<std::size_t>(model_.num_parameters); ++d)
     theta[d] = estimates[m].marginal[d].ar_ap;
-  if (settings_.pressure_rate) return OfPressureRate(pack, theta.data(), mode, errors);
+  if (settings_.regress_rate) return OfRate(pack, theta.data(), mode, errors);
   model_.compiled->prepare(pack, settings_.constants, mode, &data_);
   double square = 0.0;
   for (int n = 0; n < data_.num_samples; ++n) {
@@ -28,7 +28,7 @@ double ModelErrors::Of(const DataPack& pack, const std::array<ModeEstimate, kMax
   return data_.num_samples > 0 ? square / data_.num_samples : 0.0;
 }
 
-double ModelErrors::OfPressureRate(const DataPack& pack, const double* theta, int mode, std::vector<double>* errors) {
+double ModelErrors::OfRate(const DataPack& pack, const double* theta, int mode, std::vector<double>* errors) {
   double square = 0.0;
   for (int n = 0; n < pack.num_samples; ++n) {
     if (model_.mode_of(pack, n) != mode) continue;

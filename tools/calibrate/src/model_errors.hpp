@@ -25,7 +25,7 @@ class ModelErrors {
 
  private:
   /// The same where the pressure rate is what is regressed.
-  double OfPressureRate(const DataPack& pack, const double* theta, int mode, std::vector<double>* errors);
+  double OfRate(const DataPack& pack, const double* theta, int mode, std::vector<double>* errors);
 
   EstimatorSettings settings_;
   const ModelInfo& model_;

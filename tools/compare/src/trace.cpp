@@ -182,7 +182,7 @@ std::vector<SettingDifference> DifferencesOf(const EstimatorSettings& a, const E
       add("model.parameters." + a.parameters[k].name, Prior(a.parameters[k]), Prior(b.parameters[k]));
     }
   }
-  add("model.pressure_rate", YesNo(a.pressure_rate), YesNo(b.pressure_rate));
+  add("model.regress_rate", YesNo(a.regress_rate), YesNo(b.regress_rate));
   for (std::size_t m = 0; m < a.noise.size(); ++m)
     add("noise (mode " + std::to_string(m) + ")", NoiseText(a.noise[m]), NoiseText(b.noise[m]));
   const ForgettingSettings &f = a.forgetting, &g = b.forgetting;

@@ -113,9 +113,11 @@ void LowpassWeights(double tau, double dt, double* decay, double* weight) {
 }
 
 /// The value `tau` before the newest, linear between samples; before the first sample, the first.
-double Delayed(const std::vector<Lanes>& line, std::size_t lane, double tau, double dt) {
+/// @param held  Not linear, but the last sample before.
+double Delayed(const std::vector<Lanes>& line, std::size_t lane, double tau, double dt, bool held) {
+  constexpr double kRounding = 1e-6;  // a whole number of samples that was computed is one
   const auto newest = static_cast<double>(line.size() - 1);
-  const double asked = tau / dt;
+  const double asked = held ? std::ceil(tau / dt - kRounding) : tau / dt;
   if (std::isnan(asked)) return asked;
   const double at = newest - std::clamp(asked, 0.0, newest);
   const auto whole = static_cast<std::size_t>(at);
@@ -155,6 +157,7 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
     i.op = node.op;
     i.value = node.value;
     i.time = node.kind == expression::SymbolKind::kTime;
+    i.interval = i.op == Op::kSymbol && node.kind == expression::SymbolKind::kInterval;
     i.block = num_blocks_++;
     bool constant = i.op != Op::kSymbol, first = true;
     for (std::size_t a = 0; a < expression::kMaxArguments; ++a) {
@@ -175,12 +178,13 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
       if (exponent > 0.0 && exponent < kMostMultiplied && (i.half || exponent == std::floor(exponent)))
         i.power = static_cast<int>(exponent);
     }
-    if (i.op == Op::kSymbol) {
+    if (i.op == Op::kSymbol && !i.interval) {
       i.index = static_cast<std::size_t>(node.index);
       i.varies = i.time ? Varies::kBySample : inputs[i.index];
     }
     i.memory = expression::InfoOf(i.op).memory;
     if (i.memory) {
+      i.held = node.argument[2] >= 0;
       i.steady = i.op == Op::kLowpass && place[static_cast<std::size_t>(node.argument[1])].varies == Varies::kByLane;
       i.index = num_memories_++;
       i.varies = Varies::kByBoth;
@@ -206,8 +210,10 @@ LaneRun LaneProgram::Begin(const Lanes* input, double dt) const {
   run.slot.resize(num_memories_);
   run.line.resize(num_delays_);
   for (const Instruction& i : once_) {
-    if (i.op == Op::kNumber) run.one[i.block].value.fill(i.value);
-    if (i.op == Op::kSymbol) Copy(input[i.index].data(), run.one[i.block].value.data());
+    if (i.op == Op::kNumber || i.interval)
+      run.one[i.block].value.fill(i.interval ? dt : i.value);
+    else if (i.op == Op::kSymbol)
+      Copy(input[i.index].data(), run.one[i.block].value.data());
   }
   ComputeOnce(&run.one);
   for (const Instruction& i : once_)
@@ -302,12 +308,14 @@ void LaneProgram::Remember(const Instruction& instruction, bool first, const dou
       if (!instruction.steady)
         for (std::size_t l = 0; l < kLanes; ++l) LowpassWeights(tau[l], dt, &slot.decay[l], &slot.weight[l]);
       for (std::size_t l = 0; l < kLanes && !first; ++l)
-        slot.state[l] = slot.state[l] * slot.decay[l] + slot.before[l] * (slot.weight[l] - slot.decay[l]) +
-                        e[l] * (1.0 - slot.weight[l]);
+        slot.state[l] = slot.state[l] * slot.decay[l] +
+                        slot.before[l] * ((instruction.held ? 1.0 : slot.weight[l]) - slot.decay[l]) +
+                        (instruction.held ? 0.0 : e[l] * (1.0 - slot.weight[l]));
       std::copy_n(slot.state.data(), kLanes, y);
       break;
     case Op::kIntegral:
-      for (std::size_t l = 0; l < kLanes; ++l) y[l] = slot.state[l] += first ? 0.0 : 0.5 * dt * (slot.before[l] + e[l]);
+      for (std::size_t l = 0; l < kLanes; ++l)
+        y[l] = slot.state[l] += first ? 0.0 : dt * (instruction.held ? slot.before[l] : 0.5 * (slot.before[l] + e[l]));
       break;
     case Op::kPrevious: std::copy_n(slot.before.data(), kLanes, y); break;
     case Op::kElapsed:
@@ -317,7 +325,7 @@ void LaneProgram::Remember(const Instruction& instruction, bool first, const dou
       std::vector<Lanes>& line = run->line[instruction.line];
       line.emplace_back();
       std::copy_n(e, kLanes, line.back().data());
-      for (std::size_t l = 0; l < kLanes; ++l) y[l] = Delayed(line, l, tau[l], dt);
+      for (std::size_t l = 0; l < kLanes; ++l) y[l] = Delayed(line, l, tau[l], dt, instruction.held);
     }
   }
   std::copy_n(e, kLanes, slot.before.data());

@@ -5,6 +5,8 @@
 #include <functional>
 #include <map>
 
+#include "armcmc/plant/held.hpp"
+
 namespace armcmc::identify {
 namespace {
 
@@ -70,6 +72,10 @@ TrajectoryModel::TrajectoryModel(std::shared_ptr<const Plant> plant, std::shared
     if (rate_.Reads(s)) rate_reads_.push_back(s);
   }
   num_past_ = past.size();
+  std::vector<bool> held_inputs = HeldSignals(plant_->description());
+  held_inputs.resize(first_state_, true);  // parameters do not change either
+  HeldNodes held(&graph, held_inputs);
+  for (const int node : past) past_held_.push_back(held.Is(node));
 }
 
 void TrajectoryModel::ChooseParameters() {

@@ -94,7 +94,8 @@ class TrajectoryModel::Walk {
                &input_[s]);
         }
         for (std::size_t p = 0; p < model_.num_past_; ++p)
-          for (std::size_t l = 0; l < kLanes; ++l) past[p][l] = before_[p][l] + part * (after_[p][l] - before_[p][l]);
+          for (std::size_t l = 0; l < kLanes; ++l)
+            past[p][l] = before_[p][l] + (model_.past_held_[p] ? 0.0 : part) * (after_[p][l] - before_[p][l]);
         if (stage > 0) AddScaled(num_states, origin_.data(), kPart[stage] * h, rate_.data(), state);
         const double t = model_.series_->t[row] + part * model_.series_->dt;
         model_.rate_.Evaluate(1, input_.data(), 1, &t, &rate_run_, rate_.data());

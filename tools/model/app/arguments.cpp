@@ -28,6 +28,7 @@ void Declare(CLI::App* app, Arguments* a) {
               "Recording file, or CSV whose columns are t and the plant's signals: which parameters do they tell?")
           ->check(CLI::ExistingFile);
   check->add_option("--data-dir", a->data_dir, "Where the recording's CSV is if not beside its file")->needs(data);
+  check->add_flag("--skip-bad", a->skip_bad, "Skip bad rows of a CSV instead of stopping")->needs(data);
   check->add_flag("--effects", a->effects, "Also says which effects of the catalogue fit, and why others do not");
   app->add_subcommand("list", "Lists the plants and the effects that came along");
   CLI::App* add = app->add_subcommand("add", "Writes a plant file that has an effect of the catalogue in it");

@@ -16,6 +16,7 @@ struct Arguments {
   bool effects = false;                      ///< check
   std::string data;                          ///< check, add
   std::string data_dir;                      ///< check
+  bool skip_bad = false;                     ///< check
   std::string effect, out;                   ///< add
   std::string name, from = ARMCMC_NEW_FROM;  ///< new
 };

@@ -28,7 +28,7 @@ std::shared_ptr<const support::Recording> ReadData(const Arguments& a) {
   if (a.data.empty()) return nullptr;
   if (!a.data.ends_with(".toml"))
     return std::make_shared<const support::Recording>(
-        support::ReadRecordedCsv(a.data, support::FindPlantFile(a.plant).string(), false));
+        support::ReadRecordedCsv(a.data, support::FindPlantFile(a.plant).string(), a.skip_bad));
   auto recording = std::make_shared<const support::Recording>(support::ReadRecording(a.data, a.data_dir));
   const Plant plant = support::ReadPlant(support::FindPlantFile(a.plant));
   if (recording->fingerprint != plant.fingerprint())
@@ -53,7 +53,12 @@ int Check(const Arguments& a) {
   if (a.effects) std::cout << '\n' << FittingText(plant->description(), support::EffectsFor(file.effects));
   if (program != nullptr) std::cout << CostText(program, data);
   if (program != nullptr && data != nullptr) std::cout << BetweenText(program, data);
-  if (data != nullptr) std::cout << '\n' << IdentifiabilityText(plant, *data);
+  if (data == nullptr) return support::kExitOk;
+  try {
+    std::cout << '\n' << IdentifiabilityText(plant, *data);
+  } catch (const PlantError& error) {
+    std::cout << "which parameters these data tell cannot be said: " << error.what() << '\n';
+  }
   return support::kExitOk;
 }
 

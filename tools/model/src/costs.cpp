@@ -72,7 +72,8 @@ std::optional<Step> TimeSteps(const std::shared_ptr<const PlantProgram>& program
     const auto start = std::chrono::steady_clock::now();
     const Status status = estimator.Adjust(next.pack, std::numeric_limits<Nanos>::max(), ClockRef(), result.get());
     ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    if (status != Status::kOk) return std::nullopt;
+    if (status == Status::kBadPack || status == Status::kNonFinite) return std::nullopt;
+    if (status == Status::kHeld) ms.pop_back();
     estimator.Execute(*result, &estimate);
     for (int m = 0; m < estimate.num_modes; ++m) {
       const ModeEstimate& mode = estimate.modes[static_cast<std::size_t>(m)];
@@ -136,6 +137,7 @@ std::string CostText(const std::shared_ptr<const PlantProgram>& program,
   if (recording != nullptr) step = TimeSteps(program, recording);
   const bool recorded = step.has_value();
   if (!recorded) step = TimeSteps(program, MadeUp(program->plant()));
+  if (!step && recording != nullptr) return text + "step: not measured, the law has no value for these data's packs\n";
   if (!step) return text + "step: not measured, the law has no value for signals about 1; give --data\n";
   return text + "step: " + support::Significant(step->ms, 3) + " ms on this computer for " +
          std::to_string(step->draws) + " draws and " + std::to_string(kSamples) + " samples, " +

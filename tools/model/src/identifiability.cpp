@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "armcmc/identify/step_error.hpp"
 #include "armcmc/ladder/trial.hpp"
 #include "armcmc/support/text_table.hpp"
 
@@ -125,7 +126,10 @@ std::string InWords(const identify::TrajectoryModel& model, const std::vector<To
 std::string IdentifiabilityText(const std::shared_ptr<const Plant>& plant, const support::Recording& recording) {
   ladder::Dataset data = ladder::Compared(*plant, ladder::DatasetOf(recording));
   const ladder::Trial trial = ladder::FitAlone(plant, &data);
-  if (!trial.fit.valid) return "these data: the law has no finite value anywhere near the priors\n";
+  if (!trial.fit.valid)
+    return std::string("these data: the law has no finite value anywhere near the priors") +
+           (plant->states().empty() ? "\n"
+                                    : "; where states are fast, more substeps help: substeps = 10 in [states]\n");
   const identify::TrajectoryModel& model = *trial.model;
   std::vector<Index> rows;
   for (std::size_t n = 0; n < model.num_rows(); ++n)
@@ -149,7 +153,10 @@ std::string IdentifiabilityText(const std::shared_ptr<const Plant>& plant, const
   std::string text = std::to_string(rows.size()) + " rows looked at; " + plant->description().name + " leaves " +
                      Significant(rms, 3) + " (rms), " + Significant(100.0 * rms / size, 3) +
                      " % of what varies; errors are independent after " + Significant(rows_per_error, 2) + " rows\n\n";
-  return text + table.ToString() + '\n' + InWords(model, all);
+  const identify::StepError steps = identify::StepErrorOf(*plant, *data.series, trial.fit.theta, rms);
+  std::string warning = identify::StepErrorText(steps, data.series->dt, rms);
+  if (!warning.empty()) warning = "WARNING: " + warning;
+  return text + table.ToString() + '\n' + warning + InWords(model, all);
 }
 
 }  // namespace armcmc::model

@@ -12,6 +12,7 @@
 #include "report.hpp"
 #include "runs.hpp"
 #include "session.hpp"
+#include "step_check.hpp"
 
 namespace armcmc::replay {
 
@@ -33,10 +34,12 @@ int RunEstimates(const Arguments& a) {
     predictions_file = OpenOutput(a.predictions);
     predictions.emplace(&predictions_file);
   }
+  StepCheck steps(session.settings.plant);
   ReplaySummary summary;
   {
     support::Progress progress(a.verify ? "verify" : "replay");
     summary = Replay(source.get(), &estimator, [&](const RecordedPack& recorded, const Estimate& estimate) {
+      steps.Add(recorded.pack);
       if (estimates) estimates->Write(estimate);
       if (predictions) predictions->Write(recorded, estimate);
       if (verifier) verifier->Check(estimate);
@@ -49,6 +52,8 @@ int RunEstimates(const Arguments& a) {
   if (verifier) verification = verifier->Finish();
   if (!a.report.empty()) WriteReport(a.report, estimator, *source, summary, verification);
   std::cout << SummaryText(estimator, *source, summary);
+  if (const std::string warning = steps.Warning(estimator, summary.last); !warning.empty())
+    std::cout << "WARNING: " << warning;
   if (estimates) std::cout << "estimates: " << a.out << '\n';
   if (summary.packs == 0) throw support::InputError(a.data + ": holds no usable pack");
   if (verification) std::cout << VerificationText(*verification, *source);

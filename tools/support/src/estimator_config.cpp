@@ -85,7 +85,7 @@ void ReadGapWatch(StrictTable table, GapWatchSettings* watch) {
 
 /// What a configuration may say of a plant that a file describes: the file has the priors, constants and effects.
 void ReadDescribed(StrictTable& root, StrictTable& model, const ModelFacts& facts, EstimatorSettings* settings) {
-  for (const char* key : {"parameters", "constants", "pressure_rate"})
+  for (const char* key : {"parameters", "constants", "regress_rate", "pressure_rate"})
     if (model.Has(key)) throw model.Error(key, "stands in the plant's file, " + settings->model);
   if (root.Has("effect")) throw root.Error("effect", "the plant " + settings->model + " takes none");
   ReadNoise(root.Table("noise"), facts.modes, settings);
@@ -94,7 +94,7 @@ void ReadDescribed(StrictTable& root, StrictTable& model, const ModelFacts& fact
 void ReadBuiltin(StrictTable& root, StrictTable& model, const ModelFacts& facts, EstimatorSettings* settings) {
   ReadParameters(model.Table("parameters"), settings);
   ReadConstants(model, *facts.model, settings);
-  ReadPressureRate(model, *facts.model, settings);
+  ReadRegressRate(model, *facts.model, settings);
   ReadNoise(root.Table("noise"), facts.modes, settings);
   ReadEffects(root, *facts.model, settings);
 }

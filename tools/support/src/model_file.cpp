@@ -121,7 +121,7 @@ void ApplyModelFile(const std::string& path, EstimatorSettings* settings) {
   const ModelFacts facts = FactsOf(*settings);
   ReadParameters(root.Table("parameters"), settings);
   ReadConstants(root, *facts.model, settings);
-  ReadPressureRate(root, *facts.model, settings);
+  ReadRegressRate(root, *facts.model, settings);
   ReadNoise(root.Table("noise"), facts.modes, settings);
   ReadEffects(root, *facts.model, settings);
   root.Finish();
@@ -143,19 +143,18 @@ std::string ModelFileText(const EstimatorSettings& settings, const std::string& 
   const ModelFacts facts = FactsOf(settings);
   std::ostringstream out;
   out << "schema = 1\nbase = \"" << (base.empty() ? settings.model : base) << "\"\n";
-  if (facts.model->compiled != nullptr && facts.model->compiled->uses_constants)
-    out << "pressure_rate = " << (settings.pressure_rate ? "true" : "false") << '\n';
+  if (facts.model->compiled != nullptr && !facts.model->compiled->rate_unit.empty())
+    out << "regress_rate = " << (settings.regress_rate ? "true" : "false") << '\n';
   for (int d = 0; d < settings.num_parameters; ++d) {
     const ParameterSettings& p = settings.parameters[static_cast<std::size_t>(d)];
     out << "\n[parameters." << p.name << "]\n";
     WritePrior(p, "\n", out);
     out << '\n';
   }
-  if (facts.model->compiled != nullptr && facts.model->compiled->uses_constants) {
-    const PlantConstants& c = settings.constants;
-    out << "\n[constants]\np_atm = " << Text(c.p_atm) << "\np_supply = " << Text(c.p_supply) << "\nq1 = " << Text(c.q1)
-        << "\nq2 = " << Text(c.q2) << "\nq3 = " << Text(c.q3) << '\n';
-  }
+  const std::span<const ConstantInfo> constants = ConstantsOf(*facts.model);
+  if (!constants.empty()) out << "\n[constants]\n";
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    out << constants[i].name << " = " << Text(settings.constants[i]) << '\n';
   for (std::size_t m = 0; m < facts.modes.size(); ++m) WriteNoise(facts.modes[m], settings.noise[m], out);
   for (int e = 0; e < settings.num_effects; ++e)
     WriteEffect(settings.effects[static_cast<std::size_t>(e)], *facts.model, out);

@@ -1,5 +1,6 @@
 #include "model_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "armcmc/models/registry.hpp"
@@ -94,24 +95,35 @@ void ReadNoise(StrictTable noise, const std::vector<std::string>& modes, Estimat
   }
 }
 
+std::span<const ConstantInfo> ConstantsOf(const ModelInfo& model) {
+  return model.compiled != nullptr ? model.compiled->constants : std::span<const ConstantInfo>();
+}
+
 void ReadConstants(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings) {
-  if (model.compiled == nullptr || !model.compiled->uses_constants) {
+  const std::span<const ConstantInfo> constants = ConstantsOf(model);
+  if (constants.empty()) {
     if (holder.Has("constants")) throw holder.Error("constants", settings->model + " has no constants");
     return;
   }
   StrictTable table = holder.Table("constants");
-  PlantConstants& c = settings->constants;
-  c.p_atm = table.Number("p_atm", c.p_atm, 0.0, kMax);
-  c.p_supply = table.Number("p_supply", c.p_supply, kTiny, kMax);
-  c.q1 = table.Number("q1", c.q1, -kMax, kMax);
-  c.q2 = table.Number("q2", c.q2, 0.0, kMax);
-  c.q3 = table.Number("q3", c.q3, 0.0, kMax);
+  std::string known;
+  for (std::size_t i = 0; i < constants.size(); ++i) {
+    const ConstantInfo& c = constants[i];
+    settings->constants[i] = table.Number(c.name, settings->constants[i], c.least, c.most);
+    known += (known.empty() ? "" : ", ") + std::string(c.name);
+  }
+  for (const std::string& key : table.Keys())
+    if (std::none_of(constants.begin(), constants.end(), [&](const ConstantInfo& c) { return c.name == key; }))
+      throw table.Error(key, settings->model + " has no such constant; it has " + known);
 }
 
-void ReadPressureRate(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings) {
-  if ((model.compiled == nullptr || model.compiled->rate_unit.empty()) && holder.Has("pressure_rate"))
-    throw holder.Error("pressure_rate", settings->model + " has no pressure");
-  settings->pressure_rate = holder.Boolean("pressure_rate", settings->pressure_rate);
+void ReadRegressRate(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings) {
+  const std::string_view key = holder.Has("pressure_rate") ? "pressure_rate" : "regress_rate";
+  if (key == "pressure_rate" && holder.Has("regress_rate"))
+    throw holder.Error("pressure_rate", "is another word for regress_rate; remove one");
+  if ((model.compiled == nullptr || model.compiled->rate_unit.empty()) && holder.Has(key))
+    throw holder.Error(key, settings->model + " has no rate to regress");
+  settings->regress_rate = holder.Boolean(key, settings->regress_rate);
 }
 
 void ReadEffects(StrictTable& root, const ModelInfo& model, EstimatorSettings* settings) {

@@ -70,7 +70,7 @@ const std::vector<Plan> kPlans = {
 Experiment RunPlan(const Plan& plan, const Arguments& a, const ScratchFolder& scratch, Result* result) {
   const EstimatorSettings settings = ScenarioSettings(plan.scenario);
   const PlantNumber plant = kContact.Is(settings) ? kContact.model.plant : kActuator.model.plant;
-  const double p_atm = settings.constants.p_atm;
+  const double p_atm = ConstantOf(settings, "p_atm");
   const bool recorded = !a.data.empty() && !plan.file.empty();
   if (!plan.file.empty())
     (kContact.Is(plant) ? result->contact_data : result->actuator_data) =

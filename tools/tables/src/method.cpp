@@ -55,7 +55,7 @@ EstimatorSettings ScenarioSettings(const std::string& scenario) {
   if (scenario == kActuator.key("_paper")) return BuiltinSettings(kActuator.key());
   if (scenario == kActuator.key("_excited")) {
     EstimatorSettings excited = BuiltinSettings(kActuator.key("_excited"));
-    excited.pressure_rate = true;  // the noise of the scenario is that of its sensors
+    excited.regress_rate = true;  // the noise of the scenario is that of its sensors
     for (NoiseSettings& noise : excited.noise) noise.std = 500.0;
     return excited;
   }

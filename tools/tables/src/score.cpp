@@ -121,7 +121,7 @@ std::vector<double> ShownAngle(const Recording& r, const Trace& trace, Point poi
 
 ActuatorScore ScoreActuator(const Recording& r, const Trace& trace, Point point, const EstimatorSettings& settings) {
   ActuatorScore s;
-  const double p_atm = settings.constants.p_atm;
+  const double p_atm = ConstantOf(settings, "p_atm");
   std::array<double, 2> count{};
   double flow_error = 0.0, flow = 0.0;
   for (std::size_t i = 0; i < r.size(); ++i) {

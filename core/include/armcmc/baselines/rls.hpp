@@ -13,7 +13,7 @@ namespace armcmc {
 ///
 /// A law that is linear in its parameters is taken as it stands. The inputs are scaled by the prior's standard
 /// deviations, which does for each of them what the paper's common factor of 1e7 does for both; r = s^2. Where the
-/// noise is that of a rate (settings.pressure_rate) the law is still that of the flow, the rate's being no linear one,
+/// noise is that of a rate (settings.regress_rate) the law is still that of the flow, the rate's being no linear one,
 /// and r = s^2 E[gain^2], gain = flow / rate by a first pass over the pack. Any other law of a compiled plant comes
 /// with a RegressionForm.
 ///

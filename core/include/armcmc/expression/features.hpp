@@ -55,6 +55,8 @@ struct FeatureInput {
 ///   integral  y <- y + dt (a + b) / 2
 ///   delay     linear between the samples at t - tau; a time constant below 0 counts as 0, and one that is longer than
 ///             kMaxDelaySamples has no value
+/// and for those that a third argument marks as held between samples:
+///   low pass  y <- y E + a (1 - E);  integral  y <- y + dt a;  delay  the sample at t - tau or the last one before
 class FeatureProgram {
  public:
   FeatureProgram() = default;
@@ -78,6 +80,7 @@ class FeatureProgram {
     SymbolKind kind = SymbolKind::kConstant;
     std::int16_t index = 0;  ///< Of a signal; of a memory.
     std::int16_t line = -1;  ///< Of a delay.
+    bool held = false;       ///< Of a function with memory: what it takes is.
   };
 
   std::vector<Instruction> code_;

@@ -14,6 +14,7 @@ namespace armcmc::expression {
 /// One value of a plant. Values that are computed alike are one node.
 struct GraphNode {
   Op op = Op::kNumber;
+  /// Of a function with memory the third one, whatever it is, says that the first is held between samples.
   std::array<int, kMaxArguments> argument{-1, -1, -1};
   double value = 0.0;                       ///< Of a number.
   SymbolKind kind = SymbolKind::kConstant;  ///< Of a symbol: signal, time, parameter or state.

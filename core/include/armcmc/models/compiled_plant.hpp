@@ -29,6 +29,15 @@ struct SignalInfo {
   std::string_view derivative_of;  ///< Signal that it can be made from where a recording lacks it; empty: none.
 };
 
+/// A constant that is known, not estimated.
+struct ConstantInfo {
+  std::string_view name;
+  std::string_view unit;
+  double value;            ///< Unless the settings say another.
+  double least, most;      ///< Allowed values, both included.
+  std::string_view above;  ///< Constant before this one that it has to be larger than; empty: none.
+};
+
 /// Other settings under which a compiled plant goes by a name of its own.
 struct ModelVariant {
   std::string_view name;
@@ -57,8 +66,8 @@ struct CompiledPlant {
   /// What the law explains is the output; else the output is simulated from the parameters, over time.
   bool law_is_output;
   std::string_view no_contact_as;  ///< Why effects cannot act in contact or in free motion only; empty: they can.
-  bool uses_constants;             ///< PlantConstants say something about it.
-  std::string_view rate_unit;   ///< Of what EstimatorSettings::pressure_rate has regressed; empty: it has no pressure.
+  std::span<const ConstantInfo> constants;  ///< kMaxConstants at most.
+  std::string_view rate_unit;   ///< Of what EstimatorSettings::regress_rate has regressed; empty: it has none.
   std::string_view offline_as;  ///< Why some of `effects` do not run online; {} in it stands for the formula.
   std::span<const EffectInfo* const> effects;  ///< Its catalogue.
   std::span<const ModelVariant> variants;

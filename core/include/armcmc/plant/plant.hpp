@@ -72,6 +72,8 @@ class Plant {
   void AddModes();
   void AddRates();
   void AddReports();
+  /// Functions with memory of what is held between samples.
+  void UseHeldForms();
   void CheckParametersAreFelt() const;
   void Identify();
   void AddSymbol(const std::string& key, expression::Symbol symbol);

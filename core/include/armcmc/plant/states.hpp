@@ -38,10 +38,13 @@ struct PlantPoint {
 /// A function with memory as a state z of what it takes, a at the beginning of a step of h and b at its end:
 ///   lowpass(e, tau)  z <- b + E (z - a) - G (b - a),  E = exp(-h / tau), G = (1 - E) tau / h
 ///   integral(e)      z <- z + h (a + b) / 2
+///   delay(x, tau)    of a state x: one that starts like x, and from tau on has the rate that x had tau before
 struct RememberedState {
   int state = 0;      ///< Its number.
   int argument = -1;  ///< Node.
   int tau = -1;       ///< Node; -1: an integral.
+  int late = -1;      ///< State that it is behind; -1: none, it is a low pass or an integral.
+  int rate = -1;      ///< Of a late one: node.
 };
 
 /// What one pack of a plant with states leaves to the next.
@@ -65,11 +68,12 @@ class PlantStates {
   /// @param rates, starts   A node of the graph a state, parameters replaced by those that are sampled.
   /// @param num_parameters  That are sampled.
   /// @param remembered      The last ones of them that are functions with memory.
+  /// @param held_inputs     [of a point, from kFirstRemembered on] Held between samples, not linear.
   /// @param scalars         Of a sample, shared with the laws: those of the starts.
   /// @throws PlantError where the plant is past a limit.
   PlantStates(const Plant& plant, expression::Graph* graph, const std::vector<int>& rates,
-              const std::vector<int>& starts, const std::vector<RememberedState>& remembered, int num_parameters,
-              std::vector<int>* scalars);
+              const std::vector<int>& starts, const std::vector<RememberedState>& remembered,
+              const std::vector<bool>& held_inputs, int num_parameters, std::vector<int>* scalars);
 
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] int substeps() const noexcept { return substeps_; }
@@ -100,8 +104,8 @@ class PlantStates {
   int size_ = 0;
   int substeps_ = 1;
   bool all_measured_ = false;
-  std::array<Between, Plant::kMaxInputs + 1> between_{};  ///< Of a signal.
-  std::array<int, kMaxStates> measured_by_{};             ///< Signal, -1: none.
+  std::array<Between, PlantPoint::kSize> between_{};  ///< Of what a point has.
+  std::array<int, kMaxStates> measured_by_{};         ///< Signal, -1: none.
   std::array<double, kMaxStates> output_in_start_{};
   std::array<bool, kMaxStates> given_start_{};
   expression::Tape step_, start_;

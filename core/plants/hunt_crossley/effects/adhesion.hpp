@@ -4,6 +4,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -14,12 +15,11 @@ struct Adhesion {
       .family = "adhesion",
       .formula = "f - force exp(-x / distance) [v < 0, x >= 0]",
       .slot = EffectSlot::kAdditive,
-      .needs = {.position = true, .velocity = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"force", "N", 0.0, 0.2, 0.0, 2.0, &effect_unit::Force}}},
+      .amplitudes = {{{"force", "N", 0.0, 0.2, 0.0, 2.0, &contact_unit::Force}}},
       .num_shapes = 1,
-      .shapes = {{{"distance", "m", 0.2, &effect_unit::Length, 1e-9, 1e3}}},
+      .shapes = {{{"distance", "m", 0.2, &contact_unit::Length, 1e-9, 1e3}}},
   };
 
   static void Feature(const EffectInput& in, const double* shape, double*,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -13,10 +14,9 @@ struct ContactOffset {
       .family = "contact offset",
       .formula = "x - distance in place of x",
       .slot = EffectSlot::kInputMap,
-      .needs = {.position = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"distance", "m", 0.0, 0.1, -1.0, 1.0, &effect_unit::Length}}},
+      .amplitudes = {{{"distance", "m", 0.0, 0.1, -1.0, 1.0, &contact_unit::Length}}},
       .num_shapes = 0,
       .shapes = {},
   };

@@ -4,6 +4,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -14,12 +15,11 @@ struct CoulombFriction {
       .family = "dry friction",
       .formula = "f + force tanh(v / speed)",
       .slot = EffectSlot::kAdditive,
-      .needs = {.velocity = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"force", "N", 0.0, 0.2, 0.0, 2.0, &effect_unit::Force}}},
+      .amplitudes = {{{"force", "N", 0.0, 0.2, 0.0, 2.0, &contact_unit::Force}}},
       .num_shapes = 1,
-      .shapes = {{{"speed", "m/s", 0.02, &effect_unit::Speed, 1e-9, 1e3}}},
+      .shapes = {{{"speed", "m/s", 0.02, &contact_unit::Speed, 1e-9, 1e3}}},
   };
 
   static void Feature(const EffectInput& in, const double* shape, double*,

@@ -2,6 +2,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,10 +13,9 @@ struct ForceBias {
       .family = "sensor zero",
       .formula = "f + force",
       .slot = EffectSlot::kAdditive,
-      .needs = {},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"force", "N", 0.0, 0.2, -2.0, 2.0, &effect_unit::Force}}},
+      .amplitudes = {{{"force", "N", 0.0, 0.2, -2.0, 2.0, &contact_unit::Force}}},
       .num_shapes = 0,
       .shapes = {},
   };

@@ -2,6 +2,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,10 +13,9 @@ struct ForceDrift {
       .family = "sensor zero",
       .formula = "f + rate (t - origin)",
       .slot = EffectSlot::kAdditive,
-      .needs = {},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"rate", "N/s", 0.0, 0.2, -2.0, 2.0, &effect_unit::ForcePerTime}}},
+      .amplitudes = {{{"rate", "N/s", 0.0, 0.2, -2.0, 2.0, &contact_unit::ForcePerTime}}},
       .num_shapes = 1,
       .shapes = {{{"origin", "s", 0.0, &effect_unit::One, -1e12, 1e12}}},
   };

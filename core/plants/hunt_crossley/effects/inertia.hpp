@@ -2,6 +2,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -15,10 +16,9 @@ struct Inertia {
       .family = "inertia",
       .formula = "f + mass dv/dt",
       .slot = EffectSlot::kAdditive,
-      .needs = {.velocity = true, .acceleration = true, .memory = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"mass", "kg", 0.0, 0.2, 0.0, 2.0, &effect_unit::ForcePerAcceleration}}},
+      .amplitudes = {{{"mass", "kg", 0.0, 0.2, 0.0, 2.0, &contact_unit::ForcePerAcceleration}}},
       .num_shapes = 1,
       .shapes = {{{"smoothing", "s", 0.0, &effect_unit::One, 0.0, 1.0}}},
   };

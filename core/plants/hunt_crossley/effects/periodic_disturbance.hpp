@@ -5,6 +5,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -16,11 +17,10 @@ struct PeriodicDisturbance {
       .family = "periodic disturbance",
       .formula = "f + cosine cos(2 pi frequency t) + sine sin(2 pi frequency t)",
       .slot = EffectSlot::kAdditive,
-      .needs = {},
       .online = true,
       .num_amplitudes = 2,
-      .amplitudes = {{{"cosine", "N", 0.0, 0.2, -2.0, 2.0, &effect_unit::Force},
-                      {"sine", "N", 0.0, 0.2, -2.0, 2.0, &effect_unit::Force}}},
+      .amplitudes = {{{"cosine", "N", 0.0, 0.2, -2.0, 2.0, &contact_unit::Force},
+                      {"sine", "N", 0.0, 0.2, -2.0, 2.0, &contact_unit::Force}}},
       .num_shapes = 1,
       .shapes = {{{"frequency", "Hz", 10.0, &effect_unit::One, 1e-6, 1e6}}},
   };

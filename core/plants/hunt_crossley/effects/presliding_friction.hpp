@@ -4,6 +4,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -17,12 +18,11 @@ struct PreslidingFriction {
       .family = "dry friction",
       .formula = "f + force z, dz/dx = (1 - z sign v) / distance",
       .slot = EffectSlot::kAdditive,
-      .needs = {.velocity = true, .memory = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"force", "N", 0.0, 0.2, 0.0, 2.0, &effect_unit::Force}}},
+      .amplitudes = {{{"force", "N", 0.0, 0.2, 0.0, 2.0, &contact_unit::Force}}},
       .num_shapes = 1,
-      .shapes = {{{"distance", "m", 0.05, &effect_unit::Length, 1e-9, 1e3}}},
+      .shapes = {{{"distance", "m", 0.05, &contact_unit::Length, 1e-9, 1e3}}},
   };
 
   static void Feature(const EffectInput& in, const double* shape, double* memory,

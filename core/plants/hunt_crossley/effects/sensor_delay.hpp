@@ -11,7 +11,6 @@ struct SensorDelay {
       .family = "latency",
       .formula = "f(t - time)",
       .slot = EffectSlot::kSensorDelay,
-      .needs = {.memory = true},
       .online = true,
       .num_amplitudes = 1,
       .amplitudes = {{{"time", "s", 0.0, 0.02, 0.0, 0.05, &effect_unit::One}}},

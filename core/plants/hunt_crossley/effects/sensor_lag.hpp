@@ -14,7 +14,6 @@ struct SensorLag {
       .family = "latency",
       .formula = "g, time_constant g' + g = f",
       .slot = EffectSlot::kSensorLag,
-      .needs = {.memory = true},
       .online = true,
       .num_amplitudes = 1,
       .amplitudes = {{{"time_constant", "s", 0.0, 0.02, 0.0, 0.06, &effect_unit::One}}},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -11,10 +12,9 @@ struct SensorSaturation {
       .family = "saturation",
       .formula = "min(f, limit)",
       .slot = EffectSlot::kSensorStatics,
-      .needs = {},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"limit", "N", 2.0, 1.0, 0.0, 10.0, &effect_unit::Force}}},
+      .amplitudes = {{{"limit", "N", 2.0, 1.0, 0.0, 10.0, &contact_unit::Force}}},
       .num_shapes = 0,
       .shapes = {},
   };

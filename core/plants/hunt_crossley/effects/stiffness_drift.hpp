@@ -2,6 +2,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,10 +13,9 @@ struct StiffnessDrift {
       .family = "stiffness drift",
       .formula = "K (1 + rate (t - origin)) in place of K",
       .slot = EffectSlot::kConstitutiveLaw,
-      .needs = {.position = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"rate", "1/s", 0.0, 0.2, -0.9, 2.0, &effect_unit::PerTime}}},
+      .amplitudes = {{{"rate", "1/s", 0.0, 0.2, -0.9, 2.0, &contact_unit::PerTime}}},
       .num_shapes = 1,
       .shapes = {{{"origin", "s", 0.0, &effect_unit::One, -1e12, 1e12}}},
   };

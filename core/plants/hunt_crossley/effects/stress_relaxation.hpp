@@ -4,6 +4,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -17,10 +18,9 @@ struct StressRelaxation {
       .family = "viscoelastic memory",
       .formula = "f + stiffness (x+ - y), time_constant y' + y = x+",
       .slot = EffectSlot::kAdditive,
-      .needs = {.position = true, .memory = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"stiffness", "N/m", 0.0, 0.2, 0.0, 4.0, &effect_unit::ForcePerLength}}},
+      .amplitudes = {{{"stiffness", "N/m", 0.0, 0.2, 0.0, 4.0, &contact_unit::ForcePerLength}}},
       .num_shapes = 1,
       .shapes = {{{"time_constant", "s", 0.3, &effect_unit::One, 1e-6, 1e6}}},
   };

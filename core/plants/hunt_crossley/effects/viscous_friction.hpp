@@ -2,6 +2,7 @@
 
 #include "armcmc/nonblocking.hpp"
 #include "plants/hunt_crossley/effect_input.hpp"
+#include "plants/hunt_crossley/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,10 +13,9 @@ struct ViscousFriction {
       .family = "viscous friction",
       .formula = "f + coefficient v",
       .slot = EffectSlot::kAdditive,
-      .needs = {.velocity = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"coefficient", "N s/m", 0.0, 0.2, 0.0, 2.0, &effect_unit::ForcePerSpeed}}},
+      .amplitudes = {{{"coefficient", "N s/m", 0.0, 0.2, 0.0, 2.0, &contact_unit::ForcePerSpeed}}},
       .num_shapes = 0,
       .shapes = {},
   };

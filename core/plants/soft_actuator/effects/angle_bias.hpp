@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,10 +13,9 @@ struct AngleBias {
       .family = "sensor zero",
       .formula = "alpha + bias",
       .slot = EffectSlot::kSensorStatics,
-      .needs = {},
       .online = false,
       .num_amplitudes = 1,
-      .amplitudes = {{{"bias", "rad", 0.0, 0.2, -2.0, 2.0, &effect_unit::Angle}}},
+      .amplitudes = {{{"bias", "rad", 0.0, 0.2, -2.0, 2.0, &actuator_unit::Angle}}},
       .num_shapes = 0,
       .shapes = {},
   };

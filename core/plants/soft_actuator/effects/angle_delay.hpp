@@ -12,7 +12,6 @@ struct AngleDelay {
       .family = "latency",
       .formula = "alpha(t - time)",
       .slot = EffectSlot::kSensorDelay,
-      .needs = {.memory = true},
       .online = false,
       .num_amplitudes = 1,
       .amplitudes = {{{"time", "s", 0.0, 0.02, 0.0, 0.05, &effect_unit::One}}},

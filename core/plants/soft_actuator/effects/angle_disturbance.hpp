@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,11 +13,10 @@ struct AngleDisturbance {
       .family = "periodic",
       .formula = "alpha'' + cosine cos(2 pi frequency t) + sine sin(2 pi frequency t)",
       .slot = EffectSlot::kAdditive,
-      .needs = {},
       .online = false,
       .num_amplitudes = 2,
-      .amplitudes = {{{"cosine", "rad/s^2", 0.0, 0.2, -2.0, 2.0, &effect_unit::BendAcceleration},
-                      {"sine", "rad/s^2", 0.0, 0.2, -2.0, 2.0, &effect_unit::BendAcceleration}}},
+      .amplitudes = {{{"cosine", "rad/s^2", 0.0, 0.2, -2.0, 2.0, &actuator_unit::BendAcceleration},
+                      {"sine", "rad/s^2", 0.0, 0.2, -2.0, 2.0, &actuator_unit::BendAcceleration}}},
       .num_shapes = 1,
       .shapes = {{{"frequency", "Hz", 1.0, &effect_unit::One, 1e-6, 1e6}}},
   };

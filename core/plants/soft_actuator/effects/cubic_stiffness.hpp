@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,10 +13,9 @@ struct CubicStiffness {
       .family = "stiffening",
       .formula = "alpha'' - stiffness alpha^3",
       .slot = EffectSlot::kAdditive,
-      .needs = {.position = true},
       .online = false,
       .num_amplitudes = 1,
-      .amplitudes = {{{"stiffness", "1/(s rad)^2", 0.0, 0.2, 0.0, 2.0, &effect_unit::BendPerCubedAngle}}},
+      .amplitudes = {{{"stiffness", "1/(s rad)^2", 0.0, 0.2, 0.0, 2.0, &actuator_unit::BendPerCubedAngle}}},
       .num_shapes = 0,
       .shapes = {},
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,10 +13,9 @@ struct GravityLoad {
       .family = "gravity",
       .formula = "alpha'' - acceleration sin(alpha)",
       .slot = EffectSlot::kAdditive,
-      .needs = {.position = true},
       .online = false,
       .num_amplitudes = 1,
-      .amplitudes = {{{"acceleration", "rad/s^2", 0.0, 0.2, 0.0, 2.0, &effect_unit::BendAcceleration}}},
+      .amplitudes = {{{"acceleration", "rad/s^2", 0.0, 0.2, 0.0, 2.0, &actuator_unit::BendAcceleration}}},
       .num_shapes = 0,
       .shapes = {},
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,12 +13,11 @@ struct Hysteresis {
       .family = "hysteresis",
       .formula = "alpha'' - acceleration z / reach, z' = alpha' (1 - |z| / reach while loading)",
       .slot = EffectSlot::kAdditive,
-      .needs = {.velocity = true, .memory = true},
       .online = false,
       .num_amplitudes = 1,
-      .amplitudes = {{{"acceleration", "rad/s^2", 0.0, 0.2, 0.0, 2.0, &effect_unit::BendAcceleration}}},
+      .amplitudes = {{{"acceleration", "rad/s^2", 0.0, 0.2, 0.0, 2.0, &actuator_unit::BendAcceleration}}},
       .num_shapes = 1,
-      .shapes = {{{"reach", "rad", 0.05, &effect_unit::Angle, 1e-9, 1e3}}},
+      .shapes = {{{"reach", "rad", 0.05, &actuator_unit::Angle, 1e-9, 1e3}}},
   };
 };
 

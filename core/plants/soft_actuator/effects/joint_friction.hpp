@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,12 +13,11 @@ struct JointFriction {
       .family = "dry friction",
       .formula = "alpha'' - acceleration tanh(alpha' / rate_s)",
       .slot = EffectSlot::kAdditive,
-      .needs = {.velocity = true},
       .online = false,
       .num_amplitudes = 1,
-      .amplitudes = {{{"acceleration", "rad/s^2", 0.0, 0.2, 0.0, 2.0, &effect_unit::BendAcceleration}}},
+      .amplitudes = {{{"acceleration", "rad/s^2", 0.0, 0.2, 0.0, 2.0, &actuator_unit::BendAcceleration}}},
       .num_shapes = 1,
-      .shapes = {{{"rate_s", "rad/s", 0.02, &effect_unit::AngleRate, 1e-9, 1e3}}},
+      .shapes = {{{"rate_s", "rad/s", 0.02, &actuator_unit::AngleRate, 1e-9, 1e3}}},
   };
 };
 

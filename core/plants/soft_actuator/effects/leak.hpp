@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 #include "plants/soft_actuator/flow_point.hpp"
 
 namespace armcmc {
@@ -12,10 +13,9 @@ struct Leak {
       .family = "leakage",
       .formula = "p' - rate (p - p_atm)",
       .slot = EffectSlot::kAdditive,
-      .needs = {.pressure = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"rate", "1/s", 0.0, 0.2, 0.0, 2.0, &effect_unit::FlowPerPressure}}},
+      .amplitudes = {{{"rate", "1/s", 0.0, 0.2, 0.0, 2.0, &actuator_unit::FlowPerPressure}}},
       .num_shapes = 0,
       .shapes = {},
   };

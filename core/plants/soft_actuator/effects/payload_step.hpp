@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 
 namespace armcmc {
 
@@ -12,12 +13,11 @@ struct PayloadStep {
       .family = "payload",
       .formula = "(1 + load) alpha'' in place of alpha'' from t = at",
       .slot = EffectSlot::kConstitutiveLaw,
-      .needs = {},
       .online = false,
       .num_amplitudes = 1,
       .amplitudes = {{{"load", "-", 0.0, 0.5, 0.0, 30.0, &effect_unit::One}}},
       .num_shapes = 1,
-      .shapes = {{{"at", "s", 0.5, &effect_unit::Duration, -1e12, 1e12}}},
+      .shapes = {{{"at", "s", 0.5, &actuator_unit::Duration, -1e12, 1e12}}},
   };
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 #include "plants/soft_actuator/flow_point.hpp"
 
 namespace armcmc {
@@ -13,10 +14,9 @@ struct PressureBias {
       .family = "sensor zero",
       .formula = "p + bias",
       .slot = EffectSlot::kInputMap,
-      .needs = {.pressure = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"bias", "Pa", 0.0, 0.2, -0.8, 0.8, &effect_unit::Pressure}}},
+      .amplitudes = {{{"bias", "Pa", 0.0, 0.2, -0.8, 0.8, &actuator_unit::Pressure}}},
       .num_shapes = 0,
       .shapes = {},
   };

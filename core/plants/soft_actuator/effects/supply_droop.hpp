@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 #include "plants/soft_actuator/flow_point.hpp"
 
 namespace armcmc {
@@ -12,10 +13,9 @@ struct SupplyDroop {
       .family = "supply",
       .formula = "p_s - droop u_c in place of p_s",
       .slot = EffectSlot::kConstitutiveLaw,
-      .needs = {.opening = true, .pressure = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"droop", "Pa", 0.0, 0.2, 0.0, 1.0, &effect_unit::SupplyPerOpening}}},
+      .amplitudes = {{{"droop", "Pa", 0.0, 0.2, 0.0, 1.0, &actuator_unit::SupplyPerOpening}}},
       .num_shapes = 0,
       .shapes = {},
   };

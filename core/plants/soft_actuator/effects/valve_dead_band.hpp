@@ -1,6 +1,7 @@
 #pragma once
 
 #include "armcmc/effects/effect.hpp"
+#include "plants/soft_actuator/effect_sizes.hpp"
 #include "plants/soft_actuator/flow_point.hpp"
 
 namespace armcmc {
@@ -13,10 +14,9 @@ struct ValveDeadBand {
       .family = "dead band",
       .formula = "u = max(u - width, 0) / (1 - width)",
       .slot = EffectSlot::kInputMap,
-      .needs = {.opening = true},
       .online = true,
       .num_amplitudes = 1,
-      .amplitudes = {{{"width", "-", 0.0, 0.2, 0.0, 1.5, &effect_unit::Opening}}},
+      .amplitudes = {{{"width", "-", 0.0, 0.2, 0.0, 1.5, &actuator_unit::Opening}}},
       .num_shapes = 0,
       .shapes = {},
   };

@@ -14,7 +14,6 @@ struct ValveLag {
       .family = "valve lag",
       .formula = "s, tau s' + s = u_c - u_d, open to the side of s's sign",
       .slot = EffectSlot::kInputMap,
-      .needs = {.memory = true, .opening = true},
       .online = true,
       .num_amplitudes = 1,
       .amplitudes = {{{"tau", "s", 0.0, 0.02, 0.0, 0.3, &effect_unit::One}}},

@@ -78,7 +78,8 @@ class DescribedSimulation {
   void MakeTruth();
   void MakeExpressions();
   void MakeHidden();
-  [[nodiscard]] Expression Read(const std::string& key, const std::string& text, bool sees_output = false) const;
+  [[nodiscard]] Expression Read(const std::string& key, const std::string& text, bool sees_output = false,
+                                bool is_rate = false) const;
   void RefuseMemory(const std::string& key, const Expression& rate) const;
   /// A rate, with what it remembers of signals in it.
   [[nodiscard]] Expression ReadRate(const std::string& key, const std::string& text) const;
@@ -102,6 +103,7 @@ class DescribedSimulation {
   DescribedPlant plant_;
   DescribedScenario scenario_;
   expression::Names names_;  ///< signals, constants, parameters, states, lets, t
+  std::vector<bool> held_;   ///< By place: between samples.
   std::vector<double> frame_;
   std::vector<InputSignal> inputs_;
   std::vector<Source> sources_;             ///< By signal.

@@ -79,7 +79,7 @@ void NearNull(CaseBuilder* b) {
   for (const double error : {0.001, 0.003, 0.01})
     for (const char* scenario : {kRich, "contact_sine", "contact_strokes"})
       b->Cell(Like("law, " + Percent(error), WithLawError(b, scenario, error), "none", 1.0), scenario);
-  for (const std::string line : {"p_supply = 800000.0", "q1 = 0.0704", "q3 = 3319.4"})
+  for (const std::string& line : kTakenForGranted)
     for (const double off : {0.001, 0.01}) {
       const std::size_t value = line.rfind(' ') + 1;
       std::string text = ScenarioOfPlant(kExcited);

@@ -50,7 +50,7 @@ std::string Toml(double value) { return Json(value).dump(); }
 
 }  // namespace
 
-PlantProcess::PlantProcess(std::filesystem::path program, std::filesystem::path folder)
+PlantProcess::PlantProcess(const std::filesystem::path& program, const std::filesystem::path& folder)
     : program_(std::filesystem::absolute(program)), folder_(std::filesystem::absolute(folder)) {
   std::filesystem::create_directories(folder_);
 }
@@ -101,7 +101,9 @@ std::vector<std::vector<double>> PlantProcess::Outputs(const Case& what, const s
 }
 
 std::vector<std::string> OutputsOf(const std::string& model) {
-  return model == "hunt_crossley" ? std::vector<std::string>{"f"} : std::vector<std::string>{"pdot", "alpha"};
+  std::vector<std::string> outputs;
+  for (const auto& equation : gap::MakeEquations(model)) outputs.push_back(equation->columns().back());
+  return outputs;
 }
 
 Truth ReadSealed(const std::filesystem::path& path, const std::string& model) {

@@ -11,28 +11,15 @@
 
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "armcmc/gap_bench/strata.hpp"
+#include "plants/registry.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
 
-/// A quantity in a real recording: a sum of columns.
-struct Source {
-  const char* name;
-  const char* file;
-  const char* time;
-  double second;                                        ///< Of the time column, s.
-  std::vector<std::pair<std::string, double>> columns;  ///< With their factors.
-  double until_s;                                       ///< The part from the beginning that is taken.
-};
-
-const std::vector<Source> kMotions = {
-    {"servo_axis", "emps_estimation.csv", "t_s", 1.0, {{"q_meas_m", 1.0}}, 1e9},
-    {"friction_damper", "brfd_friction_backlash.csv", "t_s", 1.0, {{"disp_in", 1.0}}, 15.5},
-    {"pneumatic_stroke", "pneumatic_seal_friction.csv", "t_ms", 1e-3, {{"position_mm", 1.0}}, 72.0},
-    {"indentation", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"height_m", -1.0}, {"deflection_m", -1.0}}, 4.8}};
 /// A cantilever far from the surface: the broad line of its resonance, red noise, and a disturbance of 179.3 Hz with
 /// its harmonics, which is periodic and may be named.
-const Source kNoise = {"cantilever_noise", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"force_N", 1.0}}, 3.0};
+const RecordedSource kNoise = {
+    "cantilever_noise", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"force_N", 1.0}}, 3.0};
 const std::vector<std::string> kOwn = {"periodic_disturbance"};
 
 constexpr double kInterval = 1e-3, kDuration = 20.0;  // s
@@ -42,7 +29,7 @@ struct Samples {
   std::vector<double> t, value;
 };
 
-Samples Read(const std::filesystem::path& folder, const Source& source) {
+Samples Read(const std::filesystem::path& folder, const RecordedSource& source) {
   support::CsvRequest request;
   request.columns = {source.time};
   for (const auto& column : source.columns) request.columns.push_back(column.first);
@@ -63,10 +50,12 @@ Samples Read(const std::filesystem::path& folder, const Source& source) {
 Samples Even(const Samples& samples, double interval) {
   Samples even;
   std::size_t at = 0;
-  for (double t = 0.0; t <= samples.t.back() - samples.t.front(); t += interval) {
+  const auto rows = static_cast<std::size_t>((samples.t.back() - samples.t.front()) / interval) + 1;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double t = static_cast<double>(i) * interval;
     while (at + 2 < samples.t.size() && samples.t[at + 1] - samples.t.front() < t) ++at;
     const double share = (t + samples.t.front() - samples.t[at]) / (samples.t[at + 1] - samples.t[at]);
-    even.t.push_back(static_cast<double>(even.t.size()) * interval);
+    even.t.push_back(t);
     even.value.push_back(std::lerp(samples.value[at], samples.value[at + 1], std::clamp(share, 0.0, 1.0)));
   }
   return even;
@@ -94,7 +83,7 @@ void Detrend(std::vector<double>* e) {
 /// @return its path.
 std::filesystem::path Write(const std::filesystem::path& folder, const std::string& name, const std::string& column,
                             const Samples& samples) {
-  const std::filesystem::path path = std::filesystem::absolute(folder / "scenarios" / (name + ".csv"));
+  std::filesystem::path path = std::filesystem::absolute(folder / "scenarios" / (name + ".csv"));
   std::filesystem::create_directories(path.parent_path());
   std::ofstream file(path, std::ios::binary);
   file << "t," << column << '\n';
@@ -127,7 +116,7 @@ void AddRecorded(const std::filesystem::path& recordings, const std::vector<std:
   const std::filesystem::path noise_file = Write(builder->folder(), kNoise.name, "e", noise);
   std::vector<std::string> hidden = {"none"};
   hidden.insert(hidden.end(), effects.begin(), effects.end());
-  for (const Source& source : kMotions) {
+  for (const RecordedSource& source : Motions()) {
     Samples motion = Even(Read(recordings, source), kInterval);
     PressToDepth(&motion.value);
     const std::filesystem::path file = Write(builder->folder(), source.name, "x", motion);

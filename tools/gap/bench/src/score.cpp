@@ -6,7 +6,7 @@
 
 #include "armcmc/gap_bench/strata.hpp"
 #include "armcmc/models/registry.hpp"
-#include "plants/soft_actuator/effects.hpp"
+#include "plants/registry.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -20,10 +20,10 @@ const EffectInfo* Listed(std::string_view name) {
   return nullptr;
 }
 
-/// Whether an effect of the soft actuator changes what an equation predicts. The pressure that is measured enters both.
-bool Changes(const std::string& effect, const std::string& equation) {
-  const bool in_flow = FlowEffects::Find(effect) >= 0;
-  return equation == "flow law" ? in_flow : !in_flow || effect == PressureBias::kInfo.name;
+/// Whether an effect changes what an equation predicts.
+bool Changes(std::string_view effect, std::string_view equation) {
+  return std::any_of(kEquations.begin(), kEquations.end(),
+                     [&](const BenchEquation& one) { return one.name == equation && one.feels(effect); });
 }
 
 std::string Joined(const Names& names) {

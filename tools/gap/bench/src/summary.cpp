@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
+#include <string_view>
 
 #include "armcmc/gap_bench/score.hpp"
 #include "armcmc/gap_bench/strata.hpp"
-#include "plants/hunt_crossley/effects.hpp"
+#include "armcmc/models/registry.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -23,6 +25,16 @@ bool Answered(const Outcome& o) { return Counts(o) && o.grade != Grade::kFailed;
 bool SingleEffect(const Outcome& o) {
   const std::string& stratum = o.what.stratum;
   return (stratum == "singles" || stratum == "scale" || stratum == "paper") && Answered(o);
+}
+
+/// Of the plant that most strata are made with.
+std::span<const EffectInfo* const> ConfusedEffects() { return CompiledModels().front()->compiled->effects; }
+
+int IndexOf(std::string_view effect) {
+  const auto effects = ConfusedEffects();
+  const auto found =
+      std::find_if(effects.begin(), effects.end(), [&](const EffectInfo* info) { return info->name == effect; });
+  return found == effects.end() ? -1 : static_cast<int>(found - effects.begin());
 }
 
 }  // namespace
@@ -76,7 +88,7 @@ Calibration Calibrate(const std::vector<Outcome>& outcomes) {
 
 Confusion Confuse(const std::vector<Outcome>& outcomes, bool imperfect) {
   Confusion confusion;
-  for (const EffectInfo* info : ContactEffects::kInfos) confusion.names.emplace_back(info->name);
+  for (const EffectInfo* info : ConfusedEffects()) confusion.names.emplace_back(info->name);
   confusion.answers = confusion.names;
   for (const char* answer : {"tie with the truth", "other set", "unnamed", "none"})
     confusion.answers.emplace_back(answer);
@@ -87,7 +99,7 @@ Confusion Confuse(const std::vector<Outcome>& outcomes, bool imperfect) {
     std::vector<TrueEffect> effects = outcome.truth.effects;
     std::erase_if(effects, [](const TrueEffect& effect) { return effect.kind == "outside"; });
     if (outcome.what.strength < kVisible || effects.size() != 1) continue;
-    const int row = ContactEffects::Find(effects.front().name);
+    const int row = IndexOf(effects.front().name);
     if (row < 0) continue;
     const std::vector<Names> sets = SetsOf(outcome.answer.result);
     std::size_t column = tie + 1;
@@ -97,8 +109,8 @@ Confusion Confuse(const std::vector<Outcome>& outcomes, bool imperfect) {
       column = tie + 2;
     else if (outcome.answer.result.verdict == gap::Verdict::kNone)
       column = tie + 3;
-    else if (sets.size() == 1 && sets.front().size() == 1 && ContactEffects::Find(sets.front().front()) >= 0)
-      column = static_cast<std::size_t>(ContactEffects::Find(sets.front().front()));
+    else if (sets.size() == 1 && sets.front().size() == 1 && IndexOf(sets.front().front()) >= 0)
+      column = static_cast<std::size_t>(IndexOf(sets.front().front()));
     ++confusion.count[static_cast<std::size_t>(row)][column];
   }
   return confusion;

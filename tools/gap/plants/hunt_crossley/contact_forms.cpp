@@ -36,7 +36,7 @@ EffectForm FromCore(const char* name, std::vector<Coordinate> coordinates) {
   form.slot = Slot::kAdditive;
   form.coordinates = std::move(coordinates);
   form.num_amplitudes = info.num_amplitudes;
-  form.from_surface = info.slot == EffectSlot::kAdditive && info.needs.position;
+  form.from_surface = info.name == Adhesion::kInfo.name || info.name == StressRelaxation::kInfo.name;
   const std::vector<Coordinate> all = form.coordinates;
   const int amplitudes = form.num_amplitudes;
   form.features = [index, all, amplitudes](const Signals& s, const double* shape) {

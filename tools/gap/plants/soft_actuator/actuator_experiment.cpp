@@ -86,7 +86,7 @@ const Program& Choose(const std::vector<CandidatePtr>& candidates) {
 
 }  // namespace
 
-Experiment ActuatorExperiment(const Signals& signals, const PlantConstants& constants,
+Experiment ActuatorExperiment(const Signals& signals, const ActuatorConstants& constants,
                               const std::vector<CandidatePtr>& candidates) {
   const Program& program = Choose(candidates);
   Experiment experiment;

@@ -20,12 +20,12 @@ double RootMeanSquare(const Vector& series, const Vector& weight) {
   return std::sqrt((series.array().square() * weight.array()).sum() / std::max(weight.sum(), 1.0));
 }
 
-double ValveHead(double opening, double gauge_pressure, const PlantConstants& constants) {
+double ValveHead(double opening, double gauge_pressure, const ActuatorConstants& constants) {
   return FlowLaw<ScalarOps>::Head({opening, gauge_pressure, constants.p_supply - constants.p_atm, 0.0},
                                   opening < 0.0 ? 1 : 0);
 }
 
-Signals ActuatorSignals(const Recording& recording, int window, const PlantConstants& constants) {
+Signals ActuatorSignals(const Recording& recording, int window, const ActuatorConstants& constants) {
   if (recording.rows() < kMinRows)
     throw std::invalid_argument(recording.source + ": holds " + std::to_string(recording.rows()) +
                                 " samples; at least " + std::to_string(kMinRows) + " are needed to judge a model");

@@ -2,7 +2,7 @@
 
 #include "armcmc/gap/recording.hpp"
 #include "armcmc/gap/signals.hpp"
-#include "armcmc/settings.hpp"
+#include "plants/soft_actuator/constants.hpp"
 
 namespace armcmc::gap {
 
@@ -11,12 +11,12 @@ namespace armcmc::gap {
 /// The pressure is smoothed without rounding the corners where a valve opens: the integral of p' is subtracted, which
 /// has the corners, what is left is smoothed widely, and the integral is added again.
 /// @param window  Samples of the smoother of the workflow; the wide one here is a multiple of it.
-[[nodiscard]] Signals ActuatorSignals(const Recording& recording, int window, const PlantConstants& constants);
+[[nodiscard]] Signals ActuatorSignals(const Recording& recording, int window, const ActuatorConstants& constants);
 
 /// Root mean square of a series, over rows of weight one.
 [[nodiscard]] double RootMeanSquare(const Vector& series, const Vector& weight);
 
 /// sign(dp) sqrt|dp| of the valve that a signed opening opens; sqrt(Pa).
-[[nodiscard]] double ValveHead(double opening, double gauge_pressure, const PlantConstants& constants);
+[[nodiscard]] double ValveHead(double opening, double gauge_pressure, const ActuatorConstants& constants);
 
 }  // namespace armcmc::gap

@@ -23,7 +23,7 @@ EffectForm Torque(const char* effect, const char* family, const char* formula, s
 }
 
 /// Acceleration that would hold the rms angle: the size of the amplitudes.
-double Strength(const Signals& s, const PlantConstants& constants) { return constants.q3 * s.output_scale; }
+double Strength(const Signals& s, const ActuatorConstants& constants) { return constants.q3 * s.output_scale; }
 
 void AddFriction(const Signals& s, double strength, std::vector<EffectForm>* out) {
   const double speed = s.scale_of(Role::kVelocity), angle = s.scale_of(Role::kPosition);
@@ -126,7 +126,7 @@ void AddPeriodic(const Signals& s, double strength, std::vector<EffectForm>* out
   out->push_back(sine);
 }
 
-void AddSensors(const Signals& s, const PlantConstants& constants, std::vector<EffectForm>* out) {
+void AddSensors(const Signals& s, const ActuatorConstants& constants, std::vector<EffectForm>* out) {
   EffectForm pressure = Torque("pressure_bias", "sensor zero", "p + bias: alpha'' - q1 bias on the measured pressure",
                                {AmplitudeOf("bias", "Pa", s.scale_of(Role::kPressure), false)});
   pressure.force = [q1 = constants.q1](const Motion&, const double* v, const double*) { return -q1 * v[0]; };
@@ -148,7 +148,8 @@ void AddSensors(const Signals& s, const PlantConstants& constants, std::vector<E
   out->push_back(delay);
 }
 
-void AddUnlistedBend(const Signals& s, double strength, const PlantConstants& constants, std::vector<EffectForm>* out) {
+void AddUnlistedBend(const Signals& s, double strength, const ActuatorConstants& constants,
+                     std::vector<EffectForm>* out) {
   const double speed = s.scale_of(Role::kVelocity), angle = s.scale_of(Role::kPosition);
   EffectForm wrong = UnlistedForm("constants q1, q2, q3 that are not those of this actuator", "constants",
                                   "(q1 + dq1) (p - p_atm) - (q2 + dq2) alpha' - (q3 + dq3) alpha", Slot::kForce);
@@ -183,7 +184,7 @@ void AddUnlistedBend(const Signals& s, double strength, const PlantConstants& co
 
 }  // namespace
 
-std::vector<EffectForm> BendCatalogue(const Signals& signals, const PlantConstants& constants) {
+std::vector<EffectForm> BendCatalogue(const Signals& signals, const ActuatorConstants& constants) {
   const double strength = Strength(signals, constants);
   std::vector<EffectForm> forms;
   AddFriction(signals, strength, &forms);

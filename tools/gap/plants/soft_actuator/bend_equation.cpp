@@ -203,7 +203,7 @@ class BendEquation final : public Equation {
     return s;
   }
 
-  PlantConstants constants_;
+  ActuatorConstants constants_;
 };
 
 std::vector<FeatureGroup> BendEquation::Groups(const Signals& s, const Vector& predicted) const {

@@ -12,7 +12,7 @@ constexpr double kTiny = 1e-300;
 
 }  // namespace
 
-BendSimulation::BendSimulation(const PlantConstants& constants, double dt) : constants_(constants), dt_(dt) {
+BendSimulation::BendSimulation(const ActuatorConstants& constants, double dt) : constants_(constants), dt_(dt) {
   // (alpha, alpha', a, a' dt) with an acceleration a that is linear over the step.
   Eigen::Matrix4d generator = Eigen::Matrix4d::Zero();
   generator(0, 1) = dt;

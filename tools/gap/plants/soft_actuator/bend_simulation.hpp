@@ -5,7 +5,7 @@
 
 #include "armcmc/gap/effect_form.hpp"
 #include "armcmc/gap/prediction.hpp"
-#include "armcmc/settings.hpp"
+#include "plants/soft_actuator/constants.hpp"
 
 namespace armcmc::gap {
 
@@ -16,7 +16,7 @@ namespace armcmc::gap {
 /// solved for at the end of each step.
 class BendSimulation {
  public:
-  BendSimulation(const PlantConstants& constants, double dt);
+  BendSimulation(const ActuatorConstants& constants, double dt);
 
   struct State {
     double angle = 0.0, rate = 0.0;  ///< rad, rad/s
@@ -50,7 +50,7 @@ class BendSimulation {
                              Eigen::Index i) const;
   [[nodiscard]] State Moved(const State& x, double start, double end) const;
 
-  PlantConstants constants_;
+  ActuatorConstants constants_;
   double dt_;
   std::array<double, 4> step_;            ///< State to state.
   std::array<double, 2> first_, second_;  ///< Acceleration at the start and at the end of a step to state.

@@ -117,7 +117,7 @@ void AddLag(const Signals& s, std::vector<EffectForm>* out) {
 }
 
 /// The opening that passes at full supply what the valve passes at a supply lower by `droop`, less the opening.
-Vector Drooped(const Signals& s, const Vector& droop, const PlantConstants& constants) {
+Vector Drooped(const Signals& s, const Vector& droop, const ActuatorConstants& constants) {
   Vector less = Vector::Zero(s.rows());
   for (Eigen::Index i = 0; i < s.rows(); ++i) {
     const double u = Opening(s)[i];
@@ -129,7 +129,7 @@ Vector Drooped(const Signals& s, const Vector& droop, const PlantConstants& cons
   return less;
 }
 
-void AddDroop(const Signals& s, const PlantConstants& constants, std::vector<EffectForm>* out) {
+void AddDroop(const Signals& s, const ActuatorConstants& constants, std::vector<EffectForm>* out) {
   const double supply = constants.p_supply - constants.p_atm, opening = s.scale_of(Role::kOpening);
   EffectForm droop = FlowFromCore<SupplyDroop>();
   droop.slot = Slot::kDrive;
@@ -227,7 +227,7 @@ void AddUnlistedFlow(const Signals& s, std::vector<EffectForm>* out) {
 
 }  // namespace
 
-std::vector<EffectForm> FlowCatalogue(const Signals& signals, const PlantConstants& constants) {
+std::vector<EffectForm> FlowCatalogue(const Signals& signals, const ActuatorConstants& constants) {
   std::vector<EffectForm> forms;
   AddLeak(signals, &forms);
   AddDeadBand(signals, &forms);

@@ -193,7 +193,7 @@ class FlowEquation final : public Equation {
     return std::sqrt((1.0 + cosine) / std::max(1.0 - cosine, 1e-15));
   }
 
-  PlantConstants constants_;
+  ActuatorConstants constants_;
 };
 
 std::vector<FeatureGroup> FlowEquation::Groups(const Signals& s, const Vector& predicted) const {

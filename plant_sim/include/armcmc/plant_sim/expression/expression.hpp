@@ -20,11 +20,17 @@ using Names = std::vector<std::string>;
 ///   integral  y <- y + dt (a + b) / 2,  0 at the first sample
 ///   delay     linear between the samples at t - tau; e of the first sample before it; tau < 0 counts as 0
 ///   previous  a, at the first sample e;  elapsed  s since the first sample
+///
+/// and for arguments that are held between samples:
+///
+///   lowpass   y <- y E + a (1 - E);  integral  y <- y + dt a
+///   delay     what was held at t - tau; for a low pass, an integral or a rate its mean until the next sample
 class Expression {
  public:
   Expression() = default;
+  /// @param held     By place: what is, between samples; may be shorter. @param is_rate  It is integrated.
   /// @throws Error naming a column.
-  Expression(std::string_view text, const Names& names);
+  Expression(std::string_view text, const Names& names, const std::vector<bool>& held = {}, bool is_rate = false);
 
   /// @param values  By place. @param dt  s, since the sample before; 0 at the first one.
   [[nodiscard]] double Evaluate(const std::vector<double>& values, double dt);
@@ -37,6 +43,7 @@ class Expression {
 
   [[nodiscard]] bool has_memory() const { return !memories_.empty(); }
   [[nodiscard]] bool Reads(int place) const;
+  [[nodiscard]] bool is_held() const { return tree_.held; }
   /// Whether something that is remembered does.
   [[nodiscard]] bool RemembersPlace(int place) const;
   [[nodiscard]] const Tree& tree() const { return tree_; }
@@ -49,7 +56,7 @@ class Expression {
     double result = 0.0, last_result = 0.0;  ///< At the last two samples.
   };
 
-  void Bind(Tree* node, const Names& names);
+  void Bind(Tree* node, const Names& names, const std::vector<bool>& held, bool integrated);
   [[nodiscard]] double Walk(const Tree& node, const std::vector<double>& values, double dt);
   [[nodiscard]] double WalkBetween(const Tree& node, const std::vector<double>& values, double part) const;
   [[nodiscard]] double Remember(const Tree& node, double e, double tau, double dt);

@@ -28,6 +28,10 @@ struct Tree {
   double number = 0.0;
   int column = 1;
   int slot = -1;  ///< Of a name: its place among the values. Of a function with memory: its place among the memories.
+  bool held = false;  ///< Its value is, between samples.
+  /// Of a function with memory: what it takes is held; of a delay, where nothing integrates it: between samples nobody
+  /// asks for the mean.
+  bool takes_held = false;
   std::vector<Tree> arguments;
 };
 

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "plants/soft_actuator/effects.hpp"
+#include "src/bench_equation.hpp"
 
 namespace armcmc::gap_bench {
 
@@ -24,5 +29,18 @@ inline const std::vector<std::string> kActuator = {"leak:linear",
 inline const std::vector<std::string> kActuatorOutside = {"quadratic_drag", "obstacle"};
 
 inline constexpr const char* kExcited = "soft_actuator_excited";
+/// Constants that the tool is told, as lines of that scenario.
+inline const std::vector<std::string> kTakenForGranted = {"p_supply = 800000.0", "q1 = 0.0704", "q3 = 3319.4"};
+
+namespace actuator_detail {
+inline bool FeltByFlow(std::string_view effect) noexcept { return FlowEffects::Find(effect) >= 0; }
+/// The pressure that is measured enters both.
+inline bool FeltByBend(std::string_view effect) noexcept {
+  return !FeltByFlow(effect) || effect == PressureBias::kInfo.name;
+}
+}  // namespace actuator_detail
+
+inline constexpr std::array<BenchEquation, 2> kActuatorEquations{
+    {{"flow law", actuator_detail::FeltByFlow}, {"bend equation", actuator_detail::FeltByBend}}};
 
 }  // namespace armcmc::gap_bench

@@ -81,12 +81,13 @@ class LaneProgram {
     std::array<std::size_t, expression::kMaxArguments> argument{};  ///< Blocks.
     std::size_t block = 0;                                          ///< That it fills.
     double value = 0.0;
-    bool time = false;
+    bool time = false, interval = false;
     bool memory = false;
     Varies varies = Varies::kByLane;
     int power = -1;         ///< Whole part of a constant exponent that is made of multiplications; else -1.
     bool half = false;      ///< And one half.
     bool root = false;      ///< A power that negative numbers do not have, or with an exponent that may be any.
+    bool held = false;      ///< Of a function with memory: what it takes is, between samples.
     bool steady = false;    ///< A low pass whose time constant varies by lane at most.
     std::size_t index = 0;  ///< Of a signal; of a memory.
     std::size_t line = 0;   ///< Of a delay.

@@ -101,7 +101,8 @@ class TrajectoryModel {
   int substeps_ = 1;
   std::vector<Between> between_;  ///< Of a signal.
   LaneProgram law_, rate_, past_, start_;
-  std::size_t num_past_ = 0;  ///< Outputs of past_.
+  std::size_t num_past_ = 0;     ///< Outputs of past_.
+  std::vector<bool> past_held_;  ///< Between samples.
   /// Inputs of the programs: signals, parameters, states, columns, what rates remember.
   std::size_t first_state_ = 0, num_inputs_ = 0;
   std::vector<std::size_t> law_reads_, rate_reads_;  ///< Signals.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "armcmc/gap/result.hpp"
+#include "armcmc/models/registry.hpp"
 
 namespace armcmc::gap_bench {
 
@@ -17,12 +18,12 @@ enum class Part { kWhole, kFirstHalf, kSecondHalf };
 
 /// One recording that is to be made and diagnosed. What it says about the hidden effect goes to the plant alone.
 struct Case {
-  std::string stratum;                  ///< "singles"
-  std::string group;                    ///< Row of the table within the stratum: "R 0.3".
-  std::string scenario;                 ///< Of the plant: a name, or a file relative to the folder of the run.
-  std::string model = "hunt_crossley";  ///< That the tool is given.
-  std::string effect;                   ///< --hide-effect; empty: the scenario hides effects of its own.
-  std::string gate;                     ///< --effect-gate; empty: none.
+  std::string stratum;                 ///< "singles"
+  std::string group;                   ///< Row of the table within the stratum: "R 0.3".
+  std::string scenario;                ///< Of the plant: a name, or a file relative to the folder of the run.
+  std::string model = DefaultModel();  ///< That the tool is given.
+  std::string effect;                  ///< --hide-effect; empty: the scenario hides effects of its own.
+  std::string gate;                    ///< --effect-gate; empty: none.
   double strength = 1.0;
   std::uint64_t seed = 1;
   Part part = Part::kWhole;

@@ -13,7 +13,7 @@ class PlantProcess {
  public:
   /// @param program  armcmc-plant.
   /// @param folder   Where it runs and writes.
-  PlantProcess(std::filesystem::path program, std::filesystem::path folder);
+  PlantProcess(const std::filesystem::path& program, const std::filesystem::path& folder);
 
   /// Makes NAME.csv, with the columns of a real recording only, and NAME.sealed.json.
   /// @return false when the effect cannot reach its strength in this motion.
