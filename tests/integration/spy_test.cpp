@@ -114,10 +114,10 @@ TEST_F(Spy, ShowsAHundredPacksASecondAndTheEstimatorMissesNothing) {
   auto spy = screen_->StartSpy({"--lcm-url", bus_->url()});
   const auto list = screen_->Window("LCM Spy");
   ASSERT_TRUE(list) << spy->err();
-  // All five channels of this plant are in the list before anybody clicks.
+  // All six channels of this plant are in the list before anybody clicks.
   const std::size_t before = recorder_->estimates().size();
   ASSERT_TRUE(recorder_->WaitForEstimates(before + static_cast<std::size_t>(3 * kRate)));
-  EXPECT_THAT(spy->out(), HasSubstr("Found 6 LCM types"));
+  EXPECT_THAT(spy->out(), HasSubstr("Found 7 LCM types"));
   EXPECT_THAT(spy->out(), HasSubstr("Found 3 plugins"));
 
   const std::string estimate = OpenPanel("EST_ESTIMATE", 0, 1450, 0);
