@@ -28,7 +28,7 @@ final class StatusCards {
   }
 
   void paint(Rectangle r) {
-    int[] weights = {120, 98, 152, 146, 170, 110};
+    int[] weights = {130, 92, 150, 148, 168, 108};
     int sum = prefix(weights, weights.length);
     int top = r.y;
     for (int i = 0; i < weights.length; ++i) {
