@@ -24,6 +24,7 @@ std::vector<DataPack> Packs(const std::vector<HiddenEffect>& effects, int packs,
   std::normal_distribution<double> noise(0.0, 0.1);
   for (double& f : series.f) f += noise(generator);
   std::vector<DataPack> out;
+  out.reserve(static_cast<std::size_t>(packs));
   for (int k = 0; k < packs; ++k) out.push_back(series.Pack(k + 1, static_cast<std::size_t>(k) * kPack, kPack));
   return out;
 }
