@@ -27,7 +27,7 @@ std::map<std::string, std::string> Row(const std::string& text) { return test::R
 TEST(EstimateCsv, HasTheColumnsOfTheInterface) {
   const Estimator estimator(Small("hunt_crossley"));
   std::ostringstream out;
-  EstimateCsv(estimator, &out);
+  const EstimateCsv header(estimator, &out);
   EXPECT_EQ(out.str(),
             "pack,t,mode,"
             "K,K_ap,K_sd,K_q025,K_q25,K_q50,K_q75,K_q975,K_chain_mean,"

@@ -55,7 +55,7 @@ std::string VerificationText(const Verification& v, const PackSource& source) {
   if (v.undecodable > 0) out << v.undecodable << " messages of the estimator are of no type that this version knows\n";
   if (v.without_pack > 0) out << v.without_pack << " recorded estimates have no pack in the log\n";
   if (v.equal()) {
-    out << "verified: " << v.compared << " recorded estimates and posteriors are equal to the bit\n";
+    out << "verified: " << v.compared << " recorded messages are equal to the bit\n";
   } else if (v.compared == 0) {
     out << "NOT VERIFIED: no recorded estimate belongs to a pack of the log\n";
   } else {
