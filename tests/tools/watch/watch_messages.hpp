@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstring>
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace armcmc::test {
 
-inline void SetText(const std::string& text, std::uint8_t* field) { std::memcpy(field, text.data(), text.size()); }
+inline void SetText(const std::string& text, std::uint8_t* field) { std::copy(text.begin(), text.end(), field); }
 
 inline estimator_status_t SomeStatus() {
   estimator_status_t s{};

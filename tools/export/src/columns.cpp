@@ -139,9 +139,9 @@ std::string ParameterUnit(const PlantScan& plant, std::size_t i) {
 }
 
 std::vector<Column> ColumnsOf(const ChannelScan& channel, const PlantScan& plant) {
-  static const TypeMeaning kNothingKnown;
+  static const TypeMeaning nothing_known;
   const auto found = Meanings().find(channel.type->name);
-  const Builder builder(channel, plant, found == Meanings().end() ? kNothingKnown : found->second);
+  const Builder builder(channel, plant, found == Meanings().end() ? nothing_known : found->second);
   std::vector<Column> columns;
   for (const MessageField& field : channel.type->fields) builder.Add(field, &columns);
   return columns;
