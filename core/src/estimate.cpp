@@ -29,4 +29,15 @@ void ModeEstimate::Restore(int num_reported, SnapshotReader* in) noexcept {
   }
 }
 
+void ModeEstimate::SaveDrift(int num_reported, SnapshotWriter* out) const noexcept {
+  out->Put(p_drifted);
+  out->PutRow(drift_rate.data(), static_cast<std::size_t>(num_reported));
+}
+
+void ModeEstimate::RestoreDrift(int num_reported, SnapshotReader* in) noexcept {
+  p_drifted = in->Number();
+  in->Row(drift_rate.data(), static_cast<std::size_t>(num_reported));
+  in->Require(p_drifted >= 0.0 && p_drifted <= 1.0);
+}
+
 }  // namespace armcmc

@@ -179,6 +179,7 @@ void Estimator::Impl::SetBand(const std::array<double, kTileLanes>& outputs, Est
 void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
   GapReference estimate;
   bool changed = false;
+  bool drifts = false;
   for (int m = 0; m < info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
     const ModeEstimate& mode = e->modes[i];
@@ -187,9 +188,10 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     for (std::size_t d = 0; d < static_cast<std::size_t>(info.num_parameters); ++d)
       estimate.theta[i][d] = info.Sampled(
           static_cast<int>(d), mode.marginal[static_cast<std::size_t>(info.ReportedOf(static_cast<int>(d)))].ar_ap);
+    drifts = drifts || (mode.updated && mode.p_drifted > 0.5);
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
-  gap_watch.Step(pack, estimate, changed);
+  gap_watch.Step(pack, estimate, changed, drifts);
   if (output_watch) output_watch->Step(pack, shown[0]);
   e->gap = Gap();
 }

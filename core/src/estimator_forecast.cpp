@@ -27,6 +27,31 @@ double StartVariance(const StartFit* start, std::size_t k) noexcept {
   return sum;
 }
 
+/// Draws of the posterior after the last pack, moved and stretched to the mean and covariance of the prior of this one:
+/// u <- m' + L' L^-1 (u - m), C = L L'. What leaves the bounds stays at them.
+void MoveWithDrift(const ModeSampler::Drifted& drifted, const ParameterSpace& space, ThetaTile* theta) noexcept {
+  ParamMatrix last, now;
+  const Eigen::Index dim = space.num_parameters;
+  if (!CholeskyFactor(drifted.last_covariance.topLeftCorner(dim, dim), &last) ||
+      !CholeskyFactor(drifted.covariance.topLeftCorner(dim, dim), &now))
+    return;
+  const ParamMatrix map = Product(now, Inverse(last));
+  if (!map.allFinite()) return;
+  for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+    ParamVector u(dim);
+    for (Eigen::Index d = 0; d < dim; ++d) {
+      const auto i = static_cast<std::size_t>(d);
+      u[d] = (theta->value[i][lane] - space.offset[i]) / space.scale[i] - drifted.last_mean[d];
+    }
+    u = Multiply(map, u);
+    for (Eigen::Index d = 0; d < dim; ++d) {
+      const auto i = static_cast<std::size_t>(d);
+      const double moved = std::clamp(drifted.mean[d] + u[d], space.lower[i], space.upper[i]);
+      theta->value[i][lane] = space.Theta(static_cast<int>(d), moved);
+    }
+  }
+}
+
 }  // namespace
 
 void Estimator::Forecast(const AdjustResult& result, PackForecast* forecast) noexcept {
@@ -41,7 +66,10 @@ void Estimator::Forecast(const AdjustResult& result, PackForecast* forecast) noe
     s.PrepareMode(result.pack, result.effects, m, &s.execute_data);
     const ModeData& data = s.execute_data;
     if (data.num_samples == 0) continue;
-    s.kernels.predict(s.model, data, s.band_theta[i], &s.band_prediction);
+    ThetaTile theta = s.band_theta[i];
+    const ModeSampler::Drifted& drifted = s.samplers[i]->drifted();
+    if (drifted.any && drifted.at_s == data.time_s) MoveWithDrift(drifted, s.samplers[i]->space(), &theta);
+    s.kernels.predict(s.model, data, theta, &s.band_prediction);
     const StartFit* start = s.state_filter.empty() ? nullptr : s.adjust_data[i].start_fit;
     const double noise = s.last_estimates[i].noise_std;
     for (std::size_t k = 0; k < static_cast<std::size_t>(data.num_samples); ++k) {

@@ -39,6 +39,8 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
   }
   s.gap_watch.Save(&out);
   if (s.output_watch) s.output_watch->Save(&out);
+  for (std::size_t m = 0; m < static_cast<std::size_t>(s.info.num_modes); ++m)
+    s.last_estimates[m].SaveDrift(s.info.num_reported, &out);
   return out.size();
 }
 
@@ -77,6 +79,9 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
   // Snapshots of described plants end here that were written when those were not watched.
   if (s.info.described == nullptr || !display.finished()) s.gap_watch.Restore(&display);
   if (s.output_watch) s.output_watch->Restore(&display);
+  // Older ones say nothing of drift.
+  for (std::size_t m = 0; !display.finished() && m < s.memories.size(); ++m)
+    s.last_estimates[m].RestoreDrift(s.info.num_reported, &display);
   if (posterior.finished() && display.finished()) return true;
   Reset();
   return false;

@@ -151,6 +151,8 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
     return RandomStream(sampler_.seed, pack, mode * kNumPurposes + purpose);
   };
   const PosteriorMemory& last = drift_.Carry(data, before);
+  drifted_.any = &last != &before;
+  if (drifted_.any) drifted_ = {true, data.time_s, before.mean, last.mean, before.covariance, last.covariance};
   if (before.valid) transition_.Age(before, last);
   Mismatch mismatch;
   mismatch.zeta = HUGE_VAL;  // zeta^0: the first pack is a modification

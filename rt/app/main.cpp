@@ -47,7 +47,7 @@ constexpr char kDescription[] =
 std::string Footer() {
   return "Channels: listens to PLANT_PACK, or PLANT_PACK_V2 for a plant that a file describes; publishes "
          "EST_ESTIMATE,\n"
-         "EST_POSTERIOR, EST_STATUS (all behind the prefix).\n"
+         "EST_POSTERIOR, EST_CHANGE, EST_STATUS (all behind the prefix).\n"
          "Ctrl-C stops within one step, prints the summary and writes the report.\n\n"
          "Example: two terminals on one computer\n"
          "  armcmc-estimator --model " +

@@ -23,6 +23,7 @@ PackFormat EstimatorEngine::pack_format() const noexcept { return PackFormatOf(e
 int EstimatorEngine::num_modes() const noexcept { return estimator_.num_modes(); }
 int EstimatorEngine::num_reported() const noexcept { return estimator_.num_reported(); }
 ReportedQuantity EstimatorEngine::reported(int index) const noexcept { return estimator_.reported(index); }
+std::string_view EstimatorEngine::mode_name(int mode) const noexcept { return estimator_.mode_name(mode); }
 
 Status EstimatorEngine::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept {
   const Status status = estimator_.Draw(pack, deadline_ns, clock, results_[static_cast<std::size_t>(slot)].get());

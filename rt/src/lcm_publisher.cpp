@@ -7,6 +7,7 @@ namespace armcmc::rt {
 LcmPublisher::LcmPublisher(const LcmUrl& url, const std::string& prefix)
     : estimate_channel_(prefix + kEstimateChannel),
       posterior_channel_(prefix + kPosteriorChannel),
+      change_channel_(prefix + kChangeChannel),
       status_channel_(prefix + kStatusChannel) {
   CheckMulticastRoute(url);  // before liblcm, whose message for this case names a random address
   lcm_.reset(lcm_create(url.text.c_str()));

@@ -15,6 +15,9 @@ static_assert(estimate_t::MAX_PARAMS == kMaxReported && estimate_t::MAX_MODES ==
 static_assert(std::extent_v<decltype(posterior_t::lo)> == kMaxReported);
 static_assert(std::extent_v<decltype(posterior_t::density)> == kMaxReported);
 static_assert(std::extent_v<decltype(posterior_t::density), 1> == kHistogramBins);
+static_assert(std::extent_v<decltype(change_t::drift_rate)> == kMaxModes);
+static_assert(std::extent_v<decltype(change_t::drift_rate), 1> == kMaxReported);
+static_assert(change_t::MAX_PARAMS == kMaxReported && change_t::MAX_MODES == kMaxModes);
 static_assert(estimate_t::DECISION_HOLD == static_cast<int>(Decision::kHold));
 static_assert(estimate_t::DECISION_REINFORCEMENT == static_cast<int>(Decision::kReinforcement));
 static_assert(estimate_t::DECISION_MODIFICATION == static_cast<int>(Decision::kModification));
@@ -141,6 +144,35 @@ void FillPosterior(const StepOutput& output, const StepEngine& engine, std::int6
     message->lo[i] = marginal.histogram_lo;
     message->hi[i] = marginal.histogram_hi;
     std::copy(marginal.density.begin(), marginal.density.end(), message->density[i]);
+  }
+}
+
+void FillChange(const StepOutput& output, const StepEngine& engine, std::int64_t utime, change_t* message) noexcept {
+  const Estimate& e = output.estimate;
+  const int num_reported = std::clamp(engine.num_reported(), 0, kMaxReported);
+  const int num_modes = std::clamp(engine.num_modes(), 0, kMaxModes);
+  *message = change_t{};
+  message->change_utime = utime;
+  message->seq = output.info.seq;
+  message->run_id = output.info.run_id;
+  message->plant_kind = static_cast<std::int32_t>(engine.plant());
+  message->mode = e.report_mode;
+  message->n_modes = num_modes;
+  message->n_params = num_reported;
+  for (int i = 0; i < num_reported; ++i) {
+    FillName(engine, i, message->param_name[i]);
+    FillText(engine.reported(i).unit, message->param_unit[i]);
+  }
+  for (int m = 0; m < num_modes; ++m) {
+    FillText(engine.mode_name(m), message->mode_name[m]);
+    const ModeEstimate& mode = e.modes[static_cast<std::size_t>(m)];
+    if (!mode.known) continue;
+    message->known[m] = 1;
+    message->updated[m] = mode.updated ? 1 : 0;
+    message->p_drifted[m] = mode.p_drifted;
+    message->p_changed[m] = mode.p_changed;
+    message->p_persisted[m] = std::clamp(1.0 - mode.p_drifted - mode.p_changed, 0.0, 1.0);
+    std::copy_n(mode.drift_rate.begin(), num_reported, message->drift_rate[m]);
   }
 }
 

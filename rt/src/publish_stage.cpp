@@ -27,6 +27,8 @@ int PublishStage::PublishSteps() noexcept {
     Send(estimate_, output->info.seq);
     FillPosterior(*output, *engine_, utime, &posterior_);
     Send(posterior_, output->info.seq);
+    FillChange(*output, *engine_, utime, &change_);
+    Send(change_, output->info.seq);
     last_ = output->estimate;
     NoteGap(last_.gap);
     PublishStatus(output);

@@ -194,6 +194,34 @@ TEST(Drift, ARestartGoesOnToTheBitAndAnOlderSnapshotIsTaken) {
   }
 }
 
+TEST(Drift, WhatIsBelievedOfItOutlivesARestartInTheAir) {
+  Contact contact(kDrift);
+  Rig whole(Quick()), resumed(Quick()), older(Quick());
+  for (std::int64_t seq = 1; seq <= 40; ++seq) whole.Step(contact.Pack(seq));
+  const ModeEstimate last = whole.estimate().modes[0];
+  ASSERT_GT(last.p_drifted, 0.5);
+  std::vector<std::byte> adjusted(Estimator::kSnapshotBytes), executed(Estimator::kSnapshotBytes);
+  adjusted.resize(whole.estimator.SaveAdjusted(adjusted));
+  executed.resize(whole.estimator.SaveExecuted(executed));
+  constexpr std::size_t kDriftBytes = (1 + 3) * sizeof(double);
+  ASSERT_TRUE(resumed.estimator.Restore(adjusted, executed));
+  ASSERT_TRUE(older.estimator.Restore(adjusted, std::span(executed).first(executed.size() - kDriftBytes)));
+  const DataPack air = test::FillContactPack(
+      41,
+      [](double) {
+        return test::Place{-1.0, 0.0};
+      },
+      [](double, const test::Place&) { return 0.0; });
+  resumed.Step(air);
+  older.Step(air);
+  const ModeEstimate &held = resumed.estimate().modes[0], &unknown = older.estimate().modes[0];
+  EXPECT_FALSE(held.updated);
+  EXPECT_EQ(held.p_drifted, last.p_drifted);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(held.drift_rate[i], last.drift_rate[i]) << i;
+  EXPECT_TRUE(unknown.known);
+  EXPECT_EQ(unknown.p_drifted, 0.0) << "learnt anew";
+}
+
 TEST(Drift, AllocatesNothing) {
   if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
   Contact contact(kDrift);

@@ -59,6 +59,40 @@ TEST(EstimatedNoise, FollowsItsLevel) {
   EXPECT_LT(rig.estimate().modes[0].marginal[0].sd, 1.5 * k_sd);
 }
 
+TEST(EstimatedNoise, IntervalsHoldTheScaleOfASensorThatWarmsUp) {
+  EstimatorSettings settings = Settings(NoiseKind::kGaussian, true);
+  settings.sampler.rule = DrawRule::kFixed;
+  settings.sampler.fixed_draws = 1000;
+  settings.gap_watch.enabled = false;
+  const ParameterSpace space(settings, settings.noise[0]);
+  const test::Motion motion{.depth = 1.0, .swing = 0.5, .hertz = 1.3, .phase = 0.0};
+  test::Normal normal(3);
+  Rig rig(settings);
+  const auto sd = [](double t) { return 0.1 * std::exp2(t / 60.0); };
+  double inside95 = 0.0, inside50 = 0.0, drifted = 0.0;
+  constexpr int kPacks = 600;
+  for (std::int64_t seq = 1; seq <= kPacks; ++seq) {
+    const DataPack pack = test::FillContactPack(
+        seq, [&](double t) { return motion.At(t); },
+        [&](double t, const test::Place& at) { return test::ContactTruth{}.Force(at.x, at.v) + sd(t) * normal(); });
+    const ModeEstimate& mode = rig.Step(pack).modes[0];
+    const ModeDraws& draws = rig.result->modes[0];
+    const double truth = sd(pack.t_last_s - 0.05);  // in the middle of the pack
+    double below = 0.0;
+    for (int k = 0; k < draws.draws; ++k)
+      if (std::exp(space.Theta(space.dim - 1, draws.u[3][k])) < truth) below += draws.weight[k];
+    inside95 += std::fabs(below - 0.5) < 0.475 ? 1.0 / kPacks : 0.0;
+    inside50 += std::fabs(below - 0.5) < 0.25 ? 1.0 / kPacks : 0.0;
+    drifted += mode.p_drifted / kPacks;
+  }
+  // What a pack adds outweighs what is carried on, so that packs are nearly independent: binomial, 0.9 and 2 %.
+  EXPECT_GT(inside95, 0.90);
+  EXPECT_LT(inside95, 0.995);
+  EXPECT_GT(inside50, 0.42);
+  EXPECT_LT(inside50, 0.62);
+  EXPECT_LT(drifted, 0.1) << "the parameters stay";
+}
+
 TEST(HeavyTails, OutliersDoNotMoveTheEstimate) {
   for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kMixture}) {
     EstimatorSettings settings = Settings(kind, false);

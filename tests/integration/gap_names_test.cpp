@@ -146,6 +146,15 @@ TEST_F(LongNames, ADriftThatTheCatalogueLacksIsNoSlowRelaxation) {
   }
 }
 
+// All parameters breathe with a period of a minute: no formula of the catalogue, and nothing that the estimator, which
+// follows it, would lack.
+TEST_F(LongNames, ADriftThatTheEstimatorFollowsIsNoMissingEffect) {
+  const Json result = DiagnoseScenario("hunt_crossley_drift_sine", "1", {}, {});
+  EXPECT_EQ(result["verdict"], "none") << result["sentence"];
+  EXPECT_THAT(result["sentence"].get<std::string>(), ::testing::HasSubstr("drift"));
+  EXPECT_TRUE(result["effects"].empty());
+}
+
 // Friction in free motion, of which the first seven seconds have hardly any: they lack nothing, but they do not explain
 // the rest.
 TEST_F(Names, WhatOnlyTheRestOfTheRecordingShowsIsNotCalledNothing) {

@@ -114,15 +114,15 @@ TEST_F(Spy, ShowsAHundredPacksASecondAndTheEstimatorMissesNothing) {
   auto spy = screen_->StartSpy({"--lcm-url", bus_->url()});
   const auto list = screen_->Window("LCM Spy");
   ASSERT_TRUE(list) << spy->err();
-  // All five channels of this plant are in the list before anybody clicks.
+  // All six channels of this plant are in the list before anybody clicks.
   const std::size_t before = recorder_->estimates().size();
   ASSERT_TRUE(recorder_->WaitForEstimates(before + static_cast<std::size_t>(3 * kRate)));
-  EXPECT_THAT(spy->out(), HasSubstr("Found 6 LCM types"));
+  EXPECT_THAT(spy->out(), HasSubstr("Found 7 LCM types"));
   EXPECT_THAT(spy->out(), HasSubstr("Found 3 plugins"));
 
-  const std::string estimate = OpenPanel("EST_ESTIMATE", 0, 1450, 0);
-  const std::string posterior = OpenPanel("EST_POSTERIOR", 1, 0, 920);
-  const std::string status = OpenPanel("EST_STATUS", 2, 1450, 920);
+  const std::string estimate = OpenPanel("EST_ESTIMATE", 1, 1450, 0);
+  const std::string posterior = OpenPanel("EST_POSTERIOR", 2, 0, 920);
+  const std::string status = OpenPanel("EST_STATUS", 3, 1450, 920);
   const std::size_t opened = recorder_->estimates().size();
   ASSERT_TRUE(recorder_->WaitForEstimates(opened + static_cast<std::size_t>(12 * kRate)));
 

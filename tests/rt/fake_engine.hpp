@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <new>
+#include <string_view>
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/clock.hpp"
@@ -48,6 +49,7 @@ class FakeEngine : public StepEngine {
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {
     return index == 0 ? ReportedQuantity{"K", "N/m^p"} : ReportedQuantity{"a_name_of_more_than_15_characters", "-"};
   }
+  [[nodiscard]] std::string_view mode_name(int) const noexcept ARMCMC_NONBLOCKING override { return "contact"; }
 
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock,
                 int slot) noexcept ARMCMC_NONBLOCKING override {

@@ -151,6 +151,47 @@ TEST(FillPosterior, CopiesTheMarginalsOfTheReportedMode) {
   EXPECT_EQ(message.density[2][0], 0.0);
 }
 
+TEST(FillChange, SaysWhatIsBelievedWithNamesAndUnits) {
+  test::FakeEngine engine;
+  const auto output = Output(&engine);
+  ModeEstimate& mode = output->estimate.modes[0];
+  mode.p_drifted = 0.625;
+  mode.p_changed = 0.125;
+  mode.drift_rate[0] = 0.5;
+  mode.drift_rate[1] = 0.0625;
+  mode.drift_rate[2] = 7.0;  // of no parameter
+  change_t message;
+  std::memset(static_cast<void*>(&message), 0xff, sizeof message);
+  FillChange(*output, engine, 5, &message);
+  EXPECT_EQ(message.change_utime, 5);
+  EXPECT_EQ(message.seq, 7);
+  EXPECT_EQ(message.run_id, 3);
+  EXPECT_EQ(message.plant_kind, data_pack_t::PLANT_HUNT_CROSSLEY);
+  EXPECT_EQ(message.mode, 0);
+  EXPECT_EQ(message.n_modes, 1);
+  EXPECT_EQ(message.n_params, 2);
+  EXPECT_EQ(Text(message.mode_name[0]), "contact");
+  EXPECT_EQ(Text(message.mode_name[1]), "");
+  EXPECT_EQ(Text(message.param_name[0]), "K");
+  EXPECT_EQ(Text(message.param_unit[0]), "N/m^p");
+  EXPECT_EQ(Text(message.param_name[1]), "a_name_of_more_");
+  EXPECT_EQ(message.known[0], 1);
+  EXPECT_EQ(message.known[1], 0);
+  EXPECT_EQ(message.updated[0], 1);
+  EXPECT_EQ(message.p_persisted[0], 0.25);
+  EXPECT_EQ(message.p_drifted[0], 0.625);
+  EXPECT_EQ(message.p_changed[0], 0.125);
+  EXPECT_EQ(message.drift_rate[0][0], 0.5);
+  EXPECT_EQ(message.drift_rate[0][1], 0.0625);
+  EXPECT_EQ(message.drift_rate[0][2], 0.0);
+  EXPECT_EQ(message.p_persisted[1], 0.0);
+  mode.known = false;
+  FillChange(*output, engine, 5, &message);
+  EXPECT_EQ(message.known[0], 0);
+  EXPECT_EQ(message.p_persisted[0], 0.0);
+  EXPECT_EQ(message.drift_rate[0][0], 0.0);
+}
+
 TEST(FillStatus, CarriesTimesCountersAndFlags) {
   test::FakeEngine engine;
   const auto output = Output(&engine);

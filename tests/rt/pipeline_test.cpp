@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "armcmc/change_t.hpp"
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/posterior_t.hpp"
@@ -55,6 +56,7 @@ class PipelineTest : public ::testing::Test {
     statuses_ = std::make_unique<Listener<estimator_status_t>>(bus_.url(), "T_EST_STATUS");
     estimates_ = std::make_unique<Listener<estimate_t>>(bus_.url(), "T_EST_ESTIMATE");
     posteriors_ = std::make_unique<Listener<posterior_t>>(bus_.url(), "T_EST_POSTERIOR");
+    changes_ = std::make_unique<Listener<change_t>>(bus_.url(), "T_EST_CHANGE");
   }
 
   void StartPipeline(std::int64_t max_steps = 0) {
@@ -92,16 +94,19 @@ class PipelineTest : public ::testing::Test {
   std::unique_ptr<Listener<estimator_status_t>> statuses_;
   std::unique_ptr<Listener<estimate_t>> estimates_;
   std::unique_ptr<Listener<posterior_t>> posteriors_;
+  std::unique_ptr<Listener<change_t>> changes_;
   std::unique_ptr<Pipeline> pipeline_;
 };
 
-TEST_F(PipelineTest, AnswersEveryPackWithEstimatePosteriorAndStatus) {
+TEST_F(PipelineTest, AnswersEveryPackWithEstimatePosteriorChangeAndStatus) {
   StartPipeline();
   for (std::int64_t seq = 1; seq <= 5; ++seq) {
     Publish(test::ValidPack(seq));
     ASSERT_TRUE(WaitForSteps(seq));
   }
-  ASSERT_TRUE(WaitFor([this] { return estimates_->Poll().size() == 5 && posteriors_->Poll().size() == 5; }));
+  ASSERT_TRUE(WaitFor([this] {
+    return estimates_->Poll().size() == 5 && posteriors_->Poll().size() == 5 && changes_->Poll().size() == 5;
+  }));
   Stop();
   for (std::size_t i = 0; i < 5; ++i) {
     const estimate_t& estimate = estimates_->Poll()[i];
@@ -110,6 +115,7 @@ TEST_F(PipelineTest, AnswersEveryPackWithEstimatePosteriorAndStatus) {
     EXPECT_DOUBLE_EQ(estimate.y_pred, 9.9);
     EXPECT_GE(estimate.t_done_ns, estimate.t_release_ns);
     EXPECT_EQ(posteriors_->Poll()[i].seq, estimate.seq);
+    EXPECT_EQ(changes_->Poll()[i].seq, estimate.seq);
   }
   const estimator_status_t& last = statuses_->Poll().back();
   EXPECT_EQ(last.step, 5);

@@ -27,14 +27,15 @@ std::map<std::string, std::string> Row(const std::string& text) { return test::R
 TEST(EstimateCsv, HasTheColumnsOfTheInterface) {
   const Estimator estimator(Small("hunt_crossley"));
   std::ostringstream out;
-  EstimateCsv(estimator, &out);
+  const EstimateCsv header(estimator, &out);
   EXPECT_EQ(out.str(),
             "pack,t,mode,"
             "K,K_ap,K_sd,K_q025,K_q25,K_q50,K_q75,K_q975,K_chain_mean,"
             "B,B_ap,B_sd,B_q025,B_q25,B_q50,B_q75,B_q975,B_chain_mean,"
             "p,p_ap,p_sd,p_q025,p_q25,p_q50,p_q75,p_q975,p_chain_mean,"
             "lambda,zeta,decision,draws,k_min,ess,kish_ess,acceptance,log_evidence,p_changed,noise_std,"
-            "y_pred,y_lo,y_hi,y_free_run,y_rmse\n");
+            "y_pred,y_lo,y_hi,y_free_run,y_rmse,"
+            "p_drifted,K_drift_per_s,B_drift_per_s,p_drift_per_s\n");
 }
 
 TEST(EstimateCsv, BeforeAnythingIsKnownTheFieldsAreEmpty) {
@@ -110,6 +111,8 @@ TEST(EstimateCsv, PlantsWithSeveralModesShowAllOfThem) {
   estimate.modes[1].marginal[0].ar_map = -2.5;
   estimate.modes[1].marginal[0].sd = 0.5;
   estimate.modes[1].draws = 250;
+  estimate.modes[1].p_drifted = 0.75;
+  estimate.modes[1].drift_rate[0] = 0.125;
   csv.Write(estimate);
   auto row = Row(out.str());
   const std::string quantity{estimator.reported(0).name}, first{estimator.mode_name(0)}, second{estimator.mode_name(1)};
@@ -118,6 +121,8 @@ TEST(EstimateCsv, PlantsWithSeveralModesShowAllOfThem) {
   EXPECT_EQ(row[quantity + "_" + second + "_sd"], "0.5");
   EXPECT_EQ(row[quantity + "_" + first], "");
   EXPECT_EQ(row["draws_" + second], "250");
+  EXPECT_EQ(row["p_drifted"], "0.75");
+  EXPECT_EQ(row[quantity + "_drift_per_s"], "0.125");
   EXPECT_EQ(row["mode"], second);
 }
 

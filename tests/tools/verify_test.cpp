@@ -53,9 +53,13 @@ class VerifyTest : public ::testing::Test {
       rt::FillPosterior(output, names, 2'000 + e.seq, &posterior);
       estimate.t_release_ns = 5, estimate.t_done_ns = 7;
       change(e.seq, &estimate, &posterior);
+      change_t belief{};
+      rt::FillChange(output, names, 3'000 + e.seq, &belief);
+      if (e.seq == wrong_belief_) belief.p_drifted[0] += 1e-15;
       if (e.seq != lose_pack) log.Write("PLANT_PACK", ContactPack(e.seq));
       log.Write("EST_ESTIMATE", estimate);
       log.Write("EST_POSTERIOR", posterior);
+      if (with_change_) log.Write("EST_CHANGE", belief);
     });
     log.Flush();
   }
@@ -79,6 +83,8 @@ class VerifyTest : public ::testing::Test {
 
   test::ScratchDir dir_;
   EstimatorSettings settings_ = BuiltinSettings("hunt_crossley");
+  bool with_change_ = false;  ///< Older logs have no such channel.
+  std::int64_t wrong_belief_ = 0;
 };
 
 TEST_F(VerifyTest, ARunIsEqualToItself) {
@@ -89,7 +95,19 @@ TEST_F(VerifyTest, ARunIsEqualToItself) {
   EXPECT_EQ(v.without_pack, 0);
   const test::Outcome o = Program();
   EXPECT_EQ(o.code, 0) << o.out << o.err;
-  EXPECT_THAT(o.out, HasSubstr("verified: 16 recorded estimates and posteriors are equal to the bit"));
+  EXPECT_THAT(o.out, HasSubstr("verified: 16 recorded messages are equal to the bit"));
+}
+
+TEST_F(VerifyTest, WhatIsBelievedAboutChangeIsComparedWhereItWasPublished) {
+  with_change_ = true;
+  Record();
+  const Verification v = Verify();
+  EXPECT_TRUE(v.equal()) << v.first_difference;
+  EXPECT_EQ(v.compared, 3 * kPacks);
+  wrong_belief_ = 6;
+  Record();
+  EXPECT_EQ(Verify().different, 1);
+  EXPECT_THAT(Verify().first_difference, HasSubstr("pack 6 (t = 0.6 s), EST_CHANGE: p_drifted[0] is "));
 }
 
 TEST_F(VerifyTest, OneBitIsSeenAndNamed) {

@@ -48,6 +48,9 @@ struct ModeEstimate {
   /// What a pack that says nothing about the mode leaves in place: the parameters and the noise.
   void Save(int num_reported, SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(int num_reported, SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
+  /// The same of drift.
+  void SaveDrift(int num_reported, SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
+  void RestoreDrift(int num_reported, SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 };
 
 /// Everything that the execute stage reports about one pack. Plain data of fixed size.

@@ -72,6 +72,7 @@ class Estimator {
   ///   centre = median of F(X_n, theta_k) over a thinned chain theta_k of that posterior,
   ///   sd^2   = (half the range of its middle two thirds)^2 + noise_std^2 (S P S')_nn,
   ///
+  /// theta_k moved and stretched to what the drift that is believed in has made of mean and covariance since then,
   /// P the covariance of the plant's states where the pack begins, S the law's answer to them (StateFilter). A power
   /// whose exponent is not known yet has no mean that means anything, but a median.
   /// Errors against it are those of a prediction one pack ahead, which fitted nothing to what it predicts.

@@ -107,6 +107,16 @@ class ModeSampler {
   [[nodiscard]] Transition& transition() noexcept { return transition_; }
   [[nodiscard]] Drift& drift() noexcept { return drift_; }
 
+  /// Means and covariances of the parameters before a pack: as the last pack left them, and as they have drifted since.
+  struct Drifted {
+    bool any = false;   ///< They have; else the rest is not set.
+    double at_s = 0.0;  ///< Plant time of the pack.
+    ParamVector last_mean, mean;
+    ParamMatrix last_covariance, covariance;
+  };
+  /// Of the newest Run(). What the noise scale has become is not in it.
+  [[nodiscard]] const Drifted& drifted() const noexcept { return drifted_; }
+
  private:
   /// Draws after a pilot that there was no time to finish. made + DrawsInHaste(made) rises with every round of more
   /// than two tiles, and so tells how many rounds there were.
@@ -229,6 +239,7 @@ class ModeSampler {
   std::array<DensityBlock, kRidgeAnchors> ridge_blocks_;
   double memory_inside_ = 1.0;  ///< Share of the memory's mass inside the bounds.
   Unfinished unfinished_;
+  Drifted drifted_;
   // They steer the deadline only.
   FinishTime finish_time_;    ///< From the last draw to the end of Run().
   FinishTime ridge_time_;     ///< Of the anchors of a ridge.

@@ -21,7 +21,8 @@ double Dot(const double* a, const double* b, int n) noexcept {
 
 }  // namespace
 
-void GapBlock::Clear() noexcept {
+void GapBlock::Clear(bool drifts) noexcept {
+  directions_ = drifts ? kGapDirections : kGapSteady;
   for (PackSums& pack : packs_) pack.used = false;
   detrended_count_ = {};
 }
@@ -29,7 +30,8 @@ void GapBlock::Clear() noexcept {
 void GapBlock::AddFit(int k, const GapRows& rows, double tau, bool changed) noexcept {
   PackSums& pack = packs_[At(k)];
   pack.used = true;
-  pack.direction = {1.0, tau, changed ? 1.0 : 0.0};
+  // Legendre polynomials: as they are, nearly independent.
+  pack.direction = {1.0, tau, changed ? 1.0 : 0.0, 1.5 * tau * tau - 0.5, (2.5 * tau * tau - 1.5) * tau};
   const int n = rows.num_samples;
   pack.count = static_cast<int>(std::count(rows.used.begin(), rows.used.begin() + n, true));
   pack.error_square = Dot(rows.error.data(), rows.error.data(), n);
@@ -83,7 +85,7 @@ void GapBlock::SumNormalMatrix() noexcept {
   for (auto& row : matrix_) row.fill(0.0);
   for (const PackSums& pack : packs_) {
     if (!pack.used) continue;
-    for (int i = 0; i < kGapDirections; ++i)
+    for (int i = 0; i < directions_; ++i)
       for (int j = 0; j <= i; ++j) {
         const double weight = pack.direction[At(i)] * pack.direction[At(j)];
         if (weight == 0.0) continue;
@@ -95,12 +97,12 @@ void GapBlock::SumNormalMatrix() noexcept {
 }
 
 void GapBlock::AddPrecision(const std::array<double, kGapColumns>& precision) noexcept {
-  for (int i = 0; i < kGapDirections; ++i)
+  for (int i = 0; i < directions_; ++i)
     for (int a = 0; a < columns_; ++a) matrix_[At(i * columns_ + a)][At(i * columns_ + a)] += precision[At(a)];
 }
 
 void GapBlock::Factor() noexcept {
-  const int n = columns_ * kGapDirections;
+  const int n = columns_ * directions_;
   for (int j = 0; j < n; ++j) {
     auto& row = matrix_[At(j)];
     const double diagonal = row[At(j)];
@@ -118,12 +120,12 @@ void GapBlock::Factor() noexcept {
 }
 
 void GapBlock::SolveLower(Vector* x) const noexcept {
-  for (int i = 0; i < columns_ * kGapDirections; ++i)
+  for (int i = 0; i < columns_ * directions_; ++i)
     (*x)[At(i)] = kept_[At(i)] ? ((*x)[At(i)] - Dot(matrix_[At(i)].data(), x->data(), i)) / matrix_[At(i)][At(i)] : 0.0;
 }
 
 void GapBlock::SolveUpper(Vector* x) const noexcept {
-  const int n = columns_ * kGapDirections;
+  const int n = columns_ * directions_;
   for (int i = n - 1; i >= 0; --i) {
     if (!kept_[At(i)]) {
       (*x)[At(i)] = 0.0;
@@ -137,7 +139,7 @@ void GapBlock::SolveUpper(Vector* x) const noexcept {
 
 GapShift GapBlock::ShiftOf(const PackSums& pack, const Vector& solution) const noexcept {
   GapShift shift{};
-  for (int i = 0; i < kGapDirections; ++i)
+  for (int i = 0; i < directions_; ++i)
     for (int a = 0; a < columns_; ++a) shift[At(a)] += pack.direction[At(i)] * solution[At(i * columns_ + a)];
   return shift;
 }
@@ -146,7 +148,7 @@ void GapBlock::SolveErrors(Vector* solution) const noexcept {
   solution->fill(0.0);
   for (const PackSums& pack : packs_) {
     if (!pack.used) continue;
-    for (int i = 0; i < kGapDirections; ++i)
+    for (int i = 0; i < directions_; ++i)
       for (int a = 0; a < columns_; ++a)
         (*solution)[At(i * columns_ + a)] += pack.direction[At(i)] * pack.slope_error[At(a)];
   }
@@ -178,7 +180,7 @@ CheckScore GapBlock::ScoreRegion(int region, double tolerance, double* explained
   Vector c{};
   for (const PackSums& pack : packs_) {
     if (!pack.used) continue;
-    for (int i = 0; i < kGapDirections; ++i)
+    for (int i = 0; i < directions_; ++i)
       for (int a = 0; a < columns_; ++a)
         c[At(i * columns_ + a)] += pack.direction[At(i)] * pack.region[At(region)].slope[At(a)];
   }
@@ -205,10 +207,10 @@ CheckScore GapBlock::ScoreRegion(int region, double tolerance, double* explained
     count += sums.count;
     if (!(own > 1e-12 * sums.square) || !(own > 0.0)) continue;
     Vector spread{};
-    for (int i = 0; i < kGapDirections; ++i)
+    for (int i = 0; i < directions_; ++i)
       for (int a = 0; a < columns_; ++a) spread[At(i * columns_ + a)] = pack.direction[At(i)] * along[At(a)];
     SolveLower(&spread);
-    const double leverage = std::min(Dot(spread.data(), spread.data(), columns_ * kGapDirections) / own, kMostLeverage);
+    const double leverage = std::min(Dot(spread.data(), spread.data(), columns_ * directions_) / own, kMostLeverage);
     const double free_of_fit = psi / (1.0 - leverage);
     score += psi;
     variance += free_of_fit * free_of_fit;
@@ -277,7 +279,7 @@ CheckScore GapBlock::ScoreWander(int lag, double tolerance, double* explained) c
   if (!(square > 0.0) || square * square < kFewestPacks * fourth) return result;
   result.z = sum / std::sqrt(square);
   // Fitting makes the errors of neighbours a little opposite.
-  const auto fitted = std::count(kept_.begin(), kept_.begin() + columns_ * kGapDirections, true);
+  const auto fitted = std::count(kept_.begin(), kept_.begin() + columns_ * directions_, true);
   const double correlation = CarryOver() + static_cast<double>(fitted) / pairs;
   result.margin = (tolerance * tolerance * count + correlation * variance) / std::sqrt(square);
   *explained = std::max(std::fabs(sum) - std::sqrt(square), 0.0);
@@ -298,7 +300,7 @@ void GapBlock::BeginScores() noexcept {
     for (int a = 0; a < columns_; ++a)
       excess_ -= dk[At(a)] * (2.0 * pack.slope_error[At(a)] - Dot(pack.slope_slope[At(a)].data(), dk.data(), columns_));
   }
-  excess_ += static_cast<double>(std::count(kept_.begin(), kept_.begin() + columns_ * kGapDirections, true));
+  excess_ += static_cast<double>(std::count(kept_.begin(), kept_.begin() + columns_ * directions_, true));
   if (!std::isfinite(excess_)) excess_ = 0.0;
 }
 

@@ -48,9 +48,9 @@ void GapWatch::Reset() noexcept {
   joining_ = false;
 }
 
-void GapWatch::Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept {
+void GapWatch::Step(const DataPack& pack, const GapReference& estimate, bool changed, bool drifts) noexcept {
   if (!enabled_) return;
-  const bool complete = Record(pack, changed);
+  const bool complete = Record(pack, changed, drifts);
   if (analysed_ != nullptr) Analyse(pack.num_samples);
   if (complete && recordings_[At(recording_)].count == kGapBlockPacks) BeginAnalysis(estimate);
 }
@@ -81,7 +81,7 @@ void GapWatch::AnalysePiece() noexcept {
   }
 }
 
-bool GapWatch::Record(const DataPack& pack, bool changed) noexcept {
+bool GapWatch::Record(const DataPack& pack, bool changed, bool drifts) noexcept {
   Recording& block = recordings_[At(recording_)];
   const DataPack* last = joining_ ? &block.packs[At(block.count)] : nullptr;
   const bool follows = last_seq_ > 0 && pack.seq == last_seq_ + 1 && pack.run_id == last_run_;
@@ -92,7 +92,11 @@ bool GapWatch::Record(const DataPack& pack, bool changed) noexcept {
   if (last != nullptr && (!follows || last->dt != pack.dt || last->num_samples + pack.num_samples > kMaxPackSamples))
     joining_ = false;  // the start that was kept is lost
   if (!follows) ++number_;
-  if (block.count == 0 && !joining_) first_seq_ = pack.seq;
+  if (block.count == 0 && !joining_) {
+    first_seq_ = pack.seq;
+    block.drifts = false;
+  }
+  block.drifts = block.drifts || drifts;
 
   DataPack& own = block.packs[At(block.count)];
   if (!joining_) {
@@ -122,7 +126,7 @@ void GapWatch::BeginAnalysis(const GapReference& estimate) noexcept {
   next_ = 0;
   reference_ = estimate;
   for (GapShift& shift : shift_) shift.fill(0.0);
-  block_.Clear();
+  block_.Clear(analysed_->drifts);
   PlaceChange();
 }
 
@@ -170,7 +174,7 @@ void GapWatch::FitTrajectory() noexcept {
     precision[At(c)] = 1.0 / (sd * sd);
   }
   block_.Fit(precision, &shift_);
-  block_.Clear();
+  block_.Clear(analysed_->drifts);
   last_number_ = -1;
 }
 

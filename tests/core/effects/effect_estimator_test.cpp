@@ -24,6 +24,7 @@ std::vector<DataPack> Packs(const std::vector<HiddenEffect>& effects, int packs,
   std::normal_distribution<double> noise(0.0, 0.1);
   for (double& f : series.f) f += noise(generator);
   std::vector<DataPack> out;
+  out.reserve(static_cast<std::size_t>(packs));
   for (int k = 0; k < packs; ++k) out.push_back(series.Pack(k + 1, static_cast<std::size_t>(k) * kPack, kPack));
   return out;
 }
@@ -117,6 +118,44 @@ TEST(EffectEstimator, FreeMotionTellsTheBiasAndKeepsTheRest) {
   EXPECT_FALSE(rig.estimate().active);
   EXPECT_NEAR(rig.estimate().y_pred, 0.7, 0.1) << "the sensor shows its bias in the air too";
   EXPECT_NEAR(rig.estimate().y_shown[50], 0.7, 0.1);
+}
+
+/// Share of packs, once the drift may be known, whose 95 % interval holds a bias that drifts; what is believed at the
+/// end.
+struct DriftingBias {
+  double inside = 0.0;
+  ModeEstimate last;
+};
+DriftingBias FollowBias(double drift_share) {
+  EstimatorSettings settings = Quick(test::WithEffects({Catalogue()[0]}));
+  settings.forgetting.drift_share = drift_share;
+  Rig rig(settings);
+  test::Normal normal(4);
+  const test::Motion motion{.depth = 0.4, .swing = 0.8, .hertz = 1.3, .phase = 0.0};
+  const auto bias = [](double t) { return 0.2 + 0.1 * t; };
+  DriftingBias out;
+  constexpr int kPacks = 80, kKnown = 20;
+  for (std::int64_t seq = 1; seq <= kPacks; ++seq) {
+    const DataPack pack = test::FillContactPack(
+        seq, [&](double t) { return motion.At(t); },
+        [&](double t, const test::Place& at) {
+          return test::ContactTruth{}.Force(at.x, at.v) + bias(t) + 0.1 * normal();
+        });
+    const MarginalSummary& m = rig.Step(pack).modes[0].marginal[3];
+    const double truth = bias(pack.t_last_s - 0.05);  // in the middle of the pack: within it nothing drifts
+    if (seq > kKnown) out.inside += m.q025 < truth && truth < m.q975 ? 1.0 / (kPacks - kKnown) : 0.0;
+  }
+  out.last = rig.estimate().modes[0];
+  return out;
+}
+
+TEST(EffectEstimator, FollowsAnAmplitudeThatDrifts) {
+  const DriftingBias follows = FollowBias(ForgettingSettings{}.drift_share), denied = FollowBias(0.0);
+  EXPECT_GT(follows.inside, 0.88);
+  EXPECT_LT(denied.inside, 0.7) << "the drift is too slow to need it";
+  EXPECT_GT(follows.last.p_drifted, 0.9);
+  EXPECT_GT(follows.last.drift_rate[3], 0.02) << "N/s";
+  EXPECT_LT(follows.last.drift_rate[3], 0.4);
 }
 
 TEST(EffectEstimator, ReportsAmplitudesUnderTheirOwnNames) {

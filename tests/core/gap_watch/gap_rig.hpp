@@ -77,7 +77,7 @@ class GapRig {
     const double period = 1e-3 * samples;
     for (std::int64_t seq = 1; period * static_cast<double>(seq) < seconds; ++seq) {
       const DataPack pack = Pack(seq, force, noise);
-      watch_.Step(pack, told, changed && changed(pack.t_last_s));
+      watch_.Step(pack, told, changed && changed(pack.t_last_s), drifts);
       if (on_step) on_step(watch_.state());
     }
     return period * static_cast<double>(watch_.state().alarm_seq);
@@ -85,6 +85,7 @@ class GapRig {
 
   [[nodiscard]] GapWatch& watch() { return watch_; }
   GapReference told;
+  bool drifts = false;  ///< What it is told.
   int samples = 100;
   std::int64_t run_id = 1;
 

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
+#include "core/estimator_rig.hpp"
 #include "core/gap_watch/gap_rig.hpp"
 #include "support/alloc_counter.hpp"
 
@@ -15,6 +17,7 @@ using test::BaseForce;
 using test::ContactSample;
 using test::GapRig;
 using test::MakeNoise;
+using test::NoiseLaw;
 using test::SampleAt;
 using test::TruthAlone;
 
@@ -79,6 +82,31 @@ TEST(GapWatch, TakesADriftForWhatItIs) {
   EXPECT_EQ(rig.Run(kMinute, drifting, MakeNoise("white", 4)), 0.0) << rig.watch().state().where.view();
 }
 
+/// A contact that grows stiffer and softer within half a minute.
+double Breathing(const ContactSample& s) {
+  const double share = std::sin(2.0 * M_PI * s.t / 30.0);
+  return BaseForce(s.x, s.v, 4.0 + 1.2 * share, 2.3 - 0.6 * share, 1.7 - 0.15 * share);
+}
+
+TEST(GapWatch, TakesADriftWhoseSpeedChangesForWhatItIsWhenTheEstimatorFollowsIt) {
+  GapRig denies, follows;
+  follows.drifts = true;
+  EXPECT_GT(denies.Run(kMinute, Breathing, MakeNoise("white", 4)), 0.0) << "the drift is too slow to matter";
+  EXPECT_EQ(follows.Run(5.0 * kMinute, Breathing, MakeNoise("white", 4)), 0.0) << follows.watch().state().where.view();
+}
+
+TEST(GapWatch, HasTheEstimatorTellItOfDrift) {
+  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  settings.sampler.rule = DrawRule::kFixed;
+  settings.sampler.fixed_draws = 1000;
+  test::Rig rig(settings);
+  const GapRig packs;
+  const NoiseLaw noise = MakeNoise("white", 4);
+  for (std::int64_t seq = 1; seq <= 380; ++seq) rig.Step(packs.Pack(seq, Breathing, noise));
+  EXPECT_EQ(rig.estimate().gap.num_blocks, 2);
+  EXPECT_FALSE(rig.estimate().gap.suspected) << rig.estimate().gap.where.view();
+}
+
 TEST(GapWatch, TakesAStepForWhatItIsWhenTheEstimatorSawIt) {
   const auto stepping = [](const ContactSample& s) {
     return BaseForce(s.x, s.v, std::fmod(s.t, 26.0) < 14.0 ? 4.0 : 2.0);
@@ -119,8 +147,9 @@ TEST(GapWatch, FindsWhatIsMissing) {
        [](const ContactSample& s) { return TruthAlone(s) + 0.07 * std::sin(2.0 * M_PI * 45.0 * s.t); }},
   };
   for (const Missing& missing : all)
-    for (const char* law : {"white", "student"}) {
+    for (const auto& [law, drifts] : {std::pair{"white", false}, {"student", false}, {"white", true}}) {
       GapRig rig;
+      rig.drifts = drifts;  // a plant may do so and lack something
       const double alarm = rig.Run(kMinute, missing.force, MakeNoise(law, 6));
       EXPECT_GT(alarm, 0.0) << missing.name << ", " << law;
       EXPECT_GT(rig.watch().state().log_evidence, rig.watch().state().log_threshold) << missing.name;

@@ -45,6 +45,63 @@ TEST(Forecast, IntervalsHoldWhatTheyPromise) {
   EXPECT_NEAR(std::sqrt(square / count), 1.0, 0.05) << "the noise, when the parameters are known";
 }
 
+/// Runs of a contact that drifts for 4 s in touch, is in the air for 10 s, and comes back.
+struct Returns {
+  double inside = 0.0;  ///< Share of the samples where the expected interval holds what the law makes of the truth.
+  double sd = 0.0;      ///< Mean of the standard deviations expected, N.
+};
+/// @param fastest  Speeds are spread evenly over [-fastest, fastest], in units of 0.1 N/m^p a second for K.
+Returns ContactAfterAPause(int runs, double fastest, double drift_share) {
+  const auto plant = Program(DescribedContact());
+  EstimatorSettings settings = DescribedSettings(plant);
+  settings.forgetting.drift_share = drift_share;
+  settings.sampler.rule = DrawRule::kFixed;
+  settings.sampler.fixed_draws = 1000;
+  settings.gap_watch.enabled = false;
+  GaussianNoise noise(0.1);
+  const auto forecast = std::make_unique<PackForecast>();
+  Returns sums;
+  for (int run = 0; run < runs; ++run) {
+    const double speed = fastest * (2.0 * (run + 0.5) / runs - 1.0);
+    const auto force = [&](double t, double x, double v) {
+      return std::pow(x, 1.7 + 0.01 * speed * t) * (4.0 + 0.1 * speed * t + (2.3 - 0.05 * speed * t) * v);
+    };
+    const auto pack = [&](std::int64_t seq, bool touches) {
+      return DescribedPack(*plant, seq, [&](double t) {
+        const double x = touches ? 1.0 + 0.5 * std::sin(8.2 * t) : -1.0, v = touches ? 4.1 * std::cos(8.2 * t) : 0.0;
+        return PlantSample{{x, v}, (touches ? force(t, x, v) : 0.0) + noise()};
+      });
+    };
+    Rig rig(settings);
+    for (std::int64_t seq = 1; seq <= 40; ++seq) (void)rig.Step(pack(seq, true));
+    (void)rig.Step(pack(41, false));
+    const DataPack back = pack(140, true);
+    (void)rig.estimator.Adjust(back, 0, {}, rig.result.get());
+    rig.estimator.Forecast(*rig.result, forecast.get());
+    for (std::size_t n = 0; n < 100; ++n) {
+      const double t = back.t_last_s - (99.0 - static_cast<double>(n)) * 1e-3;
+      const double error = force(t, back.u[n][0], back.u[n][1]) - forecast->centre[n];
+      sums.inside += std::fabs(error) < 1.96 * forecast->sd[n] ? 0.01 / runs : 0.0;
+      sums.sd += 0.01 * forecast->sd[n] / runs;
+    }
+  }
+  return sums;
+}
+
+TEST(Forecast, GrowsByTheLearntDriftWhileNobodyLooks) {
+  const Returns known = ContactAfterAPause(10, 1.5, ForgettingSettings{}.drift_share);
+  const Returns denied = ContactAfterAPause(2, 1.5, 0.0);
+  EXPECT_LT(denied.inside, 0.1) << "the drift is too slow to need it";
+  EXPECT_GT(known.inside, 0.85);
+  EXPECT_LT(known.sd, 2.0) << "of a force of up to 12 N";
+}
+
+TEST(Forecast, OfAPlantAtRestIsWhatItIsWithoutDrift) {
+  const Returns rests = ContactAfterAPause(2, 0.0, ForgettingSettings{}.drift_share);
+  const Returns denied = ContactAfterAPause(2, 0.0, 0.0);
+  EXPECT_NEAR(rests.sd, denied.sd, 0.2 * denied.sd);
+}
+
 TEST(Forecast, DoesNotLookAtThePack) {
   const auto plant = Program(DescribedAxis());
   Rig one(DescribedSettings(plant)), other(DescribedSettings(plant));

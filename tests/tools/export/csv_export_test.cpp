@@ -309,5 +309,19 @@ TEST_F(CsvExport, PacksOfADescribedPlantNameTheirColumnsAndStayReadable) {
   EXPECT_EQ(packs[2].at("seq"), "1");
 }
 
+TEST_F(CsvExport, WhatIsBelievedAboutChangeStaysReadable) {
+  WriteGoldenLog("golden_change_log.txt", request_.log);
+  const ExportSummary summary = Export();
+  EXPECT_EQ(summary.tables.size(), 1u);
+  EXPECT_TRUE(summary.foreign.empty());
+  const Rows rows = Table("EST_CHANGE");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].at("p_persisted.contact"), "0.25");
+  EXPECT_EQ(rows[0].at("p_drifted.contact"), "0.625");
+  EXPECT_EQ(rows[0].at("p_changed.contact"), "0.125");
+  EXPECT_EQ(rows[0].at("drift_rate.contact.K [N m^-p s^-1]"), "0.5");
+  EXPECT_EQ(rows[0].at("drift_rate.contact.p [s^-1]"), "0.0625");
+}
+
 }  // namespace
 }  // namespace armcmc::log_export::csv_export_test

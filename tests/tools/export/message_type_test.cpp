@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "armcmc/change_t.hpp"
 #include "armcmc/data_pack_t.hpp"
 #include "armcmc/data_pack_v2_t.hpp"
 #include "armcmc/estimate_t.hpp"
@@ -39,6 +40,7 @@ TEST(MessageType, HasTheFingerprintAndLengthOfTheGeneratedCode) {
   ASSERT_NE(Described<estimate_t>(), nullptr);
   ASSERT_NE(Described<posterior_t>(), nullptr);
   ASSERT_NE(Described<estimator_status_t>(), nullptr);
+  ASSERT_NE(Described<change_t>(), nullptr);
   EXPECT_EQ(Described<estimate_t>()->name, "estimate_t");
 }
 
@@ -49,6 +51,7 @@ TEST(MessageType, ReleasedFingerprintsAreFrozen) {
       {"data_pack_t", 0x6715710721d2cf1f},   {"data_pack_v2_t", 0x342b43e393235195},
       {"plant_truth_t", 0x7391ea7e8be666ff}, {"estimate_t", 0x2d3f65e4c6443a48},
       {"posterior_t", 0x75343c9a3bfc7fd5},   {"estimator_status_t", 0xa10c28116c506211},
+      {"change_t", 0x3f008f8e3cf48f9a},
   };
   for (const auto& [name, fingerprint] : frozen) {
     bool found = false;

@@ -59,6 +59,20 @@ TEST(ScoreContact, CountsWhatIsShown) {
   EXPECT_NEAR(s.width[2][0], 0.1, 1e-12);
 }
 
+TEST(ScoreContact, TakesTheMeanOfWhatIsLearntAboutDriftOverThePacksWithData) {
+  Trace trace = Constant(4.2);
+  for (std::size_t k = 0; k < 4; ++k) {
+    trace.packs[k].modes[0].p_drifted = 0.25 * static_cast<double>(k);
+    trace.packs[k].modes[0].drift_rate = {0.1 * static_cast<double>(k), 0.5, 0.0};
+  }
+  trace.packs[4].modes[0].updated = false;
+  trace.packs[4].modes[0].p_drifted = 1.0;
+  const ContactScore s = ScoreContact(AtRest(), trace, Point::kMap, BuiltinSettings("hunt_crossley"));
+  EXPECT_NEAR(s.drift.share, 0.375, 1e-12);
+  EXPECT_NEAR(s.drift.rate[0], 0.15, 1e-12);
+  EXPECT_NEAR(s.drift.rate[1], 0.5, 1e-12);
+}
+
 TEST(ScoreContact, TellsTheTwoPointEstimatesApart) {
   const EstimatorSettings settings = BuiltinSettings("hunt_crossley");
   const ContactScore s = ScoreContact(AtRest(), Constant(4.2), Point::kAp, settings);

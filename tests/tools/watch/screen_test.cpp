@@ -46,6 +46,28 @@ TEST(Screen, ShowsStagesAgainstTheDeadlineAndTheSampler) {
   EXPECT_THAT(text, Not(HasSubstr("old")));
 }
 
+TEST(Screen, SaysWhatIsBelievedAboutChangeAndHowFastThingsDrift) {
+  WatchState state = test::SomeState();
+  const std::string text = Render(state, Plain(), 1.1);
+  for (const char* part : {"believed  persisted 25 %   drifted 62.5 %   changed 12.5 %   drifted of late",
+                           "drift per s", "         3.5      0.0375 "}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+  state.change->p_changed[0] = 4.8e-10;
+  EXPECT_THAT(Render(state, Plain(), 1.1), HasSubstr("changed 0 %"));
+  EXPECT_THAT(Render(state, Plain(80, 24), 1.1), HasSubstr("drifts 0.0375 N/m^p per s"));
+  state.change->n_modes = 2;
+  state.change->known[1] = 1;
+  test::SetText("shut", state.change->mode_name[1]);
+  EXPECT_THAT(Render(state, Plain(), 1.1), HasSubstr("believed  contact      persisted 25 %"));
+  EXPECT_THAT(Render(state, Plain(), 1.1), HasSubstr("believed  shut         persisted 0 %"));
+  state.change->known[0] = state.change->known[1] = 0;
+  EXPECT_THAT(Render(state, Plain(), 1.1), Not(HasSubstr("believed")));
+  EXPECT_THAT(Render(state, Plain(), 1.1), Not(HasSubstr("0.0375")));
+  state.change.reset();
+  EXPECT_THAT(Render(state, Plain(), 1.1), Not(HasSubstr("drift")));
+}
+
 TEST(Screen, RaisesAlarmsInWordsAndInRed) {
   WatchState state = test::SomeState();
   state.status->degraded_flags = estimator_status_t::DEGRADED_NO_FIFO;
@@ -116,6 +138,8 @@ TEST(Screen, SurvivesAMessageThatMakesNoSense) {
   state.truth->n_params = 1'000'000;
   state.status->deadline_ns = 0;
   state.estimate->plant_kind = -1;
+  state.change->mode = -7;
+  state.change->n_modes = state.change->n_params = 1'000'000;
   EXPECT_FALSE(Render(state, Plain(), 1.1).empty());
 }
 

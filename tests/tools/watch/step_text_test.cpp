@@ -15,7 +15,8 @@ using ::testing::HasSubstr;
 
 TEST(StepLine, HoldsWhatMattersAndNoLineEnd) {
   EXPECT_EQ(StepLine(test::SomeState()),
-            "pack 11  contact  K 3.25 +- 0.5  zeta 0.25/1.5  lambda 0.75  ESS 1234  52 of 100 ms  missed 0/0/0");
+            "pack 11  contact  K 3.25 +- 0.5  zeta 0.25/1.5  lambda 0.75  ESS 1234  drifted 62.5 %  52 of 100 ms  "
+            "missed 0/0/0");
 }
 
 TEST(StepLine, NamesWhatIsWrong) {
@@ -39,6 +40,12 @@ TEST(StepJson, IsOneObjectWithTheSameNumbers) {
   EXPECT_EQ(json["misses"]["own"], 0);
   EXPECT_EQ(json["mode"], "contact");
   EXPECT_EQ(json["degraded"].size(), 0u);
+  const auto& change = json["change"]["contact"];
+  EXPECT_EQ(change["persisted"], 0.25);
+  EXPECT_EQ(change["drifted"], 0.625);
+  EXPECT_EQ(change["changed"], 0.125);
+  EXPECT_EQ(change["drift_rate"]["K"]["value"], 0.0375);
+  EXPECT_EQ(change["drift_rate"]["K"]["unit"], "N/m^p per s");
 }
 
 TEST(StepJson, WritesNullForWhatIsNotKnown) {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstring>
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace armcmc::test {
 
-inline void SetText(const std::string& text, std::uint8_t* field) { std::memcpy(field, text.data(), text.size()); }
+inline void SetText(const std::string& text, std::uint8_t* field) { std::copy(text.begin(), text.end(), field); }
 
 inline estimator_status_t SomeStatus() {
   estimator_status_t s{};
@@ -59,6 +60,21 @@ inline posterior_t SomePosterior() {
   return p;
 }
 
+inline change_t SomeChange() {
+  change_t c{};
+  c.plant_kind = data_pack_t::PLANT_HUNT_CROSSLEY;
+  c.n_modes = c.n_params = 1;
+  SetText("contact", c.mode_name[0]);
+  SetText("K", c.param_name[0]);
+  SetText("N/m^p", c.param_unit[0]);
+  c.known[0] = c.updated[0] = 1;
+  c.p_persisted[0] = 0.25;
+  c.p_drifted[0] = 0.625;
+  c.p_changed[0] = 0.125;
+  c.drift_rate[0][0] = 0.0375;
+  return c;
+}
+
 inline plant_truth_t SomeTruth() {
   plant_truth_t t{};
   t.plant_kind = data_pack_t::PLANT_HUNT_CROSSLEY;
@@ -72,6 +88,7 @@ inline watch::WatchState SomeState() {
   state.url = "udpm://239.255.76.67:7667?ttl=0";
   state.Take(SomeEstimate(), 1.0);
   state.Take(SomePosterior(), 1.0);
+  state.Take(SomeChange(), 1.0);
   state.Take(SomeTruth(), 1.0);
   state.Take(SomeStatus(), 1.0);
   return state;

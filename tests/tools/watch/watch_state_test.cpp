@@ -63,12 +63,27 @@ TEST(WatchState, LeavesAGapInTheMeansWhileNothingIsKnown) {
   EXPECT_TRUE(std::isnan(state.means[0].Newest(1).at(0)));
 }
 
+TEST(WatchState, TakesWhatIsBelievedAboutChangeFromTheBus) {
+  WatchState state;
+  const auto bytes = test::Encoded(test::SomeChange());
+  EXPECT_FALSE(state.TakeBytes("EST_CHANGE", bytes.data(), static_cast<int>(bytes.size()), 0.0));
+  ASSERT_TRUE(state.change.has_value());
+  EXPECT_EQ(state.change->p_drifted[0], 0.625);
+  EXPECT_EQ(state.drifted.Newest(1).at(0), 0.625);
+  EXPECT_EQ(state.bus.foreign, 0);
+}
+
 TEST(Names, FollowThePlant) {
   EXPECT_EQ(ModeName(data_pack_t::PLANT_HUNT_CROSSLEY, 0), "contact");
   EXPECT_EQ(ModeName(data_pack_t::PLANT_HUNT_CROSSLEY, 1), "free");
   EXPECT_EQ(ModeName(data_pack_t::PLANT_SOFT_ACTUATOR, 2), "shut");
   EXPECT_EQ(ModeName(77, 5), "mode 5");
   EXPECT_EQ(ModeName(data_pack_t::PLANT_HUNT_CROSSLEY, -1), "mode -1");
+}
+
+TEST(Names, SayASpeed) {
+  EXPECT_EQ(PerSecond("N/m^p"), "N/m^p per s");
+  EXPECT_EQ(PerSecond("-"), "per s");
 }
 
 TEST(Names, NameEveryFlagAndThoseOfNewerVersions) {

@@ -19,9 +19,12 @@ std::string Inverse(const std::string& unit) {
   return unit.empty() ? std::string() : std::string("(").append(unit).append(")^-1");
 }
 
+std::string PerSecond(const std::string& unit) { return unit.empty() ? "s^-1" : unit + " s^-1"; }
+
 /// What the plant's numbers are called: by its packs where they say so.
 PlantWords WordsFor(const PlantScan& plant) {
   PlantWords words = WordsOf(plant.plant_kind);
+  if (!plant.modes.empty()) words.modes = plant.modes;
   if (plant.output.empty()) return words;
   words.output = plant.output;
   words.output_unit = words.target_unit = plant.output_unit;
@@ -44,7 +47,7 @@ class Builder {
         std::find(meaning_.repeat.begin(), meaning_.repeat.end(), field.name) != meaning_.repeat.end();
     if (meaning_.row_per_sample && !per_sample && !repeated) return;
     const bool text = !what.axes.empty() && what.axes.back() == Axis::kText;
-    if (text && field.dims.size() > 1) return;  // names of parameters: they stand in the headers
+    if (text && field.dims.size() > 1) return;  // names of parameters and modes: they stand in the headers
     Column column;
     column.field = &field;
     column.text = text;
@@ -96,6 +99,7 @@ class Builder {
           next_name.append(".").append(ParameterName(plant_, i));
           if (what.unit == "parameter") next_unit = ParameterUnit(plant_, i);
           if (what.unit == "1/parameter") next_unit = Inverse(ParameterUnit(plant_, i));
+          if (what.unit == "parameter/s") next_unit = PerSecond(ParameterUnit(plant_, i));
           break;
         case Axis::kMode: next_name.append(".").append(NameOr(words_.modes, i, "mode")); break;
         case Axis::kBin: next_name.append(".").append(std::to_string(i)); break;
@@ -135,9 +139,9 @@ std::string ParameterUnit(const PlantScan& plant, std::size_t i) {
 }
 
 std::vector<Column> ColumnsOf(const ChannelScan& channel, const PlantScan& plant) {
-  static const TypeMeaning kNothingKnown;
+  static const TypeMeaning nothing_known;
   const auto found = Meanings().find(channel.type->name);
-  const Builder builder(channel, plant, found == Meanings().end() ? kNothingKnown : found->second);
+  const Builder builder(channel, plant, found == Meanings().end() ? nothing_known : found->second);
   std::vector<Column> columns;
   for (const MessageField& field : channel.type->fields) builder.Add(field, &columns);
   return columns;

@@ -40,6 +40,13 @@ void NoteNames(Bytes data, const MessageType& type, PlantScan* plant) {
   }
 }
 
+void NoteModes(Bytes data, const MessageType& type, PlantScan* plant) {
+  const MessageField* name = type.Find("mode_name");
+  if (name == nullptr || !plant->modes.empty()) return;
+  const std::int64_t count = std::clamp<std::int64_t>(Integer(data, type, "n_modes", 0), 0, name->dims[0]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) plant->modes.push_back(TextAt(data, *name, i));
+}
+
 /// Packs of a described plant name their columns.
 void NoteSignals(Bytes data, const MessageType& type, PlantScan* plant) {
   const MessageField *y = type.Find("y_name"), *y_unit = type.Find("y_unit"), *u = type.Find("u_name"),
@@ -74,6 +81,7 @@ void Note(const support::LcmLogEvent& event, const MessageType& type, double t, 
   largest("n_modes", &plant->num_modes);
   largest("n_inputs", &plant->num_inputs);
   NoteNames(event.data, type, plant);
+  NoteModes(event.data, type, plant);
   NoteSignals(event.data, type, plant);
   NotePack(event.data, type, t, plant);
 }

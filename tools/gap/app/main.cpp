@@ -26,6 +26,7 @@
 #include "armcmc/support/sha256.hpp"
 #include "armcmc/support/strict_toml.hpp"
 #include "budget.hpp"
+#include "followed_drift.hpp"
 #include "gallery_page.hpp"
 
 namespace armcmc::gap {
@@ -238,14 +239,21 @@ int RunBuiltIn(const Arguments& a) {
   Result& result = outcome.result;
   result.version = support::Version();
   result.data_sha256 = support::Sha256OfFile(a.data);
+  replay::SourceRequest packs;
+  packs.data = a.data;
+  packs.period = 1e-3 * a.period_ms;
+  packs.skip_bad = a.skip_bad;
+  if (result.verdict == Verdict::kUnnamed) {
+    try {
+      TakeAsDrift(FollowDrift(support::ReadModel(a.model), packs), &result);
+    } catch (const support::InputError& error) {
+      result.notes.push_back(std::string("not tried whether it is a drift (--period-ms): ") + error.what());
+    }
+  }
   if (outcome.augmented) {
     result.model_file = "model.toml";
     Write(out / result.model_file, support::ModelFileText(*outcome.augmented, request.model));
     try {
-      replay::SourceRequest packs;
-      packs.data = a.data;
-      packs.period = 1e-3 * a.period_ms;
-      packs.skip_bad = a.skip_bad;
       result.budget = MeasureBudget(support::ReadModel(a.model), *outcome.augmented, packs);
     } catch (const support::InputError& error) {
       // The diagnosis stands, whether or not these samples make packs.

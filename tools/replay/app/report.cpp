@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -54,7 +55,7 @@ std::string VerificationText(const Verification& v, const PackSource& source) {
   if (v.undecodable > 0) out << v.undecodable << " messages of the estimator are of no type that this version knows\n";
   if (v.without_pack > 0) out << v.without_pack << " recorded estimates have no pack in the log\n";
   if (v.equal()) {
-    out << "verified: " << v.compared << " recorded estimates and posteriors are equal to the bit\n";
+    out << "verified: " << v.compared << " recorded messages are equal to the bit\n";
   } else if (v.compared == 0) {
     out << "NOT VERIFIED: no recorded estimate belongs to a pack of the log\n";
   } else {
@@ -86,6 +87,7 @@ void WriteReport(const std::filesystem::path& path, const Estimator& estimator, 
                      {"rejected", counts.rejected + summary.refused},
                      {"unused", counts.unused}};
   ordered_json modes = ordered_json::object();
+  ordered_json change = ordered_json::object();
   for (int m = 0; m < estimator.num_modes(); ++m) {
     const ModeEstimate& mode = summary.last.modes[static_cast<std::size_t>(m)];
     if (!mode.known) continue;
@@ -96,8 +98,16 @@ void WriteReport(const std::filesystem::path& path, const Estimator& estimator, 
           {"ar_map", q.ar_map}, {"ar_ap", q.ar_ap}, {"sd", q.sd},
           {"q025", q.q025},     {"q975", q.q975},   {"unit", estimator.reported(i).unit}};
     }
+    ordered_json& believed = change[std::string(estimator.mode_name(m))];
+    believed = {{"p_persisted", std::clamp(1.0 - mode.p_drifted - mode.p_changed, 0.0, 1.0)},
+                {"p_drifted", mode.p_drifted},
+                {"p_changed", mode.p_changed}};
+    for (int i = 0; i < estimator.num_reported(); ++i)
+      believed["drift_rate_per_s"][std::string(estimator.reported(i).name)] =
+          mode.drift_rate[static_cast<std::size_t>(i)];
   }
   report["estimates"] = modes;
+  report["change"] = change;
   const GapState& gap = summary.last.gap;
   report["gap"] = {
       {"watched", gap.watched},           {"suspected", gap.suspected},         {"where", gap.where.view()},

@@ -34,7 +34,8 @@ EstimateCsv::EstimateCsv(const Estimator& estimator, std::ostream* out) : estima
   *out_ << "pack,t,mode";
   for (int i = 0; i < estimator.num_reported(); ++i)
     for (const char* suffix : kMarginalColumns) *out_ << ',' << estimator.reported(i).name << suffix;
-  *out_ << ',' << kStepColumns;
+  *out_ << ',' << kStepColumns << ",p_drifted";
+  for (int i = 0; i < estimator.num_reported(); ++i) *out_ << ',' << estimator.reported(i).name << "_drift_per_s";
   if (estimator.num_modes() > 1) {
     for (int mode = 0; mode < estimator.num_modes(); ++mode) {
       for (int i = 0; i < estimator.num_reported(); ++i)
@@ -80,6 +81,9 @@ void EstimateCsv::Write(const Estimate& e) {
     NumberIf(mode.updated, value);
   NumberIf(mode.known, mode.noise_std);
   for (const double value : {e.y_pred, e.y_lo, e.y_hi, e.y_free_run, e.y_rmse}) NumberIf(mode.known, value);
+  NumberIf(mode.known, mode.p_drifted);
+  for (int i = 0; i < estimator_.num_reported(); ++i)
+    NumberIf(mode.known, mode.drift_rate[static_cast<std::size_t>(i)]);
   if (estimator_.num_modes() > 1) {
     for (int m = 0; m < estimator_.num_modes(); ++m) {
       const ModeEstimate& one = e.modes[static_cast<std::size_t>(m)];

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/change_t.hpp"
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/log_export/message_type.hpp"
 #include "armcmc/posterior_t.hpp"
@@ -22,10 +23,11 @@ using Key = std::pair<std::int64_t, std::int64_t>;  // run_id, seq
 
 constexpr const char* kEstimates = "EST_ESTIMATE";
 constexpr const char* kPosteriors = "EST_POSTERIOR";
+constexpr const char* kChanges = "EST_CHANGE";
 
 /// What was published for one pack; points into the log.
 struct Recorded {
-  Bytes estimate, posterior;
+  Bytes estimate, posterior, change;
 };
 
 template <typename Message>
@@ -86,15 +88,19 @@ Verifier::Verifier(const std::filesystem::path& log, const std::string& prefix, 
   support::LcmLogEvent event;
   estimate_t estimate{};
   posterior_t posterior{};
+  change_t change{};
   while (impl_->log.Next(&event)) {
-    const bool is_estimate = event.channel == prefix + kEstimates, is_posterior = event.channel == prefix + kPosteriors;
-    if (!is_estimate && !is_posterior) continue;
+    const bool is_estimate = event.channel == prefix + kEstimates, is_posterior = event.channel == prefix + kPosteriors,
+               is_change = event.channel == prefix + kChanges;
+    if (!is_estimate && !is_posterior && !is_change) continue;
     const int size = static_cast<int>(event.data.size());
     const log_export::MessageType* type = log_export::TypeOf(event.data);
     if (is_estimate && type != nullptr && estimate.decode(event.data.data(), 0, size) == size) {
       impl_->recorded[{estimate.run_id, estimate.seq}].estimate = event.data;
     } else if (is_posterior && type != nullptr && posterior.decode(event.data.data(), 0, size) == size) {
       impl_->recorded[{posterior.run_id, posterior.seq}].posterior = event.data;
+    } else if (is_change && type != nullptr && change.decode(event.data.data(), 0, size) == size) {
+      impl_->recorded[{change.run_id, change.seq}].change = event.data;
     } else {
       ++impl_->result.undecodable;
     }
@@ -131,6 +137,12 @@ void Verifier::Check(const Estimate& e) {
     recorded.decode(was.posterior.data(), 0, static_cast<int>(was.posterior.size()));
     rt::FillPosterior(output, impl_->engine, recorded.utime, &message);
     impl_->Compare(kPosteriors, was.posterior, Encoded(message), e);
+  }
+  if (!was.change.empty()) {
+    change_t message{}, recorded{};
+    recorded.decode(was.change.data(), 0, static_cast<int>(was.change.size()));
+    rt::FillChange(output, impl_->engine, recorded.change_utime, &message);
+    impl_->Compare(kChanges, was.change, Encoded(message), e);
   }
 }
 

@@ -22,7 +22,7 @@ struct Arguments {
   std::string data, out;
   int seeds = 1;
   std::uint64_t first_seed = 1001;  // the baselines were tuned on others
-  bool paper_only = false, likelihoods = false, coverage = false;
+  bool paper_only = false, likelihoods = false, coverage = false, drift = false;
 };
 
 /// A folder for simulated recordings, removed at the end.
@@ -67,6 +67,16 @@ const std::vector<Plan> kPlans = {
     {kContact.key("_impulsive"), "Contact: impulsive noise, one sample in twenty", kContact.key("_impulsive"), ""},
     {kContact.key("_chatter"), "Contact that chatters", kContact.key("_chatter"), ""}};
 
+/// What else may drift, and how.
+const std::vector<Plan> kDriftPlans = {
+    {kContact.key("_drift_slow"), "Contact: a slow drift", kContact.key("_drift_slow"), ""},
+    {kContact.key("_drift_fast"), "Contact: a fast drift", kContact.key("_drift_fast"), ""},
+    {kContact.key("_drift_one"), "Contact: the stiffness drifts alone", kContact.key("_drift_one"), ""},
+    {kContact.key("_drift_stops"), "Contact: a drift that stops", kContact.key("_drift_stops"), ""},
+    {kContact.key("_drift_and_jump"), "Contact: a drift and a jump", kContact.key("_drift_and_jump"), ""},
+    {kContact.key("_drift_sine"), "Contact: a sinusoidal drift", kContact.key("_drift_sine"), ""},
+    {kContact.key("_drift_impulsive"), "Contact: a drift under impulsive noise", kContact.key("_drift_impulsive"), ""}};
+
 Experiment RunPlan(const Plan& plan, const Arguments& a, const ScratchFolder& scratch, Result* result) {
   const EstimatorSettings settings = ScenarioSettings(plan.scenario);
   const PlantNumber plant = kContact.Is(settings) ? kContact.model.plant : kActuator.model.plant;
@@ -101,6 +111,7 @@ int Run(const Arguments& a) {
   {
     support::Progress progress("tables");
     std::vector<Plan> plans = a.coverage ? std::vector<Plan>{} : kPlans;
+    if (a.drift) plans.insert(plans.end(), kDriftPlans.begin(), kDriftPlans.end());
     // The paper's scenario on fresh noise, when --data gave the one realisation and more seeds are asked for.
     if (!a.data.empty() && a.seeds > 1 && !a.coverage)
       plans.insert(plans.begin() + 1,
@@ -152,16 +163,18 @@ int main(int argc, char** argv) {
   CLI::Option* paper_only = app.add_flag("--paper-only", a.paper_only, "Only the paper's two experiments");
   CLI::Option* likelihoods = app.add_flag("--likelihoods", a.likelihoods,
                                           "Also the coverage under right and wrong noise laws (16 runs a seed)");
+  CLI::Option* drift = app.add_flag("--drift", a.drift, "Also seven more scenarios whose parameters drift");
   app.add_flag(
          "--coverage", a.coverage,
          "Only the coverage, of each noise law under its own likelihood: many seeds in little time (4 runs a seed)")
       ->excludes(data)
       ->excludes(paper_only)
+      ->excludes(drift)
       ->excludes(likelihoods);
   app.footer(
       "Example:\n"
       "  armcmc-tables --out tables\n"
-      "  armcmc-tables --seeds 20 --likelihoods --out tables\n"
+      "  armcmc-tables --seeds 20 --likelihoods --drift --out tables\n"
       "  armcmc-tables --coverage --seeds 300 --first-seed 40001 --out coverage");
   return armcmc::support::RunProgram(app, "armcmc-tables", argc, argv, [&a] { return armcmc::tables::Run(a); });
 }

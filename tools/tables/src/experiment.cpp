@@ -13,6 +13,11 @@ void Each(Array* into, const Array& from, const Use& use) {
   for (std::size_t i = 0; i < into->size(); ++i) use(&(*into)[i], from[i]);
 }
 
+void Add(DriftScore* sum, const DriftScore& s, double share) {
+  sum->share += share * s.share;
+  Each(&sum->rate, s.rate, [share](double* a, double b) { *a += share * b; });
+}
+
 void Add(ContactScore* sum, const ContactScore& s, double share) {
   const auto add = [share](double* a, double b) { *a += share * b; };
   Each(&sum->mae_contact, s.mae_contact, add);
@@ -26,6 +31,7 @@ void Add(ContactScore* sum, const ContactScore& s, double share) {
     Each(&sum->coverage_variance[l], s.coverage_variance[l], add);
   }
   sum->false_modifications += s.false_modifications;
+  Add(&sum->drift, s.drift, share);
   add(&sum->median_ms, s.median_ms);
   sum->max_ms = std::fmax(sum->max_ms, s.max_ms);
   add(&sum->mean_draws, s.mean_draws);
@@ -39,7 +45,11 @@ void Add(ActuatorScore* sum, const ActuatorScore& s, double share) {
   add(&sum->alpha_l2, s.alpha_l2);
   add(&sum->alpha_restarted_l2, s.alpha_restarted_l2);
   add(&sum->flow_rel_error, s.flow_rel_error);
-  for (std::size_t m = 0; m < 2; ++m) Each(&sum->coverage95[m], s.coverage95[m], add);
+  for (std::size_t m = 0; m < 2; ++m) {
+    Each(&sum->coverage50[m], s.coverage50[m], add);
+    Each(&sum->coverage95[m], s.coverage95[m], add);
+    Add(&sum->drift[m], s.drift[m], share);
+  }
   add(&sum->median_ms, s.median_ms);
   sum->max_ms = std::fmax(sum->max_ms, s.max_ms);
 }

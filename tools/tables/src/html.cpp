@@ -71,6 +71,43 @@ std::string ContactTable(const Experiment& e) {
   return table.ToString(6);
 }
 
+/// Whether the intervals of each method hold the truth, and what ARMCMC learns about drift.
+std::string ContactDriftTable(const Experiment& e) {
+  HtmlTable table({"method", "50 % covers K, %", "B, %", "p, %", "95 % covers K, %", "B, %", "p, %",
+                   "believed to drift, %", "K per s", "B per s", "p per s"});
+  for (const Row& row : e.rows) {
+    if (!row.has_intervals || row.key == "armcmc_ap") continue;  // its intervals are those of AR-MAP
+    const ContactScore& s = row.contact;
+    std::vector<double> values;
+    for (const std::size_t level : {std::size_t{0}, std::size_t{2}})
+      for (const double covers : s.coverage[level]) values.push_back(100.0 * covers);
+    const bool learns = row.key.starts_with("armcmc");
+    values.push_back(learns ? 100.0 * s.drift.share : std::nan(""));
+    for (const double rate : s.drift.rate) values.push_back(learns ? rate : std::nan(""));
+    table.Add(row.label, values, false);
+  }
+  return table.ToString(0);
+}
+
+std::string ActuatorDriftTable(const Experiment& e) {
+  HtmlTable table({"method", "50 % covers g, %", "theta2, %", "95 % covers g, %", "theta2, %", "believed to drift, %",
+                   "g per s", "theta2 per s"});
+  for (const Row& row : e.rows) {
+    if (!row.has_intervals || row.key == "armcmc_ap") continue;
+    const ActuatorScore& s = row.actuator;
+    const bool learns = row.key.starts_with("armcmc");
+    for (std::size_t m = 0; m < 2; ++m) {
+      const double none = std::nan("");
+      table.Add(row.label + (m == 0 ? ", u_c" : ", u_d"),
+                {100.0 * s.coverage50[m][0], 100.0 * s.coverage50[m][1], 100.0 * s.coverage95[m][0],
+                 100.0 * s.coverage95[m][1], learns ? 100.0 * s.drift[m].share : none,
+                 learns ? s.drift[m].rate[0] : none, learns ? s.drift[m].rate[1] : none},
+                false);
+    }
+  }
+  return table.ToString(0);
+}
+
 std::string ActuatorTable(const Experiment& e) {
   HtmlTable table({"method", "g of u_c, relative", "g of u_d, relative", "theta1, L2", "theta2, L2 in 1e-6",
                    "angle from the inputs alone, L2 in rad", "angle restarted each pack, L2 in rad", "flow, relative",
@@ -168,6 +205,7 @@ std::string ToHtml(const Result& result) {
     page.Html("<h3>Ours" + std::string(e.seeds > 1 ? ", mean over " + std::to_string(e.seeds) + " noise seeds" : "") +
               (kContact.Is(e.plant) ? ": mean absolute errors in contact while an estimate is shown" : "") + "</h3>\n");
     page.Html(kContact.Is(e.plant) ? ContactTable(e) : ActuatorTable(e));
+    page.Html(kContact.Is(e.plant) ? ContactDriftTable(e) : ActuatorDriftTable(e));
     if (kContact.Is(e.plant)) page.Html("<p>" + EscapeHtml(CoverageSentence(e.Find("armcmc_map"))) + "</p>\n");
     if (e.key == kContact.key()) page.Html("<p class=\"soft\">" + EscapeHtml(ContactNote()) + "</p>\n");
     if (e.key == kActuator.key()) page.Html("<p class=\"soft\">" + EscapeHtml(ActuatorNote()) + "</p>\n");

@@ -18,6 +18,12 @@ ordered_json Parameters(const std::array<double, 3>& v) {
   return out;
 }
 
+ordered_json DriftJson(const DriftScore& s, const std::vector<const char*>& names) {
+  ordered_json out = {{"share", Number(s.share)}};
+  for (std::size_t d = 0; d < names.size(); ++d) out["rate_per_s"][names[d]] = Number(s.rate[d]);
+  return out;
+}
+
 ordered_json ContactJson(const Row& row) {
   const ContactScore& s = row.contact;
   ordered_json out;
@@ -39,25 +45,33 @@ ordered_json ContactJson(const Row& row) {
     }
     out["draws"] = s.mean_draws;
   }
-  if (row.key.starts_with("armcmc")) out["modifications_after_first_pack"] = s.false_modifications;
+  if (row.key.starts_with("armcmc")) {
+    out["modifications_after_first_pack"] = s.false_modifications;
+    out["drift"] = DriftJson(s.drift, {"K", "B", "p"});
+  }
   out["adjust_ms"] = {{"median", s.median_ms}, {"max", s.max_ms}};
   return out;
 }
 
 ordered_json ActuatorJson(const Row& row) {
   const ActuatorScore& s = row.actuator;
-  return {{"label", row.label},
-          {"online", row.online},
-          {"g_rel_error", {{"u_c", Number(s.g_rel_error[0])}, {"u_d", Number(s.g_rel_error[1])}}},
-          {"theta1_l2", Number(s.theta1_l2)},
-          {"theta2_l2", Number(s.theta2_l2)},
-          {"alpha_l2", Number(s.alpha_l2)},
-          {"alpha_restarted_l2", Number(s.alpha_restarted_l2)},
-          {"flow_rel_error", Number(s.flow_rel_error)},
-          {"coverage95",
-           {{"u_c", {{"g", s.coverage95[0][0]}, {"theta2", s.coverage95[0][1]}}},
-            {"u_d", {{"g", s.coverage95[1][0]}, {"theta2", s.coverage95[1][1]}}}}},
-          {"adjust_ms", {{"median", s.median_ms}, {"max", s.max_ms}}}};
+  const auto coverage = [](const std::array<std::array<double, 2>, 2>& c) {
+    return ordered_json{{"u_c", {{"g", c[0][0]}, {"theta2", c[0][1]}}}, {"u_d", {{"g", c[1][0]}, {"theta2", c[1][1]}}}};
+  };
+  ordered_json out = {{"label", row.label},
+                      {"online", row.online},
+                      {"g_rel_error", {{"u_c", Number(s.g_rel_error[0])}, {"u_d", Number(s.g_rel_error[1])}}},
+                      {"theta1_l2", Number(s.theta1_l2)},
+                      {"theta2_l2", Number(s.theta2_l2)},
+                      {"alpha_l2", Number(s.alpha_l2)},
+                      {"alpha_restarted_l2", Number(s.alpha_restarted_l2)},
+                      {"flow_rel_error", Number(s.flow_rel_error)},
+                      {"coverage50", coverage(s.coverage50)},
+                      {"coverage95", coverage(s.coverage95)},
+                      {"adjust_ms", {{"median", s.median_ms}, {"max", s.max_ms}}}};
+  if (row.key.starts_with("armcmc"))
+    for (std::size_t m = 0; m < 2; ++m) out["drift"][m == 0 ? "u_c" : "u_d"] = DriftJson(s.drift[m], {"g", "theta2"});
+  return out;
 }
 
 ordered_json PaperJson(const std::vector<PaperRow>& rows, const std::vector<const char*>& names) {

@@ -66,7 +66,7 @@ EstimatorSettings ScenarioSettings(const std::string& scenario) {
     noise.dof = 3.0;
   } else if (scenario == kContact.key("_laplace")) {
     noise.kind = NoiseKind::kLaplace;
-  } else if (scenario == kContact.key("_impulsive")) {
+  } else if (scenario == kContact.key("_impulsive") || scenario == kContact.key("_drift_impulsive")) {
     noise.kind = NoiseKind::kMixture;
   } else if (scenario == kContact.key("_chatter")) {
     noise.std = 0.02;

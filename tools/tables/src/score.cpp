@@ -22,6 +22,21 @@ void Times(const Trace& trace, double* median, double* most) {
   *most = ms.back();
 }
 
+DriftScore ScoreDrift(const Trace& trace, std::size_t mode) {
+  DriftScore s;
+  double updates = 0.0;
+  for (const PackTrace& pack : trace.packs) {
+    const Knowledge& knowledge = pack.modes[mode];
+    if (!knowledge.updated) continue;
+    updates += 1.0;
+    s.share += knowledge.p_drifted;
+    for (std::size_t d = 0; d < s.rate.size(); ++d) s.rate[d] += knowledge.drift_rate[d];
+  }
+  s.share /= std::fmax(updates, 1.0);
+  for (double& rate : s.rate) rate /= std::fmax(updates, 1.0);
+  return s;
+}
+
 int ModeAt(const Recording& r, std::size_t i) { return r.u[0][i] != 0.0 ? 0 : r.u[1][i] != 0.0 ? 1 : 2; }
 
 }  // namespace
@@ -91,6 +106,7 @@ ContactScore ScoreContact(const Recording& r, const Trace& trace, Point point, c
   if (trace.has_intervals)
     for (std::size_t l = 0; l < kLevels.size(); ++l)
       for (std::size_t d = 0; d < 3; ++d) s.coverage_variance[l][d] = NullCoverageVariance(sd[d], l);
+  s.drift = ScoreDrift(trace, 0);
   Times(trace, &s.median_ms, &s.max_ms);
   return s;
 }
@@ -160,11 +176,17 @@ ActuatorScore ScoreActuator(const Recording& r, const Trace& trace, Point point,
       if (!mode.updated || !mode.known || last >= r.size() || ModeAt(r, last) != static_cast<int>(m)) continue;
       counted += 1.0;
       for (std::size_t d = 0; d < 2; ++d) {
-        const auto& [from, to] = mode.interval[2][d];
-        s.coverage95[m][d] += from <= r.truth[d][last] && r.truth[d][last] <= to ? 1.0 : 0.0;
+        const auto covers = [&](std::size_t level) {
+          const auto& [from, to] = mode.interval[level][d];
+          return from <= r.truth[d][last] && r.truth[d][last] <= to ? 1.0 : 0.0;
+        };
+        s.coverage50[m][d] += covers(0);
+        s.coverage95[m][d] += covers(2);
       }
     }
-    for (double& c : s.coverage95[m]) c /= std::fmax(counted, 1.0);
+    for (auto* coverage : {&s.coverage50[m], &s.coverage95[m]})
+      for (double& c : *coverage) c /= std::fmax(counted, 1.0);
+    s.drift[m] = ScoreDrift(trace, m);
   }
   Times(trace, &s.median_ms, &s.max_ms);
   return s;

@@ -15,6 +15,43 @@ void Put(std::ostringstream* out, const std::string& title, const TextTable& tab
   *out << title << '\n' << table.ToString() << '\n';
 }
 
+std::string Percent(double share) { return Significant(100.0 * share, 3); }
+
+/// Of every method that has intervals: whether they hold the truth; of ARMCMC: what it learns about drift.
+void ContactDriftTable(const Experiment& e, std::ostringstream* out) {
+  TextTable table({"intervals and drift", "50 % covers K", "B", "p", "95 % covers K", "B", "p", "drifts, %",
+                   "rate of K per s", "B", "p"});
+  for (const Row& row : e.rows) {
+    if (!row.has_intervals || row.key == "armcmc_ap") continue;  // its intervals are those of AR-MAP
+    const ContactScore& s = row.contact;
+    std::vector<std::string> cells = {row.label};
+    for (const std::size_t level : {std::size_t{0}, std::size_t{2}})
+      for (const double covers : s.coverage[level]) cells.push_back(Percent(covers));
+    const bool learns = row.key.starts_with("armcmc");
+    cells.push_back(learns ? Percent(s.drift.share) : "-");
+    for (const double rate : s.drift.rate) cells.push_back(learns ? Significant(rate, 3) : "-");
+    table.AddRow(cells);
+  }
+  Put(out, e.title + ": share of the packs in contact whose interval holds the truth, %; learnt drift, mean over them",
+      table);
+}
+
+void ActuatorDriftTable(const Experiment& e, std::ostringstream* out) {
+  TextTable table({"intervals and drift", "valve", "50 % covers g", "theta2", "95 % covers g", "theta2", "drifts, %",
+                   "rate of g per s", "theta2"});
+  for (const Row& row : e.rows) {
+    if (!row.has_intervals || row.key == "armcmc_ap") continue;
+    const ActuatorScore& s = row.actuator;
+    const bool learns = row.key.starts_with("armcmc");
+    for (std::size_t m = 0; m < 2; ++m)
+      table.AddRow({m == 0 ? row.label : "", m == 0 ? "u_c" : "u_d", Percent(s.coverage50[m][0]),
+                    Percent(s.coverage50[m][1]), Percent(s.coverage95[m][0]), Percent(s.coverage95[m][1]),
+                    learns ? Percent(s.drift[m].share) : "-", learns ? Significant(s.drift[m].rate[0], 3) : "-",
+                    learns ? Significant(s.drift[m].rate[1], 3) : "-"});
+  }
+  Put(out, e.title + ": share of the packs whose interval holds the truth, %; learnt drift, mean over them", table);
+}
+
 void ContactTable(const Experiment& e, std::ostringstream* out) {
   TextTable table({"ours", "K", "B", "p", "force mN, contact", "overall", "noisy L2 N", "95 % covers K", "B", "p",
                    "ms a pack", "draws"});
@@ -28,6 +65,7 @@ void ContactTable(const Experiment& e, std::ostringstream* out) {
                   row.has_intervals ? Significant(s.mean_draws, 5) : "-"});
   }
   Put(out, e.title + ": mean absolute errors in contact while an estimate is shown", table);
+  ContactDriftTable(e, out);
   *out << CoverageSentence(e.Find("armcmc_map")) << "\n\n";
 }
 
@@ -41,6 +79,7 @@ void ActuatorTable(const Experiment& e, std::ostringstream* out) {
                   Significant(s.alpha_restarted_l2, 4), Significant(s.flow_rel_error, 3), Significant(s.median_ms, 3)});
   }
   Put(out, e.title, table);
+  ActuatorDriftTable(e, out);
 }
 
 void PaperTable(const std::string& title, const std::vector<std::string>& header, const std::vector<PaperRow>& rows,

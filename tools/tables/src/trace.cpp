@@ -65,12 +65,14 @@ Trace RunMethod(const Recording& recording, const MethodSpec& spec) {
       knowledge.known = mode.known;
       knowledge.any = knowledge.any || mode.updated || mode.known;
       if (!knowledge.any) continue;
+      knowledge.p_drifted = mode.p_drifted;
       const ParameterSpace space(spec.settings, spec.settings.noise[m]);
       for (std::size_t d = 0; d < num_parameters; ++d) {
         knowledge.ap[d] = mode.marginal[d].ar_ap;
         // The mode of a posterior that knows nothing is an accident.
         knowledge.map[d] = mode.known ? mode.marginal[d].ar_map : mode.marginal[d].ar_ap;
         knowledge.sd[d] = mode.marginal[d].sd;
+        knowledge.drift_rate[d] = mode.drift_rate[d];
         if (mode.updated) Intervals(result->modes[m], space, d, &knowledge);
       }
     }

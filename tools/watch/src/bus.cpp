@@ -31,7 +31,8 @@ Bus::Bus(const std::string& url, std::string prefix, Handler handler)
   rt::CheckMulticastRoute(rt::ParseLcmUrl(url));
   lcm_.reset(lcm_create(url.c_str()));
   if (!lcm_) throw std::runtime_error("cannot join the bus " + url);
-  for (const char* name : {rt::kEstimateChannel, rt::kPosteriorChannel, rt::kStatusChannel, kTruthChannel}) {
+  for (const char* name :
+       {rt::kEstimateChannel, rt::kPosteriorChannel, rt::kChangeChannel, rt::kStatusChannel, kTruthChannel}) {
     lcm_subscription_t* subscription = lcm_subscribe(lcm_.get(), (Quoted(prefix_) + name).c_str(), &OnMessage, this);
     if (subscription == nullptr) throw std::runtime_error("cannot listen on the bus " + url);
     lcm_subscription_set_queue_capacity(subscription, kQueue);

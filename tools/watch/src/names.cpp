@@ -76,6 +76,8 @@ std::string FieldText(const std::uint8_t* field, int size) {
   return text;
 }
 
+std::string PerSecond(const std::string& unit) { return unit.empty() || unit == "-" ? "per s" : unit + " per s"; }
+
 double TrueValue(const plant_truth_t& truth, const estimate_t& estimate, int parameter) noexcept {
   // Where there are several modes, the parameters belong to the one that acts.
   const ModelInfo* info = ModelOf(PlantNumber{truth.plant_kind});

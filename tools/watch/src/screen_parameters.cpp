@@ -13,7 +13,9 @@ using support::Significant;
 
 // Columns where the fields of a row begin.
 constexpr int kUnit = 10, kMean = 22, kInterval = 44, kRight = 66;
-constexpr int kTruth = 10;
+constexpr int kTruth = 10, kDrift = 12;
+// Where the pictures stand below: the drift with its unit before them.
+constexpr int kDriftBelow = 33;
 
 /// Where the sparklines of a row stand, and how wide they are.
 struct Pictures {
@@ -25,12 +27,20 @@ struct Pictures {
 Pictures Layout(int columns) {
   Pictures p;
   p.below = columns < 110;
-  p.mean_at = p.below ? kUnit : kRight + kTruth + 1;
+  p.mean_at = p.below ? kUnit + kDriftBelow : kRight + kTruth + kDrift + 1;
   const int room = std::max(2, columns - p.mean_at - 2);
   p.density = std::min(32, room / 2);
   p.mean = std::min(60, room - p.density - 1);
   p.density_at = p.mean_at + p.mean + 1;
   return p;
+}
+
+/// Rate of the drift of a parameter of the mode that is reported; NaN: nothing is known.
+double DriftRate(const WatchState& state, int i) {
+  if (!state.change || i >= state.change->n_params) return std::nan("");
+  const change_t& c = *state.change;
+  const int mode = std::clamp<int>(c.mode, 0, change_t::MAX_MODES - 1);
+  return c.known[mode] != 0 ? c.drift_rate[mode][i] : std::nan("");
 }
 
 std::string DensityOf(const WatchState& state, int i, int columns, Glyphs glyphs) {
@@ -57,6 +67,17 @@ TextLine Numbers(const WatchState& state, int i) {
   return line;
 }
 
+void AddDrift(const WatchState& state, int i, const Pictures& pictures, TextLine* line) {
+  const double rate = DriftRate(state, i);
+  if (std::isnan(rate)) return;
+  if (!pictures.below) {
+    line->To(kRight + kTruth).AddRight(Significant(rate, 3), kDrift);
+    return;
+  }
+  const std::string unit = PerSecond(FieldText(state.estimate->param_unit[i], 16));
+  line->To(kUnit).Add("drifts ", Ink::kDim).Add(Significant(rate, 3)).Add(" " + unit, Ink::kDim);
+}
+
 void AddPictures(const WatchState& state, const View& view, int i, const Pictures& pictures, TextLine* line) {
   const std::vector<double> means =
       state.means[static_cast<std::size_t>(i)].Newest(static_cast<std::size_t>(pictures.mean));
@@ -70,6 +91,7 @@ TextLine Head(const WatchState& state, const Pictures& pictures) {
   head.AddRight("mean", 10, Ink::kDim).AddRight("sd", 11, Ink::kDim).To(kInterval).Add(" 95 % interval", Ink::kDim);
   head.To(kRight).AddRight(state.truth ? "truth" : "", kTruth, Ink::kDim);
   if (pictures.below) return head;
+  head.AddRight(state.change ? "drift per s" : "", kDrift, Ink::kDim);
   head.To(pictures.mean_at).AddLeft("mean of late", pictures.mean, Ink::kDim);
   head.To(pictures.density_at).AddLeft("density", pictures.density, Ink::kDim);
   return head;
@@ -89,6 +111,7 @@ void AddParameters(const WatchState& state, const View& view, std::vector<TextLi
     for (int i = 0; i < n; ++i) {
       lines->push_back(Numbers(state, i));
       if (pictures.below) lines->emplace_back();
+      AddDrift(state, i, pictures, &lines->back());
       AddPictures(state, view, i, pictures, &lines->back());
     }
   }

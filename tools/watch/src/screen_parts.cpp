@@ -12,10 +12,14 @@ namespace {
 using support::Significant;
 
 constexpr int kLabel = 10;
+constexpr int kLowScreen = 24;  // rows, of which none is left empty between the stages and the rest
 
 std::string Ms(std::int64_t ns) { return Significant(1e-6 * static_cast<double>(ns), 4); }
 
 std::string Percent(double share) { return Significant(100.0 * share, 3) + " %"; }
+
+/// To a tenth of a percent: of what is improbable nobody wants to know how much.
+std::string Probability(double p) { return Percent(1e-3 * std::round(1e3 * p)); }
 
 /// One of a row of labelled values.
 void Item(const std::string& name, const std::string& value, TextLine* line, Ink ink = Ink::kBold) {
@@ -77,7 +81,27 @@ void AddStages(const WatchState& state, const View& view, std::vector<TextLine>*
   Count("late data", s.missed_late_data, &missed);
   Item("witness", Ms(s.witness_max_ns) + " ms late", &missed);
   lines->push_back(missed);
-  lines->emplace_back();
+  if (view.rows > kLowScreen) lines->emplace_back();
+}
+
+void AddBelief(const WatchState& state, const View& view, std::vector<TextLine>* lines) {
+  if (!state.change) return;
+  const change_t& c = *state.change;
+  const int modes = std::clamp<int>(c.n_modes, 0, change_t::MAX_MODES);
+  for (int m = 0; m < modes; ++m) {
+    if (c.known[m] == 0) continue;
+    TextLine line = Begin("believed");
+    if (modes > 1) line.AddLeft(FieldText(c.mode_name[m], 16), 10);
+    Item("persisted", Probability(c.p_persisted[m]), &line);
+    Item("drifted", Probability(c.p_drifted[m]), &line);
+    Item("changed", Probability(c.p_changed[m]), &line, c.p_changed[m] > 0.5 ? Ink::kWarning : Ink::kBold);
+    if (m == c.mode) {
+      line.Add("   drifted of late ", Ink::kDim);
+      const int room = std::clamp(view.columns - line.columns() - 1, 0, 60);
+      line.Add(Sparkline(state.drifted.Newest(static_cast<std::size_t>(room)), 0.0, 1.0, view.glyphs), Ink::kGood);
+    }
+    lines->push_back(line);
+  }
 }
 
 void AddSampler(const WatchState& state, const View& view, std::vector<TextLine>* lines) {

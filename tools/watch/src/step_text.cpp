@@ -33,6 +33,20 @@ Json Parameters(const WatchState& state) {
   return parameters;
 }
 
+Json Change(const change_t& c) {
+  Json modes = Json::object();
+  const int n = std::clamp<int>(c.n_params, 0, change_t::MAX_PARAMS);
+  for (int m = 0; m < std::clamp<int>(c.n_modes, 0, change_t::MAX_MODES); ++m) {
+    if (c.known[m] == 0) continue;
+    Json& mode = modes[FieldText(c.mode_name[m], 16)];
+    mode = {{"persisted", c.p_persisted[m]}, {"drifted", c.p_drifted[m]}, {"changed", c.p_changed[m]}};
+    for (int i = 0; i < n; ++i)
+      mode["drift_rate"][FieldText(c.param_name[i], 16)] = {{"value", c.drift_rate[m][i]},
+                                                            {"unit", PerSecond(FieldText(c.param_unit[i], 16))}};
+  }
+  return modes;
+}
+
 Json Sampler(const estimate_t& e) {
   return {{"mode", ModeName(e.plant_kind, e.mode)},
           {"decision", DecisionName(e.decision)},
@@ -62,6 +76,11 @@ std::string StepLine(const WatchState& state) {
     line += "  zeta " + support::Significant(e.zeta, 2) + "/" + support::Significant(e.zeta_threshold, 3) +
             "  lambda " + support::Significant(e.lambda, 3) + "  ESS " + support::Significant(e.ess, 4);
   }
+  if (state.change) {
+    const int mode = std::clamp<int>(state.change->mode, 0, change_t::MAX_MODES - 1);
+    if (state.change->known[mode] != 0)
+      line += "  drifted " + support::Significant(100.0 * state.change->p_drifted[mode], 3) + " %";
+  }
   line += "  " + support::Significant(Milliseconds(s.end_to_end_ns), 3) + " of " +
           support::Significant(Milliseconds(s.deadline_ns), 3) + " ms  missed " + std::to_string(s.missed_own) + "/" +
           std::to_string(s.missed_machine) + "/" + std::to_string(s.missed_late_data);
@@ -80,6 +99,7 @@ std::string StepJson(const WatchState& state) {
     json["parameters"] = Parameters(state);
     json.update(Sampler(*state.estimate));
   }
+  if (state.change) json["change"] = Change(*state.change);
   json["stage_ms"] = {{"collect", Milliseconds(s.collect_ns)},
                       {"adjust", Milliseconds(s.adjust_ns)},
                       {"execute", Milliseconds(s.execute_ns)},

@@ -64,6 +64,12 @@ void WatchState::Take(const estimate_t& message, double) {
 
 void WatchState::Take(const posterior_t& message, double) { posterior = message; }
 
+void WatchState::Take(const change_t& message, double) {
+  const int mode = std::clamp<int>(message.mode, 0, change_t::MAX_MODES - 1);
+  drifted.Add(message.known[mode] != 0 ? message.p_drifted[mode] : kNaN);
+  change = message;
+}
+
 void WatchState::Take(const plant_truth_t& message, double) { truth = message; }
 
 bool WatchState::TakeBytes(const std::string& name, const void* bytes, int size, double now_s) {
@@ -74,6 +80,8 @@ bool WatchState::TakeBytes(const std::string& name, const void* bytes, int size,
     Decode<estimate_t>(bytes, size, now_s, this);
   } else if (name == rt::kPosteriorChannel) {
     Decode<posterior_t>(bytes, size, now_s, this);
+  } else if (name == rt::kChangeChannel) {
+    Decode<change_t>(bytes, size, now_s, this);
   } else if (name == kTruthChannel) {
     Decode<plant_truth_t>(bytes, size, now_s, this);
   }

@@ -11,7 +11,8 @@ namespace armcmc {
 
 inline constexpr int kGapBlockPacks = 120;  ///< Stretches of data in one block, each of a pack or of a few short ones.
 inline constexpr int kGapColumns = 8;       ///< Parameters of all modes together.
-inline constexpr int kGapDirections = 3;    ///< Each may be constant, change evenly over the block, and step once.
+inline constexpr int kGapSteady = 3;        ///< Each may be constant, change evenly over the block, and step once;
+inline constexpr int kGapDirections = 5;    ///< where drift is believed in, change as a cubic of time, too.
 inline constexpr int kGapNuisance = kGapColumns * kGapDirections;
 
 /// Errors and sensitivities of one pack, in units of the noise.
@@ -29,8 +30,9 @@ using GapShift = std::array<double, kGapColumns>;
 /// Least squares of a block and the scores of its checks.
 ///
 /// In a block the model with any parameters near the reference, even with parameters that drift evenly or step once,
-/// predicts  e = J (a + b tau + c step) + noise.  M is the projection that removes these directions; what the
-/// parameters can explain never counts. A region with template phi scores
+/// predicts  e = J (a + b tau + c step) + noise,  and where the estimator believes that they drift, at a speed that may
+/// change,  e = J (a + b tau + c step + d P_2(tau) + e P_3(tau)) + noise.  M is the projection that removes these
+/// directions; what the parameters can explain never counts. A region with template phi scores
 ///
 ///   S = phi' M e = sum_k (M phi)_k' noise_k = sum_k psi_k       over the packs k of the block,
 ///   z = S / sqrt(sum_k (psi_k / (1 - h_k))^2),   h_k the leverage of pack k,
@@ -46,7 +48,8 @@ class GapBlock {
  public:
   GapBlock(const GapChecks& checks, int num_columns) noexcept : checks_(checks), columns_(num_columns) {}
 
-  void Clear() noexcept ARMCMC_NONBLOCKING;
+  /// @param drifts  Whether the estimator believes that the parameters drift.
+  void Clear(bool drifts = false) noexcept ARMCMC_NONBLOCKING;
   /// First pass: errors and slopes of pack k alone. @param tau  Place in the block, [-1, 1].
   /// @param changed  Whether the parameters may have stepped before this pack.
   void AddFit(int k, const GapRows& rows, double tau, bool changed) noexcept ARMCMC_NONBLOCKING;
@@ -104,6 +107,7 @@ class GapBlock {
 
   const GapChecks& checks_;
   int columns_;
+  int directions_ = kGapSteady;
   std::array<PackSums, kGapBlockPacks> packs_{};
   std::array<std::array<double, kMaxPackSamples>, 3> detrended_{};  ///< Of this pack and the two before, in turns.
   std::array<int, 3> detrended_count_{};

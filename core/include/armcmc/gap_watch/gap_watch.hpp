@@ -23,7 +23,8 @@ namespace armcmc {
 ///
 /// Errors are looked at in blocks of kGapBlockPacks packs (shorter ones than kShortestPack are joined). A block is
 /// recorded, then, beside the recording of the next one, linearised twice: at the estimate, and along the trajectory of
-/// parameters that fits the block best (constant, plus even drift, plus one step where the estimator saw a change).
+/// parameters that fits the block best (constant, plus even drift, plus one step where the estimator saw a change; plus
+/// a drift whose speed changes where the estimator believed in drift).
 /// What no such trajectory explains is scored by region (GapBlock) and turned into anytime-valid evidence
 /// (GapEvidence).
 ///
@@ -42,9 +43,11 @@ class GapWatch {
   GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels, double rate);
 
   /// One pack, in the order of the estimator. @param changed  The estimator dropped its past at this pack.
+  /// @param drifts  It believes that the parameters drift.
   /// @pre pack.Validate() == kOk, and the pack is of the model's plant.
   /// @rt No heap, no lock, no throw. O(samples).
-  void Step(const DataPack& pack, const GapReference& estimate, bool changed) noexcept ARMCMC_NONBLOCKING;
+  void Step(const DataPack& pack, const GapReference& estimate, bool changed,
+            bool drifts = false) noexcept ARMCMC_NONBLOCKING;
   void Reset() noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] const GapState& state() const noexcept { return judge_.state(); }
   [[nodiscard]] bool enabled() const noexcept { return enabled_; }
@@ -67,11 +70,12 @@ class GapWatch {
   struct Recording {
     std::vector<DataPack> packs;
     std::array<bool, kGapBlockPacks> changed{};
-    int count = 0;  ///< Complete ones.
+    int count = 0;        ///< Complete ones.
+    bool drifts = false;  ///< Believed at some pack.
   };
 
   /// @return true when a pack of the block is complete.
-  [[nodiscard]] bool Record(const DataPack& pack, bool changed) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool Record(const DataPack& pack, bool changed, bool drifts) noexcept ARMCMC_NONBLOCKING;
   void Analyse(int num_samples) noexcept ARMCMC_NONBLOCKING;
   void AnalysePiece() noexcept ARMCMC_NONBLOCKING;
   void BeginAnalysis(const GapReference& estimate) noexcept ARMCMC_NONBLOCKING;

@@ -19,6 +19,9 @@ class DisturbedEngine final : public StepEngine {
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override {
     return engine_->reported(index);
   }
+  [[nodiscard]] std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING override {
+    return engine_->mode_name(mode);
+  }
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept ARMCMC_NONBLOCKING override;
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING override { engine_->Remember(clock); }
   void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;

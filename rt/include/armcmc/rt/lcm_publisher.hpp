@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "armcmc/change_t.hpp"
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -30,6 +31,9 @@ class LcmPublisher {
   [[nodiscard]] bool Publish(const posterior_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(posterior_channel_, message);
   }
+  [[nodiscard]] bool Publish(const change_t& message) noexcept ARMCMC_NONBLOCKING {
+    return Send(change_channel_, message);
+  }
   [[nodiscard]] bool Publish(const estimator_status_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(status_channel_, message);
   }
@@ -52,7 +56,7 @@ class LcmPublisher {
   ARMCMC_TRUST_NONBLOCKING_END
 
   std::unique_ptr<lcm_t, Destroy> lcm_;
-  std::string estimate_channel_, posterior_channel_, status_channel_;
+  std::string estimate_channel_, posterior_channel_, change_channel_, status_channel_;
   std::array<std::uint8_t, 16'384> buffer_{};
 };
 

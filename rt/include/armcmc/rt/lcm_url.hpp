@@ -14,6 +14,7 @@ inline constexpr std::size_t kMaxPrefixLength = 48;
 
 inline constexpr char kEstimateChannel[] = "EST_ESTIMATE";
 inline constexpr char kPosteriorChannel[] = "EST_POSTERIOR";
+inline constexpr char kChangeChannel[] = "EST_CHANGE";
 inline constexpr char kStatusChannel[] = "EST_STATUS";
 
 /// The parts of udpm://GROUP:PORT?ttl=N&recv_buf_size=BYTES that a receiver needs.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "armcmc/change_t.hpp"
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -22,6 +23,10 @@ void FillEstimate(const StepOutput& output, const StepEngine& engine, std::int64
 /// Fills posterior_t: the marginals of the reported mode. Sets every field.
 void FillPosterior(const StepOutput& output, const StepEngine& engine, std::int64_t utime,
                    posterior_t* message) noexcept ARMCMC_NONBLOCKING;
+
+/// Fills change_t: what is believed about change, mode by mode. Sets every field.
+void FillChange(const StepOutput& output, const StepEngine& engine, std::int64_t utime,
+                change_t* message) noexcept ARMCMC_NONBLOCKING;
 
 /// What a status message needs beyond the counters.
 struct StatusContext {

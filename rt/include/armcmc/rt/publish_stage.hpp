@@ -74,6 +74,7 @@ class PublishStage {
   std::atomic<std::int64_t> gap_alarm_{0};
   estimate_t estimate_{};
   posterior_t posterior_{};
+  change_t change_{};
   estimator_status_t status_{};
   Estimate last_;
 };

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "armcmc/data_pack.hpp"
@@ -32,6 +33,7 @@ class StepEngine {
   [[nodiscard]] virtual int num_modes() const noexcept ARMCMC_NONBLOCKING = 0;
   [[nodiscard]] virtual int num_reported() const noexcept ARMCMC_NONBLOCKING = 0;
   [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING = 0;
+  [[nodiscard]] virtual std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING = 0;
 
   /// Computes the posterior after `pack` into a slot; stops before deadline_ns. @rt No heap, no lock, no throw.
   virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock,
@@ -59,6 +61,7 @@ class EstimatorEngine final : public StepEngine {
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING override;
+  [[nodiscard]] std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING override;
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, int slot) noexcept ARMCMC_NONBLOCKING override;
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING override;
   void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;

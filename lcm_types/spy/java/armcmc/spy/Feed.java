@@ -1,5 +1,6 @@
 package armcmc.spy;
 
+import armcmc.change_t;
 import armcmc.data_pack_t;
 import armcmc.estimate_t;
 import armcmc.estimator_status_t;
@@ -72,6 +73,7 @@ final class Feed implements LCMSubscriber, AutoCloseable {
       case Channels.STATUS: sink.accept(new estimator_status_t(data), now); break;
       case Channels.ESTIMATE: sink.accept(new estimate_t(data), now); break;
       case Channels.POSTERIOR: sink.accept(new posterior_t(data), now); break;
+      case Channels.CHANGE: sink.accept(new change_t(data), now); break;
       case Channels.TRUTH: sink.accept(new plant_truth_t(data), now); break;
       case Channels.PACK: sink.accept(new data_pack_t(data), now); break;
       default:

@@ -1,5 +1,6 @@
 package armcmc.spy;
 
+import armcmc.change_t;
 import armcmc.estimator_status_t;
 import armcmc.spy.draw.StatusPainter;
 import armcmc.spy.model.StatusModel;
@@ -9,9 +10,11 @@ import javax.swing.JFrame;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** Opens the live panel of the estimator's health. */
+/** Opens the live panel of the estimator's health, which also shows what is believed about change. */
 public class StatusPlugin implements SpyPlugin {
-  @Override public boolean canHandle(long fingerprint) { return fingerprint == estimator_status_t.LCM_FINGERPRINT; }
+  @Override public boolean canHandle(long fingerprint) {
+    return fingerprint == estimator_status_t.LCM_FINGERPRINT || fingerprint == change_t.LCM_FINGERPRINT;
+  }
 
   @Override public Action getAction(JDesktopPane pane, ChannelData channel) {
     return new PanelAction("ARMCMC status", pane, channel, StatusPlugin::open);

@@ -1,5 +1,6 @@
 package armcmc.spy;
 
+import armcmc.change_t;
 import armcmc.data_pack_t;
 import armcmc.estimate_t;
 import armcmc.estimator_status_t;
@@ -67,6 +68,27 @@ public final class Messages {
     e.acceptance = 0.6;
     e.draws = 14979;
     return e;
+  }
+
+  /** Of both parameters of one mode. */
+  public static change_t change(long seq) {
+    change_t c = new change_t();
+    c.seq = seq;
+    c.plant_kind = data_pack_t.PLANT_HUNT_CROSSLEY;
+    c.n_modes = 1;
+    c.n_params = 2;
+    set(c.mode_name[0], "contact");
+    set(c.param_name[0], "K");
+    set(c.param_unit[0], "N/m^p");
+    set(c.param_name[1], "B");
+    set(c.param_unit[1], "N s/m^(p+1)");
+    c.known[0] = c.updated[0] = 1;
+    c.p_persisted[0] = 0.25;
+    c.p_drifted[0] = 0.625;
+    c.p_changed[0] = 0.125;
+    c.drift_rate[0][0] = 0.0375;
+    c.drift_rate[0][1] = 0.0125;
+    return c;
   }
 
   public static plant_truth_t truth() {

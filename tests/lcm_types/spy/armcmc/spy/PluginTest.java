@@ -1,5 +1,6 @@
 package armcmc.spy;
 
+import armcmc.change_t;
 import armcmc.data_pack_t;
 import armcmc.estimate_t;
 import armcmc.estimator_status_t;
@@ -14,7 +15,7 @@ import lcm.lcm.LCMEncodable;
 import lcm.spy.SpyPlugin;
 
 public class PluginTest {
-  private final int[] taken = new int[4];
+  private final int[] taken = new int[5];
   private double now;
 
   private final MessageSink sink = new MessageSink() {
@@ -25,6 +26,8 @@ public class PluginTest {
     @Override public void accept(estimator_status_t message, double time) { ++taken[2]; }
 
     @Override public void accept(data_pack_t message, double time) { ++taken[3]; }
+
+    @Override public void accept(change_t message, double time) { ++taken[4]; }
   };
 
   private static LCMDataInputStream bytes(LCMEncodable message) throws IOException {
@@ -36,6 +39,7 @@ public class PluginTest {
   public void eachPluginTakesItsTypeAndNoOther() {
     Check.that(new PosteriorPlugin().canHandle(posterior_t.LCM_FINGERPRINT), "posterior");
     Check.that(new StatusPlugin().canHandle(estimator_status_t.LCM_FINGERPRINT), "status");
+    Check.that(new StatusPlugin().canHandle(change_t.LCM_FINGERPRINT), "change");
     Check.that(new EstimatePlugin().canHandle(estimate_t.LCM_FINGERPRINT), "estimate");
     Check.that(!new PosteriorPlugin().canHandle(estimate_t.LCM_FINGERPRINT), "a foreign type");
   }
@@ -57,7 +61,8 @@ public class PluginTest {
     feed.messageReceived(null, "left_EST_ESTIMATE", bytes(Messages.estimate(1)));
     feed.messageReceived(null, "left_EST_STATUS", bytes(Messages.status(1)));
     feed.messageReceived(null, "left_PLANT_PACK", bytes(Messages.pack(1)));
-    Check.equal("[1, 1, 1, 1]", Arrays.toString(taken));
+    feed.messageReceived(null, "left_EST_CHANGE", bytes(Messages.change(1)));
+    Check.equal("[1, 1, 1, 1, 1]", Arrays.toString(taken));
     Check.equal(0L, feed.undecodable());
   }
 

@@ -29,6 +29,7 @@ struct PlantScan {
   int plant_kind = 0;
   int num_modes = 0, num_inputs = 0;
   std::vector<std::string> parameters, units;  ///< As the estimates name them.
+  std::vector<std::string> modes;              ///< As the estimator names them; empty: it does not.
   std::string output, output_unit;             ///< As the packs name them; empty: they do not.
   std::vector<std::string> inputs, input_units;
   struct PackTime {

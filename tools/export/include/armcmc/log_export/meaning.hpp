@@ -12,7 +12,7 @@ enum class Axis { kParameter, kMode, kSample, kInput, kBin, kText };
 
 /// What the numbers of a field are.
 struct FieldMeaning {
-  std::string unit;  ///< SI, or "parameter", "output", "input", "target", "1/parameter"; empty: none.
+  std::string unit;  ///< SI, or "parameter", "output", "input", "target", "1/parameter", "parameter/s"; empty: none.
   std::vector<Axis> axes;
 };
 

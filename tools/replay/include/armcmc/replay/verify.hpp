@@ -12,7 +12,7 @@ namespace armcmc::replay {
 
 /// What came out of a comparison with what a live run had published.
 struct Verification {
-  std::int64_t compared = 0;      ///< Messages: estimates and posteriors.
+  std::int64_t compared = 0;      ///< Messages: estimates, posteriors, and what is believed about change.
   std::int64_t different = 0;     ///< Of those.
   std::int64_t undecodable = 0;   ///< Messages on the channels of the estimates that are of no type of this version.
   std::int64_t without_pack = 0;  ///< Recorded estimates whose pack the recording has lost.
@@ -20,8 +20,8 @@ struct Verification {
   [[nodiscard]] bool equal() const { return compared > 0 && different == 0; }
 };
 
-/// Compares a replay with the EST_ESTIMATE and EST_POSTERIOR messages of the same log, byte for byte. What only a clock
-/// knows (utime, t_release_ns, t_done_ns) is taken over from the log.
+/// Compares a replay with the EST_ESTIMATE, EST_POSTERIOR and EST_CHANGE messages of the same log, byte for byte. What
+/// only a clock knows (utime, t_release_ns, t_done_ns) is taken over from the log.
 class Verifier {
  public:
   /// @param prefix    Of the channel names.

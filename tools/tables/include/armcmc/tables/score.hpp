@@ -11,6 +11,12 @@ namespace armcmc::tables {
 /// Which point estimate is scored.
 enum class Point { kMap, kAp };
 
+/// What a method learns about drift, means over the packs that hold data of a mode.
+struct DriftScore {
+  double share = 0.0;            ///< Probability that the parameters drift.
+  std::array<double, 3> rate{};  ///< Expected speed, unit of the parameter per s.
+};
+
 struct ContactScore {
   std::array<double, 3> mae_contact{};         ///< Of K, B, p in contact; an estimate counts as 0 until there is one.
   std::array<double, 3> mae_active_contact{};  ///< In contact while an estimate is shown.
@@ -21,6 +27,7 @@ struct ContactScore {
   std::array<std::array<double, 3>, 3> width{};              ///< Mean width of those intervals.
   std::array<std::array<double, 3>, 3> coverage_variance{};  ///< Of coverage, if the intervals are right.
   int false_modifications = 0;                               ///< Decisions "modification" after the first pack.
+  DriftScore drift;
   double median_ms = 0.0, max_ms = 0.0, mean_draws = 0.0;
 };
 [[nodiscard]] ContactScore ScoreContact(const Recording& recording, const Trace& trace, Point point,
@@ -36,7 +43,8 @@ struct ActuatorScore {
   double alpha_l2 = 0.0;                    ///< Angle from the valve inputs alone since the start, rad.
   double alpha_restarted_l2 = 0.0;          ///< Angle restarted from the measured pressure at each pack, rad.
   double flow_rel_error = 0.0;  ///< ||pdot (g + theta2 (p - p_atm)) - flow|| / ||flow||; nothing shown: flow 0.
-  std::array<std::array<double, 2>, 2> coverage95{};  ///< [mode][g, theta2]
+  std::array<std::array<double, 2>, 2> coverage50{}, coverage95{};  ///< [mode][g, theta2]
+  std::array<DriftScore, 2> drift;                                  ///< By mode: of g, theta2.
   double median_ms = 0.0, max_ms = 0.0;
 };
 [[nodiscard]] ActuatorScore ScoreActuator(const Recording& recording, const Trace& trace, Point point,

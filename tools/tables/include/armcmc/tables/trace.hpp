@@ -18,6 +18,8 @@ struct Knowledge {
   bool updated = false;  ///< By this pack.
   std::array<double, 3> map{}, ap{}, sd{};
   std::array<std::array<std::array<double, 2>, 3>, 3> interval{};  ///< [level][parameter] from, to.
+  double p_drifted = 0.0;                                          ///< Believed probability that the parameters drift.
+  std::array<double, 3> drift_rate{};                              ///< And how fast, unit of the parameter per s.
 };
 
 struct PackTrace {

@@ -22,6 +22,9 @@ inline constexpr char kTruthChannel[] = "PLANT_TRUTH";
 /// ASCII of a zero padded field; control characters become '?', so that no message can steer a terminal.
 [[nodiscard]] std::string FieldText(const std::uint8_t* field, int size);
 
+/// "N/m^p per s"; "per s" of what has no unit.
+[[nodiscard]] std::string PerSecond(const std::string& unit);
+
 /// The true value of a parameter where the plant tells it, else NaN.
 [[nodiscard]] double TrueValue(const plant_truth_t& truth, const estimate_t& estimate, int parameter) noexcept;
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "armcmc/change_t.hpp"
 #include "armcmc/data_pack_t.hpp"
 #include "armcmc/estimate_t.hpp"
 #include "armcmc/estimator_status_t.hpp"
@@ -30,6 +31,7 @@ struct WatchState {
   std::optional<estimator_status_t> status;
   std::optional<estimate_t> estimate;
   std::optional<posterior_t> posterior;
+  std::optional<change_t> change;
   std::optional<plant_truth_t> truth;
   double status_s = 0.0;   ///< When the newest status came.
   double period_s = 0.0;   ///< Mean time between two statuses; 0 before the second.
@@ -39,11 +41,13 @@ struct WatchState {
   std::array<History, estimate_t::MAX_PARAMS> means;
   History end_to_end_ms;
   History zeta;
+  History drifted;  ///< Probability of drift, of the mode whose parameters are reported.
   BusCounts bus;
 
   void Take(const estimator_status_t& message, double now_s);
   void Take(const estimate_t& message, double now_s);
   void Take(const posterior_t& message, double now_s);
+  void Take(const change_t& message, double now_s);
   void Take(const plant_truth_t& message, double now_s);
 
   /// Decodes a message of one of our channels, or counts it as foreign.

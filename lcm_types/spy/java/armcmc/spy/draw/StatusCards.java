@@ -1,11 +1,14 @@
 package armcmc.spy.draw;
 
+import armcmc.change_t;
 import armcmc.estimate_t;
 import armcmc.estimator_status_t;
+import armcmc.spy.model.Parameter;
 import armcmc.spy.model.PlantNames;
 import armcmc.spy.model.StatusModel;
 import armcmc.spy.model.Text;
 import java.awt.Color;
+import java.awt.Font;
 import java.awt.Rectangle;
 import java.util.Locale;
 
@@ -16,6 +19,7 @@ final class StatusCards {
   private final StatusModel model;
   private final estimator_status_t s;
   private int y;
+  private int pitch = ROW;
 
   StatusCards(Pen pen, StatusModel model, double now) {
     this.pen = pen;
@@ -24,8 +28,8 @@ final class StatusCards {
   }
 
   void paint(Rectangle r) {
-    int[] weights = {132, 108, 174, 196, 118};
-    int sum = 728;
+    int[] weights = {130, 92, 150, 148, 168, 108};
+    int sum = prefix(weights, weights.length);
     int top = r.y;
     for (int i = 0; i < weights.length; ++i) {
       int bottom = r.y + r.height * prefix(weights, i + 1) / sum;
@@ -34,7 +38,8 @@ final class StatusCards {
         case 0: step(card); break;
         case 1: misses(card); break;
         case 2: draws(card); break;
-        case 3: data(card); break;
+        case 3: change(card); break;
+        case 4: data(card); break;
         default: gap(card);
       }
       top = bottom;
@@ -81,11 +86,12 @@ final class StatusCards {
     Rectangle inner = pen.card(r, "Missed deadlines by cause");
     long[] counts = {s.missed_own, s.missed_machine, s.missed_late_data};
     String[] words = {"own", "machine", "late data"};
-    int baseline = inner.y + Math.min(inner.height - 16, inner.height / 2 + 12);
+    Font font = inner.height < 36 ? Pen.TITLE : Pen.LARGE;
+    int baseline = inner.y + Math.max(16, Math.min(inner.height - 16, inner.height / 2 + 12));
     for (int i = 0; i < counts.length; ++i) {
       int x = inner.x + i * inner.width / 3;
       Color color = counts[i] == 0 ? Palette.INK : i == 0 ? Palette.BAD : Palette.WARNING;
-      int end = pen.left(Long.toString(counts[i]), Pen.LARGE, color, x, baseline);
+      int end = pen.left(Long.toString(counts[i]), font, color, x, baseline);
       pen.left(words[i], Pen.NORMAL, Palette.MUTED, end + 8, baseline);
     }
   }
@@ -97,7 +103,7 @@ final class StatusCards {
       pen.left("no EST_ESTIMATE on the bus", Pen.NORMAL, Palette.MUTED, inner.x, inner.y + 18);
       return;
     }
-    begin(inner.y + 14);
+    begin(inner, 5);
     row(inner, 0, "mode", PlantNames.mode(e.plant_kind, e.mode), null);
     row(inner, 1, "decision", PlantNames.decision(e.decision), null);
     next();
@@ -116,9 +122,38 @@ final class StatusCards {
     next();
   }
 
+  private void change(Rectangle r) {
+    change_t c = model.change();
+    int mode = model.changeMode();
+    String of = c == null || c.n_modes < 2 ? "" : ", " + Text.of(c.mode_name[mode]);
+    Rectangle inner = pen.card(r, "What is believed about change" + of);
+    if (c == null || c.known[mode] == 0) {
+      pen.left(c == null ? "no EST_CHANGE on the bus" : "nothing is known yet", Pen.NORMAL, Palette.MUTED, inner.x, inner.y + 18);
+      return;
+    }
+    int n = Math.max(0, Math.min(c.n_params, change_t.MAX_PARAMS));
+    int columns = n > 3 ? 2 : 1;
+    begin(inner, 2 + (n + columns - 1) / columns);
+    row(inner, 0, "persisted", percent(c.p_persisted[mode]), Palette.MEASURED);
+    row(inner, 1, "drifted", percent(c.p_drifted[mode]), Palette.ESTIMATE);
+    next();
+    row(inner, 0, "changed at once", percent(c.p_changed[mode]), Palette.BAD);
+    row(inner, 1, "speed of the drift:", "", null);
+    next();
+    int width = columns == 1 ? inner.width - 8 : inner.width / 2 - 8;
+    for (int i = 0; i < n; ++i) {
+      int x = inner.x + i % columns * (inner.width / 2 + 8);
+      Parameter parameter = new Parameter(Text.of(c.param_name[i]), Text.of(c.param_unit[i]));
+      String speed = Text.number(c.drift_rate[mode][i]) + (parameter.hasUnit() ? " " + parameter.unit : "") + " per s";
+      pen.left(pen.fit(parameter.name, Pen.NORMAL, width / 3), Pen.NORMAL, Palette.MUTED, x, y);
+      pen.right(pen.fit(speed, Pen.BOLD, width * 2 / 3), Pen.BOLD, Palette.INK, x + width, y);
+      if (i % columns == columns - 1) next();
+    }
+  }
+
   private void data(Rectangle r) {
     Rectangle inner = pen.card(r, "Data and faults since the start");
-    begin(inner.y + 14);
+    begin(inner, 6);
     pair(inner, "received", s.packs_received, "lost", s.packs_lost, false);
     pair(inner, "duplicate", s.packs_duplicate, "reordered", s.packs_reordered, true);
     pair(inner, "dropped", s.packs_dropped, "rejected", s.packs_rejected, true);
@@ -150,9 +185,18 @@ final class StatusCards {
     pen.left(pen.fit(where, Pen.NORMAL, inner.width), Pen.NORMAL, Palette.MUTED, inner.x, y);
   }
 
-  private void begin(int baseline) { y = baseline; }
+  private void begin(int baseline) {
+    y = baseline;
+    pitch = ROW;
+  }
 
-  private void next() { y += ROW; }
+  /** Rows that fill a card, closer to each other where it is low. */
+  private void begin(Rectangle inner, int rows) {
+    y = inner.y + 14;
+    pitch = Math.min(ROW, Math.max(1, (inner.height - 10) / Math.max(1, rows - 1)));
+  }
+
+  private void next() { y += pitch; }
 
   private void pair(Rectangle inner, String a, long valueA, String b, long valueB, boolean aIsFault) {
     count(inner, 0, a, valueA, aIsFault);

@@ -62,6 +62,19 @@ final class StatusCharts {
     legend.line(Palette.BAD, Palette.DASHED, "threshold: beyond it the past is dropped");
   }
 
+  void change(Rectangle r) {
+    Rectangle inner = pen.card(r, "What the parameters did");
+    Plot plot = plot(inner, Axis.linear(0, 1.05));
+    plot.timeFrame("probability [-]");
+    plot.line(model.persisted, now, Palette.MEASURED, Palette.LINE);
+    plot.line(model.drifted, now, Palette.ESTIMATE, Palette.LINE);
+    plot.line(model.changed, now, Palette.BAD, Palette.LINE);
+    Legend legend = new Legend(pen, r.x + r.width - 360, r.y + 23);
+    legend.line(Palette.MEASURED, Palette.LINE, "persisted");
+    legend.line(Palette.ESTIMATE, Palette.LINE, "drifted");
+    legend.line(Palette.BAD, Palette.LINE, "changed at once");
+  }
+
   void rates(Rectangle r) {
     Rectangle inner = pen.card(r, "Forgetting and acceptance");
     Plot plot = plot(inner, Axis.linear(0, 1.05));

@@ -31,9 +31,10 @@ public final class StatusPainter implements Painter {
     int left = width - 36 - right;
     int h = height - top - 12;
     StatusCharts charts = new StatusCharts(pen, model, now);
-    charts.stages(new Rectangle(12, top, left, h * 46 / 100 - 8));
-    charts.mismatch(new Rectangle(12, top + h * 46 / 100, left, h * 29 / 100 - 8));
-    charts.rates(new Rectangle(12, top + h * 75 / 100, left, h * 25 / 100));
+    charts.stages(new Rectangle(12, top, left, h * 37 / 100 - 8));
+    charts.mismatch(new Rectangle(12, top + h * 37 / 100, left, h * 21 / 100 - 8));
+    charts.change(new Rectangle(12, top + h * 58 / 100, left, h * 21 / 100 - 8));
+    charts.rates(new Rectangle(12, top + h * 79 / 100, left, h * 21 / 100));
     new StatusCards(pen, model, now).paint(new Rectangle(24 + left, top, right, h));
   }
 

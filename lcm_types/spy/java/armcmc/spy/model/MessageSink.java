@@ -1,5 +1,6 @@
 package armcmc.spy.model;
 
+import armcmc.change_t;
 import armcmc.data_pack_t;
 import armcmc.estimate_t;
 import armcmc.estimator_status_t;
@@ -15,6 +16,8 @@ public interface MessageSink {
   default void accept(estimate_t message, double now) {}
 
   default void accept(posterior_t message, double now) {}
+
+  default void accept(change_t message, double now) {}
 
   default void accept(estimator_status_t message, double now) {}
 }

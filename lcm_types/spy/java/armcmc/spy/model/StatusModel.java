@@ -1,5 +1,6 @@
 package armcmc.spy.model;
 
+import armcmc.change_t;
 import armcmc.estimate_t;
 import armcmc.estimator_status_t;
 
@@ -16,12 +17,16 @@ public final class StatusModel implements MessageSink {
   public final Series threshold = new Series(WINDOW, RESOLUTION, Series.Keep.LAST);
   public final Series lambda = new Series(WINDOW, RESOLUTION, Series.Keep.LAST);
   public final Series acceptance = new Series(WINDOW, RESOLUTION, Series.Keep.LAST);
+  public final Series persisted = new Series(WINDOW, RESOLUTION, Series.Keep.LAST);
+  public final Series drifted = new Series(WINDOW, RESOLUTION, Series.Keep.LAST);
+  public final Series changed = largest();
   public final Series ownMisses = largest();
   public final Series machineMisses = largest();
   public final Series lateMisses = largest();
   private final Freshness freshness = new Freshness();
   private estimator_status_t status;
   private estimate_t estimate;
+  private change_t change;
   private double recentFaultTime = Double.NEGATIVE_INFINITY;
   private int recentFaults;
 
@@ -56,11 +61,26 @@ public final class StatusModel implements MessageSink {
     acceptance.add(now, updated ? message.acceptance : Double.NaN);
   }
 
+  @Override public void accept(change_t message, double now) {
+    change = message;
+    int mode = changeMode();
+    boolean known = message.known[mode] != 0;
+    persisted.add(now, known ? message.p_persisted[mode] : Double.NaN);
+    drifted.add(now, known ? message.p_drifted[mode] : Double.NaN);
+    changed.add(now, known ? message.p_changed[mode] : Double.NaN);
+  }
+
   /** The newest status, or null. */
   public estimator_status_t status() { return status; }
 
   /** The newest estimate, or null. */
   public estimate_t estimate() { return estimate; }
+
+  /** What is believed about change, or null. */
+  public change_t change() { return change; }
+
+  /** The mode of it whose parameters are reported. */
+  public int changeMode() { return change == null ? 0 : Math.max(0, Math.min(change.mode, change_t.MAX_MODES - 1)); }
 
   /** Faults of the last three seconds. */
   public int recentFaults(double now) { return now - recentFaultTime < 3 ? recentFaults : 0; }

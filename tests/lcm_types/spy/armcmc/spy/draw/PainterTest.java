@@ -1,5 +1,6 @@
 package armcmc.spy.draw;
 
+import armcmc.change_t;
 import armcmc.estimator_status_t;
 import armcmc.posterior_t;
 import armcmc.spy.Check;
@@ -27,6 +28,7 @@ public class PainterTest {
       estimates.accept(Messages.estimate(i), now);
       estimates.accept(Messages.pack(i), now);
       statuses.accept(Messages.estimate(i), now);
+      statuses.accept(Messages.change(i), now);
       statuses.accept(Messages.status(i), now);
     }
   }
@@ -95,6 +97,25 @@ public class PainterTest {
     }
   }
 
+  public void whatIsBelievedAboutChangeIsDrawn() {
+    fill(true);
+    StatusPainter painter = new StatusPainter(statuses, "EST_STATUS");
+    BufferedImage image = draw(painter, 1400, 900, END);
+    change_t none = Messages.change(1);
+    none.known[0] = 0;
+    StatusModel others = new StatusModel();
+    for (int i = 0; i < 250; ++i) {
+      others.accept(Messages.estimate(i), 0.1 * i);
+      others.accept(none, 0.1 * i);
+      others.accept(Messages.status(i), 0.1 * i);
+    }
+    BufferedImage empty = draw(new StatusPainter(others, "EST_STATUS"), 1400, 900, END);
+    for (Color part : new Color[] {Palette.MEASURED, Palette.ESTIMATE, Palette.BAD}) {
+      int more = count(image, part) - count(empty, part);
+      Check.that(more > 300, more + " pixels of a share: " + part);
+    }
+  }
+
   public void silenceIsSaid() {
     fill(true);
     for (Painter painter : painters()) {
@@ -114,6 +135,12 @@ public class PainterTest {
     posterior_t many = Messages.posterior(1);
     many.n_params = 8;
     posteriors.accept(many, END);
+    change_t wild = Messages.change(1);
+    wild.n_params = 8;
+    wild.n_modes = 1_000_000;
+    wild.mode = -3;
+    wild.drift_rate[0][0] = Double.NaN;
+    statuses.accept(wild, END);
     estimator_status_t odd = new estimator_status_t();
     odd.gap_watched = 1;
     odd.gap_log_evidence = Double.NaN;

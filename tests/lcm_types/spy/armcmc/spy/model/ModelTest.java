@@ -1,5 +1,6 @@
 package armcmc.spy.model;
 
+import armcmc.change_t;
 import armcmc.data_pack_t;
 import armcmc.estimate_t;
 import armcmc.estimator_status_t;
@@ -124,6 +125,17 @@ public class ModelTest {
     model.accept(Messages.status(2), 10.1);
     Check.equal(estimator_status_t.FAULT_BAD_DATA, model.recentFaults(12));
     Check.equal(0, model.recentFaults(13.5));
+  }
+
+  public void whatIsBelievedIsThatOfTheReportedMode() {
+    StatusModel model = new StatusModel();
+    change_t c = Messages.change(1);
+    model.accept(c, 1);
+    Check.equal(0.625, model.drifted.last());
+    c = Messages.change(2);
+    c.mode = 1;
+    model.accept(c, 1.1);
+    Check.that(Double.isNaN(model.drifted.last()), "of a mode that is not known nothing is believed");
   }
 
   public void everyFlagHasAWord() {
