@@ -238,6 +238,11 @@ bool Drift::SetMoments(const PosteriorMemory& last, Part part, const Moments& fr
   return IsPositiveDefinite(carried_.covariance);
 }
 
+Drift::Part Drift::CarriedPart() const noexcept {
+  if (share_ < kNegligible) return Part::kRest;
+  return share_ < 1.0 - kNegligible ? Part::kWhole : Part::kDrift;
+}
+
 const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last) noexcept {
   split_ = mixed_ = false;
   share_ = rate_ = 0.0;
@@ -277,7 +282,7 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
     return carried_;
   }
   // Two posteriors, of parameters that stayed and of some that changed, stay two.
-  const Part part = last.num_blocks > 1 ? Part::kWhole : rests ? Part::kRest : Part::kDrift;
+  const Part part = CarriedPart();
   for (int b = 0; b < last.num_blocks; ++b)
     if (!Move(last, part, from, b, b)) return last;
   return SetMoments(last, part, from) ? carried_ : last;
@@ -344,8 +349,9 @@ bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noex
 bool Drift::Recentre(const LocalLikelihood& local, const PosteriorMemory& next) noexcept {
   // What the sampler's prior becomes where the likelihood is as expanded: the bank itself, or a Gaussian with its
   // moments.
-  Moments now = MomentsOf(mixed_ && fitted_ == Part::kDrift ? bank_ : predicted_, fitted_);
-  if (!mixed_ || fitted_ != Part::kDrift) {
+  const bool as_the_bank = fitted_ == Part::kDrift ? mixed_ : split_ && fitted_ == Part::kWhole;
+  Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, fitted_);
+  if (!as_the_bank) {
     ParamMatrix spread = Product(local.information, now.covariance);
     spread += ParamMatrix::Identity(dim_, dim_);
     const ParamVector pulled = Multiply(local.information, now.mean - next.mean.head(dim_));

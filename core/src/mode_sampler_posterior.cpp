@@ -130,9 +130,7 @@ void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcep
   Unfinished& u = unfinished_;
   const bool split = drift_.Splits(*u.previous);
   double mass_first = 0.0;
-  u.part = u.previous->num_blocks > 1 ? Drift::Part::kWhole
-           : drift_.share() > 0.5     ? Drift::Part::kDrift
-                                      : Drift::Part::kRest;
+  u.part = drift_.CarriedPart();
   if (u.lambda > 0.0) {
     const auto offset = static_cast<std::size_t>(u.first);
     const auto share = [&](const simd::PriorTerms& prior) noexcept ARMCMC_NONBLOCKING {

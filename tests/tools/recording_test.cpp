@@ -149,6 +149,33 @@ TEST_F(RecordingFile, UnevenTimeIsInterpolated) {
   EXPECT_THAT(r.notes, ::testing::Contains(HasSubstr("time is uneven")));
 }
 
+TEST_F(RecordingFile, KnowsWhatInterpolationDoesToNoise) {
+  constexpr int kRows = 20'000;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise;
+  std::uniform_real_distribution<double> jitter(-0.3, 0.3);
+  {
+    std::ofstream file(dir_ / "data.csv");
+    file.precision(12);
+    file << "time_ms,pos_mm,volt\n";
+    for (int n = 0; n < kRows; ++n) file << n + jitter(random) << ",1," << noise(random) << '\n';
+  }
+  const Recording r = Read();
+  const std::vector<double>& y = r.signals[3].value;  // 4 V/V: a standard deviation of 4
+  double square = 0.0, third = 0.0;
+  for (std::size_t n = 3; n < y.size(); ++n) {
+    square += std::pow(y[n] + 1.0, 2);
+    third += std::pow(y[n] - 3.0 * y[n - 1] + 3.0 * y[n - 2] - y[n - 3], 2) / 20.0;
+  }
+  const auto count = static_cast<double>(y.size() - 3);
+  EXPECT_LT(r.noise_told, 0.9 * r.noise_kept);
+  EXPECT_NEAR(r.noise_kept, std::sqrt(square / count) / 4.0, 0.02);
+  EXPECT_NEAR(r.noise_told, std::sqrt(third / count) / 4.0, 0.02);
+  WriteCsv(500);
+  EXPECT_EQ(Read().noise_kept, 1.0);
+  EXPECT_EQ(Read().noise_told, 1.0);
+}
+
 TEST_F(RecordingFile, RowsAreThoseThatAreAskedFor) {
   WriteCsv(1000);
   EXPECT_EQ(Read("[rows]\nfrom = 100\nuntil = 400\n").num_rows(), 300u);

@@ -98,6 +98,8 @@ class Drift {
   const PosteriorMemory& Carry(const ModeData& data, const PosteriorMemory& last) noexcept ARMCMC_NONBLOCKING;
   /// Whether `memory` is one posterior at rest and drifting, and not two posteriors.
   [[nodiscard]] bool Splits(const PosteriorMemory& memory) const noexcept { return &memory == &carried_ && split_; }
+  /// Of what is not split.
+  [[nodiscard]] Part CarriedPart() const noexcept ARMCMC_NONBLOCKING;
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
 

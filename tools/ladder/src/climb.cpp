@@ -115,8 +115,9 @@ Ladder Climb(const ClimbRequest& request) {
     ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
     return ladder;
   }
-  ladder.noise_floor =
-      request.known_noise > 0.0 ? request.known_noise : NoiseFloor(data, base.model->target(), base.model->active());
+  ladder.noise_floor = request.known_noise > 0.0 ? request.known_noise
+                                                 : request.noise_over_differences *
+                                                       NoiseFloor(data, base.model->target(), base.model->active());
   ladder.base = base;
   std::set<std::string> families;
   for (int r = 0; r < request.max_rungs; ++r) {

@@ -336,6 +336,7 @@ Diagnosis Diagnose(const DiagnosisRequest& request) {
   }
   climb.data = data;
   climb.known_noise = request.recording.smoothed_noise;
+  climb.noise_over_differences = request.recording.noise_kept / request.recording.noise_told;
   constexpr double kClimb = 0.9;  // share of the time, about
   if (request.progress)
     climb.progress = [&](const std::string& step, double share) { request.progress(step, kClimb * share); };

@@ -24,6 +24,8 @@ Recording Joined(const Recording& earlier, const Recording& later) {
   put_first(earlier.runs, &joined.runs);
   joined.files.insert(joined.files.begin(), earlier.files.begin(), earlier.files.end());
   joined.smoothed_noise = std::max(earlier.smoothed_noise, later.smoothed_noise);
+  joined.noise_kept = 0.5 * (earlier.noise_kept + later.noise_kept);
+  joined.noise_told = 0.5 * (earlier.noise_told + later.noise_told);
   joined.notes.push_back("judged together with " + earlier.title + ", " + std::to_string(before) + " rows");
   return joined;
 }

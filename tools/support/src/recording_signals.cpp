@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numbers>
 
 #include "armcmc/support/csv.hpp"
@@ -33,6 +34,39 @@ double MedianStep(const RecordingRows& rows) {
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;
 }
+
+/// Where a sample lies: that part of the way from a row to the next.
+struct Place {
+  std::size_t row;
+  double part;
+};
+
+/// What interpolation leaves of white noise, and what it tells.
+class InterpolatedNoise {
+ public:
+  /// A run of samples.
+  void Add(const std::vector<Place>& places) {
+    constexpr std::array<double, 4> kThird{1.0, -3.0, 3.0, -1.0};
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      kept_ += std::pow(1.0 - places[k].part, 2) + std::pow(places[k].part, 2);
+      ++samples_;
+      if (k + 1 < kThird.size()) continue;
+      std::map<std::size_t, double> weight;  // of a row
+      for (std::size_t i = 0; i < kThird.size(); ++i) {
+        const Place& at = places[k - i];
+        weight[at.row] += kThird[i] * (1.0 - at.part);
+        weight[at.row + 1] += kThird[i] * at.part;
+      }
+      for (const auto& [row, w] : weight) told_ += w * w / 20.0;
+      ++differences_;
+    }
+  }
+  [[nodiscard]] double kept() const { return samples_ > 0.0 ? std::sqrt(kept_ / samples_) : 1.0; }
+  [[nodiscard]] double told() const { return differences_ > 0.0 ? std::sqrt(told_ / differences_) : 1.0; }
+
+ private:
+  double kept_ = 0.0, told_ = 0.0, samples_ = 0.0, differences_ = 0.0;
+};
 
 /// Interval of the rows [first, last): their mean where they are even, which a median of rounded times is not.
 bool IsEven(const std::vector<double>& t, std::size_t first, std::size_t last, double dt) {
@@ -76,7 +110,10 @@ void Resample(const RecordingRows& rows, Recording* recording) {
   }
   recording->dt = dt;
   std::size_t resampled = 0;
+  InterpolatedNoise noise;
+  std::vector<Place> places;
   for (const Span& run : runs) {
+    places.clear();
     recording->runs.push_back(recording->t.size());
     const bool even = IsEven(rows.t, run.first, run.last, dt);
     resampled += even ? 0 : 1;
@@ -93,6 +130,7 @@ void Resample(const RecordingRows& rows, Recording* recording) {
         while (n + 2 < run.last && rows.t[n + 1] <= t) ++n;
       }
       const double part = even ? 0.0 : std::clamp((t - rows.t[n]) / (rows.t[n + 1] - rows.t[n]), 0.0, 1.0);
+      places.push_back({n, part});
       recording->t.push_back(t);
       recording->held_out.push_back(rows.held_out[n]);
       for (std::size_t s = 0; s < rows.signal.size(); ++s) {
@@ -101,6 +139,11 @@ void Resample(const RecordingRows& rows, Recording* recording) {
         recording->signals[s].value.push_back(even ? a : a + part * (rows.signal[s][n + 1] - a));
       }
     }
+    noise.Add(places);
+  }
+  if (resampled > 0) {
+    recording->noise_kept = noise.kept();
+    recording->noise_told = noise.told();
   }
   if (resampled > 0)
     recording->notes.push_back("time is uneven in " + std::to_string(resampled) + " of " + std::to_string(runs.size()) +
@@ -196,8 +239,8 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
       std::vector<double>& value = recording->signals[index_of(signal)].value;
       if (value.empty()) continue;
       if (signal == plant.output)
-        recording->smoothed_noise =
-            Roughness(*recording, value) * std::sqrt(std::min(1.0, 2.0 * file.bandwidth_hz * recording->dt));
+        recording->smoothed_noise = Roughness(*recording, value) / recording->noise_told *
+                                    std::sqrt(std::min(1.0, 2.0 * file.bandwidth_hz * recording->dt));
       value = Filtered(*recording, value, file.bandwidth_hz);
       recording->notes.push_back(signal + ": low pass without delay, " + ExactNumber(file.bandwidth_hz) + " Hz");
     }

@@ -179,7 +179,9 @@ void Lead(const Result& result, plots::Page* page) {
       << ". An estimate is shown one period after its pack has ended, as in the paper. The best online value of a "
          "column is "
          "bold.</p>\n";
-  if (lost.empty()) {
+  if (!result.baselines) {
+    out << "<p>ARMCMC alone: its baselines were left out.</p>\n";
+  } else if (lost.empty()) {
     out << "<p>AR-MAP is ahead of every other online method on every row.</p>\n";
   } else {
     out << "<div class=\"note\"><p>Rows that AR-MAP loses:</p><ul class=\"plain\">";

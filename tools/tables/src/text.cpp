@@ -137,7 +137,7 @@ std::string ToText(const Result& result) {
     if (e.key == kActuator.key()) out << ActuatorNote() << "\n\n";
   }
   if (!result.likelihoods.empty()) LikelihoodTable(result, &out);
-  if (result.experiments.empty()) return out.str();
+  if (result.experiments.empty() || !result.baselines) return out.str();
   const std::vector<std::string> lost = LostRows(result);
   out << (lost.empty() ? "AR-MAP is ahead of every other online method on every row.\n" : "Rows that AR-MAP loses:\n");
   for (const std::string& row : lost) out << "  " << row << '\n';

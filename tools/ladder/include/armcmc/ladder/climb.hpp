@@ -68,6 +68,9 @@ struct ClimbRequest {
   Dataset data;
   /// Standard deviation of the noise, where neighbouring samples do not tell it since the output was filtered; else 0.
   double known_noise = 0.0;
+  /// Standard deviation of the noise over what differences of neighbouring samples tell of it: more than 1 where they
+  /// are interpolated and share noise.
+  double noise_over_differences = 1.0;
   int max_rungs = 5;
   std::function<void(const std::string& step, double share)> progress;
 };

@@ -37,6 +37,9 @@ struct Recording {
   std::vector<std::uint8_t> held_out;        ///< [row] 1: kept apart, to judge a model on.
   /// Standard deviation of the noise that the filter has let through where the output was filtered here; else 0.
   double smoothed_noise = 0.0;
+  /// Where time was uneven and samples are interpolated, of the standard deviation of white noise on the rows: what is
+  /// left of it on the samples, and what third differences of the samples tell of it. Else 1.
+  double noise_kept = 1.0, noise_told = 1.0;
   std::vector<PublishedFigure> published;
   std::vector<std::string> notes;  ///< What a person should know: what was derived, resampled, left out.
 

@@ -13,6 +13,7 @@ struct Result {
   std::string contact_data, actuator_data;  ///< "the authors' recording" or "the plant's own scenario".
   std::vector<Experiment> experiments;
   std::vector<LikelihoodCell> likelihoods;
+  bool baselines = true;  ///< They were run, too.
   [[nodiscard]] const Experiment* Find(const std::string& key) const;
 };
 
