@@ -89,9 +89,9 @@ TEST(DriftCoverage, IntervalsOfAPlantAtRestAreAsWithoutDrift) {
   const Score with = ScoreOf(10, ForgettingSettings{}.drift_share, true, NoiseKind::kLaplace, at_rest);
   const Score without = ScoreOf(10, 0.0, true, NoiseKind::kLaplace, at_rest);
   for (std::size_t d = 0; d < 3; ++d) {
-    EXPECT_NEAR(with.in95[d], without.in95[d], 0.03) << d;
-    EXPECT_NEAR(with.in50[d], without.in50[d], 0.06) << d;
-    EXPECT_NEAR(with.error[d] / without.error[d], 1.0, 0.02) << d;
+    EXPECT_GT(with.in95[d], without.in95[d] - 0.02) << d;
+    EXPECT_GT(with.in50[d], without.in50[d] - 0.06) << d;
+    EXPECT_LT(with.error[d], 1.05 * without.error[d]) << d;
   }
 }
 

@@ -47,8 +47,12 @@ TEST_F(EffectProgram, ShowsWhatTheEstimatorDoesNotRun) {
   EXPECT_EQ(runs.code, 0) << runs.err;
   EXPECT_THAT(runs.out, HasSubstr("delay(M*a + Fv*v + off, sensor_delay_tau)"));
   EXPECT_THAT(runs.out, HasSubstr("the estimator samples M, Fv, off, sensor_delay_tau"));
-  // Of states nothing is kept.
-  const test::Outcome check = Run({"check", "oscillator", "--with", "sensor_delay"});
+  const test::Outcome state = Run({"check", "oscillator", "--with", "sensor_delay"});
+  EXPECT_EQ(state.code, 0) << state.err;
+  EXPECT_THAT(state.out, HasSubstr("the estimator samples m, d, k, sensor_delay_tau"));
+  // More parameters than it samples.
+  const test::Outcome check =
+      Run({"check", "oscillator", "--with", "cogging,periodic_disturbance,backlash,hysteresis"});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_THAT(check.out, HasSubstr("the estimator does not run it: "));
 }

@@ -255,5 +255,14 @@ TEST(Climb, AWeirIsAnOverflowAndNoMode) {
   EXPECT_LT(ladder.final_trial.fit.error_sd, 0.05);
 }
 
+TEST(Climb, WhatASpringIsOffFromItsFormulaIsNoCogging) {
+  // Less than three periods over the whole range bend as anything else does.
+  const auto spring = [](double pos) { return 20.0 * pos * std::exp(pos * pos / 0.1); };
+  const Ladder ladder = ClimbWith({"cubic_stiffness", "cogging"}, test::SwingData([](double u) { return u; }, spring),
+                                  test::SwingPlant());
+  for (const Rung& rung : ladder.rungs)
+    for (const std::string& name : NamesOf(rung)) EXPECT_EQ(name, "cubic_stiffness");
+}
+
 }  // namespace
 }  // namespace armcmc::ladder::climb_test

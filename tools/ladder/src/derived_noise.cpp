@@ -45,23 +45,35 @@ void DerivedNoise::FitIt() {
       series->signals[s] = SmoothedOver(data_.series->signals[s], data_.series->runs, sd);
     Dataset smooth = data_;
     smooth.series = std::move(series);
-    Contender c;
+    Contender c{};
     c.trial = Refine(plant_, smooth, base_.fit.theta);
     if (!c.trial.fit.valid) continue;
     LeaveOut(view_, &c.trial);
     c.closed = std::clamp(1.0 - std::pow(c.trial.fit.error_sd / base_.fit.error_sd, 2), 0.0, 1.0);
     c.alone = Compare(view_, c, base_, false);
     if (!best_ || c.alone.folds < best_->contender.alone.folds)
-      best_.emplace(Smoothed{sd * data_.series->dt, std::move(c)});
+      best_.emplace(Smoothed{sd * data_.series->dt, std::move(smooth), std::move(c)});
   }
+}
+
+bool DerivedNoise::GainsThere(const Contender& c) const {
+  constexpr double kAsMuch = 0.5;
+  Contender there = c;
+  there.trial = Refine(c.candidate.plant, best_->data, c.trial.fit.theta);
+  if (!there.trial.fit.valid) return true;
+  LeaveOut(view_, &there.trial);
+  const double gain = 1.0 - Compare(view_, there, best_->contender.trial, false).folds;
+  return gain > kAsMuch * (1.0 - c.alone.folds);
 }
 
 std::optional<Rival> DerivedNoise::RivalOf(const Contender& c) {
   if (!fitted_) FitIt();
-  if (!best_ || !BetterEverywhere(best_->contender, c)) return std::nullopt;
+  if (!best_ || best_->contender.alone.folds > 1.0 - kLeastGain) return std::nullopt;
+  if (!BetterEverywhere(best_->contender, c) && GainsThere(c)) return std::nullopt;
   char text[64];
   std::snprintf(text, sizeof(text), "signals that are rates of others were smoother, over %.2g s", best_->sd);
-  return Rival{text, LeavesLess(c.alone.folds / std::max(best_->contender.alone.folds, 1e-12))};
+  const double times = c.alone.folds / std::max(best_->contender.alone.folds, 1e-12);
+  return Rival{text, times > 1.0 ? LeavesLess(times) : "leaves little of what it explains"};
 }
 
 }  // namespace armcmc::ladder

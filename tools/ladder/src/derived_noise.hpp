@@ -17,16 +17,19 @@ class DerivedNoise {
   DerivedNoise(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, const Trial& base)
       : plant_(plant), data_(data), view_(view), base_(base) {}
 
-  /// Nothing where smoother signals do not explain more than the contender.
+  /// Nothing where smoother signals explain nothing, or less than the contender, which explains as much beside them.
   /// @pre c.trial.judged.
   [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
 
  private:
   struct Smoothed {
     double sd;  ///< Of the kernel, s.
+    Dataset data;
     Contender contender;
   };
   void FitIt();
+  /// Whether an effect gains at least half as much where those signals are smoother.
+  [[nodiscard]] bool GainsThere(const Contender& c) const;
 
   const std::shared_ptr<const Plant>& plant_;
   const Dataset& data_;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kMostJudged = 8;  // of a rung, by closing: what is far behind is not named anyway
 constexpr int kBootstrap = 400;
+constexpr double kAtBound = 1e-3;      // of the logarithm of a frequency
 constexpr std::size_t kAnywhere = 8;   // starts of all parameters of what runs freely
 constexpr double kSure = 0.99;         // share of bootstrap samples in which it does
 constexpr double kLikely = 0.95;       // the same where few events show it: named, provisionally
@@ -39,6 +40,17 @@ bool Kin(const EffectEntry& a, const EffectEntry& b) {
 }
 
 std::size_t NumParameters(const Contender& c) { return c.candidate.form().parameters.size(); }
+
+/// Whether a frequency would be lower than the data can show it to be one.
+bool TooSlow(const Contender& c) {
+  const identify::TrajectoryModel& model = *c.trial.model;
+  const Eigen::VectorXd lower = model.Lower();
+  for (auto d = static_cast<Eigen::Index>(c.candidate.first_parameter); d < model.num_parameters(); ++d) {
+    const ParameterDescription& p = model.parameters()[static_cast<std::size_t>(d)];
+    if (p.prior == "lognormal" && p.unit.starts_with("1/") && c.trial.fit.theta[d] <= lower[d] + kAtBound) return true;
+  }
+  return false;
+}
 
 /// One where amplitudes alone are sought, which vanish at 0 and in which laws are linear; more where a shape is.
 std::size_t StartsFor(const Contender& c) {
@@ -183,7 +195,7 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
     const bool beside = below(kBeside) >= 2 || (below(kFarBeside) >= 1 && below(1.0) == 3);
-    c.earned = gains && elsewhere && beside;
+    c.earned = gains && elsewhere && beside && !TooSlow(c);
   }
 }
 
