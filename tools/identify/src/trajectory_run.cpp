@@ -16,15 +16,14 @@ namespace {
 ARMCMC_FOR_WIDER_LANES
 void AddScaled(std::size_t count, const Lanes* a, double factor, const Lanes* b, Lanes* sum) {
   for (std::size_t s = 0; s < count; ++s) {
-#pragma GCC ivdep
-#pragma GCC unroll 1
+    ARMCMC_OVER_LANES
     for (std::size_t l = 0; l < kLanes; ++l) sum[s][l] = a[s][l] + factor * b[s][l];
   }
 }
 
 ARMCMC_FOR_WIDER_LANES
 void Fill(double value, Lanes* lanes) {
-#pragma GCC unroll 1
+  ARMCMC_OVER_LANES
   for (std::size_t l = 0; l < kLanes; ++l) (*lanes)[l] = value;
 }
 

@@ -10,3 +10,10 @@
 #endif
 /// Inside of such a function, so that it takes part.
 #define ARMCMC_INSIDE __attribute__((always_inline)) inline
+
+/// Before a loop over lanes that may write where it reads: vectors all the same, and not unrolled before they are made.
+#if defined(__GNUC__) && !defined(__clang__)
+#define ARMCMC_OVER_LANES _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
+#else
+#define ARMCMC_OVER_LANES
+#endif
