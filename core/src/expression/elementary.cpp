@@ -4,7 +4,7 @@
 
 namespace armcmc::expression {
 
-bool Elementary(Op op, std::size_t count, const double* a, const double* b, double* out) noexcept ARMCMC_NONBLOCKING {
+bool Elementary(Op op, std::size_t count, const double* a, const double* b, double* out) noexcept {
   return simd::Best().elementary(op, count, a, b, out);
 }
 

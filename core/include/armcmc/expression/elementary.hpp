@@ -3,7 +3,6 @@
 #include <cstddef>
 
 #include "armcmc/expression/operation.hpp"
-#include "armcmc/nonblocking.hpp"
 
 namespace armcmc::expression {
 
@@ -15,7 +14,7 @@ inline constexpr std::size_t kElementaryStride = 16;
 /// is not negative, of the rest not a number. As the laws of packs are computed.
 /// @param b  Of powers; else anything, as null.
 /// @return false of other operations: nothing was done.
-/// @rt No heap, no lock, no throw; O(count).
-bool Elementary(Op op, std::size_t count, const double* a, const double* b, double* out) noexcept ARMCMC_NONBLOCKING;
+/// @rt Not for stages: what those run has its kernels at hand.
+bool Elementary(Op op, std::size_t count, const double* a, const double* b, double* out) noexcept;
 
 }  // namespace armcmc::expression
