@@ -65,16 +65,16 @@ ARMCMC_INSIDE void Copy(const double* __restrict from, double* __restrict to) {
 /// @param square  Room; memory, since what stands in registers by parts is waited for when it is read as a whole.
 ARMCMC_INSIDE void PowerOfAll(std::size_t count, const double* __restrict a, int whole, bool half,
                               double* __restrict square, double* __restrict out) {
-  // A loop that is unrolled before it is made of vectors is made of parts of vectors.
-#pragma GCC unroll 1
+  ARMCMC_OVER_LANES
   for (std::size_t i = 0; i < count; ++i) out[i] = half ? std::sqrt(a[i]) : 1.0;
-#pragma GCC unroll 1
+  ARMCMC_OVER_LANES
   for (std::size_t i = 0; i < count; ++i) square[i] = a[i];
   for (int bits = whole; bits > 0; bits >>= 1) {
-    if ((bits & 1) != 0)
-#pragma GCC unroll 1
+    if ((bits & 1) != 0) {
+      ARMCMC_OVER_LANES
       for (std::size_t i = 0; i < count; ++i) out[i] *= square[i];
-#pragma GCC unroll 1
+    }
+    ARMCMC_OVER_LANES
     for (std::size_t i = 0; i < count; ++i) square[i] *= square[i];
   }
 }
