@@ -322,7 +322,7 @@ void Drift::Restore(SnapshotReader* in) noexcept {
     take(&f.uu, dim_);
     take(&f.uw, dim_);
     take(&f.ww, dim_);
-    in->Require(f.weight >= 0.0 && in->good() && IsPositiveDefinite(f.uu));
+    in->Require(f.weight == 0.0 || (f.weight > 0.0 && in->good() && IsPositiveDefinite(f.uu)));
   }
   started_ = enabled_ && in->good();
 }

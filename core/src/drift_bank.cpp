@@ -48,9 +48,12 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
 }
 
 void Drift::GrowOlder() noexcept {
-  for (std::size_t g = kMergeAfter.size(); g-- > 0;)
-    for (std::size_t h = 0; h < kHypotheses && packs_ % kMergeAfter[g] == 0; ++h)
+  // From the oldest on: nothing moves by two generations at once.
+  for (std::size_t g = kMergeAfter.size(); g-- > 0;) {
+    if (packs_ % kMergeAfter[g] != 0) continue;
+    for (std::size_t h = 0; h < kHypotheses; ++h)
       Merge(&predicted_[g * kHypotheses + h], &predicted_[(g + 1) * kHypotheses + h]);
+  }
 }
 
 void Drift::AddNewcomers(double share) noexcept {

@@ -34,8 +34,7 @@ struct Kernels;
 ///
 ///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, newcomers from the whole bank at a speed of
 ///            their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
-///   age      some packs tell a newcomer from what was there, and the next one does not: each hypothesis has a filter
-///   for
+///   age      some packs tell a newcomer from what was there, and the next one does not: a hypothesis has a filter for
 ///            each generation, which joins the older one every kMergeAfter packs, by moments. Joined at once, newcomers
 ///            that the data refute would lend their spread to those that they do not
 ///   bounds   a parameter that would become wider than P_0, by c > 1 in variance, comes back to it: variance and mean

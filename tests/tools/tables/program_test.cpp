@@ -37,6 +37,19 @@ TEST(LongTablesProgram, ShowsTheCoverageAloneOfSeedsThatAreAskedFor) {
   }
 }
 
+TEST(TablesProgram, WithoutBaselinesNothingIsSaidOfThem) {
+  const test::ScratchDir folder;
+  const test::Outcome outcome = test::RunProgram(test::Program("armcmc-tables"),
+                                                 {"--paper-only", "--armcmc-only", "--out", (folder / "out").string()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const test::Json tables = test::Json::Parse(test::TextOf(folder / "out/tables.json"));
+  for (const char* plant : {"hunt_crossley", "soft_actuator"})
+    EXPECT_EQ(tables.at(plant).at("methods").size(), 2u) << plant << ": the two points of ARMCMC";
+  EXPECT_FALSE(tables.contains("rows_lost"));
+  EXPECT_EQ(outcome.out.find("ahead of every other"), std::string::npos);
+  EXPECT_EQ(test::TextOf(folder / "out/report.html").find("ahead of every other"), std::string::npos);
+}
+
 TEST(TablesProgram, SaysWhatADataFolderMustHold) {
   const test::ScratchDir folder;
   const test::Outcome outcome = test::RunProgram(

@@ -136,7 +136,10 @@ class Teller {
     } else {
       result_.gap.noise_floor = differences;
       from = std::string("from differences of neighbouring samples") +
-             (request_.recording.smoothed_noise > 0.0 ? " before the filter, " : ", ") + Number(differences);
+             (request_.recording.smoothed_noise > 0.0 ? " before the filter, "
+              : request_.recording.noise_told < 1.0   ? ", which share noise where they are interpolated, "
+                                                      : ", ") +
+             Number(differences);
     }
     result_.notes.push_back("noise floor: " + from);
   }

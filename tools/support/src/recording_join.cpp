@@ -24,8 +24,13 @@ Recording Joined(const Recording& earlier, const Recording& later) {
   put_first(earlier.runs, &joined.runs);
   joined.files.insert(joined.files.begin(), earlier.files.begin(), earlier.files.end());
   joined.smoothed_noise = std::max(earlier.smoothed_noise, later.smoothed_noise);
-  joined.noise_kept = 0.5 * (earlier.noise_kept + later.noise_kept);
-  joined.noise_told = 0.5 * (earlier.noise_told + later.noise_told);
+  // Variances of all rows.
+  const double share = static_cast<double>(before) / static_cast<double>(before + later.num_rows());
+  const auto both = [share](double first, double second) {
+    return std::sqrt(share * first * first + (1.0 - share) * second * second);
+  };
+  joined.noise_kept = both(earlier.noise_kept, later.noise_kept);
+  joined.noise_told = both(earlier.noise_told, later.noise_told);
   joined.notes.push_back("judged together with " + earlier.title + ", " + std::to_string(before) + " rows");
   return joined;
 }

@@ -109,6 +109,7 @@ ordered_json ToJson(const Result& result) {
     ordered_json& entry = out["likelihoods"][cell.noise][cell.believed] = ContactJson(cell.row);
     entry["seeds"] = cell.seeds;
   }
+  if (!result.baselines) return out;  // nobody to lose to
   out["rows_lost"] = LostRows(result);
   out["rows_lost_note"] = LostRowsNote();
   return out;
