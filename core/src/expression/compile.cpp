@@ -369,7 +369,7 @@ CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, const Ta
   const VirtualCode code = builder.Code(std::move(values));
   Assemble(code, layout, &tape);
   tape.num_scalars = static_cast<int>(compiled.scalars.size());
-  RecogniseShape(code, layout.num_parameters, &tape);
+  RecogniseShape(code, &tape);
   return compiled;
 }
 

@@ -33,16 +33,16 @@ struct Math {
   /// a - n b, exact where n b is.
   static V Less(V a, V n, double b) noexcept { return Simd::Fma(-n, Simd::Set(b), a); }
 
-  /// e^x.
-  static V Exp(V x) noexcept {
-    const V bounded = Simd::Min(Simd::Set(1400.0), Simd::Max(Simd::Set(-1400.0), x));
-    const V magic = Simd::Set(6755399441055744.0);  // 1.5 * 2^52: rounds to a whole number
-    const V n = (bounded * Simd::Set(1.44269504088896340736) + magic) - magic;
-    // ln 2 in two parts; n times the first is exact.
-    const V rest = Less(Less(bounded, n, 6.93147180369123816490e-01), n, 1.90821492927058770002e-10);
-    // The fraction by itself, so that its rounding does not grow with x.
-    const V fraction = Simd::Exp2OrNan(rest * Simd::Set(1.44269504088896340736));
-    return fraction * Simd::Exp2(n);
+  /// e^x, relative error below 4 ulp: the square of the root, so that no factor leaves the range of doubles before the
+  /// result does.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Exp(V (&x)[kCount]) noexcept {
+    V shifted[kCount];
+    for (V& a : x) a = Simd::Min(Simd::Set(1400.0), Simd::Max(Simd::Set(-1400.0), a)) * Simd::Set(0.5);
+    ExpOfRest(x, shifted);
+    for (V& a : x) a = a + Simd::Set(1.0);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Simd::FromBits(Simd::Bits(x[v]) + (Simd::Bits(shifted[v]) << 52));
+    for (V& a : x) a = a * a;
   }
 
   /// log2 x; of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1.
@@ -76,25 +76,32 @@ struct Math {
   /// minimax polynomial (1.1e-8), then one step of Newton's method. Relative error below 2 ulp from 1e-290 on, below
   /// that an absolute one of 1e-140; 0 gives 0.
   template <std::size_t kCount>
-  [[gnu::always_inline]] static void Sqrt(V* x) noexcept {
-    constexpr double kHalfInverse[] = {0.01687317635856974, -0.13824470852612578, 0.4623033938455575,
-                                       -0.8176278781060615, 0.9756629033674393};  // of w in [1.4996, 1.6872]
+  [[gnu::always_inline]] static void Sqrt(V (&x)[kCount]) noexcept {
+    constexpr double kHalfInverse[] = {-0.13824470852612578, 0.4623033938455575, -0.8176278781060615,
+                                       0.9756629033674393};  // of w in [1.4996, 1.6872]
     constexpr std::int64_t kLargest = 0x7fefffffffffffffLL;
     const auto odd = [](I bits) { return bits | ((I{} + kLargest) - bits); };  // negative: so is x, or not finite
     I any{};
-    V s[kCount];
-    for (std::size_t v = 0; v < kCount; ++v) {
-      const I bits = Simd::Bits(x[v]);
-      any |= odd(bits);
-      const V start = Simd::FromBits((I{} + 0x5febff50c7b537a9LL) - (bits >> 1));
-      const V half = start * Polynomial(x[v] * start * start, kHalfInverse);  // 1 / (2 sqrt x)
-      const V once = x[v] * half;
-      const V root = once + once;
-      s[v] = Simd::Fma(Simd::Fma(-root, root, x[v]), half, root);
-    }
+    V half[kCount];  // 1 / (2 sqrt x)
+    V root[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) any |= odd(Simd::Bits(x[v]));
+    for (std::size_t v = 0; v < kCount; ++v)
+      half[v] = Simd::FromBits((I{} + 0x5febff50c7b537a9LL) - (Simd::Bits(x[v]) >> 1));
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = x[v] * half[v];
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = root[v] * half[v];
+    V p[kCount];
+    for (V& a : p) a = Simd::Set(0.01687317635856974);
+    for (const double coefficient : kHalfInverse)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], root[v], Simd::Set(coefficient));
+    for (std::size_t v = 0; v < kCount; ++v) half[v] = half[v] * p[v];
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = x[v] * half[v];
+    for (V& a : root) a = a + a;
+    for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(-root[v], root[v], x[v]);
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = Simd::Fma(p[v], half[v], root[v]);
     if (Simd::Any(any < I{}))
-      for (std::size_t v = 0; v < kCount; ++v) s[v] = Simd::Select(odd(Simd::Bits(x[v])) < I{}, Simd::Sqrt(x[v]), s[v]);
-    for (std::size_t v = 0; v < kCount; ++v) x[v] = s[v];
+      for (std::size_t v = 0; v < kCount; ++v)
+        root[v] = Simd::Select(odd(Simd::Bits(x[v])) < I{}, Simd::Sqrt(x[v]), root[v]);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = root[v];
   }
 
   /// sin and cos of x, |x| up to 1e7: the quarter turn, then polynomials on [-pi/4, pi/4].
@@ -182,19 +189,44 @@ struct Math {
     return Simd::Set(2.0) * Atan(Simd::Sqrt((one - x) / (one + x)));
   }
 
-  static V Tanh(V x) noexcept {
-    const V size = Simd::Abs(x);
-    const V z = x * x;
-    constexpr double kAbove[] = {-9.64399179425052238628e-1, -9.92877231001918586564e1, -1.61468768441708447952e3};
-    constexpr double kBelow[] = {1.0, 1.12811678491632931402e2, 2.23548839060100448583e3, 4.84406305325125486048e3};
-    const V near = Simd::Fma(x * z, Polynomial(z, kAbove) / Polynomial(z, kBelow), x);
+  /// E / (E + 2), E = e^(2 |x|) - 1 = 2^n (e^r - 1) + 2^n - 1: nothing cancels, near 0 either.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Tanh(V (&x)[kCount]) noexcept {
     const V one = Simd::Set(1.0);
-    const V far = one - Simd::Set(2.0) / (Exp(size + size) + one);
-    return Simd::Select(size < Simd::Set(0.625), near, Simd::Select(IsNan(x), x, Simd::CopySign(far, x)));
+    V e[kCount];
+    V shifted[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) e[v] = Simd::Abs(x[v]);
+    for (V& a : e) a = Simd::Min(Simd::Set(40.0), a + a);
+    ExpOfRest(e, shifted);
+    for (V& a : shifted) a = Simd::FromBits(Simd::Bits(one) + (Simd::Bits(a) << 52));
+    for (std::size_t v = 0; v < kCount; ++v) e[v] = Simd::Fma(shifted[v], e[v], shifted[v] - one);
+    for (V& a : e) a = a / (a + Simd::Set(2.0));
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Simd::CopySign(e[v], x[v]);
   }
 
  private:
   static constexpr double kMagic = 6755399441055744.0;  // 1.5 * 2^52: rounds to an integer, left in the lowest bits
+
+  /// x becomes e^r - 1, r = x - n ln 2 in [-ln 2 / 2, ln 2 / 2], relative error 4e-17 before rounding; n stands in the
+  /// lowest bits of `shifted`. |x| below 2^20.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void ExpOfRest(V (&x)[kCount], V (&shifted)[kCount]) noexcept {
+    for (std::size_t v = 0; v < kCount; ++v)
+      shifted[v] = Simd::Fma(x[v], Simd::Set(1.44269504088896340736), Simd::Set(kMagic));
+    // ln 2 in two parts; n times the first is exact.
+    for (const double part : {6.93147180369123816490e-01, 1.90821492927058770002e-10})
+      for (std::size_t v = 0; v < kCount; ++v) x[v] = Less(x[v], shifted[v] - Simd::Set(kMagic), part);
+    constexpr double kRest[] = {2.7620075880100385e-07, 2.7557268480309837e-06, 2.4801521322368448e-05,
+                                1.9841269863040545e-04, 1.3888888917196719e-03, 8.3333333333300650e-03,
+                                4.1666666666624164e-02, 1.6666666666666669e-01, 5.0000000000000010e-01};
+    V square[kCount];
+    V p[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) square[v] = x[v] * x[v];
+    for (V& a : p) a = Simd::Set(2.5100375832651220e-08);
+    for (const double coefficient : kRest)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], x[v], Simd::Set(coefficient));
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Simd::Fma(square[v], p[v], x[v]);
+  }
 
   /// x becomes sin(x - n times pi/2 * size): minimax polynomial, relative error 4e-17 before rounding.
   template <std::size_t kCount>

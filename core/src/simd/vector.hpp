@@ -76,6 +76,34 @@ struct Simd {
 #endif
   }
 
+  /// low = table[index[lane]], high = table[index[lane] + 1]: neighbours are loaded together, which takes less than
+  /// half of the time of two gathers.
+  static void GatherPairs(const double* table, I index, V* low, V* high) noexcept {
+#if (defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8) || (defined(__AVX2__) && ARMCMC_SIMD_LANES == 4)
+    alignas(64) std::int64_t at[kLanes];
+    std::memcpy(at, &index, sizeof at);
+    const auto pair = [table, &at](int lane) noexcept { return _mm_loadu_pd(table + at[lane]); };
+    const auto four = [pair](int lane) noexcept {  // lane, lane + 2
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(pair(lane)), pair(lane + 2), 1);
+    };
+#if ARMCMC_SIMD_LANES == 8
+    const auto eight = [four](int lane) noexcept {
+      return _mm512_maskz_insertf64x4(0xff, _mm512_castpd256_pd512(four(lane)), four(lane + 4), 1);
+    };
+    const __m512d even = eight(0), odd = eight(1);
+    *low = _mm512_maskz_unpacklo_pd(0xff, even, odd);
+    *high = _mm512_maskz_unpackhi_pd(0xff, even, odd);
+#else
+    const __m256d even = four(0), odd = four(1);
+    *low = _mm256_unpacklo_pd(even, odd);
+    *high = _mm256_unpackhi_pd(even, odd);
+#endif
+#else
+    *low = Gather(table, index);
+    *high = Gather(table + 1, index);
+#endif
+  }
+
   /// a b + c, in one rounding where the instruction set has it.
   static V Fma(V a, V b, V c) noexcept {
 #if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
