@@ -2,6 +2,7 @@
 // larger of result and 1; whatever is not a number, or has no result, gives NaN.
 
 #include <bit>
+#include <iterator>
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
@@ -45,22 +46,72 @@ struct Math {
     for (V& a : x) a = a * a;
   }
 
-  /// log2 x; of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1.
-  static V Log2(V x) noexcept {
-    const V tiny = Simd::Set(2.2250738585072014e-308);
-    // Numbers below the smallest normal one are brought up to size.
-    const I small = x < tiny;
-    const V log2 = Simd::Log2(Simd::Select(small, x * Simd::Set(18014398509481984.0), x)) -
-                   Simd::FromBits(small & Simd::Bits(Simd::Set(54.0)));
-    const V infinity = Simd::Set(__builtin_inf());
-    const V of_zero = Simd::Select(x == V{}, Simd::Set(-1e300), log2);
-    return Simd::Select(x < V{}, Nan(), Simd::Select(IsNan(x) | (x == infinity), x, of_zero));
+  /// log2 x; of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1. Absolute error below
+  /// 1e-15 (1 + |log2 x|): atanh series of the mantissa in [sqrt(1/2), sqrt(2)), minimax polynomial.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Log2(V (&x)[kCount]) noexcept {
+    const V one = Simd::Set(1.0);
+    V whole[kCount];
+    V s[kCount];
+    V z[kCount];
+    V p[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) {
+      // Numbers below the smallest normal one are brought up to size.
+      const I small = x[v] < Simd::Set(2.2250738585072014e-308);
+      const I bits = Simd::Bits(Simd::Select(small, x[v] * Simd::Set(18014398509481984.0), x[v]));
+      const I exponent = (bits - (I{} + 0x3fe6a09e667f3bcdLL)) >> 52;  // bits of sqrt(1/2)
+      // Small integer to double without a conversion instruction: through the magic-number bits.
+      const V n = Simd::FromBits(exponent + Simd::Bits(Simd::Set(kMagic)));
+      whole[v] = n - Simd::Select(small, Simd::Set(kMagic + 54.0), Simd::Set(kMagic));
+      s[v] = Simd::FromBits(bits - (exponent << 52));
+    }
+    for (V& a : s) a = (a - one) / (a + one);
+    constexpr double kSeries[] = {0.07656264002500184,
+                                  0.09091815842791287,
+                                  0.11111098528313813,
+                                  0.14285714380321302,
+                                  0.19999999999651166,
+                                  0.33333333333333826,
+                                  1.0};
+    for (std::size_t v = 0; v < kCount; ++v) z[v] = s[v] * s[v];
+    for (V& a : p) a = Simd::Set(0.0740485592996649);
+    for (const double coefficient : kSeries)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], z[v], Simd::Set(coefficient));
+    for (std::size_t v = 0; v < kCount; ++v)
+      whole[v] = Simd::Fma(s[v] * p[v], Simd::Set(2.8853900817779268147), whole[v]);  // 2 / ln 2
+    for (std::size_t v = 0; v < kCount; ++v) {
+      const I finite = (x[v] >= V{}) & (x[v] <= Simd::Set(1.7976931348623157e308));
+      const V other = Simd::Select(x[v] < V{}, Nan(), x[v]);
+      x[v] = Simd::Select(x[v] == V{}, Simd::Set(-1e300), Simd::Select(finite, whole[v], other));
+    }
   }
   /// factor log2 x, -infinity at 0.
-  static V Log(V x, double factor) noexcept {
-    return Simd::Select(x == V{}, Simd::Set(-__builtin_inf()), Log2(x) * Simd::Set(factor));
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Log(V (&x)[kCount], double factor) noexcept {
+    Log2(x);
+    for (V& a : x) a = Simd::Select(a == Simd::Set(-1e300), Simd::Set(-__builtin_inf()), a * Simd::Set(factor));
   }
-  static V Power(V base, V exponent) noexcept { return Simd::Exp2OrNan(exponent * Log2(base)); }
+  /// 2^x of several side by side: Simd::Exp2OrNan().
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Exp2(V (&x)[kCount]) noexcept {
+    V shifted[kCount];
+    for (V& a : x) a = Simd::Min(Simd::Set(1000.0), Simd::Max(Simd::Set(-1000.0), a * Simd::Set(0.5)));
+    for (std::size_t v = 0; v < kCount; ++v) shifted[v] = x[v] + Simd::Set(kMagic);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = x[v] - (shifted[v] - Simd::Set(kMagic));
+    V p[kCount];
+    for (V& a : p) a = Simd::Set(Simd::kExp2[0]);
+    for (std::size_t k = 1; k < std::size(Simd::kExp2); ++k)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], x[v], Simd::Set(Simd::kExp2[k]));
+    for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::FromBits(Simd::Bits(p[v]) + (Simd::Bits(shifted[v]) << 52));
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = p[v] * p[v];
+  }
+  /// base becomes its power. @param exponent  Of the lanes, one after the other.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Power(V (&base)[kCount], const double* exponent) noexcept {
+    Log2(base);
+    for (std::size_t v = 0; v < kCount; ++v) base[v] = base[v] * Simd::Load(exponent + v * Simd::kLanes);
+    Exp2(base);
+  }
   /// By squaring; exponent in [0, 255].
   static V PowerInt(V base, unsigned exponent) noexcept {
     if (exponent == 0) return Simd::Set(1.0);

@@ -179,15 +179,17 @@ class TapeGroup {
       case TapeOp::kSign: Unary(x, [](Vec a) { return Math::Sign(a); }); break;
       case TapeOp::kSqrt: SquareRoots(x); break;
       case TapeOp::kExp: Fours(x, [](auto& a) { Math::Exp(a); }); break;
-      case TapeOp::kExp2S: Long(x, [s = Scalar(i.b)](Vec a) { return Simd::Exp2OrNan(a * s); }); break;
-      case TapeOp::kLog: Long(x, [](Vec a) { return Math::Log(a, 0.69314718055994530942); }); break;
-      case TapeOp::kLog2: Long(x, [](Vec a) { return Math::Log(a, 1.0); }); break;
-      case TapeOp::kLog10: Long(x, [](Vec a) { return Math::Log(a, 0.30102999566398119521); }); break;
+      case TapeOp::kExp2S:
+        Unary(x, [s = Scalar(i.b)](Vec a) { return a * s; });
+        Fours(x, [](auto& a) { Math::Exp2(a); });
+        break;
+      case TapeOp::kLog: Fours(x, [](auto& a) { Math::Log(a, 0.69314718055994530942); }); break;
+      case TapeOp::kLog2: Fours(x, [](auto& a) { Math::Log(a, 1.0); }); break;
+      case TapeOp::kLog10: Fours(x, [](auto& a) { Math::Log(a, 0.30102999566398119521); }); break;
       case TapeOp::kPower:
-        Long(x, [b = Register(i.b)](Vec a) mutable {
-          const Vec power = Math::Power(a, Simd::Load(b));
-          b += Simd::kLanes;
-          return power;
+        Fours(x, [b = Register(i.b)](auto& a) mutable {
+          Math::Power(a, b);
+          b += std::size(a) * Simd::kLanes;
         });
         break;
       case TapeOp::kPowerInt: WholePower(x, i.b); break;

@@ -145,22 +145,16 @@ struct Simd {
     const V root = Exp2OfBounded(Min(Set(1000.0), Max(Set(-1000.0), x * Set(0.5))));
     return root * root;
   }
+  static constexpr double kExp2[] = {4.45581790833606449e-10, 7.07419429728852106e-09, 1.01780570877339407e-07,
+                                     1.32154325359123753e-06, 1.52527338415567733e-05, 1.54035304637243530e-04,
+                                     1.33335581464064708e-03, 9.61812910758725638e-03, 5.55041086648216248e-02,
+                                     2.40226506959101582e-01, 6.93147180559945286e-01, 1.00000000000000000e+00};
   static V Exp2OfBounded(V x) noexcept {
     const V magic = Set(6755399441055744.0);  // 1.5 * 2^52
     const V shifted = x + magic;
     const V f = x - (shifted - magic);
-    V p = Set(4.45581790833606449e-10);
-    p = Fma(p, f, Set(7.07419429728852106e-09));
-    p = Fma(p, f, Set(1.01780570877339407e-07));
-    p = Fma(p, f, Set(1.32154325359123753e-06));
-    p = Fma(p, f, Set(1.52527338415567733e-05));
-    p = Fma(p, f, Set(1.54035304637243530e-04));
-    p = Fma(p, f, Set(1.33335581464064708e-03));
-    p = Fma(p, f, Set(9.61812910758725638e-03));
-    p = Fma(p, f, Set(5.55041086648216248e-02));
-    p = Fma(p, f, Set(2.40226506959101582e-01));
-    p = Fma(p, f, Set(6.93147180559945286e-01));
-    p = Fma(p, f, Set(1.00000000000000000e+00));
+    V p = Set(kExp2[0]);
+    for (std::size_t k = 1; k < sizeof kExp2 / sizeof *kExp2; ++k) p = Fma(p, f, Set(kExp2[k]));
     return FromBits(Bits(p) + (Bits(shifted) << 52));
   }
 
