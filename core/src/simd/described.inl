@@ -26,13 +26,14 @@ template <int kGroup>
   }
 }
 
-/// Runs the laws, or what they leave, at the samples of `data`, in their order: take(n, result), result[lane].
+/// Runs the laws, or what they leave, at the samples of `data`, in their order; place(n) is where lane 0 of the result
+/// of sample n goes, the others behind it.
 /// @tparam kSize       Candidates: the first half of a tile, or one, or two.
 /// @param offset, end  Of the states of a plant that has some, and one tile: added to their starts, and them at the end
 ///                     of the pack; null: neither.
-template <std::size_t kSize, class Take>
+template <std::size_t kSize, class Place>
 [[gnu::always_inline]] inline void RunSamples(const Tape* tapes, const ModeData& data, const ThetaTile* theta,
-                                              Take take, const StateTile* offset = nullptr,
+                                              Place place, const StateTile* offset = nullptr,
                                               StateTile* end = nullptr) noexcept {
   TapeRegisters<kSize> registers;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
   for (std::size_t d = 0; d < static_cast<std::size_t>(tapes->num_parameters); ++d)
@@ -45,7 +46,7 @@ template <std::size_t kSize, class Take>
   const auto one = [&](std::size_t n) {
     const Tape& tape = TapeAt(tapes, data, n);
     const double* row = data.scalars->Row(data.sample[n]);
-    double* const result = registers.value[tape.result[0]].data();
+    double* const result = place(n);
     if (tape.shape == expression::TapeShape::kLinear) {
       constexpr std::size_t kVectors = TapeGroup<kSize>::kVectors;
       for (std::size_t lane = 0; lane < kSize; lane += kVectors * Simd::kLanes) {
@@ -53,10 +54,10 @@ template <std::size_t kSize, class Take>
         TapeSumOf<kVectors>(tape.rest, row, registers.value[0].data() + lane, kSize, sum);
         for (std::size_t v = 0; v < kVectors; ++v) Simd::Store(result + lane + v * Simd::kLanes, sum[v]);
       }
-    } else if (tape.size() > 0) {
-      RunTape(tape, row, data.past, &registers);
+      return;
     }
-    take(n, result);
+    if (tape.size() > 0) RunTape(tape, row, data.past, &registers);
+    std::copy_n(registers.value[tape.result[0]].data(), kSize, result);
   };
   const auto samples = static_cast<std::size_t>(data.num_samples);
   if (data.states == nullptr) {
@@ -101,41 +102,93 @@ void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) n
 
 template <std::size_t kSize>
 void PredictTape(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  RunSamples<kSize>(data.tape, data, &theta,
-                    [&](std::size_t n, const double* law) { std::copy_n(law, kSize, tile->value[n].data()); });
+  RunSamples<kSize>(data.tape, data, &theta, [tile](std::size_t n) { return tile->value[n].data(); });
   if (data.start_fit != nullptr) FitStart<kSize>(*data.start_fit, data, tile);
 }
 
 void RunStates(const ModeData& data, const ThetaTile& theta, const StateTile& offset, StateTile* end,
                PredictionTile* law) noexcept ARMCMC_NONBLOCKING {
   RunSamples<kTileLanes>(
-      data.tape, data, &theta,
-      [&](std::size_t n, const double* value) { std::copy_n(value, kTileLanes, law->value[n].data()); }, &offset, end);
+      data.tape, data, &theta, [law](std::size_t n) { return law->value[n].data(); }, &offset, end);
 }
+
+/// Sums of the squares of law - target, weighted, for kSize candidates; and of what the directions of a start have of
+/// it. Several samples at a time: sums stay where arithmetic is done.
+template <bool kWeighted, std::size_t kSize>
+class SquareSums {
+  static constexpr std::size_t kVectors = TapeGroup<kSize>::kVectors;  ///< At a time.
+  static constexpr std::size_t kSamples = 8;
+
+ public:
+  explicit SquareSums(const ModeData& data) noexcept
+      : data_(data), count_(data.start_fit != nullptr ? static_cast<std::size_t>(data.start_fit->count) : 0) {}
+
+  /// Where the errors of sample n go; samples come in their order.
+  double* Place(std::size_t n) noexcept {
+    if (n == first_ + kSamples) Add(n);
+    return error_[n - first_].data();
+  }
+  /// After the last sample. out[lane] = the sum.
+  void Finish(double* out) noexcept {
+    Add(static_cast<std::size_t>(data_.num_samples));
+    for (std::size_t lane = 0; lane < kSize; lane += Simd::kLanes) {
+      Simd::V sum = Simd::Load(sum_.data() + lane);
+      // |e - sum_j shrink_j u_j (u_j' e)|^2
+      for (std::size_t j = 0; j < count_; ++j) {
+        const double kept = 1.0 - data_.start_fit->shrink[j];
+        const Simd::V along = Simd::Load(along_[j].data() + lane);
+        sum = Simd::Fma(along * along, Simd::Set(kept * kept - 1.0), sum);
+      }
+      Simd::Store(out + lane, sum);
+    }
+  }
+
+ private:
+  /// total[lane] += sum of term(error, sample) over the samples that are there.
+  template <class Term>
+  void AddTerms(std::size_t end, Term term, double* total) noexcept {
+    for (std::size_t lane = 0; lane < kSize; lane += kVectors * Simd::kLanes) {
+      Simd::V sum[kVectors];
+      for (std::size_t v = 0; v < kVectors; ++v) sum[v] = Simd::Load(total + lane + v * Simd::kLanes);
+      for (std::size_t n = first_; n < end; ++n) {
+        const double* error = error_[n - first_].data() + lane;
+        for (std::size_t v = 0; v < kVectors; ++v) sum[v] = term(Simd::Load(error + v * Simd::kLanes), n, sum[v]);
+      }
+      for (std::size_t v = 0; v < kVectors; ++v) Simd::Store(total + lane + v * Simd::kLanes, sum[v]);
+    }
+  }
+  /// The samples from first_ to before `end`.
+  void Add(std::size_t end) noexcept {
+    if constexpr (kWeighted)
+      for (std::size_t n = first_; n < end; ++n)
+        for (double& error : error_[n - first_]) error *= data_.weight[n];
+    AddTerms(
+        end, [](Simd::V e, std::size_t, Simd::V sum) { return Simd::Fma(e, e, sum); }, sum_.data());
+    for (std::size_t j = 0; j < count_; ++j)
+      AddTerms(
+          end,
+          [direction = data_.start_fit->direction[j].data()](Simd::V e, std::size_t n, Simd::V sum) {
+            return Simd::Fma(e, Simd::Set(direction[n]), sum);
+          },
+          along_[j].data());
+    first_ = end;
+  }
+
+  const ModeData& data_;
+  const std::size_t count_;
+  std::size_t first_ = 0;  ///< Sample in row 0.
+  alignas(64) std::array<std::array<double, kSize>, kSamples> error_;
+  alignas(64) std::array<double, kSize> sum_{};
+  alignas(64) std::array<std::array<double, kSize>, kMaxStates> along_{};
+};
 
 /// out[lane] = sum of the squares of law - target, weighted, for the lanes of kTiles.
 template <bool kWeighted, std::size_t kTiles>
 void SumTapeSquares(const ModeData& data, const ThetaTile* theta, double* out) noexcept {
-  constexpr std::size_t kVectors = kTiles * kTapeVectors;
-  Simd::V sum[kVectors] = {};
-  Simd::V along[kMaxStates][kVectors] = {};
-  const StartFit* fit = data.start_fit;
-  const std::size_t count = fit != nullptr ? static_cast<std::size_t>(fit->count) : 0;
-  RunSamples<kTiles * kTileLanes>(data.error_tape, data, theta, [&](std::size_t n, const double* error) {
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      Simd::V e = Simd::Load(error + v * Simd::kLanes);
-      if constexpr (kWeighted) e = e * Simd::Set(data.weight[n]);
-      sum[v] = Simd::Fma(e, e, sum[v]);
-      for (std::size_t j = 0; j < count; ++j) along[j][v] = Simd::Fma(e, Simd::Set(fit->direction[j][n]), along[j][v]);
-    }
-  });
-  // |e - sum_j shrink_j u_j (u_j' e)|^2
-  for (std::size_t j = 0; j < count; ++j) {
-    const double kept = 1.0 - fit->shrink[j];
-    for (std::size_t v = 0; v < kVectors; ++v)
-      sum[v] = Simd::Fma(along[j][v] * along[j][v], Simd::Set(kept * kept - 1.0), sum[v]);
-  }
-  for (std::size_t v = 0; v < kVectors; ++v) Simd::Store(out + v * Simd::kLanes, sum[v]);
+  constexpr std::size_t kSize = kTiles * kTileLanes;
+  SquareSums<kWeighted, kSize> sums(data);
+  RunSamples<kSize>(data.error_tape, data, theta, [&sums](std::size_t n) { return sums.Place(n); });
+  sums.Finish(out);
 }
 
 /// The same for tapes with a shape: as many vectors side by side as keep the arithmetic units busy, nothing in memory.
