@@ -13,6 +13,7 @@ bool Commutes(TapeOp op) noexcept {
     case TapeOp::kMultiply:
     case TapeOp::kMultiplyAdd:
     case TapeOp::kMultiplyAddS:
+    case TapeOp::kTakeProduct:
     case TapeOp::kEqual:
     case TapeOp::kNotEqual:
     case TapeOp::kAnd:
@@ -68,7 +69,8 @@ class Assembler {
     const auto from = std::find(v.registers.begin(), v.registers.end(), value);
     if (from == v.registers.end() || v.op == TapeOp::kLinear) return false;
     const auto at = from - v.registers.begin();
-    return at == 0 || v.op == TapeOp::kAddLinear || v.op == TapeOp::kMultiplyAdd || (Commutes(v.op) && at == 1);
+    return at == 0 || v.op == TapeOp::kAddLinear || v.op == TapeOp::kMultiplyAdd || v.op == TapeOp::kTakeProduct ||
+           (Commutes(v.op) && at == 1);
   }
 
   /// Brings an instruction behind the one whose result it takes up, where it is not far away and all that it reads is
@@ -95,8 +97,8 @@ class Assembler {
     const auto from = std::find(v->registers.begin(), v->registers.end(), previous_);
     if (previous_ < 0 || from == v->registers.end() || from == v->registers.begin()) return;
     const auto at = from - v->registers.begin();
-    if (v->op == TapeOp::kMultiplyAdd && at == 2) {
-      v->op = TapeOp::kAddProduct;
+    if ((v->op == TapeOp::kMultiplyAdd || v->op == TapeOp::kTakeProduct) && at == 2) {
+      v->op = v->op == TapeOp::kMultiplyAdd ? TapeOp::kAddProduct : TapeOp::kLessProduct;
       std::rotate(v->registers.begin(), from, v->registers.end());
     } else if (Commutes(v->op) && at == 1) {
       std::swap(v->registers[0], v->registers[1]);

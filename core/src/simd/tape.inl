@@ -170,6 +170,8 @@ class TapeGroup {
       case TapeOp::kMultiplyAdd: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(a, b, c); }); break;
       case TapeOp::kMultiplyAddS: Binary(x, i, [c = Scalar(i.c)](Vec a, Vec b) { return Simd::Fma(a, b, c); }); break;
       case TapeOp::kAddProduct: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(b, c, a); }); break;
+      case TapeOp::kTakeProduct: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(-a, b, c); }); break;
+      case TapeOp::kLessProduct: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(-b, c, a); }); break;
       case TapeOp::kScale: Unary(x, [s = Scalar(i.b)](Vec a) { return a * s; }); break;
       case TapeOp::kScaleAdd: Binary(x, i, [s = Scalar(i.c)](Vec a, Vec b) { return Simd::Fma(a, s, b); }); break;
       case TapeOp::kDivide: Binary(x, i, [](Vec a, Vec b) { return a / b; }); break;

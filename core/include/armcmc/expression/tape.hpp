@@ -28,6 +28,8 @@ enum class TapeOp : std::uint8_t {
   kMultiply,      ///< R = R a x R b
   kMultiplyAdd,   ///< R = R a x R b + R c
   kAddProduct,    ///< R = R a + R b x R c
+  kTakeProduct,   ///< R = R c - R a x R b
+  kLessProduct,   ///< R = R a - R b x R c
   kScale,         ///< R = R a x S b
   kScaleAdd,      ///< R = R a x S c + R b
   kMultiplyAddS,  ///< R = R a x R b + S c
