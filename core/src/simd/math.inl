@@ -1,7 +1,6 @@
 // Functions of expressions, for vectors of candidates; included once per instruction set. Accurate to some 1e-15 of the
 // larger of result and 1; whatever is not a number, or has no result, gives NaN.
 
-#include <bit>
 #include <iterator>
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
@@ -112,17 +111,6 @@ struct Math {
     for (std::size_t v = 0; v < kCount; ++v) base[v] = base[v] * Simd::Load(exponent + v * Simd::kLanes);
     Exp2(base);
   }
-  /// By squaring; exponent in [0, 255].
-  static V PowerInt(V base, unsigned exponent) noexcept {
-    if (exponent == 0) return Simd::Set(1.0);
-    V power = base;
-    for (unsigned bit = std::bit_floor(exponent) >> 1; bit != 0; bit >>= 1) {
-      power = power * power;
-      if ((exponent & bit) != 0) power = power * base;
-    }
-    return power;
-  }
-
   /// Square roots of several vectors side by side, without the hardware's: 1 / sqrt(x) from the exponent, better by a
   /// minimax polynomial (1.1e-8), then one step of Newton's method. Relative error below 2 ulp from 1e-290 on, below
   /// that an absolute one of 1e-140; 0 gives 0.

@@ -1,5 +1,6 @@
 // Runs tapes; included by kernels.inl, once per instruction set.
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -125,7 +126,7 @@ class TapeGroup {
       });
     }
   }
-  /// Math::PowerInt() of all.
+  /// Whole powers by squaring; exponent in [0, 255].
   [[gnu::always_inline]] static void WholePower(Vec* a, unsigned exponent) noexcept {
     if (exponent == 0) return Unary(a, [](Vec) { return Simd::Set(1.0); });
     Vec base[kVectors];
