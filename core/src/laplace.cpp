@@ -78,7 +78,8 @@ void PredictAround(const simd::Kernels& kernels, int model, const ModeData& data
     theta.value[d][1 + 2 * d] = value(kDifference);
     theta.value[d][2 + 2 * d] = value(-kDifference);
   }
-  kernels.predict(model, data, theta, &scratch->prediction);
+  const bool half = 1 + 2 * space.num_parameters <= kTileLanes / 2;
+  (half ? kernels.predict_half : kernels.predict)(model, data, theta, &scratch->prediction);
 }
 
 /// d F_n / d u_d, after PredictAround().

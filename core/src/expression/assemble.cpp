@@ -13,6 +13,7 @@ bool Commutes(TapeOp op) noexcept {
     case TapeOp::kMultiply:
     case TapeOp::kMultiplyAdd:
     case TapeOp::kMultiplyAddS:
+    case TapeOp::kTakeProduct:
     case TapeOp::kEqual:
     case TapeOp::kNotEqual:
     case TapeOp::kAnd:
@@ -29,6 +30,7 @@ class Assembler {
     for (const bool once : {true, false})
       for (const Virtual& v : code.code)
         if (v.once == once) order_.push_back(v);
+    if (layout.advances) Chain();
     num_once_ = static_cast<int>(std::count_if(order_.begin(), order_.end(), [](const Virtual& v) { return v.once; }));
     const int never = static_cast<int>(order_.size());
     last_use_.assign(static_cast<std::size_t>(code.num_values()), -1);
@@ -62,13 +64,41 @@ class Assembler {
   [[nodiscard]] int Place(int value) const { return place_[At(value)]; }
   [[nodiscard]] int Size() const { return static_cast<int>(tape_.code.size()); }
 
+  /// Whether v takes the value up where the instruction before has left it.
+  [[nodiscard]] static bool TakesUp(const Virtual& v, int value) {
+    const auto from = std::find(v.registers.begin(), v.registers.end(), value);
+    if (from == v.registers.end() || v.op == TapeOp::kLinear) return false;
+    const auto at = from - v.registers.begin();
+    return at == 0 || v.op == TapeOp::kAddLinear || v.op == TapeOp::kMultiplyAdd || v.op == TapeOp::kTakeProduct ||
+           (Commutes(v.op) && at == 1);
+  }
+
+  /// Brings an instruction behind the one whose result it takes up, where it is not far away and all that it reads is
+  /// there: each time saves the way through memory.
+  void Chain() {
+    constexpr std::ptrdiff_t kFar = 8;
+    for (auto at = order_.begin(); at != order_.end() && at + 1 != order_.end(); ++at) {
+      const auto end = at + 1 + std::min(kFar, order_.end() - (at + 1));
+      for (auto next = at + 1; next != end && next->once == at->once; ++next) {
+        const bool ready = std::none_of(at + 1, next, [&](const Virtual& between) {
+          return std::find(next->registers.begin(), next->registers.end(), between.to) != next->registers.end();
+        });
+        // A state a step later, written down before its last reader, would have to be moved there.
+        const bool result = std::find(results_.begin(), results_.end(), next->to) != results_.end();
+        if (!ready || result || !TakesUp(*next, at->to)) continue;
+        std::rotate(at + 1, next, next + 1);
+        break;
+      }
+    }
+  }
+
   /// Register a first: what the instruction before has left, where arithmetic allows it.
   void PutFirst(Virtual* v) const {
     const auto from = std::find(v->registers.begin(), v->registers.end(), previous_);
     if (previous_ < 0 || from == v->registers.end() || from == v->registers.begin()) return;
     const auto at = from - v->registers.begin();
-    if (v->op == TapeOp::kMultiplyAdd && at == 2) {
-      v->op = TapeOp::kAddProduct;
+    if ((v->op == TapeOp::kMultiplyAdd || v->op == TapeOp::kTakeProduct) && at == 2) {
+      v->op = v->op == TapeOp::kMultiplyAdd ? TapeOp::kAddProduct : TapeOp::kLessProduct;
       std::rotate(v->registers.begin(), from, v->registers.end());
     } else if (Commutes(v->op) && at == 1) {
       std::swap(v->registers[0], v->registers[1]);

@@ -270,19 +270,26 @@ class Builder {
   int Materialise(const Linear& value) {
     if (value.terms.empty()) return Emit(TapeOp::kSplat, {}, {Scalar(value.constant)});
     const bool no_constant = graph_.IsNumber(value.constant, 0.0);
-    std::vector<Term> plain;
-    std::vector<Term> products;
-    for (const Term& term : value.terms) (term.other < 0 ? plain : products).push_back(term);
-    if (products.empty() && plain.size() == 1 && no_constant && graph_.IsNumber(plain[0].factor, 1.0))
+    const auto taken = [this](const Term& t) {
+      return t.other >= 0 && graph_.IsNumber(t.factor, -1.0) && !once(t.reg) && !once(t.other);
+    };
+    std::vector<Term> plain, products, last;
+    for (const Term& term : value.terms) (term.other < 0 ? plain : taken(term) ? last : products).push_back(term);
+    if (products.empty() && last.empty() && plain.size() == 1 && no_constant && graph_.IsNumber(plain[0].factor, 1.0))
       return plain[0].reg;
+    // What is taken off comes where there is something to take it from.
+    products.insert(products.end(), last.begin(), last.end());
     // Factors before the sum that takes them up, so that nothing stands between its parts.
     for (Term& term : products)
-      if (!graph_.IsNumber(term.factor, 1.0)) term.reg = LinearOf(graph_.Number(0.0), {{term.factor, term.reg, -1}});
+      if (!graph_.IsNumber(term.factor, 1.0) && !(taken(term) && (!plain.empty() || &term != products.data()))) {
+        term.reg = LinearOf(graph_.Number(0.0), {{term.factor, term.reg, -1}});
+        term.factor = graph_.Number(1.0);
+      }
     int sum = -1;
     if (!plain.empty()) sum = LinearOf(value.constant, plain);
     for (const Term& term : products) {
       if (sum >= 0) {
-        sum = Emit(TapeOp::kMultiplyAdd, {term.reg, term.other, sum});
+        sum = Emit(taken(term) ? TapeOp::kTakeProduct : TapeOp::kMultiplyAdd, {term.reg, term.other, sum});
       } else if (no_constant) {
         sum = Emit(TapeOp::kMultiply, {term.reg, term.other});
       } else {
@@ -369,7 +376,7 @@ CompiledTape CompileTape(Graph* graph, const std::vector<int>& results, const Ta
   const VirtualCode code = builder.Code(std::move(values));
   Assemble(code, layout, &tape);
   tape.num_scalars = static_cast<int>(compiled.scalars.size());
-  RecogniseShape(code, layout.num_parameters, &tape);
+  RecogniseShape(code, &tape);
   return compiled;
 }
 

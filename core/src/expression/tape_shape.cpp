@@ -14,9 +14,9 @@ TapeSum Parameter(int parameter) {
   return sum;
 }
 
-/// The sum that an instruction computes from parameters; none where it is something else.
-std::optional<TapeSum> SumOf(const Virtual& v, int num_parameters) {
-  if (v.op == TapeOp::kScale && v.registers[0] < num_parameters) {
+/// The sum that an instruction computes of what the tape is handed; none where it is something else.
+std::optional<TapeSum> SumOf(const Virtual& v, int num_given) {
+  if (v.op == TapeOp::kScale && v.registers[0] < num_given) {
     TapeSum sum = Parameter(v.registers[0]);
     sum.scalar[0] = static_cast<std::uint8_t>(v.scalars[0]);
     return sum;
@@ -27,7 +27,7 @@ std::optional<TapeSum> SumOf(const Virtual& v, int num_parameters) {
   const bool from_register = v.op == TapeOp::kAddLinear;
   if (!from_register) sum.constant = static_cast<std::uint8_t>(v.scalars[0]);
   for (std::size_t t = 0; t < v.registers.size(); ++t) {
-    if (v.registers[t] >= num_parameters) return std::nullopt;
+    if (v.registers[t] >= num_given) return std::nullopt;
     const std::size_t scalar = from_register ? t - 1 : t + 1;
     sum.parameter[t] = static_cast<std::uint8_t>(v.registers[t]);
     sum.scalar[t] = from_register && t == 0 ? TapeSum::kNone : static_cast<std::uint8_t>(v.scalars[scalar]);
@@ -38,18 +38,21 @@ std::optional<TapeSum> SumOf(const Virtual& v, int num_parameters) {
 
 }  // namespace
 
-void RecogniseShape(const VirtualCode& code, int num_parameters, Tape* tape) {
+void RecogniseShape(const VirtualCode& code, Tape* tape) {
   if (code.results.size() != 1 || code.code.empty() || code.code.size() > 4) return;
   if (std::any_of(code.code.begin(), code.code.end(), [](const Virtual& v) { return v.once; })) return;
   const Virtual& last = code.code.back();
   if (last.to != code.results[0]) return;
   if (code.code.size() == 1) {
-    const std::optional<TapeSum> sum = SumOf(last, num_parameters);
+    const std::optional<TapeSum> sum = SumOf(last, tape->num_parameters + tape->num_states);
     if (!sum) return;
     tape->rest = *sum;
     tape->shape = TapeShape::kLinear;
     return;
   }
+  // What powers are part of reads no states: its loop runs from the parameters alone.
+  if (tape->num_states > 0) return;
+  const int num_parameters = tape->num_parameters;
   // A power, its factor (a sum or a parameter), and their product, added to a scalar or a sum; in any order.
   const bool adds_scalar = last.op == TapeOp::kMultiplyAddS;
   if (!adds_scalar && last.op != TapeOp::kMultiplyAdd) return;

@@ -32,6 +32,6 @@ struct VirtualCode {
 void Assemble(const VirtualCode& code, const TapeLayout& layout, Tape* tape);
 
 /// Finds out whether the code has a form with a loop of its own.
-void RecogniseShape(const VirtualCode& code, int num_parameters, Tape* tape);
+void RecogniseShape(const VirtualCode& code, Tape* tape);
 
 }  // namespace armcmc::expression

@@ -14,8 +14,8 @@ namespace {
   const V magic = Simd::Set(6755399441055744.0);
   const V shifted = p - Simd::Set(0.5) + magic;
   const Simd::I index = Simd::Bits(shifted) - Simd::Bits(magic);
-  const V low = Simd::Gather(table.pdf(), index);
-  const V high = Simd::Gather(table.pdf() + 1, index);
+  V low, high;
+  Simd::GatherPairs(table.pdf(), index, &low, &high);
   return Simd::Select(inside, Simd::Fma(p - (shifted - magic), high - low, low), zero);
 }
 
@@ -75,9 +75,10 @@ V TableDraw(const MarginalTable& table, V u) noexcept {
     if (!Simd::Any(behind)) break;
     node = Simd::Select(behind, node + one, node);
   }
+  V f0, f1;
   const Simd::I index = index_of(node);
-  const V f0 = Simd::Gather(table.pdf(), index);
-  const V slope = (Simd::Gather(table.pdf() + 1, index) - f0) * Simd::Set(MarginalTable::kNodesPerUnit);
+  Simd::GatherPairs(table.pdf(), index, &f0, &f1);
+  const V slope = (f1 - f0) * Simd::Set(MarginalTable::kNodesPerUnit);
   const V rest = Simd::Max(u - Simd::Gather(table.cdf(), index), V{});
   const V root = Simd::Sqrt(Simd::Max(Simd::Fma(f0, f0, Simd::Set(2.0) * slope * rest), V{}));
   const V step = Simd::Set(1.0 / MarginalTable::kNodesPerUnit);

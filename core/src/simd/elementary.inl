@@ -24,16 +24,18 @@ bool Elementary(expression::Op op, std::size_t count, const double* a, const dou
   using expression::Op;
   switch (op) {
     case Op::kPower:
-      for (std::size_t i = 0; i < count; i += Simd::kLanes)
-        Simd::Store(out + i, Math::Power(Simd::Load(a + i), Simd::Load(b + i)));
+      ForVectors(count, a, out, [b](V(&x)[2]) mutable {
+        Math::Power(x, b);
+        b += 2 * Simd::kLanes;
+      });
       return true;
-    case Op::kExp: ForEachVector(count, a, out, [](V x) { return Math::Exp(x); }); return true;
-    case Op::kLog: ForEachVector(count, a, out, [](V x) { return Math::Log(x, kLn2); }); return true;
+    case Op::kExp: ForVectors(count, a, out, [](V(&x)[2]) { Math::Exp(x); }); return true;
+    case Op::kLog: ForVectors(count, a, out, [](V(&x)[2]) { Math::Log(x, kLn2); }); return true;
     case Op::kSin: ForVectors(count, a, out, [](V(&x)[2]) { Math::Sin(x); }); return true;
     case Op::kCos: ForVectors(count, a, out, [](V(&x)[2]) { Math::Cos(x); }); return true;
     case Op::kTan: ForEachVector(count, a, out, [](V x) { return Math::Tan(x); }); return true;
     case Op::kAtan: ForEachVector(count, a, out, [](V x) { return Math::Atan(x); }); return true;
-    case Op::kTanh: ForEachVector(count, a, out, [](V x) { return Math::Tanh(x); }); return true;
+    case Op::kTanh: ForVectors(count, a, out, [](V(&x)[2]) { Math::Tanh(x); }); return true;
     default: return false;
   }
 }

@@ -32,6 +32,11 @@ struct Kernels {
   void (*predict)(int model, const ModeData& data, const ThetaTile& theta,
                   PredictionTile* tile) noexcept ARMCMC_NONBLOCKING;
 
+  /// predict() of the lanes of the first half at least, which takes a long tape little more than half of the time; the
+  /// others hold nothing of use.
+  void (*predict_half)(int model, const ModeData& data, const ThetaTile& theta,
+                       PredictionTile* tile) noexcept ARMCMC_NONBLOCKING;
+
   /// The states of a described plant at the last sample of the pack of `data`, and its law as predict() has it but for
   /// data.start_fit, with starts that are `offset` from those of data.states.
   void (*run_states)(const ModeData& data, const ThetaTile& theta, const StateTile& offset, StateTile* end,

@@ -58,10 +58,19 @@ struct PlantTable<ModelList<Models...>> {
 void Predict(int model, const ModeData& data, const ThetaTile& theta,
              PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   if (data.tape != nullptr) {
-    PredictTape(data, theta, tile);
+    PredictTape<kTileLanes>(data, theta, tile);
   } else {
     (data.compiled != nullptr ? PlantTable<AllModels>::kPredict : PlantTable<AllModels>::kPlain)[model](data, theta,
                                                                                                         tile);
+  }
+}
+
+void PredictHalf(int model, const ModeData& data, const ThetaTile& theta,
+                 PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+  if (data.tape != nullptr) {
+    PredictTape<kTileLanes / 2>(data, theta, tile);
+  } else {
+    Predict(model, data, theta, tile);
   }
 }
 

@@ -9,6 +9,7 @@
 namespace armcmc::simd {
 const Kernels kAvx2Kernels = {"avx2",
                               &avx2::Predict,
+                              &avx2::PredictHalf,
                               &avx2::RunStates,
                               &avx2::LogLikelihood,
                               &avx2::Score,

@@ -9,6 +9,7 @@
 namespace armcmc::simd {
 const Kernels kAvx512Kernels = {"avx512",
                                 &avx512::Predict,
+                                &avx512::PredictHalf,
                                 &avx512::RunStates,
                                 &avx512::LogLikelihood,
                                 &avx512::Score,

@@ -9,6 +9,7 @@
 namespace armcmc::simd {
 const Kernels kSse2Kernels = {"sse2",
                               &sse2::Predict,
+                              &sse2::PredictHalf,
                               &sse2::RunStates,
                               &sse2::LogLikelihood,
                               &sse2::Score,

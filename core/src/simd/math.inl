@@ -1,7 +1,7 @@
 // Functions of expressions, for vectors of candidates; included once per instruction set. Accurate to some 1e-15 of the
 // larger of result and 1; whatever is not a number, or has no result, gives NaN.
 
-#include <bit>
+#include <iterator>
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
@@ -33,68 +33,114 @@ struct Math {
   /// a - n b, exact where n b is.
   static V Less(V a, V n, double b) noexcept { return Simd::Fma(-n, Simd::Set(b), a); }
 
-  /// e^x.
-  static V Exp(V x) noexcept {
-    const V bounded = Simd::Min(Simd::Set(1400.0), Simd::Max(Simd::Set(-1400.0), x));
-    const V magic = Simd::Set(6755399441055744.0);  // 1.5 * 2^52: rounds to a whole number
-    const V n = (bounded * Simd::Set(1.44269504088896340736) + magic) - magic;
-    // ln 2 in two parts; n times the first is exact.
-    const V rest = Less(Less(bounded, n, 6.93147180369123816490e-01), n, 1.90821492927058770002e-10);
-    // The fraction by itself, so that its rounding does not grow with x.
-    const V fraction = Simd::Exp2OrNan(rest * Simd::Set(1.44269504088896340736));
-    return fraction * Simd::Exp2(n);
+  /// e^x, relative error below 4 ulp: the square of the root, so that no factor leaves the range of doubles before the
+  /// result does.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Exp(V (&x)[kCount]) noexcept {
+    V shifted[kCount];
+    for (V& a : x) a = Simd::Min(Simd::Set(1400.0), Simd::Max(Simd::Set(-1400.0), a)) * Simd::Set(0.5);
+    ExpOfRest(x, shifted);
+    for (V& a : x) a = a + Simd::Set(1.0);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Simd::FromBits(Simd::Bits(x[v]) + (Simd::Bits(shifted[v]) << 52));
+    for (V& a : x) a = a * a;
   }
 
-  /// log2 x; of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1.
-  static V Log2(V x) noexcept {
-    const V tiny = Simd::Set(2.2250738585072014e-308);
-    // Numbers below the smallest normal one are brought up to size.
-    const I small = x < tiny;
-    const V log2 = Simd::Log2(Simd::Select(small, x * Simd::Set(18014398509481984.0), x)) -
-                   Simd::FromBits(small & Simd::Bits(Simd::Set(54.0)));
-    const V infinity = Simd::Set(__builtin_inf());
-    const V of_zero = Simd::Select(x == V{}, Simd::Set(-1e300), log2);
-    return Simd::Select(x < V{}, Nan(), Simd::Select(IsNan(x) | (x == infinity), x, of_zero));
+  /// log2 x; of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1. Absolute error below
+  /// 1e-15 (1 + |log2 x|): atanh series of the mantissa in [sqrt(1/2), sqrt(2)), minimax polynomial.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Log2(V (&x)[kCount]) noexcept {
+    const V one = Simd::Set(1.0);
+    V whole[kCount];
+    V s[kCount];
+    V z[kCount];
+    V p[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) {
+      // Numbers below the smallest normal one are brought up to size.
+      const I small = x[v] < Simd::Set(2.2250738585072014e-308);
+      const I bits = Simd::Bits(Simd::Select(small, x[v] * Simd::Set(18014398509481984.0), x[v]));
+      const I exponent = (bits - (I{} + 0x3fe6a09e667f3bcdLL)) >> 52;  // bits of sqrt(1/2)
+      // Small integer to double without a conversion instruction: through the magic-number bits.
+      const V n = Simd::FromBits(exponent + Simd::Bits(Simd::Set(kMagic)));
+      whole[v] = n - Simd::Select(small, Simd::Set(kMagic + 54.0), Simd::Set(kMagic));
+      s[v] = Simd::FromBits(bits - (exponent << 52));
+    }
+    for (V& a : s) a = (a - one) / (a + one);
+    constexpr double kSeries[] = {0.07656264002500184,
+                                  0.09091815842791287,
+                                  0.11111098528313813,
+                                  0.14285714380321302,
+                                  0.19999999999651166,
+                                  0.33333333333333826,
+                                  1.0};
+    for (std::size_t v = 0; v < kCount; ++v) z[v] = s[v] * s[v];
+    for (V& a : p) a = Simd::Set(0.0740485592996649);
+    for (const double coefficient : kSeries)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], z[v], Simd::Set(coefficient));
+    for (std::size_t v = 0; v < kCount; ++v)
+      whole[v] = Simd::Fma(s[v] * p[v], Simd::Set(2.8853900817779268147), whole[v]);  // 2 / ln 2
+    for (std::size_t v = 0; v < kCount; ++v) {
+      const I finite = (x[v] >= V{}) & (x[v] <= Simd::Set(1.7976931348623157e308));
+      const V other = Simd::Select(x[v] < V{}, Nan(), x[v]);
+      x[v] = Simd::Select(x[v] == V{}, Simd::Set(-1e300), Simd::Select(finite, whole[v], other));
+    }
   }
   /// factor log2 x, -infinity at 0.
-  static V Log(V x, double factor) noexcept {
-    return Simd::Select(x == V{}, Simd::Set(-__builtin_inf()), Log2(x) * Simd::Set(factor));
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Log(V (&x)[kCount], double factor) noexcept {
+    Log2(x);
+    for (V& a : x) a = Simd::Select(a == Simd::Set(-1e300), Simd::Set(-__builtin_inf()), a * Simd::Set(factor));
   }
-  static V Power(V base, V exponent) noexcept { return Simd::Exp2OrNan(exponent * Log2(base)); }
-  /// By squaring; exponent in [0, 255].
-  static V PowerInt(V base, unsigned exponent) noexcept {
-    if (exponent == 0) return Simd::Set(1.0);
-    V power = base;
-    for (unsigned bit = std::bit_floor(exponent) >> 1; bit != 0; bit >>= 1) {
-      power = power * power;
-      if ((exponent & bit) != 0) power = power * base;
-    }
-    return power;
+  /// 2^x of several side by side: Simd::Exp2OrNan().
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Exp2(V (&x)[kCount]) noexcept {
+    V shifted[kCount];
+    for (V& a : x) a = Simd::Min(Simd::Set(1000.0), Simd::Max(Simd::Set(-1000.0), a * Simd::Set(0.5)));
+    for (std::size_t v = 0; v < kCount; ++v) shifted[v] = x[v] + Simd::Set(kMagic);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = x[v] - (shifted[v] - Simd::Set(kMagic));
+    V p[kCount];
+    for (V& a : p) a = Simd::Set(Simd::kExp2[0]);
+    for (std::size_t k = 1; k < std::size(Simd::kExp2); ++k)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], x[v], Simd::Set(Simd::kExp2[k]));
+    for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::FromBits(Simd::Bits(p[v]) + (Simd::Bits(shifted[v]) << 52));
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = p[v] * p[v];
   }
-
+  /// base becomes its power. @param exponent  Of the lanes, one after the other.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Power(V (&base)[kCount], const double* exponent) noexcept {
+    Log2(base);
+    for (std::size_t v = 0; v < kCount; ++v) base[v] = base[v] * Simd::Load(exponent + v * Simd::kLanes);
+    Exp2(base);
+  }
   /// Square roots of several vectors side by side, without the hardware's: 1 / sqrt(x) from the exponent, better by a
   /// minimax polynomial (1.1e-8), then one step of Newton's method. Relative error below 2 ulp from 1e-290 on, below
   /// that an absolute one of 1e-140; 0 gives 0.
   template <std::size_t kCount>
-  [[gnu::always_inline]] static void Sqrt(V* x) noexcept {
-    constexpr double kHalfInverse[] = {0.01687317635856974, -0.13824470852612578, 0.4623033938455575,
-                                       -0.8176278781060615, 0.9756629033674393};  // of w in [1.4996, 1.6872]
+  [[gnu::always_inline]] static void Sqrt(V (&x)[kCount]) noexcept {
+    constexpr double kHalfInverse[] = {-0.13824470852612578, 0.4623033938455575, -0.8176278781060615,
+                                       0.9756629033674393};  // of w in [1.4996, 1.6872]
     constexpr std::int64_t kLargest = 0x7fefffffffffffffLL;
     const auto odd = [](I bits) { return bits | ((I{} + kLargest) - bits); };  // negative: so is x, or not finite
     I any{};
-    V s[kCount];
-    for (std::size_t v = 0; v < kCount; ++v) {
-      const I bits = Simd::Bits(x[v]);
-      any |= odd(bits);
-      const V start = Simd::FromBits((I{} + 0x5febff50c7b537a9LL) - (bits >> 1));
-      const V half = start * Polynomial(x[v] * start * start, kHalfInverse);  // 1 / (2 sqrt x)
-      const V once = x[v] * half;
-      const V root = once + once;
-      s[v] = Simd::Fma(Simd::Fma(-root, root, x[v]), half, root);
-    }
+    V half[kCount];  // 1 / (2 sqrt x)
+    V root[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) any |= odd(Simd::Bits(x[v]));
+    for (std::size_t v = 0; v < kCount; ++v)
+      half[v] = Simd::FromBits((I{} + 0x5febff50c7b537a9LL) - (Simd::Bits(x[v]) >> 1));
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = x[v] * half[v];
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = root[v] * half[v];
+    V p[kCount];
+    for (V& a : p) a = Simd::Set(0.01687317635856974);
+    for (const double coefficient : kHalfInverse)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], root[v], Simd::Set(coefficient));
+    for (std::size_t v = 0; v < kCount; ++v) half[v] = half[v] * p[v];
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = x[v] * half[v];
+    for (V& a : root) a = a + a;
+    for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(-root[v], root[v], x[v]);
+    for (std::size_t v = 0; v < kCount; ++v) root[v] = Simd::Fma(p[v], half[v], root[v]);
     if (Simd::Any(any < I{}))
-      for (std::size_t v = 0; v < kCount; ++v) s[v] = Simd::Select(odd(Simd::Bits(x[v])) < I{}, Simd::Sqrt(x[v]), s[v]);
-    for (std::size_t v = 0; v < kCount; ++v) x[v] = s[v];
+      for (std::size_t v = 0; v < kCount; ++v)
+        root[v] = Simd::Select(odd(Simd::Bits(x[v])) < I{}, Simd::Sqrt(x[v]), root[v]);
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = root[v];
   }
 
   /// sin and cos of x, |x| up to 1e7: the quarter turn, then polynomials on [-pi/4, pi/4].
@@ -182,19 +228,44 @@ struct Math {
     return Simd::Set(2.0) * Atan(Simd::Sqrt((one - x) / (one + x)));
   }
 
-  static V Tanh(V x) noexcept {
-    const V size = Simd::Abs(x);
-    const V z = x * x;
-    constexpr double kAbove[] = {-9.64399179425052238628e-1, -9.92877231001918586564e1, -1.61468768441708447952e3};
-    constexpr double kBelow[] = {1.0, 1.12811678491632931402e2, 2.23548839060100448583e3, 4.84406305325125486048e3};
-    const V near = Simd::Fma(x * z, Polynomial(z, kAbove) / Polynomial(z, kBelow), x);
+  /// E / (E + 2), E = e^(2 |x|) - 1 = 2^n (e^r - 1) + 2^n - 1: nothing cancels, near 0 either.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void Tanh(V (&x)[kCount]) noexcept {
     const V one = Simd::Set(1.0);
-    const V far = one - Simd::Set(2.0) / (Exp(size + size) + one);
-    return Simd::Select(size < Simd::Set(0.625), near, Simd::Select(IsNan(x), x, Simd::CopySign(far, x)));
+    V e[kCount];
+    V shifted[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) e[v] = Simd::Abs(x[v]);
+    for (V& a : e) a = Simd::Min(Simd::Set(40.0), a + a);
+    ExpOfRest(e, shifted);
+    for (V& a : shifted) a = Simd::FromBits(Simd::Bits(one) + (Simd::Bits(a) << 52));
+    for (std::size_t v = 0; v < kCount; ++v) e[v] = Simd::Fma(shifted[v], e[v], shifted[v] - one);
+    for (V& a : e) a = a / (a + Simd::Set(2.0));
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Simd::CopySign(e[v], x[v]);
   }
 
  private:
   static constexpr double kMagic = 6755399441055744.0;  // 1.5 * 2^52: rounds to an integer, left in the lowest bits
+
+  /// x becomes e^r - 1, r = x - n ln 2 in [-ln 2 / 2, ln 2 / 2], relative error 4e-17 before rounding; n stands in the
+  /// lowest bits of `shifted`. |x| below 2^20.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void ExpOfRest(V (&x)[kCount], V (&shifted)[kCount]) noexcept {
+    for (std::size_t v = 0; v < kCount; ++v)
+      shifted[v] = Simd::Fma(x[v], Simd::Set(1.44269504088896340736), Simd::Set(kMagic));
+    // ln 2 in two parts; n times the first is exact.
+    for (const double part : {6.93147180369123816490e-01, 1.90821492927058770002e-10})
+      for (std::size_t v = 0; v < kCount; ++v) x[v] = Less(x[v], shifted[v] - Simd::Set(kMagic), part);
+    constexpr double kRest[] = {2.7620075880100385e-07, 2.7557268480309837e-06, 2.4801521322368448e-05,
+                                1.9841269863040545e-04, 1.3888888917196719e-03, 8.3333333333300650e-03,
+                                4.1666666666624164e-02, 1.6666666666666669e-01, 5.0000000000000010e-01};
+    V square[kCount];
+    V p[kCount];
+    for (std::size_t v = 0; v < kCount; ++v) square[v] = x[v] * x[v];
+    for (V& a : p) a = Simd::Set(2.5100375832651220e-08);
+    for (const double coefficient : kRest)
+      for (std::size_t v = 0; v < kCount; ++v) p[v] = Simd::Fma(p[v], x[v], Simd::Set(coefficient));
+    for (std::size_t v = 0; v < kCount; ++v) x[v] = Simd::Fma(square[v], p[v], x[v]);
+  }
 
   /// x becomes sin(x - n times pi/2 * size): minimax polynomial, relative error 4e-17 before rounding.
   template <std::size_t kCount>

@@ -7,10 +7,10 @@
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-/// The states of all candidates of one or two tiles, from sample to sample, where the tapes of the laws read them.
-template <std::size_t kTiles>
+/// The states of kSize candidates, from sample to sample, where the tapes of the laws read them.
+template <std::size_t kSize>
 class StateIntegrator {
-  static constexpr std::size_t kLanes = TapeRegisters<kTiles>::kLanes;
+  static constexpr std::size_t kLanes = kSize;
 
  public:
   /// @param scalars    Of the pack's first sample.
@@ -18,7 +18,7 @@ class StateIntegrator {
   /// @param registers  With the parameters in them.
   /// @param fit        Of the start; null: all candidates start alike.
   /// @param offset     Added to the starts of one tile; null: nothing.
-  StateIntegrator(const StateRun& run, const double* scalars, const double* past, TapeRegisters<kTiles>* registers,
+  StateIntegrator(const StateRun& run, const double* scalars, const double* past, TapeRegisters<kSize>* registers,
                   const StartFit* fit, const StateTile* offset = nullptr) noexcept
       : run_(run), past_(past), registers_(*registers) {
     const Tape& start = *run.start;
@@ -48,7 +48,7 @@ class StateIntegrator {
     for (; sample_ < n; ++sample_) Step();
   }
   void CopyTo(StateTile* state) noexcept {
-    for (std::size_t s = 0; s < NumStates(); ++s) std::copy_n(State(s).data(), kTileLanes, state->value[s].data());
+    for (std::size_t s = 0; s < NumStates(); ++s) std::copy_n(State(s).data(), kLanes, state->value[s].data());
   }
 
  private:
@@ -74,7 +74,7 @@ class StateIntegrator {
 
   const StateRun& run_;
   const double* past_;
-  TapeRegisters<kTiles>& registers_;
+  TapeRegisters<kSize>& registers_;
   int sample_ = 0;
   int row_ = 0;  ///< Substeps done.
 };

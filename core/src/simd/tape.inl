@@ -1,5 +1,6 @@
 // Runs tapes; included by kernels.inl, once per instruction set.
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -16,10 +17,10 @@ using expression::TapeOp;
 
 constexpr std::size_t kTapeVectors = kTileLanes / Simd::kLanes;  ///< Of a tile.
 
-/// Registers of the candidates of one or two tiles.
-template <std::size_t kTiles>
+/// Registers of kSize candidates: half a tile, one, or two.
+template <std::size_t kSize>
 struct alignas(64) TapeRegisters {
-  static constexpr std::size_t kLanes = kTiles * kTileLanes;
+  static constexpr std::size_t kLanes = kSize;
   std::array<std::array<double, kLanes>, expression::kMaxTapeRegisters> value;
 };
 
@@ -45,11 +46,11 @@ inline double Past(const double* lines, double place, double back) noexcept {
 /// One sample of a tape for a group of the candidates: as many vectors side by side as leave hardware registers for
 /// what is computed, so that what one of them waits for is the time of the others. The result of one instruction stays
 /// there for the next.
-template <std::size_t kTiles>
+template <std::size_t kSize>
 class TapeGroup {
  public:
   using Vec = Simd::V;
-  static constexpr std::size_t kVectors = kTiles * kTapeVectors < 8 ? kTiles * kTapeVectors : 8;
+  static constexpr std::size_t kVectors = kSize < 8 * Simd::kLanes ? kSize / Simd::kLanes : 8;
   static constexpr std::size_t kLanes = kVectors * Simd::kLanes;
 
   /// Flat: a vector that is handed to a function lives in memory.
@@ -71,7 +72,7 @@ class TapeGroup {
       : registers_(registers), scalars_(scalars), past_(past) {}
 
   [[nodiscard]] double* Register(std::uint8_t r) const noexcept {
-    return registers_ + r * TapeRegisters<kTiles>::kLanes;
+    return registers_ + r * TapeRegisters<kSize>::kLanes;
   }
   [[nodiscard]] Vec Scalar(std::uint8_t s) const noexcept { return Simd::Set(scalars_[s]); }
   static Vec At(const double* r, std::size_t v) noexcept { return Simd::Load(r + v * Simd::kLanes); }
@@ -96,24 +97,44 @@ class TapeGroup {
     for (Vec& v : value) v = f(v);  // in order
     Each([&value, a](std::size_t v) { a[v] = value[v]; });
   }
-  /// Of functions of four vectors at a time.
+  /// Of functions of several vectors side by side.
   template <class F>
   [[gnu::always_inline]] static void Fours(Vec* a, F f) noexcept {
-    Vec value[kVectors / 4][4];
-    Each([&value, a](std::size_t v) { value[v / 4][v % 4] = a[v]; });
+    constexpr std::size_t kFour = kVectors < 4 ? kVectors : 4;
+    Vec value[kVectors / kFour][kFour];
+    Each([&value, a](std::size_t v) { value[v / kFour][v % kFour] = a[v]; });
     for (auto& four : value) f(four);
-    Each([&value, a](std::size_t v) { a[v] = value[v / 4][v % 4]; });
+    Each([&value, a](std::size_t v) { a[v] = value[v / kFour][v % kFour]; });
   }
   /// The lanes of the first half of a tile by the hardware's instruction, which keeps its unit busy for as long as
-  /// sixteen products, and the others by products meanwhile: the same lanes in every instruction set.
+  /// sixteen products, and the others by products meanwhile: the same lanes in every instruction set that fuses them.
   [[gnu::always_inline]] static void SquareRoots(Vec* a) noexcept {
-    Vec value[kVectors];
-    Each([&value, a](std::size_t v) { value[v] = a[v]; });
-    constexpr std::size_t kHalf = kTapeVectors / 2;
-    for (std::size_t v = 0; v < kVectors; ++v)
-      if (v % kTapeVectors < kHalf) value[v] = Simd::Sqrt(value[v]);
-    for (std::size_t v = kHalf; v < kVectors; v += kTapeVectors) Math::Sqrt<kHalf>(value + v);
-    Each([&value, a](std::size_t v) { a[v] = value[v]; });
+    if constexpr (kVectors < kTapeVectors) {
+      Unary(a, [](Vec x) { return Simd::Sqrt(x); });
+    } else {
+      constexpr std::size_t kHalf = kTapeVectors / 2;
+      Vec value[kVectors / 2];
+      Each([&value, a](std::size_t v) {
+        if (v % kTapeVectors < kHalf)
+          a[v] = Simd::Sqrt(a[v]);
+        else
+          value[v / kTapeVectors * kHalf + v % kHalf] = a[v];
+      });
+      Math::Sqrt(value);
+      Each([&value, a](std::size_t v) {
+        if (v % kTapeVectors >= kHalf) a[v] = value[v / kTapeVectors * kHalf + v % kHalf];
+      });
+    }
+  }
+  /// Whole powers by squaring; exponent in [0, 255].
+  [[gnu::always_inline]] static void WholePower(Vec* a, unsigned exponent) noexcept {
+    if (exponent == 0) return Unary(a, [](Vec) { return Simd::Set(1.0); });
+    Vec base[kVectors];
+    Each([&base, a](std::size_t v) { base[v] = a[v]; });
+    for (unsigned bit = std::bit_floor(exponent) >> 1; bit != 0; bit >>= 1) {
+      Each([a](std::size_t v) { a[v] = a[v] * a[v]; });
+      if ((exponent & bit) != 0) Each([&base, a](std::size_t v) { a[v] = a[v] * base[v]; });
+    }
   }
   template <class F>
   [[gnu::always_inline]] void Binary(Vec* a, const TapeInstruction& i, F f) const noexcept {
@@ -150,6 +171,8 @@ class TapeGroup {
       case TapeOp::kMultiplyAdd: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(a, b, c); }); break;
       case TapeOp::kMultiplyAddS: Binary(x, i, [c = Scalar(i.c)](Vec a, Vec b) { return Simd::Fma(a, b, c); }); break;
       case TapeOp::kAddProduct: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(b, c, a); }); break;
+      case TapeOp::kTakeProduct: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(-a, b, c); }); break;
+      case TapeOp::kLessProduct: Ternary(x, i, [](Vec a, Vec b, Vec c) { return Simd::Fma(-b, c, a); }); break;
       case TapeOp::kScale: Unary(x, [s = Scalar(i.b)](Vec a) { return a * s; }); break;
       case TapeOp::kScaleAdd: Binary(x, i, [s = Scalar(i.c)](Vec a, Vec b) { return Simd::Fma(a, s, b); }); break;
       case TapeOp::kDivide: Binary(x, i, [](Vec a, Vec b) { return a / b; }); break;
@@ -158,26 +181,28 @@ class TapeGroup {
       case TapeOp::kAbs: Unary(x, [](Vec a) { return Simd::Abs(a); }); break;
       case TapeOp::kSign: Unary(x, [](Vec a) { return Math::Sign(a); }); break;
       case TapeOp::kSqrt: SquareRoots(x); break;
-      case TapeOp::kExp: Long(x, [](Vec a) { return Math::Exp(a); }); break;
-      case TapeOp::kExp2S: Long(x, [s = Scalar(i.b)](Vec a) { return Simd::Exp2OrNan(a * s); }); break;
-      case TapeOp::kLog: Long(x, [](Vec a) { return Math::Log(a, 0.69314718055994530942); }); break;
-      case TapeOp::kLog2: Long(x, [](Vec a) { return Math::Log(a, 1.0); }); break;
-      case TapeOp::kLog10: Long(x, [](Vec a) { return Math::Log(a, 0.30102999566398119521); }); break;
+      case TapeOp::kExp: Fours(x, [](auto& a) { Math::Exp(a); }); break;
+      case TapeOp::kExp2S:
+        Unary(x, [s = Scalar(i.b)](Vec a) { return a * s; });
+        Fours(x, [](auto& a) { Math::Exp2(a); });
+        break;
+      case TapeOp::kLog: Fours(x, [](auto& a) { Math::Log(a, 0.69314718055994530942); }); break;
+      case TapeOp::kLog2: Fours(x, [](auto& a) { Math::Log(a, 1.0); }); break;
+      case TapeOp::kLog10: Fours(x, [](auto& a) { Math::Log(a, 0.30102999566398119521); }); break;
       case TapeOp::kPower:
-        Long(x, [b = Register(i.b)](Vec a) mutable {
-          const Vec power = Math::Power(a, Simd::Load(b));
-          b += Simd::kLanes;
-          return power;
+        Fours(x, [b = Register(i.b)](auto& a) mutable {
+          Math::Power(a, b);
+          b += std::size(a) * Simd::kLanes;
         });
         break;
-      case TapeOp::kPowerInt: Long(x, [n = static_cast<unsigned>(i.b)](Vec a) { return Math::PowerInt(a, n); }); break;
-      case TapeOp::kSin: Fours(x, [](Vec(&a)[4]) { Math::Sin(a); }); break;
-      case TapeOp::kCos: Fours(x, [](Vec(&a)[4]) { Math::Cos(a); }); break;
+      case TapeOp::kPowerInt: WholePower(x, i.b); break;
+      case TapeOp::kSin: Fours(x, [](auto& a) { Math::Sin(a); }); break;
+      case TapeOp::kCos: Fours(x, [](auto& a) { Math::Cos(a); }); break;
       case TapeOp::kTan: Long(x, [](Vec a) { return Math::Tan(a); }); break;
       case TapeOp::kAsin: Long(x, [](Vec a) { return Math::Asin(a); }); break;
       case TapeOp::kAcos: Long(x, [](Vec a) { return Math::Acos(a); }); break;
       case TapeOp::kAtan: Long(x, [](Vec a) { return Math::Atan(a); }); break;
-      case TapeOp::kTanh: Long(x, [](Vec a) { return Math::Tanh(a); }); break;
+      case TapeOp::kTanh: Fours(x, [](auto& a) { Math::Tanh(a); }); break;
       case TapeOp::kMin: Binary(x, i, [](Vec a, Vec b) { return Math::Min(a, b); }); break;
       case TapeOp::kMax: Binary(x, i, [](Vec a, Vec b) { return Math::Max(a, b); }); break;
       // Nothing to look at: the hardware's give their second argument where one is not a number.
@@ -209,21 +234,21 @@ class TapeGroup {
   const double* past_;  ///< PastLines::value.
 };
 
-template <std::size_t kTiles>
+template <std::size_t kSize>
 void RunCode(const TapeInstruction* first, const TapeInstruction* last, const double* scalars, const double* past,
-             TapeRegisters<kTiles>* registers) noexcept ARMCMC_NONBLOCKING {
-  for (std::size_t lane = 0; lane < TapeRegisters<kTiles>::kLanes; lane += TapeGroup<kTiles>::kLanes)
-    TapeGroup<kTiles>::Run(first, last, registers->value[0].data() + lane, scalars, past);
+             TapeRegisters<kSize>* registers) noexcept ARMCMC_NONBLOCKING {
+  for (std::size_t lane = 0; lane < TapeRegisters<kSize>::kLanes; lane += TapeGroup<kSize>::kLanes)
+    TapeGroup<kSize>::Run(first, last, registers->value[0].data() + lane, scalars, past);
 }
 /// What needs the sample.
-template <std::size_t kTiles>
+template <std::size_t kSize>
 void RunTape(const Tape& tape, const double* scalars, const double* past,
-             TapeRegisters<kTiles>* registers) noexcept ARMCMC_NONBLOCKING {
+             TapeRegisters<kSize>* registers) noexcept ARMCMC_NONBLOCKING {
   RunCode(tape.code.data() + tape.once, tape.code.data() + tape.code.size(), scalars, past, registers);
 }
 /// What needs no sample.
-template <std::size_t kTiles>
-void StartTape(const Tape& tape, const double* scalars, TapeRegisters<kTiles>* registers) noexcept ARMCMC_NONBLOCKING {
+template <std::size_t kSize>
+void StartTape(const Tape& tape, const double* scalars, TapeRegisters<kSize>* registers) noexcept ARMCMC_NONBLOCKING {
   RunCode(tape.code.data(), tape.code.data() + tape.once, scalars, nullptr, registers);
 }
 

@@ -76,6 +76,34 @@ struct Simd {
 #endif
   }
 
+  /// low = table[index[lane]], high = table[index[lane] + 1]: neighbours are loaded together, which takes less than
+  /// half of the time of two gathers.
+  static void GatherPairs(const double* table, I index, V* low, V* high) noexcept {
+#if (defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8) || (defined(__AVX2__) && ARMCMC_SIMD_LANES == 4)
+    alignas(64) std::int64_t at[kLanes];
+    std::memcpy(at, &index, sizeof at);
+    const auto pair = [table, &at](int lane) noexcept { return _mm_loadu_pd(table + at[lane]); };
+    const auto four = [pair](int lane) noexcept {  // lane, lane + 2
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(pair(lane)), pair(lane + 2), 1);
+    };
+#if ARMCMC_SIMD_LANES == 8
+    const auto eight = [four](int lane) noexcept {
+      return _mm512_maskz_insertf64x4(0xff, _mm512_castpd256_pd512(four(lane)), four(lane + 4), 1);
+    };
+    const __m512d even = eight(0), odd = eight(1);
+    *low = _mm512_maskz_unpacklo_pd(0xff, even, odd);
+    *high = _mm512_maskz_unpackhi_pd(0xff, even, odd);
+#else
+    const __m256d even = four(0), odd = four(1);
+    *low = _mm256_unpacklo_pd(even, odd);
+    *high = _mm256_unpackhi_pd(even, odd);
+#endif
+#else
+    *low = Gather(table, index);
+    *high = Gather(table + 1, index);
+#endif
+  }
+
   /// a b + c, in one rounding where the instruction set has it.
   static V Fma(V a, V b, V c) noexcept {
 #if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
@@ -117,22 +145,16 @@ struct Simd {
     const V root = Exp2OfBounded(Min(Set(1000.0), Max(Set(-1000.0), x * Set(0.5))));
     return root * root;
   }
+  static constexpr double kExp2[] = {4.45581790833606449e-10, 7.07419429728852106e-09, 1.01780570877339407e-07,
+                                     1.32154325359123753e-06, 1.52527338415567733e-05, 1.54035304637243530e-04,
+                                     1.33335581464064708e-03, 9.61812910758725638e-03, 5.55041086648216248e-02,
+                                     2.40226506959101582e-01, 6.93147180559945286e-01, 1.00000000000000000e+00};
   static V Exp2OfBounded(V x) noexcept {
     const V magic = Set(6755399441055744.0);  // 1.5 * 2^52
     const V shifted = x + magic;
     const V f = x - (shifted - magic);
-    V p = Set(4.45581790833606449e-10);
-    p = Fma(p, f, Set(7.07419429728852106e-09));
-    p = Fma(p, f, Set(1.01780570877339407e-07));
-    p = Fma(p, f, Set(1.32154325359123753e-06));
-    p = Fma(p, f, Set(1.52527338415567733e-05));
-    p = Fma(p, f, Set(1.54035304637243530e-04));
-    p = Fma(p, f, Set(1.33335581464064708e-03));
-    p = Fma(p, f, Set(9.61812910758725638e-03));
-    p = Fma(p, f, Set(5.55041086648216248e-02));
-    p = Fma(p, f, Set(2.40226506959101582e-01));
-    p = Fma(p, f, Set(6.93147180559945286e-01));
-    p = Fma(p, f, Set(1.00000000000000000e+00));
+    V p = Set(kExp2[0]);
+    for (std::size_t k = 1; k < sizeof kExp2 / sizeof *kExp2; ++k) p = Fma(p, f, Set(kExp2[k]));
     return FromBits(Bits(p) + (Bits(shifted) << 52));
   }
 

@@ -44,6 +44,17 @@ TEST(Elementary, AgreesWithTheLibrary) {
     }
 }
 
+TEST(Elementary, ATinyHyperbolicTangentIsAsExactAsALargeOne) {
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    std::vector<double> x(kCount), out(kCount);
+    for (std::size_t i = 0; i < kCount; ++i)
+      x[i] = (i % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, 20.0 * static_cast<double>(i) / kCount - 18.0);
+    ASSERT_TRUE(kernels->elementary(Op::kTanh, kCount, x.data(), nullptr, out.data()));
+    for (std::size_t i = 0; i < kCount; ++i)
+      EXPECT_NEAR(out[i], std::tanh(x[i]), 1e-15 * std::fabs(std::tanh(x[i]))) << x[i] << ", " << kernels->name;
+  }
+}
+
 TEST(Elementary, PowersAreThoseOfTheLibrary) {
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
     std::vector<double> base(kCount), exponent(kCount), out(kCount);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "armcmc/plant/start_fit.hpp"
 #include "armcmc/plant/states.hpp"
 #include "core/kernel_sets.hpp"
 #include "core/plant/described_packs.hpp"
@@ -159,6 +161,58 @@ TEST(States, SameBitsOnEveryFusedInstructionSet) {
         EXPECT_TRUE(test::SameBits(first_score[lane], score[lane])) << description.name;
         for (std::size_t n = 0; n < 60; ++n)
           ASSERT_TRUE(test::SameBits(first->value[n][lane], other->value[n][lane])) << description.name << n;
+      }
+    }
+  }
+}
+
+/// Of a law that is a sum of states, and of one that is not; beside an uncertain start, with weights.
+TEST(States, ScoresAreThoseOfThePredictions) {
+  constexpr std::size_t kSamples = 61;
+  PlantDescription bent = Pendulum();
+  bent.law = "sin(pos)";
+  for (const PlantDescription& description : {Oscillator(), Pendulum(), bent}) {
+    const auto plant = test::Program(description);
+    const DataPack pack = DescribedPack(
+        *plant, 1,
+        [](double t) {
+          return PlantSample{{Drive(t)}, 0.2};
+        },
+        static_cast<int>(kSamples), kDt);
+    Laid laid(*plant, pack, nullptr, {1.3, 0.8, 31.0});
+    for (std::size_t d = 0; d < 3; ++d)
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane)
+        laid.tile.value[d][lane] *= 1.0 + 0.013 * static_cast<double>(lane);
+    const auto fit = std::make_unique<StartFit>();
+    fit->shrink = {0.3, 0.6};
+    for (std::size_t n = 0; n < kSamples; ++n) {
+      // A sine and a cosine over whole periods: orthonormal.
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(n) / kSamples, norm = std::sqrt(2.0 / kSamples);
+      fit->direction[0][n] = norm * std::cos(angle);
+      fit->direction[1][n] = norm * std::sin(angle);
+    }
+    laid.data->start_fit = fit.get();
+    const NoiseModel noise(NoiseSettings{.std = 0.1});
+    alignas(64) std::array<double, kTileLanes> log_scale{}, score{}, expected{};
+    const auto law = std::make_unique<PredictionTile>(), half = std::make_unique<PredictionTile>();
+    for (const int count : {0, 2}) {
+      fit->count = count;
+      for (const bool weighted : {false, true}) {
+        laid.data->weighted = weighted;
+        for (std::size_t n = 0; n < kSamples; ++n)
+          laid.data->weight[n] = weighted ? 1.0 / (1.0 + 0.01 * static_cast<double>(n)) : 1.0;
+        for (const simd::Kernels* kernels : test::RunnableKernels()) {
+          kernels->predict(-1, *laid.data, laid.tile, law.get());
+          kernels->log_likelihood(noise, *laid.data, *law, log_scale.data(), expected.data());
+          kernels->predict_half(-1, *laid.data, laid.tile, half.get());
+          for (std::size_t n = 0; n < kSamples; ++n)
+            for (std::size_t lane = 0; lane < kTileLanes / 2; ++lane)
+              ASSERT_TRUE(test::SameBits(half->value[n][lane], law->value[n][lane])) << kernels->name << n;
+          kernels->score(-1, noise, *laid.data, laid.tile, log_scale.data(), half.get(), score.data());
+          for (std::size_t lane = 0; lane < kTileLanes; ++lane)
+            EXPECT_NEAR(score[lane], expected[lane], 1e-11 * std::fabs(expected[lane]))
+                << kernels->name << description.law << count << weighted << lane;
+        }
       }
     }
   }

@@ -28,6 +28,8 @@ enum class TapeOp : std::uint8_t {
   kMultiply,      ///< R = R a x R b
   kMultiplyAdd,   ///< R = R a x R b + R c
   kAddProduct,    ///< R = R a + R b x R c
+  kTakeProduct,   ///< R = R c - R a x R b
+  kLessProduct,   ///< R = R a - R b x R c
   kScale,         ///< R = R a x S b
   kScaleAdd,      ///< R = R a x S c + R b
   kMultiplyAddS,  ///< R = R a x R b + S c
@@ -79,18 +81,18 @@ struct TapeInstruction {
 /// Code of a form that has a loop of its own, in which nothing goes through memory.
 enum class TapeShape : std::uint8_t {
   kGeneral,
-  kLinear,  ///< scalar + sum of scalars x parameters.
+  kLinear,  ///< scalar + sum of scalars x parameters or states.
   kPower,   ///< 2^(parameter x scalar) x (scalar + sum) + scalar + sum.
 };
 inline constexpr int kMaxShapeTerms = 8;  ///< Of all sums of a shape.
 
-/// scalar `constant` + sum of scalars x parameters.
+/// scalar `constant` + sum of scalars x parameters or states.
 struct TapeSum {
   static constexpr std::uint8_t kNone = 255;  ///< As a constant 0, as a scalar 1.
   std::uint8_t constant = kNone;
   std::uint8_t count = 0;
-  std::array<std::uint8_t, kMaxShapeTerms> parameter{};
-  std::array<std::uint8_t, kMaxShapeTerms> scalar{};  ///< kNone: 1.
+  std::array<std::uint8_t, kMaxShapeTerms> parameter{};  ///< Register of it.
+  std::array<std::uint8_t, kMaxShapeTerms> scalar{};     ///< kNone: 1.
 };
 
 /// Straight-line code for all candidates of a tile at one sample. Registers 0 to num_parameters - 1 hold the
