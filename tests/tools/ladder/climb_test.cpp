@@ -10,6 +10,7 @@
 
 #include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/plant_file.hpp"
+#include "rung.hpp"
 #include "support/paths.hpp"
 #include "tools/ladder/made_data.hpp"
 
@@ -275,6 +276,36 @@ TEST(Climb, WhatFollowsAnotherQuantityIsNotProtectedByACurveThatCanCopyIt) {
     const Ladder ladder = ClimbWith({other}, LossyData(), test::MotorPlant());
     EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << other;
   }
+}
+
+TEST(BetterBase, IsFoundFromWhereAnEffectHasItsParameters) {
+  const Dataset data = test::MotorData([](double, double) { return 1.0; });
+  const auto plant = std::make_shared<const Plant>(test::MotorPlant());
+  std::vector<EffectEntry> drag;
+  for (EffectEntry& entry : support::ReadEffectLibrary())
+    if (entry.name == "drag") drag.push_back(std::move(entry));
+  std::vector<std::string> notes;
+  const std::vector<Candidate> candidates =
+      Candidates(plant->description(), drag, ScalesOf(data, plant->description(), 0.3), &notes);
+  ASSERT_FALSE(candidates.empty());
+  Rung rung;
+  rung.base.model = std::make_shared<const identify::TrajectoryModel>(plant, data.series);
+  rung.base.fit = identify::Fit(*rung.base.model, data.training, Eigen::Vector2d(20.0, std::log(2.0)), 0);  // caught
+  Contender contender{};
+  contender.candidate = candidates.front();
+  Eigen::VectorXd theta =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(contender.candidate.plant->description().parameters.size()));
+  theta.head(2) << 68.0, std::log(0.26);
+  contender.trial = Refine(contender.candidate.plant, data, theta);
+  contender.refined = contender.trial.fit.valid;
+  ASSERT_TRUE(contender.refined);
+  EXPECT_FALSE(BetterBase(plant, data, rung).fit.valid);  // nobody was anywhere else
+  rung.contenders.push_back(contender);
+  const Trial better = BetterBase(plant, data, rung);
+  ASSERT_TRUE(better.fit.valid);
+  EXPECT_LT(better.fit.error_sd, 0.33);
+  rung.base = better;
+  EXPECT_FALSE(BetterBase(plant, data, rung).fit.valid);  // it is as good as it gets
 }
 
 TEST(Climb, NoiseOfADerivedSignalIsNoFlexibleMode) {
