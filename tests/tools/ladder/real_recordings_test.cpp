@@ -50,9 +50,10 @@ TEST_P(RealRecording, NamesTheDocumentedEffect) {
     return std::find(GetParam().first.begin(), GetParam().first.end(), name) != GetParam().first.end();
   })) << ::testing::PrintToString(first);
   EXPECT_LT(result["gap"]["heldout_rmse_after"].get<double>(), GetParam().error);
-  // The estimator runs the new model, and where it knows it, its predictions one pack ahead are better, too.
+  // The estimator runs the new model, and its predictions one pack ahead are better, too.
   const Json& step = result["one_step"];
   ASSERT_TRUE(step["after"].is_object()) << step.dump();
+  EXPECT_LT(step["after"]["rmse"].get<double>(), step["before"]["rmse"].get<double>());
   EXPECT_LT(step["after"]["kept_apart"]["rmse"].get<double>(), step["before"]["kept_apart"]["rmse"].get<double>());
 }
 
