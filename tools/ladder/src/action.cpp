@@ -49,7 +49,8 @@ bool Says(const EffectForm& form, const std::string& name) {
   const std::regex whole("\\b" + name + "\\b");
   const auto says = [&whole](const std::string& text) { return std::regex_search(text, whole); };
   return std::any_of(form.terms.begin(), form.terms.end(), [&](const EffectTerm& t) { return says(t.formula); }) ||
-         std::any_of(form.lets.begin(), form.lets.end(), [&](const LetDescription& l) { return says(l.text); });
+         std::any_of(form.lets.begin(), form.lets.end(), [&](const LetDescription& l) { return says(l.text); }) ||
+         std::any_of(form.states.begin(), form.states.end(), [&](const StateDescription& s) { return says(s.rate); });
 }
 
 }  // namespace
@@ -65,7 +66,8 @@ bool Reads(const Candidate& effect, const std::string& name) {
   const EffectForm& form = effect.form();
   if (name == "t") return Says(form, name);
   return std::any_of(form.needs.begin(), form.needs.end(), [&](const EffectNeed& need) {
-    return need.kind != "parameter" && effect.binding.symbols.at(need.name) == name;
+    // A state may be needed for its rate alone, to which the effect is added.
+    return need.kind != "parameter" && effect.binding.symbols.at(need.name) == name && Says(form, need.name);
   });
 }
 
