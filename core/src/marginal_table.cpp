@@ -13,8 +13,8 @@ constexpr double kNodeStep = 1.0 / MarginalTable::kNodesPerUnit;
 template <class F>
 MarginalTable Tabulate(double half_width, F density) {
   std::array<double, MarginalTable::kMaxNodes> values{};
-  const int half = std::min(static_cast<int>(std::ceil(half_width * MarginalTable::kNodesPerUnit - 1e-9)),
-                            (MarginalTable::kMaxNodes - 1) / 2);
+  constexpr int kMostHalf = (MarginalTable::kMaxNodes - 1) / 2;
+  const int half = static_cast<int>(std::fmin(std::ceil(half_width * MarginalTable::kNodesPerUnit - 1e-9), kMostHalf));
   for (int i = 0; i <= 2 * half; ++i) values[static_cast<std::size_t>(i)] = density((i - half) * kNodeStep);
   MarginalTable table;
   table.Build(values.data(), 2 * half + 1, -half * kNodeStep);

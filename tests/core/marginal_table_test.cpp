@@ -105,5 +105,11 @@ TEST(MarginalTable, StandardLawsHaveTheirMoments) {
   EXPECT_GE(Upper(MarginalTable::Uniform(1.7320508)), 1.7320508);
 }
 
+TEST(MarginalTable, BoundsFarFromEverythingAreAsFarAsItReaches) {
+  // As of a prior of a picometre within metres.
+  for (const double far : {1e3, 1e9, 1e12, 1e300})
+    EXPECT_DOUBLE_EQ(MarginalTable::Uniform(far).Variance(), MarginalTable::Uniform(16.0).Variance()) << far;
+}
+
 }  // namespace
 }  // namespace armcmc::marginal_table_test

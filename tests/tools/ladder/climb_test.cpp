@@ -10,6 +10,7 @@
 
 #include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/plant_file.hpp"
+#include "rung.hpp"
 #include "support/paths.hpp"
 #include "tools/ladder/made_data.hpp"
 
@@ -88,6 +89,67 @@ TEST(Climb, FindsAFrequencyThatThePriorDoesNotTell) {
   const Ladder ladder =
       ClimbWith(kSome, test::AxisData([](const AxisSample& s) { return 6.0 * std::sin(s.q / 0.004); }));
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cogging"));
+}
+
+TEST(Climb, AFrequencyIsNotLostToItsPrior) {
+  // Fifteen times what the prior expects.
+  const Ladder ladder =
+      ClimbWith({"periodic_disturbance", "coulomb_friction"},
+                test::AxisData([](const AxisSample& s) { return 12.0 * std::sin(148.3 * s.t + 1.0); }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("periodic_disturbance"));
+  EXPECT_TRUE(ladder.complete);
+}
+
+/// An axis that turns: angle, its rates, torque. 5 kg m^2, 9 N m s, over 5 rad.
+Dataset RotaryData(const std::function<double(double angle)>& hidden) {
+  constexpr double kPerMetre = 30.0;
+  Dataset data = test::AxisData([&](const AxisSample& s) { return hidden(kPerMetre * s.q); });
+  auto series = std::make_shared<identify::Series>(*data.series);
+  for (std::size_t s = 0; s < 3; ++s)
+    for (double& value : series->signals[s]) value *= kPerMetre;
+  data.series = std::move(series);
+  return data;
+}
+
+PlantDescription RotaryPlant() {
+  PlantDescription plant = test::AxisPlant();
+  const char* const units[] = {"rad", "rad/s", "rad/s^2", "N m"};
+  for (std::size_t s = 0; s < plant.signals.size(); ++s) plant.signals[s].unit = units[s];
+  plant.signals[3].role = "torque";
+  for (ParameterDescription& p : plant.parameters) p.unit = p.unit == "kg" ? "kg m^2" : p.unit == "N" ? "N m" : "N m s";
+  return plant;
+}
+
+TEST(Climb, FindsAFrequencyAlongAnAngle) {
+  const Ladder ladder =
+      ClimbWith({"cogging", "gravity_load"}, RotaryData([](double angle) { return 15.0 * std::sin(47.0 * angle); }),
+                RotaryPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cogging"));
+  ASSERT_FALSE(ladder.rungs[0].named.empty());
+  EXPECT_LT(ladder.rungs[0].leader().alone.folds, 0.1);
+}
+
+TEST(Climb, WhatItsFormulaIsOffIsNoOtherEffect) {
+  // Something that turns with the axis, and a little that turns twice as fast.
+  const auto load = [](double angle) { return 60.0 * std::sin(angle + 0.3) + 5.0 * std::sin(2.0 * angle); };
+  const Ladder ladder =
+      ClimbWith({"gravity_load", "baseline_tilt", "cubic_stiffness"}, RotaryData(load), RotaryPlant());
+  ASSERT_EQ(ladder.rungs.size(), 2u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("gravity_load"));
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("gravity_load may be as little off")));
+}
+
+TEST(Climb, WhatIsSmallBesideANameAndIsNoErrorOfItHasANameToo) {
+  double before = 0.0;
+  const Dataset data = RotaryData([&](double angle) {
+    const double speed = (angle - before) / 0.01, friction = 9.0 * std::tanh(speed / 1.5);
+    before = angle;
+    return 120.0 * std::sin(angle + 0.3) + friction;
+  });
+  const Ladder ladder = ClimbWith({"gravity_load", "baseline_tilt", "coulomb_friction"}, data, RotaryPlant());
+  ASSERT_GE(ladder.rungs.size(), 2u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("gravity_load"));
+  EXPECT_THAT(NamesOf(ladder.rungs[1]), ElementsAre("coulomb_friction"));
 }
 
 TEST(Climb, WhatNoEffectExplainsHasNoName) {
@@ -188,6 +250,62 @@ TEST(Climb, AFormulaThatIsOffIsNamedWhereTheCurveThatDoesBetterHoldsIt) {
                 test::MotorPlant());
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("input_saturation"));
   EXPECT_FALSE(ladder.complete);
+}
+
+TEST(Climb, ASpringThatStiffensFasterThanItsFormulaIsNamed) {
+  const auto spring = [](double pos) { return 1.2 * std::sinh(pos / 0.06); };
+  const Ladder ladder = ClimbWith({"cubic_stiffness", "backlash"}, test::SwingData([](double u) { return u; }, spring),
+                                  test::SwingPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cubic_stiffness"));
+}
+
+/// A motor that is switched up and down, and loses more and more of its speed the faster it is.
+Dataset LossyData() {
+  double w = 0.0;
+  return test::DataOf(
+      {.rows = 1000,
+       .noise = 0.3,
+       .seed = 11,
+       .drive = [](double t) { return 2.0 + (std::sin(0.7 * t) > 0.3 ? 3.0 : 0.0) + std::sin(3.1 * t); },
+       .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.5 - 3e-4 * w * w * w); },
+       .shown = [&] { return w; }});
+}
+
+TEST(Climb, WhatFollowsAnotherQuantityIsNotProtectedByACurveThatCanCopyIt) {
+  for (const std::string other : {"input_hysteresis", "output_drift"}) {
+    const Ladder ladder = ClimbWith({other}, LossyData(), test::MotorPlant());
+    EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << other;
+  }
+}
+
+TEST(BetterBase, IsFoundFromWhereAnEffectHasItsParameters) {
+  const Dataset data = test::MotorData([](double, double) { return 1.0; });
+  const auto plant = std::make_shared<const Plant>(test::MotorPlant());
+  std::vector<EffectEntry> drag;
+  for (EffectEntry& entry : support::ReadEffectLibrary())
+    if (entry.name == "drag") drag.push_back(std::move(entry));
+  std::vector<std::string> notes;
+  const std::vector<Candidate> candidates =
+      Candidates(plant->description(), drag, ScalesOf(data, plant->description(), 0.3), &notes);
+  ASSERT_FALSE(candidates.empty());
+  Rung rung;
+  rung.base.model = std::make_shared<const identify::TrajectoryModel>(plant, data.series);
+  rung.base.fit = identify::Fit(*rung.base.model, data.training, Eigen::Vector2d(20.0, std::log(2.0)), 0);  // caught
+  Contender contender{};
+  contender.candidate = candidates.front();
+  Eigen::VectorXd theta =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(contender.candidate.plant->description().parameters.size()));
+  theta.head(2) << 68.0, std::log(0.26);
+  contender.trial = Refine(contender.candidate.plant, data, theta);
+  contender.refined = contender.trial.fit.valid;
+  ASSERT_TRUE(contender.refined);
+  EXPECT_FALSE(BetterBase(plant, data, rung).fit.valid);  // nobody was anywhere else
+  rung.contenders.push_back(contender);
+  const Trial better = BetterBase(plant, data, rung);
+  ASSERT_TRUE(better.fit.valid);
+  EXPECT_LT(better.fit.error_sd, 0.33);
+  rung.base = better;
+  EXPECT_FALSE(BetterBase(plant, data, rung).fit.valid);  // it is as good as it gets
 }
 
 TEST(Climb, NoiseOfADerivedSignalIsNoFlexibleMode) {

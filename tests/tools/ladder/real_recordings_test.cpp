@@ -54,6 +54,7 @@ TEST_P(RealRecording, NamesTheDocumentedEffect) {
   const Json& step = result["one_step"];
   ASSERT_TRUE(step["after"].is_object()) << step.dump();
   EXPECT_LT(step["after"]["rmse"].get<double>(), step["before"]["rmse"].get<double>());
+  EXPECT_LT(step["after"]["kept_apart"]["rmse"].get<double>(), step["before"]["kept_apart"]["rmse"].get<double>());
 }
 
 /// The same without what is documented.

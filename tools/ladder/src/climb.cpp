@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -29,15 +30,33 @@ class SharedProgress {
   std::mutex mutex_;
 };
 
+/// What was named on the rungs before.
+struct Before {
+  std::vector<const Candidate*> effects;
+  double explained = 0.0;  ///< Squared error, over that which is left.
+
+  /// Whether an effect of another family is so small beside it that a formula a little off explains it.
+  [[nodiscard]] bool Dwarfs(const Contender& c) const {
+    constexpr double kFormulaError = 1.0 / 3.0;  // of an amplitude: another formula of the same physics
+    return 1.0 - c.alone.folds < kFormulaError * kFormulaError * explained &&
+           std::none_of(effects.begin(), effects.end(),
+                        [&](const Candidate* e) { return e->entry->family == c.candidate.entry->family; });
+  }
+};
+
 /// What else may explain what an effect seems to.
 struct Rivals {
   DerivedNoise noise;
   Curves curves;
+  Before before;
 
-  /// @param exact  It leaves noise alone, so that no curve has another shape. Noise may still be what it explains.
-  [[nodiscard]] std::optional<Rival> Of(const Contender& c, bool exact) {
-    const std::optional<Rival> rival = noise.RivalOf(c);
-    return rival || exact ? rival : curves.RivalOf(c);
+  /// @param exact  It leaves noise alone, so that no curve has another shape. Noise may still be what it explains, or
+  ///               an error of what was named before.
+  [[nodiscard]] std::optional<Rival> Of(const Contender& c, bool exact, bool smaller_part) {
+    std::optional<Rival> rival = noise.RivalOf(c);
+    if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
+    if (!rival && before.Dwarfs(c)) rival = curves.BendOf(c, before.effects);
+    return rival;
   }
 };
 
@@ -48,13 +67,69 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
     Name(view, floor, open, rung);
     for (const std::size_t i : rung->named) {
       Contender& c = rung->contenders[i];
-      const std::optional<Rival> rival = rivals->Of(c, !LeavesMore(view, c.trial, floor));
+      const std::optional<Rival> rival = rivals->Of(c, !LeavesMore(view, c.trial, floor), open);
       if (!rival) continue;
       c.ruled_out = again = true;
       if (rung->as_if.empty()) rung->as_if = rival->as_if;
       notes->push_back(c.candidate.entry->name + " was not named: it acts as if " + rival->as_if + ", which " +
                        rival->why);
     }
+  }
+}
+
+/// What the data kept apart say of a name.
+struct KeptApart {
+  double before = 0.0, after = 0.0;  ///< Error there; not finite where a law runs away.
+  bool agree = true;
+};
+
+/// At least half of the gain is to be found there. Without any there is no objection.
+/// @param gain  Share of the squared error that is less in folds than with `before`.
+KeptApart AskedApart(const Dataset& data, const Trial& before, const Trial& after, double gain) {
+  constexpr double kAgain = 0.5;
+  const WholeRun first = RunWhole(data, before), second = RunWhole(data, after);
+  const std::vector<Eigen::Index> rows = HeldOutRows(data, first);
+  if (rows.empty()) return {};
+  const double was = FitOn(first, rows, 1.0).rmse, is = FitOn(second, rows, 1.0).rmse;
+  return {was, is, 1.0 - is * is / (was * was) > kAgain * gain};
+}
+
+/// What is asked before a name is given.
+struct Hearing {
+  const Dataset& data;  ///< The whole of it.
+  const View& view;
+  double floor;
+  const Rung* open;  ///< The rung before, where its name waits for this one; else null.
+  Rivals rivals;
+};
+
+/// Names what no rival rules out and the data kept apart do not contradict.
+void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* notes) {
+  for (bool contradicted = false;;) {
+    NameOne(hearing->view, hearing->floor, false, &hearing->rivals, rung, notes);
+    // Two effects of one size each take the smaller part: the first may be named if the next one makes up for it.
+    if (rung->named.empty() && hearing->open == nullptr && !contradicted) {
+      NameOne(hearing->view, hearing->floor, true, &hearing->rivals, rung, notes);
+      rung->open = !rung->named.empty();
+    }
+    if (rung->named.empty()) return;
+    Contender& leader = rung->contenders[rung->named.front()];
+    const Rung* const open = hearing->open;
+    const double left = leader.alone.folds * (open != nullptr ? open->leader().alone.folds : 1.0);
+    const KeptApart apart =
+        AskedApart(hearing->data, open != nullptr ? open->base : rung->base, leader.trial, 1.0 - left);
+    if (apart.agree) return;
+    if (!std::isfinite(apart.after) && open == nullptr) {
+      rung->open = true;
+      return;
+    }
+    char text[120];
+    std::snprintf(text, sizeof(text), " was not named: in the data kept apart the error goes from %.4g to %.4g only",
+                  apart.before, apart.after);
+    notes->push_back(leader.candidate.entry->name + text);
+    leader.earned = rung->open = false;
+    rung->named.clear();
+    contradicted = true;
   }
 }
 
@@ -90,16 +165,6 @@ void TakeBack(std::size_t rung, Ladder* ladder, Trial* base) {
   alone.open = false;
 }
 
-/// Whether the data kept apart agree: at least half of the gain is found there. Without any there is no objection.
-bool Confirmed(const Dataset& data, const Trial& base, const Contender& c) {
-  constexpr double kAgain = 0.5;
-  const WholeRun before = RunWhole(data, base), after = RunWhole(data, c.trial);
-  const std::vector<Eigen::Index> rows = HeldOutRows(data, before);
-  if (rows.empty()) return true;
-  const double was = FitOn(before, rows, 1.0).rmse, is = FitOn(after, rows, 1.0).rmse;
-  return 1.0 - is * is / (was * was) > kAgain * (1.0 - c.alone.folds);
-}
-
 }  // namespace
 
 Ladder Climb(const ClimbRequest& request) {
@@ -120,6 +185,7 @@ Ladder Climb(const ClimbRequest& request) {
                                                        NoiseFloor(data, base.model->target(), base.model->active());
   ladder.base = base;
   std::set<std::string> families;
+  int again = 2;  // rungs that begin anew from a better fit
   for (int r = 0; r < request.max_rungs; ++r) {
     const std::string which = "rung " + std::to_string(r + 1);
     const DataScales scales = ScalesOf(data, ladder.plant->description(), ladder.noise_floor);
@@ -134,36 +200,38 @@ Ladder Climb(const ClimbRequest& request) {
     progress.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
                   static_cast<double>(r) / request.max_rungs);
     TryAll(ladder.plant, data, ladder.view, &rung, &ladder.notes);
+    if (Trial better = BetterBase(ladder.plant, data, rung); better.fit.valid && again > 0) {
+      base = std::move(better);
+      --again;
+      --r;
+      continue;
+    }
     Bootstrap(&rung);
     const double floor = ladder.noise_floor;
     const Rung* const open = !ladder.rungs.empty() && ladder.rungs.back().open ? &ladder.rungs.back() : nullptr;
     Judge(ladder.view, floor, families, open != nullptr ? open->leader().alone.folds : 1.0, &rung);
     Sort(&rung);
-    Rivals rivals{{ladder.plant, data, ladder.view, base}, {ladder.plant, data, ladder.view, base, scales}};
-    NameOne(ladder.view, floor, false, &rivals, &rung, &ladder.notes);
-    // Two effects of one size each take the smaller part: the first may be named if the next one makes up for it.
-    if (rung.named.empty() && open == nullptr) {
-      NameOne(ladder.view, floor, true, &rivals, &rung, &ladder.notes);
-      rung.open = !rung.named.empty();
-    }
+    Hearing hearing{request.data,
+                    ladder.view,
+                    floor,
+                    open,
+                    {{ladder.plant, data, ladder.view, base}, {ladder.plant, data, ladder.view, base, scales}, {}}};
+    Before& before = hearing.rivals.before;
+    for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
+    before.explained = std::pow(ladder.base.fit.error_sd / base.fit.error_sd, 2) - 1.0;
+    NameAndConfirm(&hearing, &rung, &ladder.notes);
     if (r == 0 && rung.named.empty() && rung.as_if.empty() && LeavesMore(ladder.view, base, floor))
-      rung.as_if = rivals.curves.Best();
-    if (!rung.named.empty() && !Confirmed(request.data, base, rung.leader())) {
-      ladder.notes.push_back(rung.leader().candidate.entry->name +
-                             " was not named: what it gains is not found again in the data kept apart");
-      rung.named.clear();
-      rung.open = false;
-    }
+      rung.as_if = hearing.rivals.curves.Best();
     const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
     if (!named && open != nullptr) {
       TakeBack(ladder.rungs.size() - 1, &ladder, &base);
       break;
     }
-    if (const Contender* again = NamedAgain(ladder, rung)) {
-      ladder.notes.push_back(again->candidate.entry->name +
+    if (const Contender* second = NamedAgain(ladder, rung)) {
+      ladder.notes.push_back(second->candidate.entry->name +
                              " was not named: one alone does not do, and two of them in one place are pieces of "
                              "something that has another formula");
-      TakeBack(FirstWith(ladder, again->candidate), &ladder, &base);
+      TakeBack(FirstWith(ladder, second->candidate), &ladder, &base);
       break;
     }
     if (named && open != nullptr) ladder.rungs.back().open = false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "action.hpp"
 #include "armcmc/ladder/features.hpp"
 #include "armcmc/plant/error.hpp"
 #include "comparison.hpp"
@@ -18,6 +19,7 @@ using Eigen::VectorXd;
 constexpr int kBumps = 8;
 constexpr std::size_t kFitted = 4;    // of those that act differently
 constexpr double kAlike = 0.02;       // of the square of what one takes away: the other takes it as well
+constexpr double kAsMuch = 0.9;       // of what an effect explains
 constexpr double kAsWell = 1.5;       // times what the best one leaves
 constexpr double kOff = 0.1;          // of the square of what an effect leaves: as well copied as one can ask
 constexpr double kOutermost = 0.001;  // of the rows, where a state or signal seldom is
@@ -88,14 +90,19 @@ VectorXd LeftOf(const VectorXd& y, const Eigen::MatrixXd& columns, const VectorX
   return y - scaled * matrix.ldlt().solve(scaled.transpose() * y);
 }
 
+/// Name of the signal or state that a curve follows; "t" is time.
+std::string FollowedBy(const Contender& curve) {
+  const EffectForm& form = curve.candidate.form();
+  // A need beside the parameter is what is followed.
+  const bool over_time = form.needs.size() == (form.terms.front().slot == "parameter" ? 1 : 0);
+  return over_time ? "t" : curve.candidate.binding.symbols.at(form.needs.back().name);
+}
+
 /// "K followed w by a curve"
 std::string AsIf(const Contender& curve) {
-  const EffectForm& form = curve.candidate.form();
-  const EffectTerm& term = form.terms.front();
+  const EffectTerm& term = curve.candidate.form().terms.front();
   const std::map<std::string, std::string>& symbols = curve.candidate.binding.symbols;
-  // A need beside the parameter is what is followed.
-  const bool over_time = form.needs.size() == (term.slot == "parameter" ? 1 : 0);
-  const std::string followed = over_time ? "time" : symbols.at(form.needs.back().name);
+  const std::string name = FollowedBy(curve), followed = name == "t" ? "time" : name;
   if (term.slot == "parameter") return symbols.at(term.of) + " followed " + followed + " by a curve";
   if (term.slot == "input") return "the plant got a curve of " + followed;
   return "a curve of " + followed + " were added to the " +
@@ -194,6 +201,10 @@ void Curves::FitThem() {
 }
 
 bool Curves::Holds(const Contender& curve, const Contender& c) const {
+  // What does not remember and explains more speaks against what does.
+  if (Remembers(c.candidate)) return false;
+  if (AreCurvesOfOneThing(c.candidate, curve.candidate)) return true;
+  if (!Reads(c.candidate, FollowedBy(curve)) && !ActsOnLaw(c.candidate)) return false;
   const std::vector<Index>& rows = view_.looked_at;
   const VectorXd apart = (c.trial.fit.prediction - curve.trial.fit.prediction)(rows);
   const VectorXd base = (base_.model->target() - base_.fit.prediction)(rows);
@@ -208,6 +219,20 @@ void Curves::Judge(Contender* curve) {
   curve->alone = Compare(view_, *curve, base_, false);
 }
 
+std::optional<Rival> Curves::BendOf(const Contender& c, const std::vector<const Candidate*>& before) {
+  if (!fitted_) FitThem();
+  for (Contender& curve : *fitted_) {
+    const std::string followed = FollowedBy(curve);
+    const auto bent =
+        std::find_if(before.begin(), before.end(), [&](const Candidate* b) { return Reads(*b, followed); });
+    if (!curve.refined || bent == before.end() || curve.closed < kAsMuch * c.closed) continue;
+    Judge(&curve);
+    if (1.0 - curve.alone.folds < kAsMuch * (1.0 - c.alone.folds)) continue;
+    return Rival{AsIf(curve), "explains as much; the formula of " + (*bent)->entry->name + " may be as little off"};
+  }
+  return std::nullopt;
+}
+
 std::string Curves::Best() {
   if (!fitted_) FitThem();
   if (fitted_->empty() || fitted_->front().closed < kLargerPart) return "";
@@ -216,7 +241,7 @@ std::string Curves::Best() {
   return best.alone.folds < kLargerPart && best.alone.blocks < 1.0 ? AsIf(best) : "";
 }
 
-std::optional<Rival> Curves::RivalOf(const Contender& c) {
+std::optional<Rival> Curves::RivalOf(const Contender& c, bool smaller_part) {
   if (!fitted_) FitThem();
   if (fitted_->empty()) return std::nullopt;
   // The best one and what does as well: several that act alike are the rule, and one that holds it is enough.
@@ -225,11 +250,13 @@ std::optional<Rival> Curves::RivalOf(const Contender& c) {
   for (Contender& curve : *fitted_) {
     // What is not far better where it was fitted is not where it was not.
     if (!curve.refined || 1.0 - curve.closed > left || 1.0 - c.closed < kFarBetter * (1.0 - curve.closed)) continue;
-    if (Holds(curve, c)) return std::nullopt;  // the same physics with a better formula
+    // The same physics with a better formula. But one curve is simpler than two effects.
+    if (!smaller_part && Holds(curve, c)) return std::nullopt;
     if (rival) continue;
     Judge(&curve);
     const double times = c.alone.folds / std::max(curve.alone.folds, 1e-12);
-    if (times < kFarBetter || !BetterEverywhere(curve, c)) continue;
+    // Nobody asks a curve how it goes on where it has not been seen; but it may not lead astray there.
+    if (times < kFarBetter || curve.alone.blocks > c.alone.blocks || curve.alone.regions > 1.0) continue;
     rival = Rival{AsIf(curve), LeavesLess(times) + ", and has another shape"};
   }
   return rival;

@@ -22,8 +22,14 @@ class Curves {
          const DataScales& scales);
 
   /// The curve that rules a contender out; nothing where none does.
+  /// @param smaller_part  It would be named only with another one: then a curve that holds it rules it out, too.
   /// @pre c.trial.judged.
-  [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
+  [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c, bool smaller_part);
+
+  /// The curve of something that an effect named before reads, if it explains as much as a contender: that effect's
+  /// formula may be as little off.
+  /// @pre c.trial.judged.
+  [[nodiscard]] std::optional<Rival> BendOf(const Contender& c, const std::vector<const Candidate*>& before);
 
   /// The best of them, in words; empty where it leaves half of the squared error or more.
   [[nodiscard]] std::string Best();
@@ -33,6 +39,7 @@ class Curves {
   void Judge(Contender* curve);
   /// Of those that act differently the ones that explain most, by one step from the model without them.
   [[nodiscard]] std::vector<Candidate> MostPromising() const;
+  /// Whether a curve can do what an effect does: in place of it, or as a curve of something that the effect reads, too.
   [[nodiscard]] bool Holds(const Contender& curve, const Contender& c) const;
 
   const std::shared_ptr<const Plant>& plant_;

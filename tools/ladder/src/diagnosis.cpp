@@ -153,6 +153,11 @@ class Teller {
       for (const std::size_t i : rung.named) told.effects.push_back(NameOf(rung.contenders[i]));
       const WholeRun run = RunWhole(data_, leader.trial);
       told.heldout_error = FitOn(run, rows_, leader.trial.fit.error_sd).rmse;
+      if (!std::isfinite(told.heldout_error)) {  // that of the last model that does not run away
+        told.heldout_error = result_.ladder.empty() ? result_.gap.before.rmse : result_.ladder.back().heldout_error;
+        result_.notes.push_back(leader.candidate.entry->name +
+                                " alone runs away on data kept apart: named for what follows");
+      }
       told.closed_fraction = Closed(told.heldout_error);
       told.probability = rung.probability;
       told.provisional = rung.provisional;

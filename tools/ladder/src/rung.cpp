@@ -43,13 +43,12 @@ std::size_t NumParameters(const Contender& c) { return c.candidate.form().parame
 
 /// Whether a frequency would be lower than the data can show it to be one.
 bool TooSlow(const Contender& c) {
-  const identify::TrajectoryModel& model = *c.trial.model;
-  const Eigen::VectorXd lower = model.Lower();
-  for (auto d = static_cast<Eigen::Index>(c.candidate.first_parameter); d < model.num_parameters(); ++d) {
-    const ParameterDescription& p = model.parameters()[static_cast<std::size_t>(d)];
-    if (p.prior == "lognormal" && p.unit.starts_with("1/") && c.trial.fit.theta[d] <= lower[d] + kAtBound) return true;
-  }
-  return false;
+  const Eigen::VectorXd lower = c.trial.model->Lower();
+  const std::vector<Frequency> frequencies = c.candidate.Frequencies();
+  return std::any_of(frequencies.begin(), frequencies.end(), [&](const Frequency& frequency) {
+    const auto d = static_cast<Eigen::Index>(frequency.parameter);
+    return c.trial.fit.theta[d] <= lower[d] + kAtBound;
+  });
 }
 
 /// One where amplitudes alone are sought, which vanish at 0 and in which laws are linear; more where a shape is.
@@ -113,7 +112,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     }
   // From what the model so far has, or from anywhere where `known` is empty.
   const auto try_from = [&](const Eigen::VectorXd& known, std::size_t starts, Contender* c) {
-    Trial trial = Try(c->candidate.plant, quick(*c)->data, known, starts);
+    Trial trial = Try(c->candidate.plant, quick(*c)->data, known, starts, c->candidate.Frequencies());
     if (!trial.fit.valid || (c->trial.fit.valid && !(trial.fit.cost < c->trial.fit.cost))) return;
     c->trial = std::move(trial);
     c->closed = std::clamp(1.0 - Square(c->trial) / quick(*c)->square, 0.0, 1.0);
@@ -156,6 +155,30 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     all[i].alone = Compare(view, all[i], rung->base, false);
     all[i].beside = Compare(view, all[i], rung->base, true);
   });
+}
+
+Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Rung& rung) {
+  constexpr std::size_t kTried = 4;
+  constexpr double kBetter = 0.99;  // of the error: more than where fits end
+  Trial best;
+  if (!IsSimulated(plant->description())) return best;
+  std::vector<const Contender*> first;
+  for (const Contender& c : rung.contenders)
+    if (c.refined) first.push_back(&c);
+  std::stable_sort(first.begin(), first.end(),
+                   [](const Contender* a, const Contender* b) { return a->closed > b->closed; });
+  first.resize(std::min(first.size(), kTried));
+  std::vector<Trial> trials(first.size());
+  InParallel(first.size(), [&](std::size_t i) {
+    trials[i] = Refine(plant, data, first[i]->trial.fit.theta.head(rung.base.fit.theta.size()));
+  });
+  double least = kBetter * rung.base.fit.error_sd;
+  for (Trial& trial : trials)
+    if (trial.fit.valid && trial.fit.error_sd < least) {
+      least = trial.fit.error_sd;
+      best = std::move(trial);
+    }
+  return best;
 }
 
 void Bootstrap(Rung* rung) {

@@ -13,6 +13,11 @@ namespace armcmc::ladder {
 void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung,
             std::vector<std::string>* notes);
 
+/// A better fit of the model so far than it has, from where effects that explain most have its parameters: what runs
+/// freely may be caught far from its best, and every effect that takes part in the search would seem to be missing.
+/// @return not valid where there is none.
+[[nodiscard]] Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Rung& rung);
+
 /// Fills gain_share and win_share from bootstrap samples of the short stretches.
 void Bootstrap(Rung* rung);
 

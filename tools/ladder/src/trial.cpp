@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "frequencies.hpp"
 #include "held_out.hpp"
 
 namespace armcmc::ladder {
@@ -29,62 +29,6 @@ std::vector<double> PlacesOf(const identify::TrajectoryModel& model, const Datas
     if (!values.empty() && values.front() < values.back()) return values;
   }
   return {};
-}
-
-/// Angular frequency along x at which errors have most power, by a plain periodogram.
-double StrongestFrequency(const VectorXd& error, const VectorXd& x) {
-  constexpr Index kMost = 4000;
-  const double range = x.maxCoeff() - x.minCoeff();
-  double strongest = 0.0, power = 0.0;
-  // Waves of one more half turn over the range each: turned on by the slowest one.
-  const Eigen::ArrayXd phase = std::numbers::pi / range * x.array();
-  const Eigen::ArrayXd turn_cos = phase.cos(), turn_sin = phase.sin();
-  Eigen::ArrayXd cosine = turn_cos, sine = turn_sin, turned(x.size());
-  // Past the highest frequency that so many rows can tell there is nothing to seek.
-  const Index last = std::min(kMost, 2 * x.size());
-  for (Index half_turns = 2; half_turns < last; ++half_turns) {
-    turned = cosine * turn_cos - sine * turn_sin;
-    sine = sine * turn_cos + cosine * turn_sin;
-    cosine.swap(turned);
-    const double c = error.dot(cosine.matrix()), s = error.dot(sine.matrix());
-    if (c * c + s * s > power) {
-      power = c * c + s * s;
-      strongest = std::numbers::pi * static_cast<double>(half_turns) / range;
-    }
-  }
-  return strongest;
-}
-
-/// Starts at the strongest frequency of what the smaller model leaves, for parameters that are one over time, a signal
-/// or a state: a fit finds a frequency only from next to it.
-void AddFrequencies(const identify::TrajectoryModel& model, const Dataset& data, Index first,
-                    std::vector<VectorXd>* starts) {
-  const PlantDescription& plant = model.plant().description();
-  const VectorXd start = starts->front();
-  VectorXd prediction;
-  for (Index d = first; d < start.size(); ++d) {
-    const ParameterDescription& p = model.parameters()[static_cast<std::size_t>(d)];
-    if (p.prior != "lognormal" || !p.unit.starts_with("1/") || !model.PredictOne(start, &prediction)) continue;
-    std::vector<Index> rows;
-    for (std::size_t n = 0; n < data.training.size(); ++n)
-      if (data.training[n] != 0 && model.active()[n] != 0) rows.push_back(static_cast<Index>(n));
-    const VectorXd error = (model.target() - prediction)(rows);
-    const auto try_along = [&](const std::string& unit, const VectorXd& along) {
-      if ((p.unit != "1/" + unit && p.unit != "1/(" + unit + ")") || !(along.maxCoeff() > along.minCoeff())) return;
-      VectorXd more = start;
-      more[d] = std::log(StrongestFrequency(error, along(rows)));
-      starts->push_back(more.cwiseMax(model.Lower()).cwiseMin(model.Upper()));
-    };
-    const auto size = static_cast<Index>(model.num_rows());
-    try_along("s", Eigen::Map<const VectorXd>(model.series().t.data(), size));
-    for (std::size_t s = 0; s < plant.signals.size(); ++s)
-      if (static_cast<int>(s) != model.plant().output())
-        try_along(plant.signals[s].unit, Eigen::Map<const VectorXd>(model.series().signals[s].data(), size));
-    if (plant.states.empty()) continue;
-    const Eigen::MatrixXd states = model.States(start);
-    for (std::size_t s = 0; s < plant.states.size(); ++s)
-      try_along(plant.states[s].unit, states.col(static_cast<Index>(s)));
-  }
 }
 
 /// Law and flexible function together, about fits that leave one group out each.
@@ -143,7 +87,8 @@ Eigen::VectorXd Deviation(const Dataset& data, const Plant& plant) {
 }  // namespace
 
 std::vector<Eigen::VectorXd> Starts(const identify::TrajectoryModel& model, const Dataset& data,
-                                    const Eigen::VectorXd& known, std::size_t count) {
+                                    const Eigen::VectorXd& known, std::size_t count,
+                                    const std::vector<Frequency>& frequencies) {
   const Eigen::VectorXd centre = model.Start(), spread = model.Spread(), lower = model.Lower(), upper = model.Upper();
   std::vector<std::vector<double>> places;
   for (const ParameterDescription& p : model.parameters()) places.push_back(PlacesOf(model, data, p));
@@ -165,7 +110,7 @@ std::vector<Eigen::VectorXd> Starts(const identify::TrajectoryModel& model, cons
     }
     starts.push_back(start.cwiseMax(lower).cwiseMin(upper));
   }
-  if (count > 1) AddFrequencies(model, data, known.size(), &starts);
+  AddFrequencies(model, data, frequencies, &starts);
   return starts;
 }
 
@@ -188,13 +133,13 @@ Dataset QuickPart(const Plant& plant, const Dataset& data, const Eigen::VectorXd
 }
 
 Trial Try(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Eigen::VectorXd& known,
-          std::size_t starts) {
+          std::size_t starts, const std::vector<Frequency>& frequencies) {
   constexpr int kIterations = 12;
   constexpr std::size_t kFits = 3;
   Trial trial;
   trial.model = std::make_shared<const identify::TrajectoryModel>(plant, data.series);
-  trial.fit = identify::BestFit(*trial.model, data.training, Starts(*trial.model, data, known, starts), kFits,
-                                kIterations, known.size() == 0);
+  trial.fit = identify::BestFit(*trial.model, data.training, Starts(*trial.model, data, known, starts, frequencies),
+                                kFits, kIterations, known.size() == 0);
   return trial;
 }
 

@@ -29,7 +29,7 @@ PlantDescription About(const PlantDescription& plant, const Trial& trial, const 
       tuned.parameters.erase(at);
     } else if (about_fit && at->prior != "uniform") {
       at->mean = value;
-      at->sd = std::clamp(kWider * sd[d], 1e-6 * at->sd, at->sd);
+      at->sd = std::clamp(kWider * sd[d], 1e-12 * at->sd, at->sd);
     }
   }
   if (about_fit) tuned.noise.std = std::max(trial.fit.error_sd, 1e-300);

@@ -10,6 +10,12 @@
 
 namespace armcmc::ladder {
 
+/// A parameter that is a number of radians per unit of something.
+struct Frequency {
+  std::size_t parameter;  ///< Of the plant; its logarithm is fitted.
+  std::string along;      ///< Signal or state; empty: time.
+};
+
 /// A plant with one more effect.
 struct Candidate {
   const EffectEntry* entry = nullptr;  ///< Of the entries that were asked for.
@@ -18,6 +24,8 @@ struct Candidate {
   std::size_t first_parameter = 0;  ///< Of the effect, among the plant's.
 
   [[nodiscard]] const EffectForm& form() const { return entry->forms[binding.form]; }
+  /// Those of the effect: positive ones with the unit "1/s", or one over that of something it needs.
+  [[nodiscard]] std::vector<Frequency> Frequencies() const;
 };
 
 /// Every way in which one more effect of `entries` fits the plant; what does not fit a plant's limits is left out and

@@ -93,11 +93,16 @@ struct ClimbRequest {
 ///    that leaves less than half and is better wherever it is looked for. Behind a tie nothing more is named: it would
 ///    stand on what is not known. So each of them shows the form of it that predicts best.
 /// 4. Nothing simpler to say. What leaves more than noise is ruled out by a curve: one part of the law that follows one
-///    quantity in a way that no formula of the catalogue has, leaves less than half, is better wherever it is looked
-///    for, and does not hold the effect: its best copy of what the effect predicts is off by more than a tenth of
-///    the squared error that the effect leaves. So it is where the model as it is leaves less on smoother signals, of
-///    those that are rates of others: their noise is what is unexplained.
-/// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain; and where a
+///    quantity in a way that no formula of the catalogue has, leaves less than half, is better in blocks, does not lose
+///    in regions, and does not hold the effect. It holds none that remembers; one that is a function of the same
+///    quantity in the same equations; and one that reads that quantity, where its best copy of what the effect predicts
+///    is off by less than a tenth of the squared error that the effect leaves; and none that needs the next one to take
+///    the larger part, as one curve is simpler than two effects. So it is where the model as it is leaves
+///    less on smoother signals, of those that are rates of others: their noise is what is unexplained. And an effect of
+///    another family that is less than a third of what was named before is ruled out by a curve that explains as much
+///    and follows what that reads.
+/// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain, or cannot be
+///    predicted with it, unless they can with the next one, too; and where a
 ///    later rung names it again in the same place and it is an effect of which two are pieces of a curve that is none
 ///    of theirs, as plays are of a spring that stiffens.
 [[nodiscard]] Ladder Climb(const ClimbRequest& request);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "armcmc/identify/fit.hpp"
+#include "armcmc/ladder/candidates.hpp"
 #include "armcmc/ladder/dataset.hpp"
 #include "armcmc/ladder/view.hpp"
 
@@ -23,9 +24,11 @@ struct Trial {
 
 /// Parameter vectors to begin a fit with: the prior's centre, and others about it; for parameters with the unit of a
 /// signal also values of that signal.
-/// @param known  [parameter] The first ones, where a smaller model has its best; may be empty.
+/// @param known        [parameter] The first ones, where a smaller model has its best; may be empty.
+/// @param frequencies  One more start each, at the strongest one of what is not explained.
 [[nodiscard]] std::vector<Eigen::VectorXd> Starts(const identify::TrajectoryModel& model, const Dataset& data,
-                                                  const Eigen::VectorXd& known, std::size_t count);
+                                                  const Eigen::VectorXd& known, std::size_t count,
+                                                  const std::vector<Frequency>& frequencies = {});
 
 /// True where the law at one row depends on earlier ones.
 [[nodiscard]] bool Remembers(const Plant& plant);
@@ -47,9 +50,9 @@ struct Trial {
 /// finite value.
 [[nodiscard]] Trial FitAlone(const std::shared_ptr<const Plant>& plant, Dataset* data);
 
-/// Best of fits to the training rows of `data` from `starts` starts.
+/// Best of fits to the training rows of `data` from `starts` starts, and one at each frequency.
 [[nodiscard]] Trial Try(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Eigen::VectorXd& known,
-                        std::size_t starts);
+                        std::size_t starts, const std::vector<Frequency>& frequencies = {});
 /// A fit that begins where one on other rows ended.
 [[nodiscard]] Trial Refine(const std::shared_ptr<const Plant>& plant, const Dataset& data,
                            const Eigen::VectorXd& theta);

@@ -1,0 +1,87 @@
+#include "action.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <utility>
+
+namespace armcmc::ladder {
+namespace {
+
+using expression::Graph;
+using expression::SymbolKind;
+
+using Reading = std::set<std::pair<SymbolKind, int>>;  ///< Signals, states, time.
+using Equations = std::map<std::size_t, Reading>;
+
+/// What the action of an effect depends on, by equation: d equation / d each of its parameters. Nothing where it
+/// remembers.
+std::optional<Equations> ActionOf(const Candidate& effect) {
+  Graph graph = effect.plant->graph();
+  std::vector<int> nodes;
+  for (const PlantMode& mode : effect.plant->modes()) nodes.insert(nodes.end(), {mode.when, mode.law});
+  for (const PlantState& state : effect.plant->states()) nodes.insert(nodes.end(), {state.start, state.rate});
+  std::vector<int> symbols;
+  for (int node = 0; node < graph.size(); ++node) {
+    const expression::GraphNode& at = graph.at(node);
+    const bool moves = at.kind == SymbolKind::kSignal || at.kind == SymbolKind::kTime || at.kind == SymbolKind::kState;
+    if (at.op == expression::Op::kSymbol && moves) symbols.push_back(node);
+  }
+  Equations equations;
+  for (std::size_t p = 0; p < effect.form().parameters.size(); ++p) {
+    const int parameter = graph.Symbol(SymbolKind::kParameter, static_cast<int>(effect.first_parameter + p));
+    for (std::size_t e = 0; e < nodes.size(); ++e) {
+      if (nodes[e] < 0 || !graph.DependsOn(nodes[e], parameter)) continue;
+      const int action = graph.Differentiate(nodes[e], parameter);
+      if (action < 0 || graph.at(action).memory) return std::nullopt;
+      Reading& reads = equations[e];
+      for (const int symbol : symbols)
+        if (graph.DependsOn(action, symbol)) reads.emplace(graph.at(symbol).kind, graph.at(symbol).index);
+    }
+  }
+  return equations;
+}
+
+/// Whether a name is in the formulas of an effect.
+bool Says(const EffectForm& form, const std::string& name) {
+  const std::regex whole("\\b" + name + "\\b");
+  const auto says = [&whole](const std::string& text) { return std::regex_search(text, whole); };
+  return std::any_of(form.terms.begin(), form.terms.end(), [&](const EffectTerm& t) { return says(t.formula); }) ||
+         std::any_of(form.lets.begin(), form.lets.end(), [&](const LetDescription& l) { return says(l.text); }) ||
+         std::any_of(form.states.begin(), form.states.end(), [&](const StateDescription& s) { return says(s.rate); });
+}
+
+}  // namespace
+
+bool AreCurvesOfOneThing(const Candidate& a, const Candidate& b) {
+  const std::optional<Equations> of_a = ActionOf(a);
+  if (!of_a || of_a->empty()) return false;
+  const bool one = std::all_of(of_a->begin(), of_a->end(), [](const auto& e) { return e.second.size() == 1; });
+  return one && of_a == ActionOf(b);
+}
+
+bool Reads(const Candidate& effect, const std::string& name) {
+  const EffectForm& form = effect.form();
+  if (name == "t") return Says(form, name);
+  return std::any_of(form.needs.begin(), form.needs.end(), [&](const EffectNeed& need) {
+    // A state may be needed for its rate alone, to which the effect is added.
+    return need.kind != "parameter" && effect.binding.symbols.at(need.name) == name && Says(form, need.name);
+  });
+}
+
+bool Remembers(const Candidate& effect) {
+  const EffectForm& form = effect.form();
+  return !form.states.empty() ||
+         std::any_of(expression::kOps.begin(), expression::kOps.end(), [&](const expression::OpInfo& op) {
+           return op.memory && op.function && Says(form, std::string(op.name));
+         });
+}
+
+bool ActsOnLaw(const Candidate& effect) {
+  const std::vector<EffectTerm>& terms = effect.form().terms;
+  return std::any_of(terms.begin(), terms.end(), [](const EffectTerm& term) { return term.slot == "law"; });
+}
+
+}  // namespace armcmc::ladder
