@@ -9,9 +9,31 @@ namespace armcmc {
 namespace {
 
 constexpr std::array<double, 4> kDampings{0.0, 1e-2, 1.0, 100.0};
-constexpr std::array<double, 8> kLengths{1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 1.5, 0.0};
+/// A step that is tried: which of the dampings, and by how much it is shortened or drawn out.
+struct Trial {
+  std::size_t damping;
+  double length;
+};
+/// Beside Newton's own step, in lanes that its linearisation leaves: as many as there are.
+constexpr std::array<Trial, 15> kBeside{{{0, 1.5},
+                                         {2, 1.5},
+                                         {0, 0.5},
+                                         {2, 0.5},
+                                         {0, 0.25},
+                                         {3, 0.25},
+                                         {0, 0.1},
+                                         {1, 1.0},
+                                         {3, 1.0},
+                                         {2, 0.1},
+                                         {2, 1.0},
+                                         {3, 0.1},
+                                         {1, 1.5},
+                                         {0, 0.03},
+                                         {3, 0.03}}};
+/// With every damping, where none of those is uphill.
+constexpr std::array<double, 8> kLengths{0.7, 0.35, 0.15, 0.06, 0.03, 0.01, 0.003, 0.001};
 constexpr double kDifference = 1e-4;  // in prior standard deviations; error of central differences about 1e-8
-constexpr double kConverged = 1e-6;   // nats that a Newton step promises
+constexpr double kGoodEnough = 0.8;   // of the best gain: what is linearised already is taken
 
 /// Writes one candidate into a lane of the batch.
 void SetLane(const ParameterSpace& space, const ParamVector& u, int lane, ThetaTile* theta,
@@ -66,20 +88,27 @@ double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
   return -sum;
 }
 
-/// Predictions at u, in lane 0, and a little to either side of it in each parameter d, in lanes 1 + 2 d and 2 + 2 d.
-void PredictAround(const simd::Kernels& kernels, int model, const ModeData& data, const ParameterSpace& space,
-                   const ParamVector& u, LaplaceScratch* scratch) noexcept {
-  ThetaTile& theta = scratch->theta;
+/// u in every lane, but a little to either side of it in each parameter d in lanes 1 + 2 d and 2 + 2 d.
+void SetAround(const ParameterSpace& space, const ParamVector& u, ThetaTile* theta) noexcept {
   for (std::size_t d = 0; d < static_cast<std::size_t>(space.num_parameters); ++d) {
     const auto value = [&](double shift) noexcept {
       return space.Theta(static_cast<int>(d), u[static_cast<Eigen::Index>(d)] + shift);
     };
-    theta.value[d].fill(value(0.0));
-    theta.value[d][1 + 2 * d] = value(kDifference);
-    theta.value[d][2 + 2 * d] = value(-kDifference);
+    theta->value[d].fill(value(0.0));
+    theta->value[d][1 + 2 * d] = value(kDifference);
+    theta->value[d][2 + 2 * d] = value(-kDifference);
   }
-  const bool half = 1 + 2 * space.num_parameters <= kTileLanes / 2;
-  (half ? kernels.predict_half : kernels.predict)(model, data, theta, &scratch->prediction);
+}
+
+/// Lanes that are predicted, of which the first 1 + 2 num_parameters are those of SetAround().
+int LanesAround(const ParameterSpace& space) noexcept {
+  return 1 + 2 * space.num_parameters <= kTileLanes / 2 ? kTileLanes / 2 : kTileLanes;
+}
+
+void PredictAround(const simd::Kernels& kernels, int model, const ModeData& data, const ParameterSpace& space,
+                   LaplaceScratch* scratch) noexcept {
+  const bool half = LanesAround(space) < kTileLanes;
+  (half ? kernels.predict_half : kernels.predict)(model, data, scratch->theta, &scratch->prediction);
 }
 
 /// d F_n / d u_d, after PredictAround().
@@ -88,14 +117,12 @@ double Slope(const LaplaceScratch& scratch, std::size_t n, int d) noexcept {
   return (row[static_cast<std::size_t>(1 + 2 * d)] - row[static_cast<std::size_t>(2 + 2 * d)]) / (2.0 * kDifference);
 }
 
-/// Gradient and Gauss-Newton Hessian of minus the log posterior at u.
-void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-               const ParameterSpace& space, const Gaussian& prior, const ParamVector& u, LaplaceScratch* scratch,
-               ParamVector* gradient, ParamMatrix* hessian) noexcept {
+/// Gradient and Gauss-Newton Hessian of minus the log posterior at u, after PredictAround().
+void Linearise(const ModeData& data, const NoiseModel& noise, const ParameterSpace& space, const Gaussian& prior,
+               const ParamVector& u, const LaplaceScratch& scratch, ParamVector* gradient,
+               ParamMatrix* hessian) noexcept {
   const int dim = space.dim;
   const int np = space.num_parameters;
-  PredictAround(kernels, model, data, space, u, scratch);
-
   *gradient = Multiply(prior.precision, u - prior.mean);
   *hessian = prior.precision;
   const double scale = std::exp(space.LogNoiseScale(u.data()));
@@ -103,11 +130,11 @@ void Linearise(const simd::Kernels& kernels, int model, const ModeData& data, co
   std::array<double, kMaxParams> jacobian{};
   for (int n = 0; n < data.num_samples; ++n) {
     const auto in = static_cast<std::size_t>(n);
-    const auto& row = scratch->prediction.value[in];
+    const auto& row = scratch.prediction.value[in];
     const double w = data.weight[in];
     const double e = (data.target[in] - row[0] - noise.settings().mean) * w;
     const double square_weight = noise.SquareWeight(e, scale);
-    for (int d = 0; d < np; ++d) jacobian[static_cast<std::size_t>(d)] = w * Slope(*scratch, in, d);
+    for (int d = 0; d < np; ++d) jacobian[static_cast<std::size_t>(d)] = w * Slope(scratch, in, d);
     for (int i = 0; i < np; ++i) {
       const double ji = square_weight * jacobian[static_cast<std::size_t>(i)];
       (*gradient)[i] -= ji * e;
@@ -130,7 +157,8 @@ LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const 
                                  const ParameterSpace& space, const ParamVector& u, double log_noise_scale,
                                  LaplaceScratch* scratch) noexcept {
   const int np = space.num_parameters;
-  PredictAround(kernels, model, data, space, u, scratch);
+  SetAround(space, u, &scratch->theta);
+  PredictAround(kernels, model, data, space, scratch);
   LocalLikelihood local{ParamVector::Zero(np), ParamMatrix::Zero(np, np)};
   const double scale = std::exp(log_noise_scale);
   const double information = noise.information() / (scale * scale);
@@ -152,60 +180,96 @@ LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const 
 }
 
 double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-                  const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,
-                  Gaussian* fit) noexcept {
+                  const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, double tolerance,
+                  LaplaceScratch* scratch, Gaussian* fit) noexcept {
   const int dim = space.dim;
+  const int around = 1 + 2 * space.num_parameters;
+  const int lanes = LanesAround(space);
   alignas(64) double log_scale[kTileLanes];
   alignas(64) double log_likelihood[kTileLanes];
   std::array<ParamVector, kTileLanes> trial;
-  ParamVector u = start;
-  Clamp(space, &u);
   ParamVector gradient(dim);
   ParamMatrix hessian(dim, dim);
-  double best = -HUGE_VAL;
-  bool linearised = false;  // at u, or so close to it that it makes no difference
-  for (int iteration = 0; iteration < kLaplaceIterations; ++iteration) {
-    Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
+  ParamVector u = start;
+  Clamp(space, &u);
+  const auto predict_around = [&](const ParamVector& v) noexcept ARMCMC_NONBLOCKING {
+    SetAround(space, v, &scratch->theta);
+    PredictAround(kernels, model, data, space, scratch);
+  };
+  const auto value_of = [&](int lane) noexcept {
+    return log_likelihood[lane] + LogPrior(prior, trial[static_cast<std::size_t>(lane)]);
+  };
+
+  predict_around(u);
+  trial[0] = u;
+  std::fill_n(log_scale, kTileLanes, space.LogNoiseScale(u.data()));
+  kernels.log_likelihood(noise, data, scratch->prediction, log_scale, log_likelihood);
+  double best = value_of(0);
+  if (!std::isfinite(best)) best = -HUGE_VAL;
+  bool ends = false;  // at u
+  for (int iteration = 0; iteration <= kLaplaceIterations; ++iteration) {
+    Linearise(data, noise, space, prior, u, *scratch, &gradient, &hessian);
+    if (ends || iteration == kLaplaceIterations) break;
     ParamVector free_gradient = gradient;
     ParamMatrix free_hessian = hessian;
     HoldPressed(space, u, &free_gradient, &free_hessian);
     const ParamVector newton = DampedStep(free_hessian, free_gradient, 0.0);
     const double promised = -0.5 * free_gradient.dot(newton);
-    linearised = iteration > 0 && promised < kConverged;
-    if (linearised) {
+    if (promised < tolerance) {
       best += std::fmax(promised, 0.0);
       u += newton;
       Clamp(space, &u);
       break;
     }
-    int lane = 0;
-    for (const double damping : kDampings) {
-      const ParamVector step = damping > 0.0 ? DampedStep(free_hessian, free_gradient, damping) : newton;
-      for (const double length : kLengths) {
-        ParamVector& candidate = trial[static_cast<std::size_t>(lane)];
-        candidate = u + length * step;
-        Clamp(space, &candidate);
-        SetLane(space, candidate, lane, &scratch->theta, log_scale);
-        ++lane;
-      }
-    }
-    kernels.score(model, noise, data, scratch->theta, log_scale, &scratch->prediction, log_likelihood);
+    std::array<ParamVector, kDampings.size()> damped;
+    damped[0] = newton;
+    for (std::size_t k = 1; k < kDampings.size(); ++k)
+      damped[k] = DampedStep(free_hessian, free_gradient, kDampings[k]);
+    const auto set_trial = [&](std::size_t damping, double length, int lane) noexcept {
+      ParamVector& candidate = trial[static_cast<std::size_t>(lane)];
+      candidate = u + length * damped[damping];
+      Clamp(space, &candidate);
+      SetLane(space, candidate, lane, &scratch->theta, log_scale);
+    };
     int chosen = -1;
     double chosen_value = best;
-    for (int l = 0; l < kTileLanes; ++l) {
-      const double value = log_likelihood[l] + LogPrior(prior, trial[static_cast<std::size_t>(l)]);
-      if (value > chosen_value) {
-        chosen_value = value;
-        chosen = l;
-      }
+    const auto choose = [&](int lane) noexcept {
+      const double value = value_of(lane);
+      if (!(value > chosen_value)) return;
+      chosen_value = value;
+      chosen = lane;
+    };
+
+    // Newton's step with all that a linearisation there needs, and others beside it.
+    trial[0] = u + newton;
+    Clamp(space, &trial[0]);
+    SetAround(space, trial[0], &scratch->theta);
+    std::fill_n(log_scale, kTileLanes, space.LogNoiseScale(trial[0].data()));
+    for (int lane = around; lane < lanes; ++lane) {
+      const Trial& beside = kBeside[static_cast<std::size_t>(lane - around)];
+      set_trial(beside.damping, beside.length, lane);
     }
-    if (chosen < 0) break;
-    const bool converged = chosen_value - best < 1e-6 * (1.0 + std::fabs(chosen_value));
+    PredictAround(kernels, model, data, space, scratch);
+    kernels.log_likelihood(noise, data, scratch->prediction, log_scale, log_likelihood);
+    for (int lane = around; lane < lanes; ++lane) choose(lane);
+    const double full = value_of(0);
+    const bool newton_does = full > best && !(full - best < kGoodEnough * (chosen_value - best));
+    if (newton_does) {
+      chosen = 0;
+      chosen_value = full;
+    } else if (chosen < 0) {
+      int lane = 0;
+      for (std::size_t k = 0; k < kDampings.size(); ++k)
+        for (const double length : kLengths) set_trial(k, length, lane++);
+      kernels.score(model, noise, data, scratch->theta, log_scale, &scratch->prediction, log_likelihood);
+      for (lane = 0; lane < kTileLanes; ++lane) choose(lane);
+      if (chosen < 0) break;
+    }
+    ends = chosen_value - best < std::fmax(tolerance, 1e-6 * (1.0 + std::fabs(chosen_value)));
     best = chosen_value;
     u = trial[static_cast<std::size_t>(chosen)];
-    if (converged) break;
+    if (!newton_does) predict_around(u);
   }
-  if (!linearised) Linearise(kernels, model, data, noise, space, prior, u, scratch, &gradient, &hessian);
   // Pressed against a bound with slope g the posterior falls off like exp(-g x), with standard deviation 1 / g.
   for (int d = 0; d < dim; ++d)
     if (IsPressed(space, u, gradient, d)) hessian(d, d) += gradient[d] * gradient[d];

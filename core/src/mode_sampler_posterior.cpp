@@ -60,7 +60,7 @@ void ModeSampler::FindMode(const ModeData& data, bool climb, SamplerWorkspace* w
     for (int d = 0; d < space_.dim; ++d)
       prior.precision(d, d) = std::fmax(space_.normal[static_cast<std::size_t>(d)], 1e-9);
     Gaussian fit;
-    LaplaceFit(kernels_, model_, data, noise_, space_, prior, best, &ws->laplace, &fit);
+    LaplaceFit(kernels_, model_, data, noise_, space_, prior, best, kModeTolerance, &ws->laplace, &fit);
     if (fit.mean.allFinite()) best = fit.mean;
   }
   for (int d = 0; d < space_.dim; ++d) out->mode_u[static_cast<std::size_t>(d)] = best[d];

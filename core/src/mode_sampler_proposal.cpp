@@ -27,7 +27,7 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
   const int dim = space_.dim;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
   const auto fit_from = [&](const ParamVector& start, Gaussian* fit) noexcept ARMCMC_NONBLOCKING {
-    return LaplaceFit(kernels_, model_, data, noise_, space_, initial, start, &ws->laplace, fit);
+    return LaplaceFit(kernels_, model_, data, noise_, space_, initial, start, kModeTolerance, &ws->laplace, fit);
   };
   // Data that agree with the previous posterior have their mode near its mean.
   if (use_previous && !transition_.Offers(previous)) {
@@ -50,7 +50,8 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
     return;
   }
   const Gaussian prior{previous.mean, Inverse(previous.covariance)};
-  LaplaceFit(kernels_, model_, data, noise_, space_, prior, previous.mean, &ws->laplace, &fit_persisted_);
+  LaplaceFit(kernels_, model_, data, noise_, space_, prior, previous.mean, kModeTolerance, &ws->laplace,
+             &fit_persisted_);
   add(fit_persisted_);
 }
 
@@ -58,7 +59,7 @@ ParamVector ModeSampler::ModeFromPrior(const ModeData& data, SamplerWorkspace* w
   const int dim = space_.dim;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
   Gaussian fit;
-  (void)LaplaceFit(kernels_, model_, data, noise_, space_, initial, initial.mean, &ws->laplace, &fit);
+  (void)LaplaceFit(kernels_, model_, data, noise_, space_, initial, initial.mean, kModeTolerance, &ws->laplace, &fit);
   return fit.mean;
 }
 

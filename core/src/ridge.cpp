@@ -31,7 +31,8 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
   pinned.mean = SymmetricFactor(pinned.precision)
                     .Solve(Multiply(prior.precision, prior.mean) + kPinned * value * ParamVector::Unit(space.dim, j));
   Gaussian fit;
-  const double height = LaplaceFit(kernels, model, data, noise, space, pinned, begin, scratch, &fit);
+  const double height =
+      LaplaceFit(kernels, model, data, noise, space, pinned, begin, kProposalTolerance, scratch, &fit);
   ParamMatrix h = fit.precision;
   h(j, j) -= kPinned;
   // Conditional precision: the rows and columns other than j. Written with j's row replaced by a unit row.

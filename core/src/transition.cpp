@@ -39,7 +39,8 @@ Transition::Hypothesis Transition::Judge(const ModeData& data, const ParamVector
   h.mean = mean;
   h.covariance = covariance;
   const Gaussian prior{mean, Inverse(covariance)};
-  const double height = LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, scratch, &h.fit);
+  const double height =
+      LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, kModeTolerance, scratch, &h.fit);
   h.log_evidence = height + 0.5 * (LogDeterminant(prior.precision) - LogDeterminant(h.fit.precision));
   if (!std::isfinite(h.log_evidence)) h.log_evidence = -HUGE_VAL;
   return h;

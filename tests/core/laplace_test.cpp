@@ -28,7 +28,8 @@ struct Problem {
     prior = {ParamVector::Zero(space.dim), ParamMatrix::Identity(space.dim, space.dim)};
   }
   double Fit(const simd::Kernels& kernels, const ParamVector& start) {
-    return LaplaceFit(kernels, FindModel(settings.model), data, noise, space, prior, start, &scratch, &fit);
+    return LaplaceFit(kernels, FindModel(settings.model), data, noise, space, prior, start, kModeTolerance, &scratch,
+                      &fit);
   }
   /// Log of likelihood x prior at u, by the scalar law.
   [[nodiscard]] double Objective(const ParamVector& u) const {

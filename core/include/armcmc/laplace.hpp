@@ -42,16 +42,21 @@ struct LocalLikelihood {
 ///   H = J' W J + P,   step = (H + mu diag H)^-1 [J' W e + P (m - u)]
 ///
 /// W are the reweighted-least-squares weights of the noise law. J comes from central differences evaluated as lanes of
-/// one batch, so a model needs no derivatives; 4 dampings x 8 step lengths are tried as lanes of a second batch.
-/// Steps are clamped to the bounds of `space`. A step that promises less than a millionth of a nat is the last, and is
-/// taken without a trial; H is then that at its beginning.
+/// one batch, so a model needs no derivatives. The batch about the end of the undamped step (mu = 0) tells what that
+/// gains, and is the next iteration's where it is taken; damped, shorter and longer steps fill its other lanes. Where
+/// none of them is uphill 4 dampings x 8 lengths are tried as lanes of a batch of their own.
+/// Steps are clamped to the bounds of `space`. A step that promises less than `tolerance` is the last, and is taken
+/// without a trial; H is then that at its beginning.
 /// @param start      Where to begin, [dim].
+/// @param tolerance  In nats: kModeTolerance for the mode itself, kProposalTolerance for something to draw from.
 /// @param[out] fit   Mean = mode found, precision = H there. Positive definite because P is.
 /// @return Log of likelihood x prior at the mode (without the prior's constant).
-/// @rt No heap, no lock, no throw. At most kLaplaceIterations x 2 batches.
+/// @rt No heap, no lock, no throw. At most 1 + kLaplaceIterations x 3 batches.
 double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
-                  const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, LaplaceScratch* scratch,
-                  Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
-inline constexpr int kLaplaceIterations = 10;
+                  const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, double tolerance,
+                  LaplaceScratch* scratch, Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
+inline constexpr int kLaplaceIterations = 14;
+inline constexpr double kModeTolerance = 1e-6;
+inline constexpr double kProposalTolerance = 1e-2;
 
 }  // namespace armcmc

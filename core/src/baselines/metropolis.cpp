@@ -46,7 +46,8 @@ Status MetropolisFilter::Run(const ModeData& data, std::uint64_t pack, std::uint
   const int burn_in = wanted / 2;
   const Gaussian prior{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
   Gaussian fit;
-  (void)LaplaceFit(parts_.kernels, parts_.model, data, parts_.noise, parts_.space, prior, prior.mean, &scratch_, &fit);
+  (void)LaplaceFit(parts_.kernels, parts_.model, data, parts_.noise, parts_.space, prior, prior.mean, kModeTolerance,
+                   &scratch_, &fit);
   ParamVector state = fit.mean;
   for (int d = 0; d < dim; ++d) {
     const auto i = static_cast<std::size_t>(d);
