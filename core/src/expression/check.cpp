@@ -162,8 +162,8 @@ class Checker {
   static std::string Name(const UnitState& state) { return state.unit ? state.unit->Text() : "an unknown unit"; }
 
   static UnitState Alike(int column, const UnitState& a, const UnitState& b, std::string_view what) {
-    if (!a.unit || a.number) return a.number && b.number ? a : b.unit || a.number ? b : a;
-    if (!b.unit || b.number) return a;
+    if (a.number || b.number) return a.number && !b.number ? b : a;
+    if (!a.unit || !b.unit) return a.unit ? a : b;
     if (a.unit->Same(*b.unit)) return a;
     std::string message = "units do not fit: " + std::string(what) + " are " + Name(a) + " and " + Name(b);
     if (a.unit->SameDimension(*b.unit)) message += ", which differ by a factor";

@@ -44,6 +44,8 @@ TEST(Check, UnitsThatCannotBeToldAreLeftAlone) {
   EXPECT_EQ(UnitOf("max(x, 0)^p * K + B*v"), "N") << "the sum is what its other part is";
   EXPECT_EQ(UnitOf("g*x"), "?");
   EXPECT_EQ(UnitOf("g + x"), "m");
+  for (const char* beside_a_number : {"g + 1", "1 + g", "if(x > 0, x^p, 0)*p", "if(x > 0, 0, g)*p"})
+    EXPECT_EQ(UnitOf(beside_a_number), "?") << beside_a_number;
 }
 
 struct Wrong {
