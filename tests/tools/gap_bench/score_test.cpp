@@ -69,12 +69,49 @@ TEST(GradeOf, WhatTheCatalogueLacksHasNoRightName) {
   const Truth outside = Hidden({"backlash"}, "outside");
   EXPECT_EQ(GradeOf({}, outside, Said(gap::Verdict::kUnnamed)), Grade::kRight);
   EXPECT_EQ(GradeOf({}, outside, Said({{"contact_offset"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, Hidden({"strain_stiffening"}, "outside"), Said({{"cubic_stiffness"}})), Grade::kWrong);
   Case ablated;
   ablated.without = {"force_drift"};
   const Truth truth = Hidden({"force_drift"});
   EXPECT_EQ(GradeOf(ablated, truth, Said(gap::Verdict::kUnnamed)), Grade::kRight);
   EXPECT_EQ(GradeOf(ablated, truth, Said({{"force_bias"}})), Grade::kFamily);
   EXPECT_EQ(GradeOf(ablated, truth, Said({{"inertia"}})), Grade::kWrong);
+}
+
+TEST(GradeOf, WhatServesEveryPlantHasARightName) {
+  const Truth ripple = Hidden({"spatial_ripple"}, "outside");
+  EXPECT_EQ(GradeOf({}, ripple, Said({{"cogging"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, ripple, Said({{"cogging"}, {"inertia"}})), Grade::kTie);
+  EXPECT_EQ(GradeOf({}, ripple, Said({{"cogging", "inertia"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, ripple, Said({{"drag"}})), Grade::kWrong);
+  EXPECT_TRUE(LabelRight({}, ripple, "cogging"));
+  EXPECT_FALSE(LabelRight({}, ripple, "drag"));
+  EXPECT_EQ(GradeOf({}, Hidden({"quadratic_drag"}, "outside"), Said({{"drag"}})), Grade::kRight);
+  // Beside what the plant's own catalogue has it may be named.
+  Truth truth = Hidden({"coulomb_friction"});
+  truth.effects.push_back(ripple.effects.front());
+  EXPECT_EQ(GradeOf({}, truth, Said({{"coulomb_friction", "cogging"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, truth, Said({{"coulomb_friction", "drag"}})), Grade::kWrong);
+}
+
+TEST(GradeOf, WhatTheCatalogueIsMadeToLackHasTheNameOfTheSamePhysics) {
+  const Truth dahl = Hidden({"presliding_friction"});
+  Case ablated;
+  ablated.without = {"presliding_friction"};
+  EXPECT_EQ(GradeOf(ablated, dahl, Said({{"hysteresis"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, dahl, Said({{"hysteresis"}})), Grade::kWrong);
+}
+
+TEST(GradeOf, AFamilyMayBeNamedByTwoOfItsEffects) {
+  EXPECT_EQ(GradeOf({}, Hidden({"sensor_delay"}), Said({{"sensor_delay", "sensor_lag"}})), Grade::kFamily);
+  EXPECT_EQ(GradeOf({}, Hidden({"sensor_delay"}), Said({{"sensor_delay", "inertia"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf({}, Hidden({"coulomb_friction", "presliding_friction"}), Said({{"coulomb_friction"}})),
+            Grade::kPartial);
+}
+
+TEST(GradeOf, ANameThatIsGivenTwiceIsOne) {
+  EXPECT_EQ(GradeOf({}, Hidden({"adhesion"}), Said({{"adhesion", "adhesion"}})), Grade::kRight);
+  EXPECT_EQ(GradeOf({}, Hidden({"adhesion"}), Said({{"adhesion", "adhesion", "inertia"}})), Grade::kWrong);
 }
 
 TEST(GradeOf, WhatNoCatalogueListsNeedsNoNameBesideWhatOneDoes) {

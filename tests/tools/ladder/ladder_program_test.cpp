@@ -136,6 +136,15 @@ TEST_F(LadderProgram, AnEffectThatIsLeftOutByAnyOfItsNamesIsNotTried) {
   }
 }
 
+TEST_F(LadderProgram, WhatShowsInTheRowsKeptApartAloneIsNotNothing) {
+  const std::filesystem::path csv = Simulate("[[hidden]]\nslot = \"output\"\nvalue = \"if(t > 15, 10, 0)\"\n");
+  const Outcome run = Gap({"--model", "servo_axis", "--data", csv});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(Result()["verdict"], "unnamed");
+  EXPECT_EQ(Result()["complete"], false);
+  EXPECT_THAT(run.out, HasSubstr("they show something that those do not"));
+}
+
 TEST_F(LadderProgram, SaysWhatIsWrongWithAnOrder) {
   const std::filesystem::path csv = Simulate("");
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& words) {

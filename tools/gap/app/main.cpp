@@ -15,6 +15,7 @@
 #include "armcmc/gap/result_json.hpp"
 #include "armcmc/gap/workflow.hpp"
 #include "armcmc/ladder/diagnosis.hpp"
+#include "armcmc/ladder/second_search.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/model_file.hpp"
@@ -216,6 +217,43 @@ void CheckWithout(const std::string& model, const std::vector<std::string>& with
   }
 }
 
+/// Step time of the estimator as it came and with what was named.
+Budget DescribedBudget(const support::Recording& recording, const ladder::Diagnosis& diagnosis,
+                       std::vector<std::string>* notes) {
+  if (diagnosis.before.program == nullptr || diagnosis.after.program == nullptr) return {};
+  replay::SourceRequest packs;
+  packs.recording = std::make_shared<const support::Recording>(recording);
+  packs.period = support::SuitablePackLength(recording.dt, kMaxPackSamples) * recording.dt;
+  try {
+    return MeasureBudget(DescribedSettings(diagnosis.before.program), DescribedSettings(diagnosis.after.program),
+                         packs);
+  } catch (const std::exception& error) {
+    // The diagnosis stands, whether or not this recording makes packs.
+    notes->push_back(std::string("step time of the estimator not measured: ") + error.what());
+    return {};
+  }
+}
+
+/// Writes what the ladder found, and says it.
+int Present(const Arguments& a, const support::Recording& recording, ladder::Diagnosis* diagnosis) {
+  const std::filesystem::path out = a.out;
+  Result& result = diagnosis->result;
+  if (!result.effects.empty()) {
+    result.model_file = "model.toml";
+    Write(out / result.model_file,
+          support::PlantFileText(diagnosis->after.plant, "Made by armcmc-gap: " + result.sentence));
+    result.budget = DescribedBudget(recording, *diagnosis, &result.notes);
+  }
+  WriteExperiment(out, &result.separate_by);
+  Write(out / "result.json", ToJson(result).dump(2) + "\n");
+  Write(out / "report.html", ReportHtml(result));
+  std::cout << LadderText(result) << Summary(result);
+  std::cout << "result: " << (out / "result.json").string() << '\n'
+            << "report: " << (out / "report.html").string() << '\n';
+  if (!result.model_file.empty()) std::cout << "model:  " << (out / result.model_file).string() << '\n';
+  return support::kExitOk;
+}
+
 /// A plant that came with code of its own.
 int RunBuiltIn(const Arguments& a) {
   WorkflowRequest request;
@@ -250,6 +288,13 @@ int RunBuiltIn(const Arguments& a) {
       result.notes.push_back(std::string("not tried whether it is a drift (--period-ms): ") + error.what());
     }
   }
+  if (result.verdict == Verdict::kUnnamed) {
+    if (auto again = ladder::SearchAgain(request)) {
+      again->diagnosis.result.data_file = result.data_file;
+      again->diagnosis.result.data_sha256 = result.data_sha256;
+      return Present(a, again->recording, &again->diagnosis);
+    }
+  }
   if (outcome.augmented) {
     result.model_file = "model.toml";
     Write(out / result.model_file, support::ModelFileText(*outcome.augmented, request.model));
@@ -281,23 +326,6 @@ void CheckDescribed(const Arguments& a) {
   refuse(LastStep(a.steps) != Step::kShow, "--steps");
 }
 
-/// Step time of the estimator as it came and with what was named.
-Budget DescribedBudget(const support::Recording& recording, const ladder::Diagnosis& diagnosis,
-                       std::vector<std::string>* notes) {
-  if (diagnosis.before.program == nullptr || diagnosis.after.program == nullptr) return {};
-  replay::SourceRequest packs;
-  packs.recording = std::make_shared<const support::Recording>(recording);
-  packs.period = support::SuitablePackLength(recording.dt, kMaxPackSamples) * recording.dt;
-  try {
-    return MeasureBudget(DescribedSettings(diagnosis.before.program), DescribedSettings(diagnosis.after.program),
-                         packs);
-  } catch (const std::exception& error) {
-    // The diagnosis stands, whether or not this recording makes packs.
-    notes->push_back(std::string("step time of the estimator not measured: ") + error.what());
-    return {};
-  }
-}
-
 /// A plant that a file describes.
 int RunDescribed(const Arguments& a) {
   CheckDescribed(a);
@@ -322,21 +350,7 @@ int RunDescribed(const Arguments& a) {
   support::Progress progress("gap");
   request.progress = [&](const std::string&, double share) { progress.Update(share); };
   ladder::Diagnosis diagnosis = ladder::Diagnose(request);
-  Result& result = diagnosis.result;
-  if (!result.effects.empty()) {
-    result.model_file = "model.toml";
-    Write(out / result.model_file,
-          support::PlantFileText(diagnosis.after.plant, "Made by armcmc-gap: " + result.sentence));
-    result.budget = DescribedBudget(request.recording, diagnosis, &result.notes);
-  }
-  WriteExperiment(out, &result.separate_by);
-  Write(out / "result.json", ToJson(result).dump(2) + "\n");
-  Write(out / "report.html", ReportHtml(result));
-  std::cout << LadderText(result) << Summary(result);
-  std::cout << "result: " << (out / "result.json").string() << '\n'
-            << "report: " << (out / "report.html").string() << '\n';
-  if (!result.model_file.empty()) std::cout << "model:  " << (out / result.model_file).string() << '\n';
-  return support::kExitOk;
+  return Present(a, request.recording, &diagnosis);
 }
 
 int Run(const Arguments& a) {

@@ -15,7 +15,7 @@ using plots::FixedText;
 using plots::NumberText;
 
 // <i> marks quantities. Names that several plants share say what holds for all of them.
-constexpr std::array<std::pair<std::string_view, EffectWords>, 34> kWords{{
+constexpr std::array<std::pair<std::string_view, EffectWords>, 35> kWords{{
     {"force_bias", {"<i>f</i> + bias", "The zero of the force sensor is off by a constant, out of contact too."}},
     {"force_drift", {"<i>f</i> + rate · <i>t</i>", "The zero of the force sensor wanders with time."}},
     {"coulomb_friction",
@@ -59,6 +59,7 @@ constexpr std::array<std::pair<std::string_view, EffectWords>, 34> kWords{{
     {"stribeck_friction", {"<i>F</i>(|<i>v</i>|) sign <i>v</i>", "Dry friction that falls as the motion gets going."}},
     {"overflow", {"level ≤ limit", "The tank runs over."}},
     {"absolute_value_sensor", {"|<i>y</i>|", "The sensor loses the sign."}},
+    {"sensor_dead_zone", {"<i>y</i> beyond ±<i>w</i>, less <i>w</i>", "The sensor reads nothing below a threshold."}},
     {"backlash", {"play of a width", "Lost motion at every reversal."}},
     {"pressure_dependent_friction", {"− <i>c</i> <i>p</i> sign <i>v</i>", "Seals that rub more under pressure."}},
     {"baseline_tilt", {"+ slope · <i>x</i>", "The zero of the sensor tilts along the stroke."}},

@@ -35,6 +35,12 @@ struct Before {
   std::vector<const Candidate*> effects;
   double explained = 0.0;  ///< Squared error, over that which is left.
 
+  /// Of an effect that acts like one of them: that one, else null.
+  [[nodiscard]] const Candidate* Like(const Contender& c) const {
+    const auto alike = std::find_if(effects.begin(), effects.end(),
+                                    [&](const Candidate* e) { return AreKin(*e->entry, *c.candidate.entry); });
+    return alike == effects.end() ? nullptr : *alike;
+  }
   /// Whether an effect of another family is so small beside it that a formula a little off explains it.
   [[nodiscard]] bool Dwarfs(const Contender& c) const {
     constexpr double kFormulaError = 1.0 / 3.0;  // of an amplitude: another formula of the same physics
@@ -55,8 +61,10 @@ struct Rivals {
   [[nodiscard]] std::optional<Rival> Of(const Contender& c, bool exact, bool smaller_part) {
     std::optional<Rival> rival = noise.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
-    if (!rival && before.Dwarfs(c)) rival = curves.BendOf(c, before.effects);
-    return rival;
+    if (rival || !before.Dwarfs(c)) return rival;
+    if (const Candidate* like = before.Like(c))
+      return Rival{like->entry->name + " had another formula", "acts alike and is three times as large"};
+    return curves.BendOf(c, before.effects);
   }
 };
 

@@ -24,14 +24,15 @@ constexpr double kAsWell = 1.5;       // times what the best one leaves
 constexpr double kOff = 0.1;          // of the square of what an effect leaves: as well copied as one can ask
 constexpr double kOutermost = 0.001;  // of the rows, where a state or signal seldom is
 
-/// @param x     Name of what the curve follows; "t" is time.
+/// @param x     Name of what the curve follows; "t" is time, "law" what the law says.
 /// @param unit  Of the curve.
 /// @param size  Of its coefficients.
 EffectForm Along(const std::string& x, const std::string& unit, const std::string& size, EffectTerm term,
                  std::vector<EffectNeed> needs) {
   const bool time = x == "t";
-  const std::string of_x = time ? "s" : x, low = time ? "start" : "low_" + x;
-  const std::string spacing = (time ? "record/" : "range_" + x + '/') + std::to_string(kBumps - 1);
+  const std::string scale = x == "law" ? "output" : x;
+  const std::string of_x = time ? "s" : scale, low = time ? "start" : "low_" + scale;
+  const std::string spacing = (time ? "record/" : "range_" + scale + '/') + std::to_string(kBumps - 1);
   EffectForm form;
   form.variant = true;  // all forms side by side
   form.needs = std::move(needs);
@@ -90,9 +91,10 @@ VectorXd LeftOf(const VectorXd& y, const Eigen::MatrixXd& columns, const VectorX
   return y - scaled * matrix.ldlt().solve(scaled.transpose() * y);
 }
 
-/// Name of the signal or state that a curve follows; "t" is time.
+/// Name of the signal or state that a curve follows; "t" is time, "law" what the law says.
 std::string FollowedBy(const Contender& curve) {
   const EffectForm& form = curve.candidate.form();
+  if (form.terms.front().slot == "law") return "law";
   // A need beside the parameter is what is followed.
   const bool over_time = form.needs.size() == (form.terms.front().slot == "parameter" ? 1 : 0);
   return over_time ? "t" : curve.candidate.binding.symbols.at(form.needs.back().name);
@@ -105,6 +107,7 @@ std::string AsIf(const Contender& curve) {
   const std::string name = FollowedBy(curve), followed = name == "t" ? "time" : name;
   if (term.slot == "parameter") return symbols.at(term.of) + " followed " + followed + " by a curve";
   if (term.slot == "input") return "the plant got a curve of " + followed;
+  if (term.slot == "law") return "a curve of the output were measured";
   return "a curve of " + followed + " were added to the " +
          (term.slot == "rate" ? "rate of " + symbols.at(term.of) : "output");
 }
@@ -122,6 +125,7 @@ EffectEntry CurveEntry() {
   entry.forms.push_back(Along("t", "p", "p", {"parameter", "p", "p"}, {Used("p", "parameter")}));
   entry.forms.push_back(Along("v", "v/s", "rate_v", {"rate", "v", ""}, {Need("v", "state")}));
   entry.forms.push_back(Along("u", "u", "u", {"input", "u", "u"}, {Used("u", "signal")}));
+  entry.forms.push_back(Along("law", "output", "output", {"law", "", "law"}, {}));
   return entry;
 }
 

@@ -111,6 +111,7 @@ class Teller {
     gap.before = FitOn(before_, rows_, ladder_.base.fit.error_sd);
     gap.after = FitOn(after_, rows_, ladder_.final_trial.fit.error_sd);
     TellNoiseFloor();
+    complete_ = ladder_.complete && !KeptApartContradict();
     gap.closed_fraction = Closed(gap.after.rmse);
     CloseInterval(rows_, before_, after_, request_.seed, &gap);
     gap.stretches = StretchesOf(data_, rows_, before_, after_);
@@ -142,6 +143,17 @@ class Teller {
              Number(differences);
     }
     result_.notes.push_back("noise floor: " + from);
+  }
+
+  /// Whether a model that explains what it was fitted to errs on the rows kept apart far beyond the noise.
+  bool KeptApartContradict() {
+    const gap::GapSummary& gap = result_.gap;
+    if (!ladder_.complete || HeldOutRows(data_, before_).empty()) return false;
+    if (!(gap.after.rmse > kContradicted * gap.noise_floor)) return false;
+    result_.notes.push_back("the rows kept apart lie " + Number(gap.after.rmse / gap.noise_floor) +
+                            " times the noise off a model that explains all others: they show something that those do "
+                            "not. Keep other rows apart, so that it can be named");
+    return true;
   }
 
   void TellLadder() {
@@ -177,7 +189,7 @@ class Teller {
     finding.family = leader.candidate.entry->family;
     finding.probability = rung.probability;
     finding.provisional = rung.provisional;
-    finding.approximate = leader.candidate.form().variant || !ladder_.complete;
+    finding.approximate = leader.candidate.form().variant || !complete_;
     finding.formula_text = leader.candidate.form().terms.front().formula;
     const std::vector<ParameterEstimate> all = Estimates(ladder_.final_trial, training_);
     const std::string prefix = leader.candidate.entry->name + "_";
@@ -224,9 +236,9 @@ class Teller {
       const double noise = result_.gap.noise_floor * result_.gap.noise_floor;
       const double base = ladder_.base.fit.error_sd * ladder_.base.fit.error_sd - noise;
       const double left = ladder_.final_trial.fit.error_sd * ladder_.final_trial.fit.error_sd - noise;
-      result_.complete = ladder_.complete;
+      result_.complete = complete_;
       result_.remainder.share = base > 0.0 ? std::clamp(left / base, 0.0, 1.0) : 0.0;
-      if (!ladder_.complete) {
+      if (!complete_) {
         result_.remainder.where = WhereErrorsAre(after_.error, features, rows, result_.gap.noise_floor);
         result_.remainder.sparse = SparseSum(after_.error, features, rows);
       }
@@ -247,9 +259,9 @@ class Teller {
       result_.probability_none = 1.0 - first->leader().gain_share;
       result_.probability_unnamed = 0.0;
     } else {
-      result_.verdict = ladder_.complete ? Verdict::kNone : Verdict::kUnnamed;
-      result_.probability_none = ladder_.complete ? 1.0 : 0.0;
-      result_.probability_unnamed = ladder_.complete ? 0.0 : 1.0;
+      result_.verdict = complete_ ? Verdict::kNone : Verdict::kUnnamed;
+      result_.probability_none = complete_ ? 1.0 : 0.0;
+      result_.probability_unnamed = complete_ ? 0.0 : 1.0;
     }
     std::vector<std::string> shows;
     const Rung* tie = nullptr;
@@ -275,8 +287,8 @@ class Teller {
   std::string Sentence() const {
     const std::string percent = Number(std::round(1000.0 * result_.gap.closed_fraction) / 10.0);
     if (result_.ladder.empty())
-      return ladder_.complete ? "Nothing is missing that these data show: the model explains them to the noise."
-                              : "Something is missing, and no effect that fits this plant earns a name." + ActsAsIf();
+      return complete_ ? "Nothing is missing that these data show: the model explains them to the noise."
+                       : "Something is missing, and no effect that fits this plant earns a name." + ActsAsIf();
     std::vector<std::string> rungs;
     for (const Rung& rung : ladder_.rungs) {
       if (rung.named.empty()) continue;
@@ -286,7 +298,7 @@ class Teller {
     }
     return "Missing: " + Joined(rungs, ", then ") + ". With that, " + percent +
            " % of the gap on data kept apart is closed" +
-           (ladder_.complete ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf());
+           (complete_ ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf());
   }
 
   /// Of what is left, where something is known that no catalogue has.
@@ -312,13 +324,15 @@ class Teller {
     return description.signals[static_cast<std::size_t>(plant.output())].unit;
   }
 
-  static constexpr double kShared = 1.2;  ///< Times the differences' floor.
+  static constexpr double kShared = 1.2;        ///< Times the differences' floor.
+  static constexpr double kContradicted = 1.5;  ///< Times the noise (rms), on rows that no model was fitted to.
 
   const DiagnosisRequest& request_;
   const Dataset& data_;
   const Ladder& ladder_;
   gap::Result& result_;
   std::vector<std::uint8_t> training_;
+  bool complete_ = false;  ///< Nothing is left to explain, on the rows kept apart neither.
   WholeRun before_, after_;
   std::vector<Index> rows_;  ///< That errors are told of.
 };

@@ -1,5 +1,6 @@
 #include "rung.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -32,13 +33,6 @@ constexpr double kLoses = 1.1;         // squared error in regions that says: it
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
 
-bool Kin(const EffectEntry& a, const EffectEntry& b) {
-  const auto lists = [](const EffectEntry& x, const EffectEntry& y) {
-    return std::find(x.kin.begin(), x.kin.end(), y.name) != x.kin.end();
-  };
-  return lists(a, b) || lists(b, a);
-}
-
 std::size_t NumParameters(const Contender& c) { return c.candidate.form().parameters.size(); }
 
 /// Whether a frequency would be lower than the data can show it to be one.
@@ -49,6 +43,34 @@ bool TooSlow(const Contender& c) {
     const auto d = static_cast<Eigen::Index>(frequency.parameter);
     return c.trial.fit.theta[d] <= lower[d] + kAtBound;
   });
+}
+
+/// Whether the data tell some amplitude of an effect apart from none, all else held. Where they do not, as where a
+/// friction never slides or a play is never crossed, the effect stands for what it does in the limit, which is another
+/// effect.
+bool IsTold(const View& view, const Contender& c) {
+  constexpr double kSigmas = 2.0, kSingular = 1e-10;
+  const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
+  const auto first = static_cast<Eigen::Index>(c.candidate.first_parameter);
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  const identify::FitResult& fit = c.trial.fit;
+  const Eigen::MatrixXd columns = fit.jacobian(view.looked_at, Eigen::all).middleCols(first, count);
+  const double thinned =
+      static_cast<double>(view.data.num_training()) / static_cast<double>(std::max<Eigen::Index>(1, columns.rows()));
+  Eigen::MatrixXd precision = thinned / (fit.error_sd * fit.error_sd) * (columns.transpose() * columns);
+  precision.diagonal() += identify::PriorPrecision(*c.trial.model).segment(first, count);
+  const Eigen::VectorXd size = precision.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  Eigen::MatrixXd scaled = size.cwiseInverse().asDiagonal() * precision * size.cwiseInverse().asDiagonal();
+  scaled.diagonal().array() += kSingular;
+  const Eigen::VectorXd variance = scaled.inverse().diagonal();
+  bool any = false;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (parameters[static_cast<std::size_t>(k)].none != "0") continue;
+    any = true;
+    const double sd = std::sqrt(variance[k]) / size[k];
+    if (std::abs(fit.theta[first + k]) > kSigmas * sd) return true;
+  }
+  return !any;
 }
 
 /// One where amplitudes alone are sought, which vanish at 0 and in which laws are linear; more where a shape is.
@@ -94,6 +116,13 @@ double ShareOfFirst(const Rung& rung) {
 }
 
 }  // namespace
+
+bool AreKin(const EffectEntry& a, const EffectEntry& b) {
+  const auto lists = [](const EffectEntry& x, const EffectEntry& y) {
+    return std::find(x.kin.begin(), x.kin.end(), y.name) != x.kin.end();
+  };
+  return lists(a, b) || lists(b, a);
+}
 
 void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung,
             std::vector<std::string>* notes) {
@@ -218,7 +247,7 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
     const bool beside = below(kBeside) >= 2 || (below(kFarBeside) >= 1 && below(1.0) == 3);
-    c.earned = gains && elsewhere && beside && !TooSlow(c);
+    c.earned = gains && elsewhere && beside && !TooSlow(c) && IsTold(view, c);
   }
 }
 
@@ -260,7 +289,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     const bool larger = as_good && NumParameters(all[i]) > fewest &&
                         kFarBetter * all[i].alone.folds < all[leader].alone.folds &&
                         BetterEverywhere(all[i], all[leader]);
-    const bool kin = not_exact && Kin(*all[i].candidate.entry, *all[leader].candidate.entry) &&
+    const bool kin = not_exact && AreKin(*all[i].candidate.entry, *all[leader].candidate.entry) &&
                      all[i].alone.folds < kLeavesAsMuch * all[leader].alone.folds;
     if ((!equal && !larger && !kin) || !families.insert(family).second) continue;
     rung->named.push_back(i);

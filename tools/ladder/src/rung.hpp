@@ -30,6 +30,9 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
 /// @param open  Also what takes the smaller part only.
 void Name(const View& view, double floor, bool open, Rung* rung);
 
+/// Whether one of them lists the other among those that act alike.
+[[nodiscard]] bool AreKin(const EffectEntry& a, const EffectEntry& b);
+
 /// Best first.
 void Sort(Rung* rung);
 

@@ -77,8 +77,8 @@ void AddNames(Gatherer* g) {
   g->Share("singles", "wrong, R = 0.1", Exactly(singles, 0.1), Wrong, 0.01, false);
   g->Share("pairs", "truth in the set", pairs, Covers, 0.97, true);
   g->Share("pairs", "wrong", pairs, Wrong, 0.02, false);
-  g->Share("outside", "false name", outside, NamesAnything, 0.03, false);
-  g->Share("outside", "unnamed", outside, Right, 0.93, true);
+  g->Share("outside", "false name", outside, Wrong, 0.03, false);
+  g->Share("outside", "unnamed, or the name that it has for every plant", outside, Right, 0.93, true);
   g->Share("ablation", "false family", In({"ablation"}), Wrong, 0.05, false);
   g->Share("variants", "right family", In({"variants"}), FamilyHolds, 0.88, true);
   g->Share("variants", "wrong", In({"variants"}), Wrong, 0.02, false);
@@ -98,7 +98,7 @@ void AddActuator(Gatherer* g) {
   g->Share(
       "actuator", "right equation", [=](const Outcome& o) { return hidden(o) && o.equation_right.has_value(); },
       [](const Outcome& o) { return o.equation_right.value_or(false); }, 0.98, true);
-  g->Share("actuator", "outside the catalogue: false name", outside, NamesAnything, 0.03, false);
+  g->Share("actuator", "outside the catalogue: false name", outside, Wrong, 0.03, false);
 }
 
 /// Where the plant is not the catalogue: a name says which family of physics is there, not that its formula holds.

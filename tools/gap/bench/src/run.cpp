@@ -20,6 +20,7 @@
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "armcmc/gap_bench/score.hpp"
 #include "armcmc/gap_bench/strata.hpp"
+#include "armcmc/ladder/second_search.hpp"
 #include "armcmc/support/shared_files.hpp"
 #include "closing.hpp"
 #include "contents.hpp"
@@ -56,6 +57,8 @@ Answer Ask(const std::filesystem::path& recording, const std::filesystem::path& 
     if (!earlier.empty()) request.earlier = gap::ReadRecording(earlier, gap::ColumnsOf(what.model), false);
     request.diagnose.without = what.without;
     answer.result = gap::RunWorkflow(request).result;
+    if (answer.result.verdict == gap::Verdict::kUnnamed)
+      if (auto again = ladder::SearchAgain(request)) answer.result = std::move(again->diagnosis.result);
     answer.result.figures = {};
   } catch (const std::exception& error) {
     answer.error = error.what();

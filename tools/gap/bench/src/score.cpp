@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "armcmc/gap_bench/strata.hpp"
 #include "armcmc/models/registry.hpp"
+#include "armcmc/support/effect_library.hpp"
 #include "plants/registry.hpp"
 
 namespace armcmc::gap_bench {
@@ -18,6 +20,26 @@ const EffectInfo* Listed(std::string_view name) {
   for (const ModelInfo* model : CompiledModels())
     if (const EffectInfo* info = FindEffect(*model, name)) return info;
   return nullptr;
+}
+
+/// Of an effect of any catalogue; nothing for what is in none.
+std::optional<std::string> FamilyOf(const std::string& name) {
+  if (const EffectInfo* info = Listed(name)) return std::string(info->family);
+  static const std::vector<EffectEntry> entries = support::ReadEffectLibrary();
+  const auto entry = std::find_if(entries.begin(), entries.end(), [&](const EffectEntry& e) { return e.name == name; });
+  return entry == entries.end() ? std::nullopt : std::optional(entry->family);
+}
+
+/// What is said of an effect that the plant's own catalogue lacks, by the name in the sealed file.
+std::string AsSealed(const Case& what, const Truth& truth, const std::string& said) {
+  const auto has = [](const auto& list, const auto& one) {
+    return std::find(list.begin(), list.end(), one) != list.end();
+  };
+  for (const TrueEffect& effect : truth.effects) {
+    const bool lacked = effect.kind == "outside" || has(what.without, effect.name);
+    if (lacked && has(kServeEveryPlant, std::pair(effect.name, said))) return effect.name;
+  }
+  return said;
 }
 
 /// Whether an effect changes what an equation predicts.
@@ -35,16 +57,6 @@ std::string Joined(const Names& names) {
 /// "force_bias from 4.25 s", "adhesion (pull_off)" -> the name.
 std::string NameIn(const std::string& text) { return text.substr(0, text.find(' ')); }
 
-/// What is said of the hidden effects: what the recording holds by itself is left out.
-Names Judged(const Case& what, const Truth& truth, Names said) {
-  const Names names = NamesOf(truth);
-  const auto holds = [](const Names& list, const std::string& name) {
-    return std::find(list.begin(), list.end(), name) != list.end();
-  };
-  std::erase_if(said, [&](const std::string& name) { return holds(what.own, name) && !holds(names, name); });
-  return said;
-}
-
 /// The truth that an answer is held against: what no catalogue lists needs no name where it only stands beside what one
 /// does.
 Truth ToBeNamed(const Truth& truth) {
@@ -54,7 +66,23 @@ Truth ToBeNamed(const Truth& truth) {
   return named;
 }
 
-/// Whether the tool could have given the right name.
+/// What is said of the effects that are to be named, each once: what the recording holds by itself is left out, and
+/// what is rightly said of the others.
+Names Judged(const Case& what, const Truth& truth, Names said) {
+  const Names all = NamesOf(truth), names = NamesOf(ToBeNamed(truth));
+  const auto holds = [](const Names& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (std::string& name : said) name = AsSealed(what, truth, name);
+  std::erase_if(said, [&](const std::string& name) {
+    return !holds(names, name) && (holds(what.own, name) || holds(all, name));
+  });
+  std::sort(said.begin(), said.end());
+  said.erase(std::unique(said.begin(), said.end()), said.end());
+  return said;
+}
+
+/// Whether the plant's own catalogue has the right name.
 bool Nameable(const Case& what, const Truth& truth) {
   return std::all_of(truth.effects.begin(), truth.effects.end(), [&](const TrueEffect& effect) {
     return effect.kind != "outside" &&
@@ -62,8 +90,15 @@ bool Nameable(const Case& what, const Truth& truth) {
   });
 }
 
-bool AllOfFamily(const std::vector<Names>& sets, const Names& families) {
-  return std::all_of(sets.begin(), sets.end(), [&](const Names& set) { return FamiliesOf(set) == families; });
+/// A family may be named by more than one of its effects, as a latency by a delay and a lag.
+bool AllOfFamily(const std::vector<Names>& sets, const Names& truth) {
+  const auto once = [](const Names& names) {
+    Names families = FamiliesOf(names);
+    families.erase(std::unique(families.begin(), families.end()), families.end());
+    return families;
+  };
+  return std::all_of(sets.begin(), sets.end(),
+                     [&](const Names& set) { return set.size() >= truth.size() && once(set) == once(truth); });
 }
 
 }  // namespace
@@ -90,10 +125,7 @@ Names NamesOf(const Truth& truth) {
 
 Names FamiliesOf(const Names& names) {
   Names families;
-  for (const std::string& name : names) {
-    const EffectInfo* info = Listed(name);
-    families.emplace_back(info == nullptr ? name : std::string(info->family));
-  }
+  for (const std::string& name : names) families.push_back(FamilyOf(name).value_or(name));
   std::sort(families.begin(), families.end());
   return families;
 }
@@ -108,7 +140,7 @@ std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::R
 
 Grade GradeOf(const Case& what, const Truth& all, const gap::Result& result) {
   const Truth truth = ToBeNamed(all);
-  const std::vector<Names> sets = JudgedSets(what, truth, result);
+  const std::vector<Names> sets = JudgedSets(what, all, result);
   const bool only_own = sets.size() == 1 && sets.front().empty();
   const bool none = result.verdict == gap::Verdict::kNone || only_own;
   if (truth.effects.empty()) return none ? Grade::kRight : sets.empty() ? Grade::kUnnamed : Grade::kWrong;
@@ -116,9 +148,8 @@ Grade GradeOf(const Case& what, const Truth& all, const gap::Result& result) {
   const bool nameable = Nameable(what, truth);
   if (sets.empty()) return nameable ? Grade::kUnnamed : Grade::kRight;
   const Names names = NamesOf(truth);
-  if (nameable && std::find(sets.begin(), sets.end(), names) != sets.end())
-    return sets.size() == 1 ? Grade::kRight : Grade::kTie;
-  if (AllOfFamily(sets, FamiliesOf(names))) return Grade::kFamily;
+  if (std::find(sets.begin(), sets.end(), names) != sets.end()) return sets.size() == 1 ? Grade::kRight : Grade::kTie;
+  if (AllOfFamily(sets, names)) return Grade::kFamily;
   const bool nothing_false = std::all_of(sets.begin(), sets.end(), [&](const Names& set) {
     return std::includes(names.begin(), names.end(), set.begin(), set.end());
   });
@@ -142,7 +173,7 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
     std::sort(names.begin(), names.end());
     // Physics that competes without a name in the catalogue.
     const bool unlisted =
-        std::any_of(names.begin(), names.end(), [](const std::string& name) { return Listed(name) == nullptr; });
+        std::any_of(names.begin(), names.end(), [](const std::string& name) { return !FamilyOf(name); });
     probability[unlisted ? "unnamed" : Joined(names)] += candidate.probability;
   }
   const auto top = std::max_element(probability.begin(), probability.end(),
@@ -163,8 +194,8 @@ bool LabelRight(const Case& what, const Truth& all, const std::string& label) {
     said.push_back(label.substr(at, end - at));
     at = end + 3;
   }
-  said = Judged(what, truth, std::move(said));
-  if (Nameable(what, truth) && said == names) return true;
+  said = Judged(what, all, std::move(said));
+  if (said == names) return true;
   const bool own_formula =
       !Imperfect(what.stratum) && std::all_of(truth.effects.begin(), truth.effects.end(),
                                               [](const TrueEffect& effect) { return effect.kind == "catalogue"; });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace armcmc::gap_bench {
@@ -22,9 +23,17 @@ inline const std::vector<std::string> kVariants = {"coulomb_friction:sign",
                                                    "sensor_lag:second_order",
                                                    "force_drift:exponential",
                                                    "periodic_disturbance:square"};
-/// What the tool's catalogue lacks.
+/// What the plant's own catalogue lacks.
 inline const std::vector<std::string> kOutside = {"quadratic_drag", "strain_stiffening", "backlash", "dead_zone",
                                                   "spatial_ripple"};
+/// What the plant's own catalogue lacks, or is made to lack, and the name of the same physics among the effects that
+/// serve every plant. Dahl's friction is a case of the Bouc-Wen hysteresis.
+inline const std::vector<std::pair<std::string, std::string>> kServeEveryPlant = {
+    {"quadratic_drag", "drag"},
+    {"backlash", "backlash"},
+    {"dead_zone", "sensor_dead_zone"},
+    {"spatial_ripple", "cogging"},
+    {"presliding_friction", "hysteresis"}};
 inline constexpr const char* kRich = "contact_rich";
 inline constexpr const char* kPaper = "hunt_crossley_paper";
 

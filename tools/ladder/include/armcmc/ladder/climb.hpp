@@ -84,7 +84,8 @@ struct ClimbRequest {
 ///    - gains even beside a flexible function: 5 % in two of these three senses, or 20 % in one
 ///      without losing in the others;
 ///    - takes the larger part of what is unexplained, alone or with the next one, unless its family has been named
-///      before or it leaves nothing but noise.
+///      before or it leaves nothing but noise,
+///    and the data tell one of its amplitudes: more than two standard deviations from none.
 /// 2. Simplest first. Of those that close 95 % of what the best closes the ones with the fewest parameters, and of
 ///    these the best, and of those within 1 % of it the one that reads fewest quantities. What a simple effect leaves
 ///    is looked at on the next rung.
@@ -99,8 +100,8 @@ struct ClimbRequest {
 ///    is off by less than a tenth of the squared error that the effect leaves; and none that needs the next one to take
 ///    the larger part, as one curve is simpler than two effects. So it is where the model as it is leaves
 ///    less on smoother signals, of those that are rates of others: their noise is what is unexplained. And an effect of
-///    another family that is less than a third of what was named before is ruled out by a curve that explains as much
-///    and follows what that reads.
+///    another family that is less than a third of what was named before is ruled out where it acts like that, or by a
+///    curve that explains as much and follows what that reads.
 /// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain, or cannot be
 ///    predicted with it, unless they can with the next one, too; and where a
 ///    later rung names it again in the same place and it is an effect of which two are pieces of a curve that is none

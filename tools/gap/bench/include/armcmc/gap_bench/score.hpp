@@ -18,7 +18,9 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 /// Families of effects, sorted; a name that the catalogue does not know is a family of its own.
 [[nodiscard]] Names FamiliesOf(const Names& names);
 
-/// The sets of an answer without what the recording holds by itself (Case::own) and nobody hid.
+/// The sets of an answer: names as in the sealed file, each once, without what the recording holds by itself
+/// (Case::own) and nobody hid, and without what is rightly named though it needs no name, since the plant's own
+/// catalogue lacks it.
 [[nodiscard]] std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result);
 
 /// Compares an answer with the truth. An effect that is outside the catalogue, or was taken out of it, has no right
