@@ -50,6 +50,7 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
       model_(model),
       space_(space),
       noise_(noise),
+      normal_table_(MarginalTable::Normal()),
       dim_(space.num_parameters),
       enabled_(share > 0.0) {
   for (int h = 0; h < kHypotheses; ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share);
@@ -99,6 +100,11 @@ bool Drift::Move(const PosteriorMemory& last, Part part, const Moments& from, in
     return true;
   }
   DensityBlock& moved = carried_.block[static_cast<std::size_t>(to)];
+  if (part == Part::kDrift && source.dim == dim_) {
+    // Not the shape of the draws: what a heavy-tailed one makes of a pack is narrower than the bank has it.
+    SetElliptic(target.mean, target.covariance, 1.0, &normal_table_, &moved);
+    return true;
+  }
   moved = source;
   moved.axis_aligned = false;
   // W' = W A^-1, and A W^-1 for its inverse; the noise scale stays where it is.
@@ -258,8 +264,9 @@ bool Drift::Recentre(const LocalLikelihood& local, const PosteriorMemory& next) 
   }
   ParamMatrix map;
   if (!MapBetween(now.covariance, next.covariance.topLeftCorner(dim_, dim_), &map)) return false;
-  for (Filter& f : bank_) {
-    if (!(f.weight > 0.0)) continue;
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    Filter& f = bank_[i];
+    if (!(f.weight > 0.0) || !IsOf(fitted_, i)) continue;
     f.u = next.mean.head(dim_) + Multiply(map, f.u - now.mean);
     f.uu = Product(Product(map, f.uu), map.transpose());
     MakeSymmetric(&f.uu);

@@ -41,19 +41,21 @@ struct Kernels;
 ///            divided by c. After a long time nothing but P_0 is known of what drifts
 ///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
 ///            pi_h times the evidence of that, with every filter updated by the same a, H, m
-///   sampled  the whole bank is moved and stretched, by the affine map that leads from what the prior of the pack and
-///            this expansion make of rest, or of drift, to the sampled posterior: where the law is linear that is none,
-///            and where it is not the bank says how rest and drift lie to each other, and the draws say where
+///   sampled  what was sampled, rest or drift or the bank as a whole, is moved and stretched by the affine map that
+///            leads from what this expansion makes of the prior of the pack to the sampled posterior: where the law is
+///            linear that is none. What was not sampled stays as its own filters have it: the draws of what the data
+///            refute say nothing about it
 ///
 /// Of a sampled posterior only the more probable of rest and drift is handed on, P: its draws each with the
 /// probability that they came from there. Before the next pack it becomes
 ///
 ///   pi_0 P_rest(u) + (1 - pi_0) P_drift(u)
 ///
-/// each of them P moved and stretched by an affine map to where the bank has that part then, and to its covariance:
-/// drawable and with a density like P itself, and the convolution with the drift where P is Gaussian. (Of one parameter
-/// P_drift is the mixture of the hypotheses; of several a product of such marginals would be further from theirs than
-/// the affine map.) While drift is improbable (kNegligible) P stays as it is, to the bit.
+/// P_rest is P moved and stretched by an affine map to where the bank has rest then, and to its covariance: drawable
+/// and with a density like P itself. P_drift is the mixture of the hypotheses where there is one parameter, and of
+/// several the Gaussian with its moments: a shape of P that is handed on from pack to pack, narrower than a Gaussian in
+/// its core, would have each posterior narrow the bank a little more. (With a noise scale that is sampled P_drift is P
+/// moved and stretched, too.) While drift is improbable (kNegligible) P stays as it is, to the bit.
 ///
 /// The noise scale is no coordinate of the bank: its memory is loose as it is (ModeSampler::SpreadNoiseScale).
 class Drift {
@@ -162,6 +164,7 @@ class Drift {
   int model_;
   const ParameterSpace& space_;
   const NoiseModel& noise_;
+  MarginalTable normal_table_;
   int dim_;  ///< Parameters; the noise scale, where sampled, comes after them.
   std::array<Hypothesis, kHypotheses> hypotheses_;
   bool enabled_;
