@@ -373,7 +373,7 @@ Diagnosis Diagnose(const DiagnosisRequest& request) {
   const bool named = NumNamed(ladder) > 0;
   if (named && !diagnosis.after.held.empty())
     diagnosis.result.notes.push_back(
-        "constants in the new model, since these data do not tell them or the estimator "
+        "constants in the new model, since these data do not tell them, they lie on a bound, or the estimator "
         "samples no more: " +
         Joined(diagnosis.after.held, ", "));
   const auto seconds = [](auto since) {

@@ -53,12 +53,22 @@ std::string Compile(const PlantDescription& plant, std::shared_ptr<const PlantPr
 TunedPlant Tuned(const PlantDescription& plant, std::size_t own, const Trial& trial,
                  const std::vector<std::uint8_t>& rows) {
   constexpr double kUntold = 0.25;  // of the prior's standard deviation
+  constexpr double kPressed = 0.1;  // of what the data leave open: on a bound
   const Widths widths(trial, rows);
   const VectorXd prior = trial.model->Spread();
   // Of the fitted parameters those of the plant itself come first, also where modes have their own.
   const auto size = static_cast<std::size_t>(trial.fit.theta.size());
   const std::size_t first = size - std::min(size, plant.parameters.size() - std::min(own, plant.parameters.size()));
   std::vector<bool> known(size, false);
+  const VectorXd to_bound = (trial.fit.theta - trial.model->Lower()).cwiseMin(trial.model->Upper() - trial.fit.theta);
+  const VectorXd open = widths.Of(known);
+  for (std::size_t d = 0; d < size; ++d) {
+    const auto i = static_cast<Index>(d);
+    const std::string& name = trial.model->parameters()[d].name;
+    const bool one = std::any_of(plant.parameters.begin(), plant.parameters.end(),
+                                 [&](const ParameterDescription& p) { return p.name == name; });
+    known[d] = one && to_bound[i] < kPressed * open[i];
+  }
   for (TunedPlant tuned;;) {
     const VectorXd sd = widths.Of(known);
     std::size_t widest = size;

@@ -33,6 +33,8 @@ inline const std::vector<std::pair<std::string, std::string>> kServeEveryPlant =
     {"backlash", "backlash"},
     {"dead_zone", "sensor_dead_zone"},
     {"spatial_ripple", "cogging"},
+    {"strain_stiffening", "cubic_stiffness"},
+    {"strain_stiffening", "quadratic_stiffness"},
     {"presliding_friction", "hysteresis"}};
 inline constexpr const char* kRich = "contact_rich";
 inline constexpr const char* kPaper = "hunt_crossley_paper";
