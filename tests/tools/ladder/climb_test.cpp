@@ -47,6 +47,16 @@ std::vector<std::string> NamesOf(const Rung& rung) {
 const std::vector<std::string> kSome{"coulomb_friction", "presliding_friction", "drag",    "cubic_stiffness",
                                      "output_drift",     "asymmetric_friction", "cogging", "sensor_lag"};
 
+TEST(Candidate, ItsParametersComeAfterThoseThatEachModeHasForItself) {
+  const auto begin = [](const PlantDescription& plant) {
+    return Candidate{nullptr, {}, std::make_shared<const Plant>(plant), plant.parameters.size()}.first_fitted();
+  };
+  EXPECT_EQ(begin(test::AxisPlant()), 3u);
+  // Two valves, each with a gain and a slope.
+  const auto file = test::SourceDir() / "core/plants/soft_actuator/plant.toml";
+  EXPECT_EQ(begin(support::ReadPlant(file).description()), 4u);
+}
+
 TEST(Climb, NothingHiddenIsNothingMissing) {
   for (const unsigned seed : {3U, 4U, 5U}) {
     const Ladder ladder = ClimbWith(kSome, test::AxisData([](const AxisSample&) { return 0.0; }, seed));

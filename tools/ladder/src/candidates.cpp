@@ -1,5 +1,6 @@
 #include "armcmc/ladder/candidates.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "armcmc/plant/error.hpp"
@@ -13,11 +14,21 @@ std::vector<Frequency> Candidate::Frequencies() const {
     if (parameters[p].prior != "lognormal" || !parameters[p].unit.starts_with("1/")) continue;
     const std::string per = parameters[p].unit.substr(2);
     if (const auto need = binding.symbols.find(per); need != binding.symbols.end())
-      frequencies.push_back({first_parameter + p, need->second});
+      frequencies.push_back({first_fitted() + p, need->second});
     else if (per == "s")
-      frequencies.push_back({first_parameter + p, ""});
+      frequencies.push_back({first_fitted() + p, ""});
   }
   return frequencies;
+}
+
+std::size_t Candidate::first_fitted() const {
+  const auto& modes = plant->modes();
+  const auto active = static_cast<std::size_t>(
+      std::count_if(modes.begin(), modes.end(), [](const PlantMode& m) { return !m.passive; }));
+  std::size_t first = 0;
+  for (std::size_t p = 0; p < first_parameter; ++p)
+    first += plant->description().parameters[p].per_mode ? std::max<std::size_t>(active, 1) : 1;
+  return first;
 }
 
 std::vector<Candidate> Candidates(const PlantDescription& plant, const std::vector<EffectEntry>& entries,

@@ -175,7 +175,7 @@ class Teller {
       told.provisional = rung.provisional;
       told.remainder_ratio = leader.trial.fit.error_sd / std::max(result_.gap.noise_floor, 1e-300);
       const std::vector<ParameterEstimate> all = Estimates(leader.trial, training_);
-      for (std::size_t d = leader.candidate.first_parameter; d < all.size(); ++d)
+      for (std::size_t d = leader.candidate.first_fitted(); d < all.size(); ++d)
         told.parameters.push_back(all[d].name + " = " + Number(all[d].mean) + " ± " + Number(all[d].sd) + " " +
                                   all[d].unit);
       result_.ladder.push_back(told);
@@ -192,10 +192,11 @@ class Teller {
     finding.approximate = leader.candidate.form().variant || !complete_;
     finding.formula_text = leader.candidate.form().terms.front().formula;
     const std::vector<ParameterEstimate> all = Estimates(ladder_.final_trial, training_);
-    const std::string prefix = leader.candidate.entry->name + "_";
-    for (std::size_t d = leader.candidate.first_parameter; d < all.size(); ++d)
-      if (all[d].name.starts_with(prefix))
-        finding.parameters.push_back({all[d].name.substr(prefix.size()), all[d].unit, all[d].mean, all[d].sd});
+    const std::vector<EffectParameter>& own = leader.candidate.form().parameters;
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const ParameterEstimate& fitted = all.at(leader.candidate.first_fitted() + k);
+      finding.parameters.push_back({own[k].name, fitted.unit, fitted.mean, fitted.sd});
+    }
     result_.effects.push_back(std::move(finding));
   }
 

@@ -51,7 +51,7 @@ bool TooSlow(const Contender& c) {
 bool IsTold(const View& view, const Contender& c) {
   constexpr double kSigmas = 2.0, kSingular = 1e-10;
   const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
-  const auto first = static_cast<Eigen::Index>(c.candidate.first_parameter);
+  const auto first = static_cast<Eigen::Index>(c.candidate.first_fitted());
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const identify::FitResult& fit = c.trial.fit;
   const Eigen::MatrixXd columns = fit.jacobian(view.looked_at, Eigen::all).middleCols(first, count);

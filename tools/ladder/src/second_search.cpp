@@ -99,9 +99,11 @@ std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request) {
   if (request.progress) again.progress = request.progress;
   Diagnosis diagnosis = Diagnose(again);
   gap::Result& result = diagnosis.result;
-  // What the exact search leaves open and few events show, or several effects explain, would be a guess.
+  // What the exact search leaves open and few events show, several effects explain, or the rows kept apart contradict
+  // would be a guess.
   if (result.ladder.empty() || result.ladder.front().provisional || result.ladder.front().effects.size() > 1)
     return std::nullopt;
+  if (diagnosis.ladder.complete && !result.complete) return std::nullopt;
   const std::vector<EffectEntry> entries = support::EffectsFor(plant.effects);
   const OwnNames names(model, entries);
   for (gap::EffectFinding& effect : result.effects) names.Put(&effect.name);
@@ -111,7 +113,8 @@ std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request) {
   names.PutInto(&result.sentence);
   result.model = request.model;
   result.notes.insert(result.notes.begin(),
-                      "with the law held to be exact no effect got a name; these were found beside a law that may err");
+                      "with the law held to be exact no effect got a name; these were found beside a law that may err. "
+                      "model.toml is a plant file: armcmc-estimator --model takes it without --config");
   return SecondSearch{std::move(again.recording), std::move(diagnosis)};
 }
 

@@ -12,7 +12,7 @@ namespace armcmc::ladder {
 
 /// A parameter that is a number of radians per unit of something.
 struct Frequency {
-  std::size_t parameter;  ///< Of the plant; its logarithm is fitted.
+  std::size_t parameter;  ///< Among those that are fitted; its logarithm is.
   std::string along;      ///< Signal or state; empty: time.
 };
 
@@ -24,6 +24,8 @@ struct Candidate {
   std::size_t first_parameter = 0;  ///< Of the effect, among the plant's.
 
   [[nodiscard]] const EffectForm& form() const { return entry->forms[binding.form]; }
+  /// The same among those that are fitted, of which each active mode may have its own.
+  [[nodiscard]] std::size_t first_fitted() const;
   /// Those of the effect: positive ones with the unit "1/s", or one over that of something it needs.
   [[nodiscard]] std::vector<Frequency> Frequencies() const;
 };

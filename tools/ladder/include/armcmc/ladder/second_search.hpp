@@ -19,10 +19,10 @@ struct SecondSearch {
 /// effects of its own catalogue; the ladder names what is there beside a law that is off, and knows other effects.
 /// Effects keep the names that the compiled plant has for them.
 /// @param request  What the search was asked. The ladder keeps the end of `request.data` apart, as the search does.
-/// @return empty where the ladder begins with no name either, with one for few events or with several, or is not asked:
-/// another recording is to be judged with it, the
-///         model has effects already, only one is looked for, the run is to stop before the end, or the plant's file
-///         does not read the columns of the data.
+/// @return empty where the ladder begins with no name, with one for few events or with several, where it explains all
+///         rows but those kept apart, or where it is not asked: another recording is to be judged with it, the model
+///         has effects already, only one is looked for, the run is to stop before the end, or the plant's file does not
+///         read the columns of the data.
 [[nodiscard]] std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request);
 
 }  // namespace armcmc::ladder
