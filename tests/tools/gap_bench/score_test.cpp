@@ -104,10 +104,15 @@ TEST(GradeOf, WhatTheCatalogueIsMadeToLackHasTheNameOfTheSamePhysics) {
   EXPECT_EQ(GradeOf({}, dahl, Said({{"hysteresis"}})), Grade::kWrong);
 }
 
-TEST(GradeOf, AFamilyMayBeNamedByTwoOfItsEffects) {
-  EXPECT_EQ(GradeOf({}, Hidden({"sensor_delay"}), Said({{"sensor_delay", "sensor_lag"}})), Grade::kFamily);
-  EXPECT_EQ(GradeOf({}, Hidden({"sensor_delay"}), Said({{"sensor_delay", "inertia"}})), Grade::kWrong);
-  EXPECT_EQ(GradeOf({}, Hidden({"coulomb_friction", "presliding_friction"}), Said({{"coulomb_friction"}})),
+TEST(GradeOf, AFamilyMayBeNamedByTwoOfItsEffectsWhereThePlantIsNotTheCatalogue) {
+  Case imperfect;
+  imperfect.stratum = "strokes";
+  const gap::Result both = Said({{"sensor_delay", "sensor_lag"}});
+  EXPECT_EQ(GradeOf(imperfect, Hidden({"sensor_delay"}), both), Grade::kFamily);
+  EXPECT_EQ(GradeOf({}, Hidden({"sensor_delay"}), both), Grade::kWrong)
+      << "where the law is exact one of them is false";
+  EXPECT_EQ(GradeOf(imperfect, Hidden({"sensor_delay"}), Said({{"sensor_delay", "inertia"}})), Grade::kWrong);
+  EXPECT_EQ(GradeOf(imperfect, Hidden({"coulomb_friction", "presliding_friction"}), Said({{"coulomb_friction"}})),
             Grade::kPartial);
 }
 

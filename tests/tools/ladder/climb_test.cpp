@@ -12,37 +12,18 @@
 #include "armcmc/support/plant_file.hpp"
 #include "rung.hpp"
 #include "support/paths.hpp"
+#include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
 namespace armcmc::ladder::climb_test {
 namespace {
 
 using test::AxisSample;
+using test::ClimbWith;
+using test::NamesOf;
+using test::Sign;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-double Sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
-
-/// Climbs with a part of the catalogue, which takes a second where all of it takes ten.
-/// @param kin  Whether effects know which ones act like them.
-Ladder ClimbWith(const std::vector<std::string>& effects, const Dataset& data,
-                 PlantDescription plant = test::AxisPlant(), bool kin = true) {
-  ClimbRequest request;
-  request.plant = std::make_shared<const Plant>(std::move(plant));
-  for (EffectEntry& entry : support::ReadEffectLibrary())
-    if (std::find(effects.begin(), effects.end(), entry.name) != effects.end())
-      request.entries.push_back(std::move(entry));
-  for (EffectEntry& entry : request.entries)
-    if (!kin) entry.kin.clear();
-  request.data = data;
-  return Climb(request);
-}
-
-std::vector<std::string> NamesOf(const Rung& rung) {
-  std::vector<std::string> names;
-  for (const std::size_t i : rung.named) names.push_back(rung.contenders[i].candidate.entry->name);
-  return names;
-}
 
 const std::vector<std::string> kSome{"coulomb_friction", "presliding_friction", "drag",    "cubic_stiffness",
                                      "output_drift",     "asymmetric_friction", "cogging", "sensor_lag"};
@@ -168,6 +149,21 @@ TEST(Climb, WhatIsSmallBesideANameAndIsNoErrorOfItHasANameToo) {
   EXPECT_THAT(NamesOf(ladder.rungs[1]), ElementsAre("coulomb_friction"));
 }
 
+TEST(Climb, ASensorThatReadsNothingBelowAThresholdIsNamed) {
+  const auto lost = [](const AxisSample& s) { return -std::clamp(100.0 * s.a + 180.0 * s.v, -9.0, 9.0); };
+  const Ladder ladder = ClimbWith({"sensor_dead_zone", "coulomb_friction", "output_bias"}, test::AxisData(lost));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("sensor_dead_zone"));
+  EXPECT_NEAR(ladder.final_trial.fit.theta[3], 9.0, 0.5);
+  EXPECT_TRUE(ladder.complete);
+}
+
+TEST(Climb, AFrictionThatNeverSlidesIsNoFriction) {
+  // A spring, which a friction of any strength would be before it slides.
+  const auto spring = [](const AxisSample& s) { return 400.0 * s.q; };
+  const Ladder ladder = ClimbWith({"presliding_friction"}, test::AxisData(spring));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+}
+
 TEST(Climb, WhatNoEffectExplainsHasNoName) {
   const Ladder ladder = ClimbWith(
       kSome, test::AxisData([](const AxisSample& s) { return 12.0 * std::exp(-std::pow((s.q - 0.02) / 0.01, 2)); }));
@@ -243,80 +239,6 @@ TEST(Climb, WhatCannotBeFollowedIsLeftOut) {
   const Ladder ladder = ClimbWith({"input_lag"}, data, std::move(plant));
   EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
   EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("input_lag was not tried")));
-}
-
-const std::vector<std::string> kOfMotor{"drag", "coulomb_friction", "input_saturation", "sensor_saturation"};
-
-TEST(Climb, WhatActsLikeANameAndIsSmallBesideItIsAnErrorOfItsFormula) {
-  // Rounder than the catalogue's hysteresis, which a play would mend.
-  double z = 0.0;
-  const auto rounder = [&z](const AxisSample& s) {
-    constexpr int kSteps = 20;
-    for (int i = 0; i < kSteps; ++i)
-      z += 0.01 / kSteps * s.v / 0.02 * (1.0 - std::pow(std::abs(z), 1.6) * (0.5 + 0.5 * Sign(s.v * z)));
-    return 60.0 * z;
-  };
-  const Ladder ladder = ClimbWith({"hysteresis", "backlash"}, test::AxisData(rounder));
-  ASSERT_EQ(ladder.rungs.size(), 2u);
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("hysteresis"));
-  EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty());
-}
-
-TEST(Climb, ASensorWithACurveOfItsOwnIsNoSpring) {
-  const auto hidden = [](const AxisSample& s) {
-    const double force = 100.0 * s.a + 180.0 * s.v;
-    return -0.003 * force * std::abs(force);
-  };
-  const Ladder ladder = ClimbWith({"cubic_stiffness", "inertia", "drag"}, test::AxisData(hidden));
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
-  EXPECT_EQ(ladder.rungs[0].as_if, "a curve of the output were measured");
-}
-
-TEST(Climb, WhatACurveOfAnotherShapeExplainsFarBetterIsNotNamed) {
-  // A field that weakens with speed, which no catalogue has: drag takes most of it.
-  const Ladder ladder =
-      ClimbWith(kOfMotor, test::MotorData([](double w, double) { return 1.0 / (1.0 + std::pow(w / 90.0, 2)); }),
-                test::MotorPlant());
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
-  EXPECT_GT(1.0 - ladder.rungs[0].contenders[0].alone.folds, 0.5);
-  EXPECT_EQ(ladder.rungs[0].as_if, "K followed speed by a curve");
-  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if K followed speed by a curve")));
-  EXPECT_FALSE(ladder.complete);
-}
-
-TEST(Climb, AFormulaThatIsOffIsNamedWhereTheCurveThatDoesBetterHoldsIt) {
-  // A limit that is soft: any curve of the voltage does better than the sharp one.
-  const Ladder ladder =
-      ClimbWith(kOfMotor, test::MotorData([](double, double u) { return std::tanh(u / 5.0) / (u / 5.0 + 1e-12); }),
-                test::MotorPlant());
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("input_saturation"));
-  EXPECT_FALSE(ladder.complete);
-}
-
-TEST(Climb, ASpringThatStiffensFasterThanItsFormulaIsNamed) {
-  const auto spring = [](double pos) { return 1.2 * std::sinh(pos / 0.06); };
-  const Ladder ladder = ClimbWith({"cubic_stiffness", "backlash"}, test::SwingData([](double u) { return u; }, spring),
-                                  test::SwingPlant());
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cubic_stiffness"));
-}
-
-/// A motor that is switched up and down, and loses more and more of its speed the faster it is.
-Dataset LossyData() {
-  double w = 0.0;
-  return test::DataOf(
-      {.rows = 1000,
-       .noise = 0.3,
-       .seed = 11,
-       .drive = [](double t) { return 2.0 + (std::sin(0.7 * t) > 0.3 ? 3.0 : 0.0) + std::sin(3.1 * t); },
-       .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.5 - 3e-4 * w * w * w); },
-       .shown = [&] { return w; }});
-}
-
-TEST(Climb, WhatFollowsAnotherQuantityIsNotProtectedByACurveThatCanCopyIt) {
-  for (const std::string other : {"input_hysteresis", "output_drift"}) {
-    const Ladder ladder = ClimbWith({other}, LossyData(), test::MotorPlant());
-    EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << other;
-  }
 }
 
 TEST(BetterBase, IsFoundFromWhereAnEffectHasItsParameters) {

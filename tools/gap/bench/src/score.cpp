@@ -90,15 +90,16 @@ bool Nameable(const Case& what, const Truth& truth) {
   });
 }
 
-/// A family may be named by more than one of its effects, as a latency by a delay and a lag.
-bool AllOfFamily(const std::vector<Names>& sets, const Names& truth) {
-  const auto once = [](const Names& names) {
+/// @param repeated  A family may be named by more than one of its effects, as a latency by a delay and a lag.
+bool AllOfFamily(const std::vector<Names>& sets, const Names& truth, bool repeated) {
+  const auto families_of = [repeated](const Names& names) {
     Names families = FamiliesOf(names);
-    families.erase(std::unique(families.begin(), families.end()), families.end());
+    if (repeated) families.erase(std::unique(families.begin(), families.end()), families.end());
     return families;
   };
-  return std::all_of(sets.begin(), sets.end(),
-                     [&](const Names& set) { return set.size() >= truth.size() && once(set) == once(truth); });
+  return std::all_of(sets.begin(), sets.end(), [&](const Names& set) {
+    return set.size() >= truth.size() && families_of(set) == families_of(truth);
+  });
 }
 
 }  // namespace
@@ -149,7 +150,8 @@ Grade GradeOf(const Case& what, const Truth& all, const gap::Result& result) {
   if (sets.empty()) return nameable ? Grade::kUnnamed : Grade::kRight;
   const Names names = NamesOf(truth);
   if (std::find(sets.begin(), sets.end(), names) != sets.end()) return sets.size() == 1 ? Grade::kRight : Grade::kTie;
-  if (AllOfFamily(sets, names)) return Grade::kFamily;
+  // Where the plant is not the catalogue, two formulas of a family say no more than that.
+  if (AllOfFamily(sets, names, Imperfect(what.stratum))) return Grade::kFamily;
   const bool nothing_false = std::all_of(sets.begin(), sets.end(), [&](const Names& set) {
     return std::includes(names.begin(), names.end(), set.begin(), set.end());
   });

@@ -56,7 +56,7 @@ struct Truth {
 /// What the tool said, its curves left out.
 struct Answer {
   gap::Result result;
-  double cpu_s = 0.0;  ///< Processor time of the diagnosis and its proof.
+  double cpu_s = 0.0;  ///< Processor time of the diagnosis and its proof, without that of the ladder's second thread.
   std::string error;   ///< Why there is no result; empty when there is one.
 };
 
@@ -65,7 +65,7 @@ enum class Grade {
   kRight,     ///< The truth and nothing else. Of data without an effect: nothing beyond the noise. Of an effect outside
               ///< the catalogue: unnamed.
   kTie,       ///< Several sets, the truth among them.
-  kFamily,    ///< Another effect of the same family.
+  kFamily,    ///< Another effect of the same family; where the plant is not the catalogue, also two of it for one.
   kPartial,   ///< One of two effects, and nothing false.
   kUnnamed,   ///< Something without a name, where there is an effect with one, or nothing.
   kNone,      ///< Nothing beyond the noise, where there is something.

@@ -23,8 +23,9 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 /// catalogue lacks it.
 [[nodiscard]] std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result);
 
-/// Compares an answer with the truth. An effect that is outside the catalogue, or was taken out of it, has no right
-/// name; beside one of the catalogue it needs none.
+/// Compares an answer with the truth. An effect that is outside the plant's own catalogue, or was taken out of it, is
+/// rightly left unnamed, or named as the effects that serve every plant have it; beside one of the catalogue it needs
+/// no name.
 [[nodiscard]] Grade GradeOf(const Case& what, const Truth& truth, const gap::Result& result);
 
 /// Whether the equation that carries the gap is one that a true effect changes. Nothing where the plant has one

@@ -1,0 +1,97 @@
+// What else may explain what an effect seems to: curves, and the effects that were named before.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tools/ladder/climb_rig.hpp"
+#include "tools/ladder/made_data.hpp"
+
+namespace armcmc::ladder::rivals_test {
+namespace {
+
+using test::AxisSample;
+using test::ClimbWith;
+using test::NamesOf;
+using test::Sign;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+const std::vector<std::string> kOfMotor{"drag", "coulomb_friction", "input_saturation", "sensor_saturation"};
+
+TEST(Climb, WhatActsLikeANameAndIsSmallBesideItIsAnErrorOfItsFormula) {
+  // Rounder than the catalogue's hysteresis, which a play would mend.
+  double z = 0.0;
+  const auto rounder = [&z](const AxisSample& s) {
+    constexpr int kSteps = 20;
+    for (int i = 0; i < kSteps; ++i)
+      z += 0.01 / kSteps * s.v / 0.02 * (1.0 - std::pow(std::abs(z), 1.6) * (0.5 + 0.5 * Sign(s.v * z)));
+    return 60.0 * z;
+  };
+  const Ladder ladder = ClimbWith({"hysteresis", "backlash"}, test::AxisData(rounder));
+  ASSERT_EQ(ladder.rungs.size(), 2u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("hysteresis"));
+  EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty());
+}
+
+TEST(Climb, ASensorWithACurveOfItsOwnIsNoSpring) {
+  const auto hidden = [](const AxisSample& s) {
+    const double force = 100.0 * s.a + 180.0 * s.v;
+    return -0.003 * force * std::abs(force);
+  };
+  const Ladder ladder = ClimbWith({"cubic_stiffness", "inertia", "drag"}, test::AxisData(hidden));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_EQ(ladder.rungs[0].as_if, "a curve of the output were measured");
+}
+
+TEST(Climb, WhatACurveOfAnotherShapeExplainsFarBetterIsNotNamed) {
+  // A field that weakens with speed, which no catalogue has: drag takes most of it.
+  const Ladder ladder =
+      ClimbWith(kOfMotor, test::MotorData([](double w, double) { return 1.0 / (1.0 + std::pow(w / 90.0, 2)); }),
+                test::MotorPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_GT(1.0 - ladder.rungs[0].contenders[0].alone.folds, 0.5);
+  EXPECT_EQ(ladder.rungs[0].as_if, "K followed speed by a curve");
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if K followed speed by a curve")));
+  EXPECT_FALSE(ladder.complete);
+}
+
+TEST(Climb, AFormulaThatIsOffIsNamedWhereTheCurveThatDoesBetterHoldsIt) {
+  // A limit that is soft: any curve of the voltage does better than the sharp one.
+  const Ladder ladder =
+      ClimbWith(kOfMotor, test::MotorData([](double, double u) { return std::tanh(u / 5.0) / (u / 5.0 + 1e-12); }),
+                test::MotorPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("input_saturation"));
+  EXPECT_FALSE(ladder.complete);
+}
+
+TEST(Climb, ASpringThatStiffensFasterThanItsFormulaIsNamed) {
+  const auto spring = [](double pos) { return 1.2 * std::sinh(pos / 0.06); };
+  const Ladder ladder = ClimbWith({"cubic_stiffness", "backlash"}, test::SwingData([](double u) { return u; }, spring),
+                                  test::SwingPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cubic_stiffness"));
+}
+
+/// A motor that is switched up and down, and loses more and more of its speed the faster it is.
+Dataset LossyData() {
+  double w = 0.0;
+  return test::DataOf(
+      {.rows = 1000,
+       .noise = 0.3,
+       .seed = 11,
+       .drive = [](double t) { return 2.0 + (std::sin(0.7 * t) > 0.3 ? 3.0 : 0.0) + std::sin(3.1 * t); },
+       .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.5 - 3e-4 * w * w * w); },
+       .shown = [&] { return w; }});
+}
+
+TEST(Climb, WhatFollowsAnotherQuantityIsNotProtectedByACurveThatCanCopyIt) {
+  for (const std::string other : {"input_hysteresis", "output_drift"}) {
+    const Ladder ladder = ClimbWith({other}, LossyData(), test::MotorPlant());
+    EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << other;
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::ladder::rivals_test
