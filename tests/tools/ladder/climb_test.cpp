@@ -157,13 +157,6 @@ TEST(Climb, ASensorThatReadsNothingBelowAThresholdIsNamed) {
   EXPECT_TRUE(ladder.complete);
 }
 
-TEST(Climb, AFrictionThatNeverSlidesIsNoFriction) {
-  // A spring, which a friction of any strength would be before it slides.
-  const auto spring = [](const AxisSample& s) { return 400.0 * s.q; };
-  const Ladder ladder = ClimbWith({"presliding_friction"}, test::AxisData(spring));
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
-}
-
 TEST(Climb, WhatNoEffectExplainsHasNoName) {
   const Ladder ladder = ClimbWith(
       kSome, test::AxisData([](const AxisSample& s) { return 12.0 * std::exp(-std::pow((s.q - 0.02) / 0.01, 2)); }));
