@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "package/page_blocks.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
@@ -18,7 +21,31 @@ fs::path BuildDir() { return Program("x").parent_path().parent_path(); }
 
 Outcome Shell(const std::string& command) { return RunProgram("/bin/sh", {"-c", command}, 300s); }
 
-/// A program outside of the source tree that uses the libraries as a stranger does.
+/// Builds a program outside of the source tree against what is installed under `prefix`. @return what went wrong.
+std::string BuildConsumer(const fs::path& source, const fs::path& build, const std::string& prefix,
+                          const std::string& option = "") {
+  const Outcome configure = Shell("cmake -G Ninja -S " + source.string() + " -B " + build.string() +
+                                  " -DCMAKE_PREFIX_PATH=" + prefix + " " + option);
+  if (configure.code != 0) return configure.out + configure.err;
+  const Outcome compile = Shell("cmake --build " + build.string());
+  return compile.code == 0 ? "" : compile.out + compile.err;
+}
+
+/// The loop that core/README.md shows, built as if LCM were not installed, and run. It knows the parameters of its
+/// plant: c = 12, k = 400.
+void ExpectTheLoopOfThePageWorks(const fs::path& folder, const std::string& prefix) {
+  ASSERT_EQ(WriteFiles(ReadBlocks(SourceDir() / "core/README.md"), folder / "loop"), 2);
+  ASSERT_EQ(BuildConsumer(folder / "loop", folder / "loop-build", prefix, "-DCMAKE_DISABLE_FIND_PACKAGE_LCM=ON"), "");
+  const Outcome run = RunProgram(folder / "loop-build/my_loop", {});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 5) << run.out;
+  double c = 0.0, k = 0.0;
+  const std::string last = run.out.substr(run.out.rfind("c = "));
+  ASSERT_EQ(std::sscanf(last.c_str(), "c = %lf, 95 %% in [%*f, %*f] N s/m  k = %lf", &c, &k), 2) << run.out;
+  EXPECT_NEAR(c, 12.0, 0.5);
+  EXPECT_NEAR(k, 400.0, 10.0);
+}
+
 void WriteConsumer(const fs::path& folder) {
   fs::create_directories(folder);
   std::ofstream(folder / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\n"
@@ -44,15 +71,13 @@ TEST(Installed, AnOutsideProjectFindsBuildsAndRuns) {
   const Outcome install = Shell("cmake --install " + BuildDir().string() + " --prefix " + prefix);
   ASSERT_EQ(install.code, 0) << install.err;
   WriteConsumer(source);
-  const Outcome configure = Shell("cmake -G Ninja -S " + source + " -B " + build + " -DCMAKE_PREFIX_PATH=" + prefix);
-  ASSERT_EQ(configure.code, 0) << configure.err;
-  const Outcome compile = Shell("cmake --build " + build);
-  ASSERT_EQ(compile.code, 0) << compile.out;
+  ASSERT_EQ(BuildConsumer(source, build, prefix), "");
   const Outcome run = RunProgram(fs::path(build) / "consumer", {});
   EXPECT_EQ(run.code, 0);
   EXPECT_EQ(run.out.substr(0, 2), "2 ") << "inputs of a contact: " << run.out;
   const Outcome estimator = RunProgram(fs::path(prefix) / "bin/armcmc-estimator", {"--version"});
   EXPECT_EQ(estimator.code, 0) << estimator.err;
+  ExpectTheLoopOfThePageWorks(dir.path(), prefix);
 }
 
 TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
@@ -89,6 +114,7 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
   if (man.code == 0) {
     EXPECT_EQ(man.out, "") << "the manual page is good roff";
   }
+  ExpectTheLoopOfThePageWorks(dir.path(), root + "/usr");
 }
 
 TEST(Installed, SystemdAcceptsTheService) {
