@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -24,10 +28,47 @@ TEST(Pages, TheTutorialOfAPlantWorks) {
 
 TEST(Pages, ThePlantAndTheCsvOfTheReadmeWork) {
   const ScratchDir dir;
+  // Its reader stands at the top of a tree that is built.
+  std::filesystem::create_directory_symlink(SourceDir() / "tools", dir / "tools");
+  std::filesystem::create_directory_symlink(Program("x").parent_path().parent_path(), dir / "build");
   EXPECT_THAT(FollowPage(SourceDir() / "README.md", dir.path()), IsEmpty());
+  for (const char* made : {"motor.csv", "estimates.csv", "axis/report.html", "axis/model.toml"})
+    EXPECT_TRUE(std::filesystem::exists(dir / made)) << made;
 }
 
-// What the two above rest on.
+// A link to a file that is not there, or a page that has grown.
+TEST(Pages, LinksLeadToFilesAndPagesAreShort) {
+  const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
+  int links = 0;
+  for (const char* room : {".github", "core", "lcm_types", "plant_sim", "rt", "tests", "tools", "README.md"}) {
+    std::vector<std::filesystem::path> pages{SourceDir() / room};
+    if (std::filesystem::is_directory(pages.front())) {
+      pages.clear();
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(SourceDir() / room))
+        if (entry.path().extension() == ".md") pages.push_back(entry.path());
+    }
+    for (const std::filesystem::path& page : pages) {
+      std::ifstream file(page);
+      const std::string text{std::istreambuf_iterator<char>(file), {}};
+      EXPECT_LE(std::count(text.begin(), text.end(), '\n'), page == SourceDir() / "README.md" ? 150 : 200) << page;
+      for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it, ++links)
+        EXPECT_TRUE(std::filesystem::exists(page.parent_path() / (*it)[1].str())) << page << ": " << (*it)[1];
+    }
+  }
+  EXPECT_GT(links, 30);
+}
+
+TEST(Pages, TheFilesThatTheArchitectureNamesAreThere) {
+  std::ifstream file(SourceDir() / ".github/ARCHITECTURE.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::regex path(R"(`((core|rt|plant_sim|lcm_types|tools|tests)/[a-z0-9_/.]+)`)");
+  int paths = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), path), end; it != end; ++it, ++paths)
+    EXPECT_TRUE(std::filesystem::exists(SourceDir() / (*it)[1].str())) << (*it)[1];
+  EXPECT_GT(paths, 30);
+}
+
+// What the tests above rest on.
 TEST(Pages, FollowingAPageNoticesWhatIsOtherwise) {
   const ScratchDir dir;
   std::ofstream(dir / "page.md") << "```toml\n# made.toml\nx = 1\n```\n"
