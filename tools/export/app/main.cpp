@@ -4,6 +4,7 @@
 #include <string>
 
 #include "armcmc/log_export/csv_export.hpp"
+#include "armcmc/support/printable.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
 #include "armcmc/support/text_table.hpp"
@@ -50,7 +51,7 @@ void Print(const ExportSummary& summary) {
                   std::to_string(t.channel.undecodable), t.file.string()});
   std::cout << table.ToString();
   for (const ChannelScan& channel : summary.foreign)
-    std::cout << "foreign: " << channel.name << ", " << channel.undecodable << " events of type "
+    std::cout << "foreign: " << support::Printable(channel.name) << ", " << channel.undecodable << " events of type "
               << Hex(channel.fingerprint) << " (no released type of ours)\n";
   if (summary.left_out > 0) std::cout << summary.left_out << " channels were not asked for\n";
   if (summary.damage.any()) std::cout << "the log is damaged: " << ToString(summary.damage) << '\n';

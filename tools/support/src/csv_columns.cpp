@@ -67,8 +67,8 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
       const std::string_view text = fields[number_fields[i].first];
       row[i] = ParseNumber(text).value_or(std::numeric_limits<double>::quiet_NaN());
       if (!std::isfinite(row[i]) && problem.empty())
-        problem = columns.header[number_fields[i].first] + " = " + (text.empty() ? "(empty)" : Printable(text)) +
-                  ": expected a finite number";
+        problem = Printable(columns.header[number_fields[i].first]) + " = " +
+                  (text.empty() ? "(empty)" : Printable(text)) + ": expected a finite number";
     }
     if (!problem.empty() && bad_rows != BadRowsAre::kKept) {
       if (bad_rows == BadRowsAre::kErrors)

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/support/printable.hpp"
+
 namespace armcmc::support {
 
 // The characters of CSV files: lines, fields, numbers.
@@ -45,15 +47,6 @@ inline std::vector<std::string> HeaderNames(std::string_view line) {
   std::vector<std::string_view> fields;
   SplitFields(line, &fields);
   return {fields.begin(), fields.end()};
-}
-
-/// A cell as a message may show it: its beginning, without characters that a terminal would act on or a message end at.
-inline std::string Printable(std::string_view text) {
-  constexpr std::size_t kMaxShown = 60;
-  std::string shown(text.substr(0, kMaxShown));
-  for (char& c : shown)
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = '?';
-  return shown + (text.size() > kMaxShown ? "..." : "");
 }
 
 /// The nearest double, whatever the locale; none where the text is no number.
@@ -100,10 +93,12 @@ class LineReader {
   bool complete_ = true;
 };
 
+/// As a message may list them: of a header that has very many names the first.
 inline std::string JoinedNames(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 24;
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + Printable(name);
-  return text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) text += (i == 0 ? "" : ",") + Printable(names[i]);
+  return names.size() > kMost ? text + ",... (" + std::to_string(names.size()) + " in all)" : text;
 }
 
 /// Why a header holds none of the names that were expected, where its characters tell; else nothing.

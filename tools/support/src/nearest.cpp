@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "armcmc/support/printable.hpp"
+
 namespace armcmc::support {
 namespace {
 
@@ -41,7 +43,7 @@ std::string Nearest(std::string_view typed, const std::vector<std::string>& know
 
 std::string DidYouMean(std::string_view typed, const std::vector<std::string>& known) {
   const std::string nearest = Nearest(typed, known);
-  return nearest.empty() ? std::string() : " (did you mean " + nearest + "?)";
+  return nearest.empty() ? std::string() : " (did you mean " + Printable(nearest) + "?)";
 }
 
 }  // namespace armcmc::support

@@ -5,17 +5,18 @@
 #include <iostream>
 #include <new>
 
+#include "armcmc/support/printable.hpp"
 #include "armcmc/support/strict_toml.hpp"
 
 namespace armcmc::support {
 namespace {
 
 int Complain(const std::string& name, std::string what, int code) {
-  // One line, whatever the message holds.
+  // One line that a terminal only shows, whatever the message repeats of a file.
   for (char& c : what)
     if (c == '\n') c = ' ';
   while (!what.empty() && what.back() == ' ') what.pop_back();
-  std::cerr << name << ": " << what << '\n';
+  std::cerr << name << ": " << Escaped(what) << '\n';
   return code;
 }
 

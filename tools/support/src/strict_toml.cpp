@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "armcmc/support/printable.hpp"
 #include "nearest.hpp"
 
 namespace armcmc::support {
@@ -54,16 +55,14 @@ std::string Shown(const toml::node& node) {
   }
   std::string text = out.str();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  constexpr std::size_t kMaxShown = 60;
-  if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "...";
-  return text;
+  return Printable(text);
 }
 
 std::string KeyText(std::string_view key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return bare ? std::string(key) : '"' + std::string(key) + '"';
+  return bare ? Printable(key) : '"' + Printable(key) + '"';
 }
 
 std::string Listed(const std::vector<std::string>& names) {
@@ -115,15 +114,18 @@ struct StrictTable::Node {
       if (std::find(asked.begin(), asked.end(), key.str()) == asked.end()) names.emplace_back(key.str());
     return names;
   }
-  [[nodiscard]] std::shared_ptr<Node> Child(const std::string& key, const toml::table* child_table) {
+  /// @param index  Of an element of an array, "[0]"; else empty.
+  [[nodiscard]] std::shared_ptr<Node> Child(std::string_view key, const std::string& index,
+                                            const toml::table* child_table) {
+    const std::string whole = std::string(key) + index;
     for (const auto& [name, node] : children)
-      if (name == key) return node;
+      if (name == whole) return node;
     auto child = std::make_shared<Node>();
     child->document = document;
     child->table = child_table;
-    child->path = path.empty() ? key : path + "." + key;
+    child->path = PathOf(key) + index;
     child->at = child_table == nullptr ? at : child_table->source().begin;
-    children.emplace_back(key, child);
+    children.emplace_back(whole, child);
     return child;
   }
   /// Unknown keys of this table and those below, with their places.
@@ -184,7 +186,7 @@ StrictTable StrictTable::FromText(std::string_view text, std::string_view name) 
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
     throw ConfigError(document->name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                      std::string(error.description()));
+                      Escaped(error.description()));
   }
   auto node = std::make_shared<Node>();
   node->table = &document->root;
@@ -294,7 +296,7 @@ std::string StrictTable::RequiredChoice(std::string_view key, const std::vector<
 StrictTable StrictTable::Table(std::string_view key) {
   const toml::node* node = node_->Ask(key);
   if (node != nullptr && !node->is_table()) throw node_->Wrong(key, *node, "a table, [" + node_->PathOf(key) + "]");
-  return StrictTable(node_->Child(KeyText(key), node == nullptr ? nullptr : node->as_table()));
+  return StrictTable(node_->Child(key, "", node == nullptr ? nullptr : node->as_table()));
 }
 
 std::vector<StrictTable> StrictTable::Tables(std::string_view key) {
@@ -305,8 +307,8 @@ std::vector<StrictTable> StrictTable::Tables(std::string_view key) {
   if (array == nullptr) throw node_->Wrong(key, *node, "an array of tables, [[" + node_->PathOf(key) + "]]");
   for (const toml::node& element : *array) {
     if (!element.is_table()) throw node_->Wrong(key, element, "an array of tables, [[" + node_->PathOf(key) + "]]");
-    const std::string name = KeyText(key) + "[" + std::to_string(tables.size()) + "]";
-    tables.push_back(StrictTable(node_->Child(name, element.as_table())));
+    const std::string index = "[" + std::to_string(tables.size()) + "]";
+    tables.push_back(StrictTable(node_->Child(key, index, element.as_table())));
   }
   return tables;
 }
@@ -329,8 +331,8 @@ std::vector<StrictTable::TextOrTable> StrictTable::TextsOrTables(std::string_vie
   if (array == nullptr) throw node_->Wrong(key, *node, "names in quotes, or tables, in [ ]");
   std::vector<TextOrTable> items;
   for (const toml::node& element : *array) {
-    const std::string name = KeyText(key) + "[" + std::to_string(items.size()) + "]";
-    const StrictTable table(node_->Child(name, element.as_table()));
+    const std::string index = "[" + std::to_string(items.size()) + "]";
+    const StrictTable table(node_->Child(key, index, element.as_table()));
     if (!element.is_table() && !element.is_string())
       throw node_->Wrong(key, element, "a name in quotes, or a table { name = \"..\", .. }");
     items.push_back({element.is_string() ? *element.value<std::string>() : "", table});

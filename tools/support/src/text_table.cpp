@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "armcmc/support/printable.hpp"
+
 namespace armcmc::support {
 
 TextTable::TextTable(std::vector<std::string> header, Content content) : content_(content) {
@@ -15,6 +17,7 @@ TextTable::TextTable(std::vector<std::string> header, Content content) : content
 
 void TextTable::AddRow(std::vector<std::string> cells) {
   if (cells.size() > rows_.front().size()) throw std::invalid_argument("more cells than the table has columns");
+  for (std::string& cell : cells) cell = Escaped(cell);
   cells.resize(rows_.front().size());
   rows_.push_back(std::move(cells));
 }
