@@ -17,7 +17,7 @@ using testing::HasSubstr;
 std::vector<std::filesystem::path> PlantsThatComeAlong() {
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::directory_iterator(test::SourceDir() / "core/plants"))
-    paths.push_back(entry.path() / "plant.toml");
+    if (entry.is_directory()) paths.push_back(entry.path() / "plant.toml");
   return paths;
 }
 

@@ -43,6 +43,7 @@ TEST_F(ModelProgram, SaysWhatItUnderstoodOfEveryPlantThatComesAlong) {
   const test::Outcome list = Run({"list"});
   EXPECT_EQ(list.code, 0) << list.err;
   for (const auto& entry : std::filesystem::directory_iterator(test::SourceDir() / "core/plants")) {
+    if (!entry.is_directory()) continue;  // the page about plants
     const std::string name = entry.path().filename().string();
     EXPECT_THAT(list.out, HasSubstr(name));
     const test::Outcome check = Run({"check", name});
