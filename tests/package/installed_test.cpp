@@ -91,7 +91,8 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
   ASSERT_EQ(contents.code, 0) << contents.err;
   for (const char* path :
        {"./usr/bin/armcmc-estimator", "./usr/bin/armcmc-plant", "./usr/bin/armcmc-stress", "./usr/bin/armcmc-rtcheck",
-        "./usr/share/man/man1/armcmc-estimator.1", "./usr/lib/systemd/system/armcmc-estimator.service",
+        "./usr/share/man/man1/armcmc-estimator.1", "./usr/share/man/man1/armcmc-watch.1",
+        "./usr/share/bash-completion/completions/armcmc-gap", "./usr/lib/systemd/system/armcmc-estimator.service",
         "./usr/lib/sysctl.d/60-armcmc.conf", "./usr/share/armcmc/deploy/60-armcmc.rules",
         "./usr/share/armcmc/config/hunt_crossley.toml", "./usr/share/armcmc/scenarios/hunt_crossley_paper.toml",
         "./usr/share/armcmc/lcm_types/armcmc_data_pack_t.lcm", "./usr/share/doc/armcmc/tuning.md",
@@ -114,6 +115,17 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
   if (man.code == 0) {
     EXPECT_EQ(man.out, "") << "the manual page is good roff";
   }
+  const std::string completions = root + "/usr/share/bash-completion/completions/";
+  const auto completed = [&](const std::string& program, const std::string& words, int word) {
+    std::string function = "_" + program;
+    std::replace(function.begin(), function.end(), '-', '_');
+    return Shell("bash -c '. " + completions + program + "; COMP_WORDS=(" + words +
+                 "); COMP_CWORD=" + std::to_string(word) + "; " + function + "; echo ${COMPREPLY[@]}'")
+        .out;
+  };
+  EXPECT_EQ(completed("armcmc-gap", "armcmc-gap --rec", 1), "--recording\n");
+  EXPECT_EQ(completed("armcmc-model", "armcmc-model \"\"", 1), "--help --version check list add new\n");
+  EXPECT_EQ(completed("armcmc-model", "armcmc-model new --f", 2), "--from\n");
   ExpectTheLoopOfThePageWorks(dir.path(), root + "/usr");
 }
 

@@ -21,20 +21,28 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/armcmcConfigVersion.cmak
 install(FILES "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" "${PROJECT_BINARY_DIR}/armcmcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/FindLCM.cmake" DESTINATION "${armcmc_cmake_dir}")
 
-# What a program says about itself with --help is its manual page.
-foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-gap armcmc-model armcmc-plant armcmc-replay armcmc-rtcheck
-    armcmc-stress armcmc-tables)
-  if(TARGET ${program} AND NOT program STREQUAL "armcmc-bench")
+# What a program says about itself with --help is its manual page, and what a shell completes behind it.
+foreach(program IN ITEMS armcmc-estimator armcmc-export armcmc-gap armcmc-gap-bench armcmc-model armcmc-plant
+    armcmc-replay armcmc-rtcheck armcmc-stress armcmc-tables armcmc-watch)
+  if(TARGET ${program})
     set(page "${PROJECT_BINARY_DIR}/man/${program}.1")
-    add_custom_command(OUTPUT "${page}"
-      COMMAND "${PROJECT_SOURCE_DIR}/tools/cmake/man-page" "$<TARGET_FILE:${program}>" "${page}"
-      DEPENDS ${program} "${PROJECT_SOURCE_DIR}/tools/cmake/man-page" VERBATIM)
+    set(completion "${PROJECT_BINARY_DIR}/completions/${program}")
+    foreach(made IN ITEMS page completion)
+      set(maker "${PROJECT_SOURCE_DIR}/tools/cmake/man-page")
+      if(made STREQUAL "completion")
+        set(maker "${PROJECT_SOURCE_DIR}/tools/cmake/bash-completion")
+      endif()
+      add_custom_command(OUTPUT "${${made}}" COMMAND "${maker}" "$<TARGET_FILE:${program}>" "${${made}}"
+        DEPENDS ${program} "${maker}" VERBATIM)
+    endforeach()
     list(APPEND armcmc_man_pages "${page}")
+    list(APPEND armcmc_completions "${completion}")
   endif()
 endforeach()
 if(armcmc_man_pages)
-  add_custom_target(armcmc_man ALL DEPENDS ${armcmc_man_pages})
+  add_custom_target(armcmc_man ALL DEPENDS ${armcmc_man_pages} ${armcmc_completions})
   install(FILES ${armcmc_man_pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+  install(FILES ${armcmc_completions} DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
 endif()
 
 if(TARGET armcmc-estimator)
