@@ -53,9 +53,9 @@ std::string LineOf(const std::vector<std::string>& aliases, const std::string& b
   return line == aliases.end() ? "" : *line;
 }
 
-/// "K +1.2 %" in the words after "passes for" -> 1.2.
+/// "K +1.2 %" in the words after "looks like" -> 1.2.
 double PercentOf(const std::string& line, const std::string& parameter) {
-  const std::size_t from = line.find("passes for"), at = line.find(parameter + " ", from);
+  const std::size_t from = line.find("looks like"), at = line.find(parameter + " ", from);
   return from == std::string::npos || at == std::string::npos ? 0.0 : std::strtod(line.c_str() + at + 2, nullptr);
 }
 

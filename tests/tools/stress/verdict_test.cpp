@@ -33,7 +33,7 @@ TEST(Judge, RefusesASlowRecovery) {
   PhaseResult phase = GoodPhase();
   phase.faults[0].recovered_steps = 6;
   phase.faults[0].hindrance = "truncated";
-  EXPECT_EQ(Judge({phase}).Text(), "failed: nan was got over after 6 steps (truncated)");
+  EXPECT_EQ(Judge({phase}).Text(), "failed: nan: recovered after 6 steps (truncated)");
 }
 
 TEST(Judge, RefusesOwnMissesThatNoFaultExplains) {

@@ -30,7 +30,7 @@ class Tangent {
   [[nodiscard]] double Absorbed(const Vector& g) const {
     return (basis_.transpose() * g).squaredNorm() / g.squaredNorm();
   }
-  /// The change of the coordinates that an effect passes for.
+  /// The change of the coordinates that looks like an effect.
   [[nodiscard]] Vector Bias(const Vector& g) const { return jacobian_->colPivHouseholderQr().solve(g); }
 
  private:
@@ -76,7 +76,7 @@ std::vector<std::string> Aliases(const Equation& equation, const Look& look) {
   std::vector<std::string> texts;
   if (predicted.squaredNorm() > 0.0 && tangent.Absorbed(predicted) > kAbsorbed)
     texts.push_back("a wrong gain or unit of the " + equation.output_name() +
-                    ": the parameters absorb it. One percent too much passes for " +
+                    ": the parameters absorb it. One percent too much looks like " +
                     BiasText(equation, look, Vector(0.01 * tangent.Bias(predicted))));
   std::vector<std::pair<std::string, std::vector<Vector>>> visible;  // with the parts that no parameter absorbs
   for (const Signatures& signatures : SignaturesOf(look)) {
@@ -92,7 +92,7 @@ std::vector<std::string> Aliases(const Equation& equation, const Look& look) {
     if (strongest == nullptr)
       texts.push_back(signatures.effect + ": never acts in this motion");
     else if (absorbed)
-      texts.push_back(signatures.effect + ": the parameters absorb it. As strong as the noise it passes for " +
+      texts.push_back(signatures.effect + ": the parameters absorb it. As strong as the noise it looks like " +
                       BiasText(equation, look, Vector(tangent.Bias(*strongest) * (noise / strongest->norm()))));
     else
       visible.emplace_back(signatures.effect, std::move(outside));

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App cli{
       "Is this computer fit to keep deadlines? Looks at privileges, kernel, processors, timers, memory and network,\n"
-      "measures how late a real-time thread is woken, and names the command that mends each finding."};
+      "measures how late a real-time thread is woken, and names the command that fixes each finding."};
   cli.footer(
       "Exit status: 0 fit, 3 not fit, 2 bad usage.\n"
       "Example: armcmc-rtcheck --period-ms 10 --seconds 60");

@@ -35,7 +35,7 @@ void RecordTrouble(const FaultOutcome& outcome, FlightRecorder* recorder) {
   const auto statuses = static_cast<std::size_t>(outcome.statuses) + 3;
   if (outcome.injected && !outcome.detected) recorder->Write(name + " was not detected", statuses);
   if (outcome.injected && outcome.recovered_steps > kMostRecoverySteps) {
-    recorder->Write(name + " was not got over: " + outcome.hindrance, statuses);
+    recorder->Write(name + " did not recover: " + outcome.hindrance, statuses);
   }
 }
 

@@ -61,8 +61,8 @@ Verdict Judge(const std::vector<PhaseResult>& phases) {
     }
     if (fault.recovered_steps > kMostRecoverySteps) {
       const std::string steps = fault.recovered_steps >= FaultJudge::kNever
-                                    ? " was not got over in its time"
-                                    : " was got over after " + std::to_string(fault.recovered_steps) + " steps";
+                                    ? " did not recover in its time"
+                                    : ": recovered after " + std::to_string(fault.recovered_steps) + " steps";
       fail(name + steps + " (" + fault.hindrance + ")");
     }
   }

@@ -12,7 +12,7 @@ namespace armcmc::gap {
 ///
 /// For the whitened signature g of an effect (the change of the prediction by a small amplitude of it) and the slopes J
 /// of the base law, P the projector on their span, three things are said:
-///   - |P g|^2 / |g|^2 > 0.999: the parameters of the law absorb the effect. It cannot be seen, and passes for
+///   - |P g|^2 / |g|^2 > 0.999: the parameters of the law absorb the effect. It cannot be seen, and looks like
 ///     (J'J)^-1 J' g of them.
 ///   - g = 0: the effect never acts in this motion.
 ///   - |cos(g - P g, h - P h)| > 0.98 for the signature h of another effect: the two look alike.

@@ -30,8 +30,8 @@ struct FitResult {
 [[nodiscard]] FitResult Fit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                             const Eigen::VectorXd& start, int max_iterations = 30);
 
-/// A start that is moved along one parameter at a time, the one that helps most: a parameter that is far off is mended
-/// without the others running away.
+/// A start that is moved along one parameter at a time, the one that helps most: a parameter that is far off is
+/// corrected without the others running away.
 [[nodiscard]] Eigen::VectorXd AlongOne(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                                        const Eigen::VectorXd& start, int steps);
 

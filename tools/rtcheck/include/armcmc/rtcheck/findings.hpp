@@ -19,7 +19,7 @@ struct Finding {
   Level level = Level::kOk;
   std::string what;    ///< What is the case.
   std::string cost;    ///< What that costs; "" when nothing.
-  std::string remedy;  ///< The exact command that mends it; "" when nothing is to be mended.
+  std::string remedy;  ///< The exact command that fixes it; "" when nothing needs to be fixed.
 };
 
 /// What is to be relied upon.

@@ -8,7 +8,7 @@
 
 namespace armcmc::stress {
 
-/// The packs of one run of the plant in which one fault happens and is got over: [begin, end).
+/// The packs of one run of the plant in which one fault happens and the estimator recovers: [begin, end).
 struct Slot {
   static constexpr std::int64_t kQuietBefore = 3;  ///< Packs of a slot before its fault.
 

@@ -10,7 +10,8 @@
 namespace armcmc::stress {
 
 /// The estimator's newest statuses, a line each, written to a file when something went wrong: what came before a miss
-/// of its own, or all of a fault that was not detected or not got over. Memory and file are bounded.
+/// of its own, or all of a fault that was not detected, or from which the estimator did not recover. Memory and file
+/// are bounded.
 class FlightRecorder {
  public:
   static constexpr std::size_t kStatuses = 400;  ///< The longest slot at 100 Hz, twice.

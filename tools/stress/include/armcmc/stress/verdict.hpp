@@ -20,7 +20,7 @@ struct Verdict {
 [[nodiscard]] std::vector<FaultTally> AllFaults(const std::vector<PhaseResult>& phases);
 
 /// Passed: the estimator lived, no more own misses than allowed, no heap call in a stage, every fault that was
-/// injected was detected and got over within kMostRecoverySteps steps.
+/// injected was detected, and all was normal again within kMostRecoverySteps steps.
 [[nodiscard]] Verdict Judge(const std::vector<PhaseResult>& phases);
 
 }  // namespace armcmc::stress
