@@ -13,6 +13,7 @@
 
 #include "package/page_blocks.hpp"
 #include "support/paths.hpp"
+#include "support/process.hpp"
 
 namespace armcmc::test::pages_test {
 namespace {
@@ -34,6 +35,21 @@ TEST(Pages, ThePlantAndTheCsvOfTheReadmeWork) {
   EXPECT_THAT(FollowPage(SourceDir() / "README.md", dir.path()), IsEmpty());
   for (const char* made : {"motor.csv", "estimates.csv", "axis/report.html", "axis/model.toml"})
     EXPECT_TRUE(std::filesystem::exists(dir / made)) << made;
+}
+
+TEST(Pages, ResultsAreMadeByTheCommandsThatTheyShow) {
+  const ScratchDir dir;
+  const Outcome run =
+      RunProgram(SourceDir() / "tools/results",
+                 {"--quick", "--build", Program("x").parent_path().parent_path(), "--out", dir.path(), "recordings"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  std::ifstream file(dir / "tools/gap/recordings/RESULTS.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(text,
+              HasSubstr("$ armcmc-gap --recording tools/gap/recordings/excerpt/emps_excerpt.toml --out OUT/excerpt\n"));
+  EXPECT_THAT(text, HasSubstr("Missing: coulomb friction, then asymmetric friction."));
+  const Outcome usage = RunProgram(SourceDir() / "tools/results", {"nothing"});
+  EXPECT_EQ(usage.code, 2);
 }
 
 // A link to a file that is not there, or a page that has grown.
