@@ -85,7 +85,7 @@ std::vector<std::string> FollowPage(const std::filesystem::path& page, const std
       std::string line;
       for (int number = block.line + 1; std::getline(lines, line); ++number)
         if (printed.find(Squeezed(line)) == std::string::npos)
-          surprise(number, "not printed: " + line + "\n" + printed);
+          surprise(number, std::string("not printed: ").append(line).append("\n").append(printed));
     }
   }
   return surprises;
