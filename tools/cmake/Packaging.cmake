@@ -22,7 +22,7 @@ install(FILES "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" "${PROJECT_BINARY_DIR}/
   "${CMAKE_CURRENT_LIST_DIR}/FindLCM.cmake" DESTINATION "${armcmc_cmake_dir}")
 
 # What a program says about itself with --help is its manual page, and what a shell completes behind it.
-foreach(program IN ITEMS armcmc-estimator armcmc-export armcmc-gap armcmc-gap-bench armcmc-model armcmc-plant
+foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-export armcmc-gap armcmc-gap-bench armcmc-model armcmc-plant
     armcmc-replay armcmc-rtcheck armcmc-stress armcmc-tables armcmc-watch)
   if(TARGET ${program})
     set(page "${PROJECT_BINARY_DIR}/man/${program}.1")

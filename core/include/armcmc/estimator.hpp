@@ -123,4 +123,9 @@ class Estimator {
 /// Instruction set that the scoring kernels run on: "avx512", "avx2" or "sse2".
 [[nodiscard]] std::string_view InstructionSet() noexcept;
 
+/// Makes the estimators that are constructed from now on use that instruction set, for measurements; otherwise it is
+/// the widest that this CPU runs. @return false when this build or this CPU has no such set: nothing is changed then.
+/// @rt Set-up only: while no other thread constructs an estimator.
+[[nodiscard]] bool UseInstructionSet(std::string_view name) noexcept;
+
 }  // namespace armcmc

@@ -125,8 +125,11 @@ struct Kernels {
                      double* out) noexcept ARMCMC_NONBLOCKING;
 };
 
-/// The best set that this CPU runs, chosen once.
+/// The widest set that this CPU runs, or the one that Use() chose.
 [[nodiscard]] const Kernels& Best() noexcept;
+
+/// See UseInstructionSet().
+bool Use(std::string_view name) noexcept;
 
 extern const Kernels kSse2Kernels;
 #if defined(ARMCMC_HAVE_AVX2)

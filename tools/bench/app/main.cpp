@@ -1,0 +1,76 @@
+#include <benchmark/benchmark.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "armcmc/bench/suite.hpp"
+#include "armcmc/estimator.hpp"
+#include "armcmc/support/program.hpp"
+
+namespace {
+
+struct Arguments {
+  std::vector<std::string> models;
+  std::string instruction_set;
+  bool no_quality = false;
+};
+
+void Declare(CLI::App* app, Arguments* a) {
+  app->add_option("--model", a->models,
+                  "Only this plant: built in, NAME:tape for the same run as a file describes it, the name of one that "
+                  "came along, or a file. May be repeated");
+  app->add_option("--instruction-set", a->instruction_set,
+                  "avx512, avx2 or sse2 instead of the widest that this CPU runs");
+  app->add_flag("--no-quality", a->no_quality, "Leave out BM_EffectiveDraws");
+  app->allow_extras();
+  app->footer(
+      "Measures the step of the estimator, part by part, on packs that armcmc-plant simulates with a fixed seed, and\n"
+      "how many independent draws its draws are worth. Every option of Google Benchmark is taken as well:\n"
+      "--benchmark_filter=REGEX, --benchmark_format=json, --benchmark_out=FILE, --benchmark_repetitions=N,\n"
+      "--benchmark_list_tests. Times on a shared machine vary: compare figures of one run.\n\n"
+      "Benchmarks:\n"
+      "  BM_AdjustStep/PLANT/DRAWS/SAMPLES   draw and remember; BM_Draw, BM_Remember and BM_Execute are the parts\n"
+      "  BM_Memory/PLANT                     construction; the counter `bytes` is the heap that it takes\n"
+      "  BM_Noise/PLANT/LAW                  a whole step under another law of the noise\n"
+      "  BM_Effects/PLANT/COUNT              a whole step with effects added to the law\n"
+      "  BM_NaiveLoop/DRAWS/SAMPLES          the likelihood alone, as a plain loop with std::pow\n"
+      "  BM_EffectiveDraws/CASE              200 replicates: posterior variance over that of the estimated mean,\n"
+      "                                      of the chain and of the weighted draws\n\n"
+      "Examples:\n"
+      "  armcmc-bench --benchmark_filter=AdjustStep\n"
+      "  armcmc-bench --model my_axis.toml --benchmark_format=json\n"
+      "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.");
+}
+
+int Run(const CLI::App& app, const Arguments& a, const std::string& program) {
+  if (!a.instruction_set.empty() && !armcmc::UseInstructionSet(a.instruction_set))
+    throw armcmc::support::InputError("--instruction-set " + a.instruction_set +
+                                      ": not of this build or this CPU; there are avx512, avx2, sse2");
+  std::vector<std::string> words = app.remaining();
+  words.insert(words.begin(), program);
+  std::vector<char*> argv;
+  argv.reserve(words.size());
+  for (std::string& word : words) argv.push_back(word.data());
+  int argc = static_cast<int>(argv.size());
+  benchmark::Initialize(&argc, argv.data());
+  if (argc > 1) throw armcmc::support::InputError(std::string(argv[1]) + ": no such option (see --help)");
+  const armcmc::bench::DataFolder folder;
+  armcmc::bench::Suite suite = armcmc::bench::MakeSuite(a.models);
+  suite.quality = !a.no_quality;
+  armcmc::bench::Register(suite, folder);
+  benchmark::AddCustomContext("instruction_set", std::string(armcmc::InstructionSet()));
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return armcmc::support::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"How long the step of the estimator takes, and how good its draws are."};
+  Arguments arguments;
+  Declare(&app, &arguments);
+  return armcmc::support::RunProgram(app, "armcmc-bench", argc, argv, [&] { return Run(app, arguments, argv[0]); });
+}
