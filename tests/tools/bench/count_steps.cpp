@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -100,7 +99,7 @@ int main(int argc, char** argv) {
   try {
     if (argc != 3) throw std::invalid_argument("usage: count_steps CASE STEPS");
     std::fprintf(stderr, "instruction set %s\n", std::string(InstructionSet()).c_str());
-    Run(argv[1], std::atoi(argv[2]));
+    Run(argv[1], std::stoi(argv[2]));
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "count_steps: %s\n", error.what());
