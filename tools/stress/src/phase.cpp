@@ -128,8 +128,10 @@ PhaseResult RunPhase(const StressOptions& options, const std::string& load_name,
   const double one_run = static_cast<double>(layout.last_pack) * options.period_ms * 1e-3;
   if (options.faults.empty()) {
     // The plant's scenario ends after an hour.
-    for (double left = seconds; !runs.estimator_died() && left > 1.0; left = seconds - SecondsSince(start_ns) - 1.0) {
+    double left = seconds;
+    while (!runs.estimator_died() && left > 1.0) {
       runs.RunQuietly(1e3 * std::min(left, 3500.0));
+      left = seconds - SecondsSince(start_ns) - 1.0;
     }
   } else {
     do {

@@ -52,7 +52,7 @@ Verdict Judge(const std::vector<PhaseResult>& phases) {
       fail(std::to_string(phase.own_misses_outside) + " own misses outside of faults" + under);
     }
     for (const auto& [stage, count] : phase.report["allocations"].items())
-      if (count.is_number() && count != 0) fail(count.dump() + " heap calls in " + stage + under);
+      if (count.is_number() && count != 0) fail(count.dump().append(" heap calls in ").append(stage).append(under));
   }
   for (const FaultTally& fault : AllFaults(phases)) {
     const std::string name = fault.fault->name;

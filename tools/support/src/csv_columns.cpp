@@ -46,6 +46,8 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
   columns.header = HeaderNames(line);
   std::vector<std::pair<std::size_t, std::vector<double>*>> number_fields;
   std::vector<std::pair<std::size_t, std::vector<std::string>*>> text_fields;
+  number_fields.reserve(numbers.size());
+  text_fields.reserve(texts.size());
   for (const std::string& name : numbers)
     number_fields.emplace_back(FieldOf(path, columns.header, name), &columns.number[name]);
   for (const std::string& name : texts)
