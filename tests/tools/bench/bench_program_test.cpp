@@ -68,6 +68,8 @@ TEST_F(BenchProgram, CountsTheDrawsThatItsDrawsAreWorth) {
     EXPECT_GT(what.at("chain").get<double>(), 2500.0) << what;
     EXPECT_LT(what.at("chain").get<double>(), 14979.0) << what;
     EXPECT_GT(what.at("weighted").get<double>(), what.at("chain").get<double>()) << what;
+    // The chains of 200 replicates know a mean to 1 / sqrt(200 * 2500) = 1.4e-3 posterior standard deviations.
+    EXPECT_LT(what.at("bias").get<double>(), 6e-3) << what;
   }
 }
 

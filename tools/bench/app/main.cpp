@@ -8,6 +8,7 @@
 #include "armcmc/bench/suite.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/scratch_folder.hpp"
 
 namespace {
 
@@ -56,10 +57,10 @@ int Run(const CLI::App& app, const Arguments& a, const std::string& program) {
   int argc = static_cast<int>(argv.size());
   benchmark::Initialize(&argc, argv.data());
   if (argc > 1) throw armcmc::support::InputError(std::string(argv[1]) + ": no such option (see --help)");
-  const armcmc::bench::DataFolder folder;
+  const armcmc::support::ScratchFolder folder("armcmc-bench");
   armcmc::bench::Suite suite = armcmc::bench::MakeSuite(a.models);
   suite.quality = !a.no_quality;
-  armcmc::bench::Register(suite, folder);
+  armcmc::bench::Register(suite, folder.path());
   benchmark::AddCustomContext("instruction_set", std::string(armcmc::InstructionSet()));
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

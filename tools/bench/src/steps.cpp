@@ -7,6 +7,7 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -99,7 +100,7 @@ void Add(const std::string& name, EstimatorSettings settings, const Packs& packs
       ->Unit(benchmark::kMillisecond);
 }
 
-Packs Load(const Plant& plant, int samples, const DataFolder& folder) {
+Packs Load(const Plant& plant, int samples, const std::filesystem::path& folder) {
   return std::make_shared<const std::vector<DataPack>>(FullPacks(plant, samples, folder));
 }
 
@@ -115,7 +116,7 @@ const ModelInfo* BuiltIn(const EstimatorSettings& settings) {
 
 }  // namespace
 
-void RegisterSteps(const Plant& plant, int draws, int samples, const DataFolder& folder) {
+void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesystem::path& folder) {
   EstimatorSettings settings = SettingsOf(plant);
   if (draws > 0) {
     settings.sampler.rule = DrawRule::kFixed;
@@ -146,7 +147,7 @@ void RegisterMemory(const Plant& plant) {
   })->Unit(benchmark::kMillisecond);
 }
 
-void RegisterNoise(const Plant& plant, const DataFolder& folder) {
+void RegisterNoise(const Plant& plant, const std::filesystem::path& folder) {
   const Packs packs = Load(plant, 100, folder);
   for (const auto& [kind, law] :
        {std::pair{NoiseKind::kGaussian, "gaussian"}, std::pair{NoiseKind::kStudentT, "student_t"},
@@ -157,7 +158,7 @@ void RegisterNoise(const Plant& plant, const DataFolder& folder) {
   }
 }
 
-void RegisterEffects(const Plant& plant, const DataFolder& folder) {
+void RegisterEffects(const Plant& plant, const std::filesystem::path& folder) {
   constexpr int kMost = 3;
   EstimatorSettings settings = SettingsOf(plant);
   const ModelInfo* info = BuiltIn(settings);

@@ -5,13 +5,13 @@
 namespace armcmc::bench {
 
 /// BM_AdjustStep, BM_Draw, BM_Remember, BM_Execute of one plant.
-void RegisterSteps(const Plant& plant, int draws, int samples, const DataFolder& folder);
+void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesystem::path& folder);
 /// BM_Memory: heap of an estimator with one result slot, all of it allocated at construction.
 void RegisterMemory(const Plant& plant);
 /// BM_Noise: one for each law.
-void RegisterNoise(const Plant& plant, const DataFolder& folder);
+void RegisterNoise(const Plant& plant, const std::filesystem::path& folder);
 /// BM_Effects: none, one, two, three. Of a built-in plant that has so many effects with additive amplitudes.
-void RegisterEffects(const Plant& plant, const DataFolder& folder);
+void RegisterEffects(const Plant& plant, const std::filesystem::path& folder);
 /// BM_NaiveLoop.
 void RegisterNaiveLoop(int draws, int samples);
 /// BM_EffectiveDraws: cold, warm, ridge, change.

@@ -23,7 +23,7 @@ Suite MakeSuite(const std::vector<std::string>& models) {
   return suite;
 }
 
-void Register(const Suite& suite, const DataFolder& folder) {
+void Register(const Suite& suite, const std::filesystem::path& folder) {
   constexpr int kSamples = 100;
   for (const Plant& plant : suite.plants) {
     RegisterSteps(plant, 0, kSamples, folder);

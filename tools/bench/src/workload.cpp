@@ -1,9 +1,6 @@
 #include "armcmc/bench/workload.hpp"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -30,9 +27,9 @@ bool IsBuiltIn(const std::string& model) {
   return std::any_of(all.begin(), all.end(), [&](const ModelInfo* info) { return info->name == model; });
 }
 
-std::filesystem::path Simulated(const Plant& plant, const DataFolder& folder) {
+std::filesystem::path Simulated(const Plant& plant, const std::filesystem::path& folder) {
   const std::string base = plant.name.substr(0, plant.name.find(':'));
-  std::filesystem::path csv = folder.path() / (base + ".csv");
+  std::filesystem::path csv = folder / (base + ".csv");
   if (std::filesystem::exists(csv)) return csv;
   std::vector<std::string> arguments = {"--seed", "1", "--csv", csv.string()};
   if (IsBuiltIn(base)) {
@@ -40,8 +37,7 @@ std::filesystem::path Simulated(const Plant& plant, const DataFolder& folder) {
   } else {
     arguments.insert(arguments.end(), {"--model", plant.model, "--duration", "20"});
   }
-  const support::SubprocessEnd end =
-      support::RunSubprocess(support::ProgramBeside("armcmc-plant"), arguments, folder.path());
+  const support::SubprocessEnd end = support::RunSubprocess(support::ProgramBeside("armcmc-plant"), arguments, folder);
   if (end.code != 0) throw std::runtime_error("armcmc-plant cannot simulate " + plant.model + ": " + end.errors);
   return csv;
 }
@@ -62,17 +58,6 @@ std::unique_ptr<replay::PackSource> Open(const std::filesystem::path& csv, const
 
 }  // namespace
 
-DataFolder::DataFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "armcmc-bench-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for data can be made: " + name);
-  path_ = name;
-}
-
-DataFolder::~DataFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 EstimatorSettings SettingsOf(const Plant& plant) {
   if (auto described = support::DescribedPlant(plant.model)) return DescribedSettings(std::move(described));
   return support::ReadModel(plant.model);
@@ -90,7 +75,7 @@ std::vector<Plant> KnownPlants() {
   return plants;
 }
 
-std::vector<DataPack> FullPacks(const Plant& plant, int samples, const DataFolder& folder) {
+std::vector<DataPack> FullPacks(const Plant& plant, int samples, const std::filesystem::path& folder) {
   EstimatorSettings settings = SettingsOf(plant);
   settings.sampler.rule = DrawRule::kFixed;  // whether a mode is full does not depend on the draws
   settings.sampler.fixed_draws = SamplerSettings::kMinDraws;

@@ -14,6 +14,7 @@
 #include "armcmc/stress/verdict.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
+#include "armcmc/support/scratch_folder.hpp"
 
 namespace {
 
@@ -40,12 +41,6 @@ struct Arguments {
   std::string report, html, generate, work;
 };
 
-std::filesystem::path ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "armcmc-stress-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make a folder " + pattern);
-  return pattern;
-}
-
 void CheckWritable(const std::string& path) {
   if (path.empty()) return;
   const auto folder = std::filesystem::absolute(path).parent_path();
@@ -67,7 +62,13 @@ int Stress(Arguments arguments) {
         "udpm://239.255.76.67:" + std::to_string(20'000 + getpid() % 10'000) + "?ttl=0&recv_buf_size=4194304";
   }
   const bool own_folder = arguments.work.empty();
-  options.work = own_folder ? ScratchFolder() : std::filesystem::absolute(arguments.work);
+  if (own_folder) {
+    armcmc::support::ScratchFolder logs("armcmc-stress");
+    logs.Keep();  // those of a run that fails or stops half-way are wanted
+    options.work = logs.path();
+  } else {
+    options.work = std::filesystem::absolute(arguments.work);
+  }
   std::filesystem::create_directories(options.work);
 
   const double seconds = 60.0 * options.minutes / static_cast<double>(options.loads.size());

@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -12,6 +10,7 @@
 
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
+#include "armcmc/support/scratch_folder.hpp"
 #include "armcmc/tables/plants/registry.hpp"
 #include "armcmc/tables/report.hpp"
 
@@ -25,22 +24,13 @@ struct Arguments {
   bool paper_only = false, likelihoods = false, coverage = false, drift = false, armcmc_only = false;
 };
 
-/// A folder for simulated recordings, removed at the end.
-class ScratchFolder {
+/// Simulates recordings in a folder of its own.
+class Simulator {
  public:
-  explicit ScratchFolder(std::uint64_t first_seed) : first_seed_(first_seed) {
-    std::string name = (std::filesystem::temp_directory_path() / "armcmc-tables-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  explicit Simulator(std::uint64_t first_seed) : first_seed_(first_seed) {}
   [[nodiscard]] Recording Simulated(const std::string& scenario, PlantNumber plant, double p_atm, int seed) const {
-    const std::filesystem::path csv = Simulate(scenario, first_seed_ + static_cast<std::uint64_t>(seed), path_);
+    const std::filesystem::path csv =
+        Simulate(scenario, first_seed_ + static_cast<std::uint64_t>(seed), folder_.path());
     Recording r = ReadRecording(csv, plant, p_atm);
     std::filesystem::remove(csv);
     return r;
@@ -48,7 +38,7 @@ class ScratchFolder {
 
  private:
   std::uint64_t first_seed_;
-  std::filesystem::path path_;
+  support::ScratchFolder folder_{"armcmc-tables"};
 };
 
 struct Plan {
@@ -77,7 +67,7 @@ const std::vector<Plan> kDriftPlans = {
     {kContact.key("_drift_sine"), "Contact: a sinusoidal drift", kContact.key("_drift_sine"), ""},
     {kContact.key("_drift_impulsive"), "Contact: a drift under impulsive noise", kContact.key("_drift_impulsive"), ""}};
 
-Experiment RunPlan(const Plan& plan, const Arguments& a, const ScratchFolder& scratch, Result* result) {
+Experiment RunPlan(const Plan& plan, const Arguments& a, const Simulator& simulator, Result* result) {
   const EstimatorSettings settings = ScenarioSettings(plan.scenario);
   const PlantNumber plant = kContact.Is(settings) ? kContact.model.plant : kActuator.model.plant;
   const double p_atm = ConstantOf(settings, "p_atm");
@@ -91,7 +81,7 @@ Experiment RunPlan(const Plan& plan, const Arguments& a, const ScratchFolder& sc
       plan.key, plan.title, recorded ? 1 : a.seeds,
       [&](int seed) {
         return recorded ? ReadRecording(std::filesystem::path(a.data) / plan.file, plant, p_atm)
-                        : scratch.Simulated(plan.scenario, plant, p_atm, seed);
+                        : simulator.Simulated(plan.scenario, plant, p_atm, seed);
       },
       methods);
 }
@@ -108,7 +98,7 @@ int Run(const Arguments& a) {
       if (!plan.file.empty() && !std::filesystem::exists(std::filesystem::path(a.data) / plan.file))
         throw support::InputError("--data " + a.data + ": expected a folder with " + plan.file);
   std::filesystem::create_directories(a.out);
-  const ScratchFolder scratch(a.first_seed);
+  const Simulator simulator(a.first_seed);
   Result result;
   result.baselines = !a.armcmc_only;
   {
@@ -126,14 +116,14 @@ int Run(const Arguments& a) {
     const double all = static_cast<double>(plans.size()) + kPlansPerCell * cells;
     double done = 0.0;
     for (const Plan& plan : plans) {
-      result.experiments.push_back(RunPlan(plan, a, scratch, &result));
+      result.experiments.push_back(RunPlan(plan, a, simulator, &result));
       progress.Update((done += 1.0) / all);
     }
     if (cells > 0)
       result.likelihoods = RunLikelihoods(
           a.seeds, a.likelihoods ? Believed::kAll : Believed::kOwn,
           [&](const std::string& scenario, int seed) {
-            return scratch.Simulated(scenario, kContact.model.plant, 0.0, seed);
+            return simulator.Simulated(scenario, kContact.model.plant, 0.0, seed);
           },
           [&] { progress.Update((done += kPlansPerCell) / all); });
   }

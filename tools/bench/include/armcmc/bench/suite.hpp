@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct Suite {
 ///   BM_NaiveLoop/DRAWS/SAMPLES             the likelihood of the contact as a plain scalar loop with std::pow
 ///   BM_EffectiveDraws/CASE                 draws against quadrature; counters are effective numbers of draws
 ///
-/// `folder` must outlive the run.
-void Register(const Suite& suite, const DataFolder& folder);
+/// @param folder  For simulated data, which are read before this returns.
+/// @throws std::runtime_error when a plant cannot be simulated.
+void Register(const Suite& suite, const std::filesystem::path& folder);
 
 }  // namespace armcmc::bench

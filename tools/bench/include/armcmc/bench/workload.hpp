@@ -22,24 +22,11 @@ struct Plant {
 /// The plants of the suite: every built-in one, the same by the tape, and those that came along as files.
 [[nodiscard]] std::vector<Plant> KnownPlants();
 
-/// A folder for the data of one run, removed at its end.
-class DataFolder {
- public:
-  DataFolder();
-  ~DataFolder();
-  DataFolder(const DataFolder&) = delete;
-  DataFolder& operator=(const DataFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Packs of a plant with `samples` samples each, simulated by armcmc-plant (seed 1, so that every run has the same),
 /// 1 kHz. Of a plant with modes those in which one mode has every sample: they cost most.
 ///
-/// A plant is simulated once in a process; packs of another length are cut from the same data.
+/// A plant is simulated once in a process; packs of another length are cut from the same data, which stay in `folder`.
 /// @throws std::runtime_error when armcmc-plant fails, or when fewer than three packs are left.
-[[nodiscard]] std::vector<DataPack> FullPacks(const Plant& plant, int samples, const DataFolder& folder);
+[[nodiscard]] std::vector<DataPack> FullPacks(const Plant& plant, int samples, const std::filesystem::path& folder);
 
 }  // namespace armcmc::bench
