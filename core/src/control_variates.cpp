@@ -70,12 +70,9 @@ bool ReduceVariance(const simd::Kernels& kernels, const Gaussian& guide, const M
   const int padded = RoundUpToTile(draws.size);
   std::fill(g, g + padded, 0.0);
   for (int k = 0; k < draws.size; k += kTileLanes) kernels.add_density(block, draws.u.data(), k, 1.0, g + k);
-  for (int k = 0; k < draws.size; ++k) {
-    g[k] = draws.proposal[k] > 0.0 ? g[k] / draws.proposal[k] : 0.0;
-    g_squared[k] = g[k] * g[k];
-  }
+  kernels.ratio(g, draws.proposal, padded, g);
   std::fill(g + draws.size, g + padded, 0.0);
-  std::fill(g_squared + draws.size, g_squared + padded, 0.0);
+  for (int k = 0; k < padded; ++k) g_squared[k] = g[k] * g[k];
 
   const ControlSums sums = Sum(kernels, guide.mean, sd, draws, g, g_squared);
   if (!(sums.effective_share >= kLeastShare)) return false;
@@ -83,21 +80,13 @@ bool ReduceVariance(const simd::Kernels& kernels, const Gaussian& guide, const M
   if (!lambda.allFinite()) return false;
 
   // 1 - lambda' h = (1 + lambda_0) - g (lambda_0 + sum_d lambda_d (u_d - m_d) / s_d)
-  double* const inner = g_squared;
-  double constant = lambda[0];
-  for (int d = 0; d < dim; ++d) constant -= lambda[1 + d] * guide.mean[d] / sd[d];
-  std::fill(inner, inner + draws.size, constant);
+  simd::LinearControl control{.dim = dim, .most = 1.0 + lambda[0], .constant = lambda[0]};
   for (int d = 0; d < dim; ++d) {
-    const double slope = lambda[1 + d] / sd[d];
-    const double* const u = draws.u[static_cast<std::size_t>(d)];
-    for (int k = 0; k < draws.size; ++k) inner[k] += slope * u[k];
+    control.slope[d] = lambda[1 + d] / sd[d];
+    control.constant -= control.slope[d] * guide.mean[d];
   }
-  double total = 0.0;
-  for (int k = 0; k < draws.size; ++k) {
-    draws.weight[k] *= std::fmax(1.0 + lambda[0] - g[k] * inner[k], 0.0);
-    total += draws.weight[k];
-  }
-  for (int k = 0; k < draws.size; ++k) draws.weight[k] /= total;
+  const double total = kernels.reweigh(control, draws.u.data(), g, padded, draws.weight);
+  kernels.divide(draws.weight, total, padded, draws.weight);
   return true;
 }
 

@@ -38,48 +38,59 @@ MarginalTable MarginalTable::Uniform(double half_width) {
 void MarginalTable::Build(const double* values, int num_nodes, double lower) noexcept ARMCMC_NONBLOCKING {
   num_nodes_ = std::clamp(num_nodes, 2, kMaxNodes);
   lower_ = lower;
+  std::array<double, kMaxNodes> cdf;
   double mass = 0.0;
-  cdf_[0] = 0.0;
+  cdf[0] = 0.0;
   for (int i = 1; i < num_nodes_; ++i) {
     const auto k = static_cast<std::size_t>(i);
     mass += 0.5 * kNodeStep * (values[i - 1] + values[i]);
-    cdf_[k] = mass;
+    cdf[k] = mass;
   }
   const double scale = 1.0 / mass;
   for (int i = 0; i < num_nodes_; ++i) {
     const auto k = static_cast<std::size_t>(i);
     pdf_[k] = values[i] * scale;
-    cdf_[k] *= scale;
+    cdf[k] *= scale;
   }
-  BuildGuide();
+  Index(cdf.data());
 }
 
-void MarginalTable::BuildGuide() noexcept {
+void MarginalTable::Index(const double* cdf) noexcept {
+  const int last = num_nodes_ - 2;
+  for (int i = 0; i <= last; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    intervals_[k] = {cdf[k], i < last ? cdf[k + 1] : HUGE_VAL, pdf_[k], pdf_[k + 1]};
+  }
   int from = 0;  // first entry that is not written
-  for (int node = 0; node < num_nodes_ - 1; ++node) {
-    const double end = node < num_nodes_ - 2 ? cdf_[static_cast<std::size_t>(node) + 1] * kGuideSize : kGuideSize;
+  for (int i = 0; i <= last; ++i) {
+    const double end = i < last ? cdf[i + 1] * kGuideSize : kGuideSize;
     const int to = static_cast<int>(std::fmin(std::fmax(std::ceil(end), from), kGuideSize));
-    std::fill(guide_.begin() + from, guide_.begin() + to, static_cast<double>(node));
+    std::fill(guide_.begin() + from, guide_.begin() + to, static_cast<std::uint16_t>(i));
     from = to;
   }
 }
 
 void MarginalTable::Save(SnapshotWriter* out) const noexcept {
+  const auto nodes = static_cast<std::size_t>(num_nodes_);
   out->Put(std::int64_t{num_nodes_});
   out->Put(lower_);
-  out->PutRow(pdf_.data(), static_cast<std::size_t>(num_nodes_));
-  out->PutRow(cdf_.data(), static_cast<std::size_t>(num_nodes_));
+  out->PutRow(pdf_.data(), nodes);
+  std::array<double, kMaxNodes> cdf;
+  for (std::size_t n = 0; n + 1 < nodes; ++n) cdf[n] = intervals_[n].cdf;
+  cdf[nodes - 1] = 1.0;
+  out->PutRow(cdf.data(), nodes);
 }
 
 void MarginalTable::Restore(SnapshotReader* in) noexcept {
   num_nodes_ = static_cast<int>(in->Integer(2, kMaxNodes));
   lower_ = in->Number();
-  in->Row(pdf_.data(), static_cast<std::size_t>(num_nodes_));
-  in->Row(cdf_.data(), static_cast<std::size_t>(num_nodes_));
-  in->Require(cdf_[0] == 0.0 && std::fabs(cdf_[static_cast<std::size_t>(num_nodes_) - 1] - 1.0) < 1e-9);
-  for (std::size_t n = 0; n < static_cast<std::size_t>(num_nodes_); ++n)
-    in->Require(pdf_[n] >= 0.0 && (n == 0 || cdf_[n] >= cdf_[n - 1]));
-  BuildGuide();
+  const auto nodes = static_cast<std::size_t>(num_nodes_);
+  std::array<double, kMaxNodes> cdf{};
+  in->Row(pdf_.data(), nodes);
+  in->Row(cdf.data(), nodes);
+  in->Require(cdf[0] == 0.0 && std::fabs(cdf[nodes - 1] - 1.0) < 1e-9);
+  for (std::size_t n = 0; n < nodes; ++n) in->Require(pdf_[n] >= 0.0 && (n == 0 || cdf[n] >= cdf[n - 1]));
+  Index(cdf.data());
 }
 
 double MarginalTable::Density(double x) const noexcept ARMCMC_NONBLOCKING {

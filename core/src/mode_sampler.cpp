@@ -223,15 +223,11 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   out->truncated = made < wanted;
 
   const int memory_components = use_previous ? previous.num_blocks : 0;
-  int memory_draws = 0;
-  int memory_inside = 0;
-  for (int k = 0; k < made; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const bool from_memory = ws->component[i] < memory_components;  // they are the proposal's first components
-    memory_draws += from_memory ? 1 : 0;
-    memory_inside += from_memory && ws->initial_prior[i] > 0.0 ? 1 : 0;
-  }
-  memory_inside_ = memory_draws > 0 ? std::fmax(memory_inside, 1.0) / memory_draws : 1.0;
+  // They are the proposal's first components.
+  std::fill_n(&ws->component[static_cast<std::size_t>(made)], kTileLanes, std::int8_t{Proposal::kMaxComponents});
+  const simd::Kernels::Chosen memory =
+      kernels_.count_chosen(ws->component.data(), memory_components, ws->initial_prior.data(), RoundUpToTile(made));
+  memory_inside_ = memory.chosen > 0 ? std::fmax(memory.inside, 1.0) / memory.chosen : 1.0;
   const double reference = Weigh(previous, lambda, 0, made, ws);
   if (std::isnan(reference)) return Status::kNonFinite;
 
@@ -244,9 +240,8 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   out->mode_index = kernels_.largest_product(
       ws->weight.data(), sampler_.use_proposal_ratio ? ws->proposal.data() : nullptr, RoundUpToTile(made));
   const int padded = pilot + RoundUpToTile(made - pilot);
-  const double* weight = ws->weight.data();
   std::fill(out->weight, out->weight + pilot, 0.0);
-  for (int k = pilot; k < made; ++k) out->weight[k] = weight[k] / sum;
+  kernels_.divide(&ws->weight[static_cast<std::size_t>(pilot)], sum, padded - pilot, out->weight + pilot);
   std::fill(out->weight + made, out->weight + padded, 0.0);
   out->kish_ess = sum * sum / square;
   ReduceSamplingError(pilot, made, use_previous, ws, out);

@@ -3,7 +3,9 @@
 #include "armcmc/mode_sampler.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "armcmc/control_variates.hpp"
@@ -79,19 +81,20 @@ void ModeSampler::ReduceSamplingError(int first, int last, bool use_previous, Sa
 void ModeSampler::RunChain(const RandomStream& stream, int first, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
   const int draws = out->draws;
   std::fill(out->visits, out->visits + draws, 0);
-  double* gamma = ws->group_weight.data();  // free between the fits
-  kernels_.uniforms(stream.origin(), 0, 1, RoundUpToTile(draws), gamma);
+  // gamma <= w / w_state, that is w_state <= w / gamma. A state of weight zero accepts everything, and nothing else
+  // accepts a weight of zero. Numbers that are not negative have the order of their bits, which takes less time.
+  double* const bound = ws->group_weight.data();  // free between the fits
+  const double* const weight = ws->weight.data();
+  kernels_.uniforms(stream.origin(), 0, 1, RoundUpToTile(draws), bound);
+  kernels_.ratio(weight, bound, RoundUpToTile(draws), bound);
   // A lucky draw of the pilot, whose proposal was a poor match, would hold the chain for ever.
   for (int k = 0; k < first; ++k) out->chain[k] = k;
   int state = first;
-  double state_weight = ws->weight[static_cast<std::size_t>(first)];
-  const double* weight = ws->weight.data();
+  auto state_weight = std::bit_cast<std::int64_t>(weight[first]);
   const auto step = [&](int k) noexcept {
-    const double w = weight[k];
-    // gamma <= w / w_state without a division; a state of weight zero accepts everything.
-    const bool accept = (gamma[k] * state_weight <= w) & ((w > 0.0) | (state_weight <= 0.0));
+    const bool accept = state_weight <= std::bit_cast<std::int64_t>(bound[k]);
     state = accept ? k : state;
-    state_weight = accept ? w : state_weight;
+    state_weight = accept ? std::bit_cast<std::int64_t>(weight[k]) : state_weight;
     out->chain[k] = state;
     return accept ? 1 : 0;
   };

@@ -18,7 +18,7 @@ class MarginalTable {
  public:
   static constexpr int kMaxNodes = 257;
   static constexpr double kNodesPerUnit = 8.0;  ///< Standardised coordinates: 8 nodes per standard deviation.
-  static constexpr int kGuideSize = 1024;
+  static constexpr int kGuideSize = 4096;       ///< So many that hardly any cell of it holds a node.
 
   /// Standard normal on [-6, 6].
   static MarginalTable Normal();
@@ -45,30 +45,37 @@ class MarginalTable {
   [[nodiscard]] int num_nodes() const noexcept { return num_nodes_; }
   [[nodiscard]] double lower() const noexcept { return lower_; }
   [[nodiscard]] const double* pdf() const noexcept { return pdf_.data(); }
-  [[nodiscard]] const double* cdf() const noexcept { return cdf_.data(); }
-  [[nodiscard]] const double* guide() const noexcept { return guide_.data(); }
+  /// What a draw between a node and the next one takes, side by side in memory.
+  struct Interval {
+    double cdf, next_cdf;  ///< next_cdf is infinite in the last one: nothing is beyond it.
+    double pdf, next_pdf;
+  };
+  [[nodiscard]] const Interval* intervals() const noexcept { return intervals_.data(); }
+  /// [i], i in [0, kGuideSize): the last interval whose cdf is <= i / kGuideSize.
+  [[nodiscard]] const std::uint16_t* guide() const noexcept { return guide_.data(); }
 
  private:
-  void BuildGuide() noexcept ARMCMC_NONBLOCKING;
+  /// Intervals and guide, from pdf_ and the CDF at the nodes.
+  void Index(const double* cdf) noexcept ARMCMC_NONBLOCKING;
 
   int num_nodes_ = 0;
   double lower_ = 0.0;
   std::array<double, kMaxNodes> pdf_{};
-  std::array<double, kMaxNodes> cdf_{};
-  std::array<double, kGuideSize> guide_{};  ///< Last node whose cdf is <= i / kGuideSize.
+  std::array<Interval, kMaxNodes - 1> intervals_{};
+  std::array<std::uint16_t, kGuideSize> guide_{};
 };
 
 // Inline: called once for every coordinate of every candidate.
 inline double MarginalTable::Draw(double u) const noexcept ARMCMC_NONBLOCKING {
   constexpr double kStep = 1.0 / kNodesPerUnit;
-  auto node = static_cast<std::size_t>(guide_[static_cast<std::size_t>(u * kGuideSize)]);
-  const auto last = static_cast<std::size_t>(num_nodes_ - 2);
-  while (node < last && cdf_[node + 1] < u) ++node;
-  // Within a cell the density is f0 + (f1 - f0) s / h: solve its integral for the rest of the mass; this form of
+  std::size_t node = guide_[static_cast<std::size_t>(u * kGuideSize)];
+  while (intervals_[node].next_cdf < u) ++node;
+  // Between two nodes the density is f0 + (f1 - f0) s / h: solve its integral for the rest of the mass; this form of
   // the root has no cancellation and no division by zero for f0 = f1.
-  const double f0 = pdf_[node];
-  const double slope = (pdf_[node + 1] - f0) * kNodesPerUnit;
-  const double rest = std::max(u - cdf_[node], 0.0);
+  const Interval& at = intervals_[node];
+  const double f0 = at.pdf;
+  const double slope = (at.next_pdf - f0) * kNodesPerUnit;
+  const double rest = std::max(u - at.cdf, 0.0);
   const double root = std::sqrt(std::max(f0 * f0 + 2.0 * slope * rest, 0.0));
   const double denominator = f0 + root;
   const double s = denominator > 0.0 ? std::min(2.0 * rest / denominator, kStep) : 0.5 * kStep;

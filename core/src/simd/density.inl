@@ -63,27 +63,30 @@ V LogThickness(const DensityBlock& block, int i, V c) noexcept {
 /// Inverse CDF of a marginal table; the vector form of MarginalTable::Draw.
 V TableDraw(const MarginalTable& table, V u) noexcept {
   const V magic = Simd::Set(6755399441055744.0);
-  const V last = Simd::Set(table.num_nodes() - 2);
-  const V one = Simd::Set(1.0);
-  const auto index_of = [&](V node) noexcept { return Simd::Bits(node + magic) - Simd::Bits(magic); };
   // Down to the guide cell at or below u: half a cell is taken off before rounding to nearest.
-  const V cell = Simd::Max((u * Simd::Set(MarginalTable::kGuideSize) - Simd::Set(0.5) + magic) - magic, V{});
-  V node = Simd::Gather(table.guide(), index_of(cell));
+  const V cell = Simd::Max(u * Simd::Set(MarginalTable::kGuideSize) - Simd::Set(0.5), V{}) + magic;
+  Simd::I node = Simd::Bits(cell) - Simd::Bits(magic);
+  alignas(64) std::int64_t at[Simd::kLanes];
+  std::memcpy(at, &node, sizeof at);
+  for (std::int64_t& lane : at) lane = table.guide()[lane];
+  std::memcpy(&node, at, sizeof at);
+  static_assert(sizeof(MarginalTable::Interval) == 4 * sizeof(double));
+  V interval[4];
   for (int step = 0; step < MarginalTable::kMaxNodes; ++step) {
-    const V next = Simd::Gather(table.cdf() + 1, index_of(node));
-    const Simd::I behind = (next < u) & (node < last);
+    Simd::GatherRows(&table.intervals()->cdf, at, interval);
+    const Simd::I behind = interval[1] < u;
     if (!Simd::Any(behind)) break;
-    node = Simd::Select(behind, node + one, node);
+    node -= behind;
+    std::memcpy(at, &node, sizeof at);
   }
-  V f0, f1;
-  const Simd::I index = index_of(node);
-  Simd::GatherPairs(table.pdf(), index, &f0, &f1);
-  const V slope = (f1 - f0) * Simd::Set(MarginalTable::kNodesPerUnit);
-  const V rest = Simd::Max(u - Simd::Gather(table.cdf(), index), V{});
+  const V f0 = interval[2];
+  const V slope = (interval[3] - f0) * Simd::Set(MarginalTable::kNodesPerUnit);
+  const V rest = Simd::Max(u - interval[0], V{});
   const V root = Simd::Sqrt(Simd::Max(Simd::Fma(f0, f0, Simd::Set(2.0) * slope * rest), V{}));
-  const V step = Simd::Set(1.0 / MarginalTable::kNodesPerUnit);
+  const V width = Simd::Set(1.0 / MarginalTable::kNodesPerUnit);
   const V denominator = Simd::Max(f0 + root, Simd::Set(1e-300));
-  return Simd::Set(table.lower()) + node * step + Simd::Min(Simd::Set(2.0) * rest / denominator, step);
+  const V place = Simd::FromBits(node + Simd::Bits(magic)) - magic;
+  return Simd::Set(table.lower()) + place * width + Simd::Min(Simd::Set(2.0) * rest / denominator, width);
 }
 
 /// fn.template operator()<dim>(), the dimension known to the compiler.

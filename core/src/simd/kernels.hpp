@@ -22,6 +22,14 @@ struct PriorTerms {
   double memory_share[2] = {};
 };
 
+/// See Kernels::reweigh.
+struct LinearControl {
+  int dim = 0;
+  double most = 1.0;
+  double constant = 0.0;
+  double slope[kMaxParams] = {};
+};
+
 /// The hot loops, once per instruction set. All work on kTileLanes candidates side by side, one candidate a lane:
 /// sums run in data order whatever the lane count, so AVX2 and AVX-512 give the same bits.
 struct Kernels {
@@ -74,6 +82,14 @@ struct Kernels {
   void (*uniforms)(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count,
                    double* out) noexcept ARMCMC_NONBLOCKING;
 
+  /// out[k] = uniform number first + member[k] * stride of the stream. count a multiple of 8.
+  void (*uniforms_of)(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, const std::int16_t* member,
+                      int count, double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// choice[k] = number of bounds[0, num_bounds) that are <= pick[k]. count a multiple of 8.
+  void (*choose)(const double* pick, const double* bounds, int num_bounds, int count,
+                 std::int8_t* choice) noexcept ARMCMC_NONBLOCKING;
+
   /// Maps count draws of dim uniforms to draws of the block, in place: x[d][k]. count a multiple of 8.
   void (*draw_block)(const DensityBlock& block, int count, double* const* x) noexcept ARMCMC_NONBLOCKING;
 
@@ -116,6 +132,23 @@ struct Kernels {
   /// P_0)} with weights padded by 0.
   void (*share_prior)(const PriorTerms& prior, const double* weight, int count, double* first_share,
                       double* sums) noexcept ARMCMC_NONBLOCKING;
+
+  /// out[k] = value[k] / by; out may be value. count a multiple of 8.
+  void (*divide)(const double* value, double by, int count, double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// out[k] = a[k] / b[k]; 0 where b[k] is not positive. count a multiple of 8.
+  void (*ratio)(const double* a, const double* b, int count, double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// Number of k with choice[k] < limit, and of those with inside[k] > 0 too. count a multiple of 8.
+  struct Chosen {
+    int chosen, inside;
+  };
+  Chosen (*count_chosen)(const std::int8_t* choice, int limit, const double* inside,
+                         int count) noexcept ARMCMC_NONBLOCKING;
+
+  /// weight[k] *= max(0, most - g[k] (constant + sum_d slope_d u_d[k])). @return their sum. count a multiple of 8.
+  double (*reweigh)(const LinearControl& control, const double* const* u, const double* g, int count,
+                    double* weight) noexcept ARMCMC_NONBLOCKING;
 
   /// First k with the largest a[k] b[k], all of them >= 0; b may be null, which is 1.
   int (*largest_product)(const double* a, const double* b, int count) noexcept ARMCMC_NONBLOCKING;

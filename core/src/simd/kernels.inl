@@ -213,13 +213,19 @@ void RelativeLikelihood(const double* log_likelihood, double reference, int coun
     Simd::Store(out + k, Simd::Exp2((Simd::Load(log_likelihood + k) - Simd::Set(reference)) * Simd::Set(kLog2E)));
 }
 
+/// RandomStream::Uniform() of number `index`.
+double UniformAt(std::uint64_t origin, std::uint64_t index) noexcept {
+  return (static_cast<double>(static_cast<std::int64_t>(RandomStream::At(origin, index) >> 12)) + 0.5) * 0x1p-52;
+}
+
 void Uniforms(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, int count,
               double* out) noexcept ARMCMC_NONBLOCKING {
-  for (int k = 0; k < count; ++k)
-    out[k] = (static_cast<double>(static_cast<std::int64_t>(
-                  RandomStream::At(origin, first + static_cast<std::uint64_t>(k) * stride) >> 12)) +
-              0.5) *
-             0x1p-52;
+  for (int k = 0; k < count; ++k) out[k] = UniformAt(origin, first + static_cast<std::uint64_t>(k) * stride);
+}
+
+void UniformsOf(std::uint64_t origin, std::uint64_t first, std::uint64_t stride, const std::int16_t* member, int count,
+                double* out) noexcept ARMCMC_NONBLOCKING {
+  for (int k = 0; k < count; ++k) out[k] = UniformAt(origin, first + static_cast<std::uint64_t>(member[k]) * stride);
 }
 
 }  // namespace

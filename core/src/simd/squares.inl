@@ -37,10 +37,11 @@ void AddSquares(const Forward& forward, const ModeData& data, const V (*paramete
 template <bool kWeighted, class Forward>
 void SumSquares(const Forward& forward, const ModeData& data, const ThetaTile& theta, double noise_mean,
                 double* out) noexcept {
-  constexpr int kGroup = 2;  // more would need more registers than there are
+  // As many as there are registers for: AVX-512 has twice as many of them.
+  constexpr int kGroup = Simd::kLanes == 8 && Forward::kRows <= 4 ? 4 : 2;
   for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
-    V parameters[kGroup][Forward::kRows];
-    V sum[kGroup];
+    V parameters[static_cast<unsigned>(kGroup)][Forward::kRows];
+    V sum[static_cast<unsigned>(kGroup)];
     for (int g = 0; g < kGroup; ++g) {
       const auto lane = static_cast<unsigned>((v0 + g) * Simd::kLanes);
       for (unsigned i = 0; i < Forward::kRows; ++i) parameters[g][i] = forward.Load(theta, i, lane);

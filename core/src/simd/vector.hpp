@@ -104,6 +104,38 @@ struct Simd {
 #endif
   }
 
+  /// column[i][lane] = table[4 row[lane] + i]: rows of four are loaded whole.
+  static void GatherRows(const double* table, const std::int64_t* row, V* column) noexcept {
+#if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8
+    const auto load = [table, row](int lane) noexcept { return _mm256_loadu_pd(table + 4 * row[lane]); };
+    const auto two = [load](int lane) noexcept {  // lane, lane + 2
+      return _mm512_maskz_insertf64x4(0xff, _mm512_castpd256_pd512(load(lane)), load(lane + 2), 1);
+    };
+    const __m512d a = two(0), b = two(1), c = two(4), d = two(5);
+    const __m512d low0 = _mm512_maskz_unpacklo_pd(0xff, a, b), low1 = _mm512_maskz_unpacklo_pd(0xff, c, d);
+    const __m512d high0 = _mm512_maskz_unpackhi_pd(0xff, a, b), high1 = _mm512_maskz_unpackhi_pd(0xff, c, d);
+    column[0] = _mm512_maskz_shuffle_f64x2(0xff, low0, low1, 0x88);
+    column[1] = _mm512_maskz_shuffle_f64x2(0xff, high0, high1, 0x88);
+    column[2] = _mm512_maskz_shuffle_f64x2(0xff, low0, low1, 0xdd);
+    column[3] = _mm512_maskz_shuffle_f64x2(0xff, high0, high1, 0xdd);
+#elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
+    const auto load = [table, row](int lane) noexcept { return _mm256_loadu_pd(table + 4 * row[lane]); };
+    const __m256d a = load(0), b = load(1), c = load(2), d = load(3);
+    const __m256d low0 = _mm256_unpacklo_pd(a, b), low1 = _mm256_unpacklo_pd(c, d);
+    const __m256d high0 = _mm256_unpackhi_pd(a, b), high1 = _mm256_unpackhi_pd(c, d);
+    column[0] = _mm256_permute2f128_pd(low0, low1, 0x20);
+    column[1] = _mm256_permute2f128_pd(high0, high1, 0x20);
+    column[2] = _mm256_permute2f128_pd(low0, low1, 0x31);
+    column[3] = _mm256_permute2f128_pd(high0, high1, 0x31);
+#else
+    for (int i = 0; i < 4; ++i) {
+      V v{};
+      for (int lane = 0; lane < kLanes; ++lane) v[lane] = table[4 * row[lane] + i];
+      column[i] = v;
+    }
+#endif
+  }
+
   /// a b + c, in one rounding where the instruction set has it.
   static V Fma(V a, V b, V c) noexcept {
 #if defined(__AVX512F__) && ARMCMC_SIMD_LANES == 8

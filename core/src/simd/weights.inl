@@ -69,5 +69,65 @@ int LargestProduct(const double* a, const double* b, int count) noexcept ARMCMC_
   return static_cast<int>(where[best]);
 }
 
+void Divide(const double* value, double by, int count, double* out) noexcept ARMCMC_NONBLOCKING {
+  for (int k = 0; k < count; k += Simd::kLanes) Simd::Store(out + k, Simd::Load(value + k) / Simd::Set(by));
+}
+
+void Ratio(const double* a, const double* b, int count, double* out) noexcept ARMCMC_NONBLOCKING {
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    const V divisor = Simd::Load(b + k);
+    Simd::Store(out + k, Simd::Select(divisor > V{}, Simd::Load(a + k) / divisor, V{}));
+  }
+}
+
+double Reweigh(const LinearControl& control, const double* const* u, const double* g, int count,
+               double* weight) noexcept ARMCMC_NONBLOCKING {
+  Sums<1> sum;
+  for (int k = 0; k < count; k += 8)
+    for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
+      const int at = k + static_cast<int>(p) * Simd::kLanes;
+      V inner = Simd::Set(control.constant);
+      for (int d = 0; d < control.dim; ++d)
+        inner = Simd::Fma(Simd::Set(control.slope[d]), Simd::Load(u[d] + at), inner);
+      const V factor = Simd::Max(Simd::Fma(-Simd::Load(g + at), inner, Simd::Set(control.most)), V{});
+      const V w = Simd::Load(weight + at) * factor;
+      Simd::Store(weight + at, w);
+      sum.Add(0, p, w);
+    }
+  return sum.Total(0);
+}
+
+/// As many small integers as a vector has lanes.
+typedef std::int8_t Bytes __attribute__((vector_size(Simd::kLanes)));
+
+void Choose(const double* pick, const double* bounds, int num_bounds, int count,
+            std::int8_t* choice) noexcept ARMCMC_NONBLOCKING {
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    const V p = Simd::Load(pick + k);
+    Simd::I passed{};
+    for (int b = 0; b < num_bounds; ++b) passed -= p >= Simd::Set(bounds[b]);
+    const Bytes small = __builtin_convertvector(passed, Bytes);
+    std::memcpy(choice + k, &small, sizeof small);
+  }
+}
+
+Kernels::Chosen CountChosen(const std::int8_t* choice, int limit, const double* inside,
+                            int count) noexcept ARMCMC_NONBLOCKING {
+  Simd::I chosen{}, both{};
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    Bytes small;
+    std::memcpy(&small, choice + k, sizeof small);
+    const Simd::I is_chosen = __builtin_convertvector(small, Simd::I) < static_cast<std::int64_t>(limit);
+    chosen -= is_chosen;
+    both -= is_chosen & (Simd::Load(inside + k) > V{});
+  }
+  Kernels::Chosen total{};
+  for (int l = 0; l < Simd::kLanes; ++l) {
+    total.chosen += static_cast<int>(chosen[l]);
+    total.inside += static_cast<int>(both[l]);
+  }
+  return total;
+}
+
 }  // namespace
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
