@@ -51,18 +51,20 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
       output_watch(MakeOutputWatch(settings, info, predictor.get())) {
   dim = info.num_parameters;
+  int num_linear = 0;
   samplers.reserve(static_cast<std::size_t>(info.num_modes));
   for (int m = 0; m < info.num_modes; ++m) {
     const NoiseSettings& noise = settings.noise[static_cast<std::size_t>(m)];
     const ParameterSpace space(composition.sampled(), noise);
     dim = std::max(dim, space.dim);
-    samplers.emplace_back(
-        std::make_unique<ModeSampler>(kernels, model, settings.sampler, settings.forgetting, space, NoiseModel(noise)));
+    samplers.emplace_back(std::make_unique<ModeSampler>(kernels, model, settings.sampler, settings.forgetting, space,
+                                                        NoiseModel(noise), info.linear[static_cast<std::size_t>(m)]));
+    num_linear = std::max(num_linear, info.linear[static_cast<std::size_t>(m)].num_linear);
     memories.emplace_back(std::make_unique<ModeMemory>());
     if (settings.method != Method::kArmcmc)
       filters.emplace_back(MakeFilter({kernels, model, settings, space, NoiseModel(noise)}));
   }
-  workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws);
+  workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws, num_linear);
   ShowPrior();
   ForgetStates();
 }

@@ -23,7 +23,7 @@ enum Purpose : std::uint64_t {
 
 }  // namespace
 
-SamplerWorkspace::SamplerWorkspace(int dim, int capacity) {
+SamplerWorkspace::SamplerWorkspace(int dim, int capacity, int num_linear) : quadratic(num_linear) {
   const auto cap = static_cast<std::size_t>(std::max(RoundUpToTile(capacity), Proposal::kMaxBatch) + kTileLanes);
   for (auto* v : {&log_likelihood, &proposal, &initial_prior, &weight, &group_weight, &first_share, &noise_coordinate})
     v->resize(cap);
@@ -44,13 +44,15 @@ std::array<double*, kMaxParams + 2> SamplerWorkspace::StraightRows() noexcept {
 }
 
 ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
-                         const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise)
+                         const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise,
+                         const LinearPart& linear)
     : kernels_(kernels),
       model_(model),
       sampler_(sampler),
       forgetting_(forgetting),
       space_(space),
       noise_(noise),
+      quadratic_(kernels_, model_, space_, noise_, sampler.use_linearity ? linear : LinearPart{}),
       normal_table_(MarginalTable::Normal()),
       student_table_(MarginalTable::StudentT(kStudentDof)),
       transition_(kernels_, model_, space_, noise_, &normal_table_, forgetting.partial_change),
@@ -171,6 +173,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const bool informed = last.valid && last.informed;  // else the result has to wait for Remember()
   const Nanos fit_start = clock.Now();
   FitLaplace(data, previous, use_previous, ws);
+  quadratic_.Prepare(data, (use_previous ? fit_persisted_ : fit_fresh_).mean, &ws->quadratic);
   const Nanos anchor_ns = (clock.Now() - fit_start) / 2;  // they start nearer to where they end
   Proposal proposal;
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);

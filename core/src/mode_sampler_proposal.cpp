@@ -247,7 +247,9 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
     for (int d = 0; d < out->dim; ++d) u[d][k] = u[d][last - 1];
 
   alignas(64) std::array<double, 2 * kTileLanes> log_scale;
-  for (int k = first; k < end; k += 2 * kTileLanes) {
+  for (int k = first; k < end && quadratic_.ready(); k += kTileLanes)
+    quadratic_.Score(u, k, &ws->log_likelihood[static_cast<std::size_t>(k)]);
+  for (int k = first; k < end && !quadratic_.ready(); k += 2 * kTileLanes) {
     const bool two = k + kTileLanes < end;
     kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
     if (two) kernels_.to_physical(space_, u, k + kTileLanes, &ws->theta[1], log_scale.data() + kTileLanes);

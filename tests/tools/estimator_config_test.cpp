@@ -92,6 +92,7 @@ draws = "k_min"
 max_draws = 20000
 lambda_q_min = 0.1
 lambda_q_max = 0.6
+use_linearity = false
 seed = 42
 )");
   EXPECT_EQ(s.parameters[0].mean, 3.0);
@@ -124,6 +125,7 @@ seed = 42
   EXPECT_EQ(s.sampler.max_draws, 20'000);
   EXPECT_EQ(s.sampler.lambda_q_min, 0.1);
   EXPECT_EQ(s.sampler.lambda_q_max, 0.6);
+  EXPECT_FALSE(s.sampler.use_linearity);
   EXPECT_EQ(s.sampler.seed, 42u);
 }
 

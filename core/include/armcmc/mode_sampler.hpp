@@ -18,6 +18,7 @@
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/posterior_memory.hpp"
 #include "armcmc/proposal.hpp"
+#include "armcmc/quadratic_score.hpp"
 #include "armcmc/ridge.hpp"
 #include "armcmc/settings.hpp"
 #include "armcmc/transition.hpp"
@@ -32,7 +33,8 @@ struct PriorTerms;
 /// Scratch of one adjust step, sized once and shared by the modes, which are adjusted one after the other.
 class SamplerWorkspace {
  public:
-  SamplerWorkspace(int dim, int capacity);
+  /// @param num_linear  Largest LinearPart::num_linear of the modes.
+  SamplerWorkspace(int dim, int capacity, int num_linear = 0);
 
   std::vector<double> log_likelihood, proposal, initial_prior;
   std::array<std::vector<double>, PosteriorMemory::kMaxBlocks> memory;  ///< Density of each block of the memory.
@@ -45,6 +47,7 @@ class SamplerWorkspace {
   LaplaceScratch laplace;
   ThetaPair theta;
   PredictionTile prediction;
+  QuadraticScratch quadratic;
   std::array<std::vector<double>, kMaxParams> mismatch_u;
   PredictiveMoments predictive;
   std::array<std::array<MarginalTable, kMaxParams>, PosteriorMemory::kMaxBlocks> pilot_tables;
@@ -73,7 +76,8 @@ class ModeSampler {
   static constexpr int kMismatchDraws = 256;
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
-              const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise);
+              const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise,
+              const LinearPart& linear = {});
 
   /// Mode of likelihood x initial prior, standardised coordinates, by Gauss-Newton steps.
   /// @rt No heap, no lock, no throw. Some tiles of candidates.
@@ -225,6 +229,7 @@ class ModeSampler {
   ForgettingSettings forgetting_;
   ParameterSpace space_;
   NoiseModel noise_;
+  QuadraticScore quadratic_;
   MarginalTable normal_table_, student_table_;
   Transition transition_;
   Drift drift_;

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "armcmc/data_pack.hpp"
+#include "armcmc/linear_part.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
@@ -45,8 +46,9 @@ struct ModelInfo {
   int (*mode_of)(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING;
   /// Of the model's own parameters. Null: what is reported are the parameters themselves.
   void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept ARMCMC_NONBLOCKING;
-  const CompiledPlant* compiled = nullptr;  ///< What else a compiled plant can do; null: a file describes it.
-  const PlantProgram* described = nullptr;  ///< Of a plant file: reports, and has no mode_of.
+  const CompiledPlant* compiled = nullptr;     ///< What else a compiled plant can do; null: a file describes it.
+  const PlantProgram* described = nullptr;     ///< Of a plant file: reports, and has no mode_of.
+  std::array<LinearPart, kMaxModes> linear{};  ///< Of the law of each mode.
   int num_added = 0;  ///< Amplitudes of effects: the last of the parameters, and reported as they are, last.
 
   /// Index among the reported quantities of parameter d, which the model reports as it is.

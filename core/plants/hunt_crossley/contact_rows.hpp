@@ -23,6 +23,7 @@ class ContactRows final : public EffectRows {
   explicit ContactRows(const EstimatorSettings& settings);
 
   [[nodiscard]] std::unique_ptr<CompiledPack> MakePack() const override;
+  [[nodiscard]] bool additive_only() const noexcept override { return memory_[0].pack.additive_only(); }
   [[nodiscard]] bool Prepare(const DataPack& pack, CompiledPack* out) noexcept ARMCMC_NONBLOCKING override;
   void Fill(const DataPack& pack, const CompiledPack& rows, int mode,
             ModeData* data) const noexcept ARMCMC_NONBLOCKING override;

@@ -38,6 +38,7 @@ struct HuntCrossley {
       .mode_of = &ModeOf,
       .report = nullptr,
       .compiled = &kContactPlant,
+      .linear = {{{.linear = {0, 1}, .num_linear = 2, .curved = 2}}},
   };
 
   /// Features: 0 log2 x (x^p = 2^(p log2 x), so that one exp2 is all a candidate costs), 1 v.

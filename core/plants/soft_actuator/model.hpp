@@ -48,6 +48,7 @@ struct SoftActuator {
       .mode_of = &ModeOf,
       .report = &Report,
       .compiled = &kActuatorPlant,
+      .linear = {{{.linear = {0, 1}, .num_linear = 2}, {.linear = {0, 1}, .num_linear = 2}}},
   };
 
   /// sign(dp) sqrt|dp| of the valve that mode opens; sqrt(Pa).

@@ -28,6 +28,12 @@ Composition::Composition(const EstimatorSettings& settings)
       sampled_.parameters[d].name = names_[d];
     }
   }
+  for (LinearPart& part : info_.linear) {
+    if (!rows_->additive_only()) part = {};
+    if (part.num_linear == 0) continue;
+    for (int d = info_.num_parameters - info_.num_added; d < info_.num_parameters; ++d)
+      part.linear[static_cast<std::size_t>(part.num_linear++)] = d;
+  }
   sampled_.num_parameters = info_.num_parameters;
   if (!rows_->target_unit().empty()) info_.target_unit = rows_->target_unit();
 }

@@ -9,6 +9,7 @@
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/plant/state_run.hpp"
+#include "armcmc/quadratic_form.hpp"
 
 namespace armcmc::simd {
 
@@ -64,6 +65,15 @@ struct Kernels {
   /// the second tile follow those of the first.
   void (*score_two)(int model, const NoiseModel& noise, const ModeData& data, const ThetaPair& theta,
                     const double* log_scale, PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// Sums over the samples that make a QuadraticForm, for each lane: of law errors and of what the law changes by from
+  /// prediction[0] to prediction[1 + i], weighted, in the form's order and with its factors.
+  void (*quadratic_sums)(const ModeData& data, double noise_mean, int num_linear, const PredictionTile* prediction,
+                         double* const* sums) noexcept ARMCMC_NONBLOCKING;
+
+  /// out[lane] = Gaussian log-likelihood of u[., first + lane], whose squared errors the form has.
+  void (*score_quadratic)(const QuadraticForm& form, const ParameterSpace& space, const NoiseModel& noise,
+                          int num_samples, const double* const* u, int first, double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] += factor * p(u[., first + lane]).
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,

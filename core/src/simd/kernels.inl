@@ -234,5 +234,6 @@ void UniformsOf(std::uint64_t origin, std::uint64_t first, std::uint64_t stride,
 #include "simd/density.inl"
 #include "simd/elementary.inl"
 #include "simd/moments.inl"
+#include "simd/quadratic.inl"
 #include "simd/score.inl"
 #include "simd/weights.inl"

@@ -201,6 +201,7 @@ std::vector<SettingDifference> DifferencesOf(const EstimatorSettings& a, const E
   add("sampler.max_draws", std::to_string(s.max_draws), std::to_string(r.max_draws));
   add("sampler.lambda_q_min", Number(s.lambda_q_min), Number(r.lambda_q_min));
   add("sampler.lambda_q_max", Number(s.lambda_q_max), Number(r.lambda_q_max));
+  add("sampler.use_linearity", YesNo(s.use_linearity), YesNo(r.use_linearity));
   add("sampler.seed", std::to_string(s.seed), std::to_string(r.seed));
   return differences;
 }

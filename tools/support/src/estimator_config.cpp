@@ -52,6 +52,7 @@ void ReadSampler(StrictTable table, SamplerSettings* sampler) {
       static_cast<int>(table.Integer("max_draws", sampler->max_draws, SamplerSettings::kMinDraws, kMaxDraws));
   sampler->lambda_q_min = table.Number("lambda_q_min", sampler->lambda_q_min, 0.0, 1.0);
   sampler->lambda_q_max = table.Number("lambda_q_max", sampler->lambda_q_max, 0.0, 1.0);
+  sampler->use_linearity = table.Boolean("use_linearity", sampler->use_linearity);
   constexpr auto kMaxSeed = std::numeric_limits<std::int64_t>::max();
   // A TOML integer has a sign; seeds of the upper half of the range come from --seed only.
   const bool fits = sampler->seed <= static_cast<std::uint64_t>(kMaxSeed);

@@ -30,6 +30,9 @@ class EffectRows {
   /// Unit of what is regressed with effects; empty: that of the law alone.
   [[nodiscard]] virtual std::string_view target_unit() const noexcept { return {}; }
 
+  /// All that the effects do is to add amplitude x feature to the law.
+  [[nodiscard]] virtual bool additive_only() const noexcept { return false; }
+
   /// Fills `out`, which MakePack() made, from a pack and the memory of those before; then remembers this one.
   /// @return false when a number is not finite: nothing is remembered.
   /// @pre pack.Validate() == kOk. @rt No heap, no lock, no throw. O(samples).

@@ -101,6 +101,7 @@ class PlantProgram {
     std::vector<expression::Tape> laws{};
     std::vector<expression::Tape> errors{};  ///< law - target.
     bool law_is_output = true;
+    LinearPart linear{};
   };
   /// Of every mode of the plant, in the order of its file: where its parts stand among the features.
   struct Outputs {
@@ -120,6 +121,8 @@ class PlantProgram {
   void CompileModes();
   /// One more for the newest sampled mode.
   void CompileLaw(int law, int target, const std::string& key, std::vector<int>* scalars);
+  /// Of all laws of one sampled mode, which are nodes.
+  [[nodiscard]] LinearPart LinearPartOf(const std::vector<int>& laws);
   void CompileFeatures(const std::vector<int>& scalars, const Remembered& remembered);
   void MakePrediction();
   void CompileStates(Remembered* remembered, std::vector<int>* scalars);

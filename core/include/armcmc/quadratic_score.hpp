@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "armcmc/linear_algebra.hpp"
+#include "armcmc/linear_part.hpp"
+#include "armcmc/mode_data.hpp"
+#include "armcmc/noise_model.hpp"
+#include "armcmc/nonblocking.hpp"
+#include "armcmc/parameter_space.hpp"
+#include "armcmc/quadratic_form.hpp"
+
+namespace armcmc {
+
+namespace simd {
+struct Kernels;
+}
+
+/// Predictions that a QuadraticScore is made from: for each linear parameter and without any.
+class QuadraticScratch {
+ public:
+  /// For at most so many linear parameters. Allocates.
+  explicit QuadraticScratch(int num_linear) : prediction(static_cast<std::size_t>(num_linear) + 1) {}
+
+  std::vector<PredictionTile> prediction;
+  ThetaTile theta;
+};
+
+/// The Gaussian log-likelihood of a law that is linear in all parameters but one at most, without a look at the samples
+/// for every candidate: given the curved parameter, sums over the samples suffice (sufficient statistics), and those
+/// are smooth functions of it. They are taken at the Chebyshev points of its bounds and interpolated.
+///
+/// Made once a pack. The error of the log-likelihood, in nats, is bounded by the rest of the series and rounding; where
+/// that exceeds kTolerance at candidates within a prior standard deviation, ready() is false and the samples have to be
+/// scored.
+class QuadraticScore {
+ public:
+  static constexpr double kTolerance = 1e-6;
+
+  QuadraticScore(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
+                 const LinearPart& part);
+
+  /// The pack can be tried at all: the noise is Gaussian, and something is linear.
+  [[nodiscard]] bool applies() const noexcept { return applies_; }
+
+  /// @param about  Standardised coordinates, near those that are likely.
+  /// @rt No heap, no lock, no throw. 2 (num_linear + 1) tiles of candidates, and their products.
+  void Prepare(const ModeData& data, const ParamVector& about, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool ready() const noexcept { return ready_; }
+
+  /// out[lane] = log-likelihood of u[., first + lane], kTileLanes of them. @pre ready().
+  void Score(const double* const* u, int first, double* out) const noexcept ARMCMC_NONBLOCKING;
+
+ private:
+  static constexpr int kNodes = 2 * kTileLanes;
+
+  void TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// Degree after which the series may end, -1 where they do not settle.
+  [[nodiscard]] int Degree(double variance) const noexcept ARMCMC_NONBLOCKING;
+  /// chebyshev_[k][j] = 2 / kNodes cos(pi k (j + 1/2) / kNodes), half of it for k = 0.
+  using CosineTable = std::array<std::array<double, kNodes>, kNodes>;
+
+  const simd::Kernels& kernels_;
+  int model_;
+  const ParameterSpace& space_;
+  const NoiseModel& noise_;
+  LinearPart part_;
+  bool applies_ = false, ready_ = false;
+  int num_samples_ = 0;
+  QuadraticForm form_;
+  std::vector<CosineTable> transform_;  ///< One, where a parameter is curved.
+  alignas(64) std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> sums_{};
+  std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> series_{};
+};
+
+}  // namespace armcmc

@@ -1,0 +1,123 @@
+#include "armcmc/quadratic_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+
+QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const ParameterSpace& space,
+                               const NoiseModel& noise, const LinearPart& part)
+    : kernels_(kernels),
+      model_(model),
+      space_(space),
+      noise_(noise),
+      part_(part),
+      applies_(part.num_linear > 0 && noise.kind() == NoiseKind::kGaussian) {
+  if (!applies_) return;
+  form_.num_linear = part.num_linear;
+  form_.linear = part.linear;
+  form_.curved = part.curved;
+  if (part.curved < 0) return;
+  const auto c = static_cast<std::size_t>(part.curved);
+  form_.slope = 2.0 / (space.upper[c] - space.lower[c]);
+  form_.origin = -1.0 - form_.slope * space.lower[c];
+  CosineTable& table = transform_.emplace_back();
+  for (std::size_t k = 0; k < kNodes; ++k)
+    for (std::size_t j = 0; j < kNodes; ++j)
+      table[k][j] = (k == 0 ? 1.0 : 2.0) / kNodes *
+                    std::cos(3.14159265358979323846 * static_cast<double>(k) * (static_cast<double>(j) + 0.5) / kNodes);
+}
+
+void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept {
+  const int lanes = part_.curved < 0 ? kTileLanes : kNodes;
+  const auto tiles = static_cast<std::size_t>(part_.num_linear) + 1;
+  for (int first = 0; first < lanes; first += kTileLanes) {
+    ThetaTile& theta = scratch->theta;
+    for (int d = 0; d < space_.num_parameters; ++d)
+      theta.value[static_cast<std::size_t>(d)].fill(space_.Theta(d, form_.about[static_cast<std::size_t>(d)]));
+    if (part_.curved >= 0)
+      for (std::size_t l = 0; l < kTileLanes; ++l) {
+        const double angle = 3.14159265358979323846 * (first + static_cast<double>(l) + 0.5) / kNodes;
+        const double u = (std::cos(angle) - form_.origin) / form_.slope;
+        theta.value[static_cast<std::size_t>(part_.curved)][l] = space_.Theta(part_.curved, u);
+      }
+    for (std::size_t i = 0; i < tiles; ++i) {
+      if (i == 0) {
+        kernels_.predict(model_, data, theta, &scratch->prediction[0]);
+        continue;
+      }
+      const auto d = static_cast<std::size_t>(part_.linear[i - 1]);
+      const double at = theta.value[d][0];
+      theta.value[d].fill(at + space_.scale[d]);
+      kernels_.predict(model_, data, theta, &scratch->prediction[i]);
+      theta.value[d].fill(at);
+    }
+    std::array<double*, QuadraticForm::kMaxFunctions> rows{};
+    for (std::size_t f = 0; f < rows.size(); ++f) rows[f] = &sums_[f][static_cast<std::size_t>(first)];
+    kernels_.quadratic_sums(data, noise_.settings().mean, part_.num_linear, scratch->prediction.data(), rows.data());
+  }
+}
+
+int QuadraticScore::Degree(double variance) const noexcept {
+  const int functions = QuadraticForm::Functions(part_.num_linear);
+  const double tolerance = 2.0 * variance * kTolerance;
+  constexpr double kRounding = 4e-16;
+  double rest = 0.0;
+  for (int f = 0; f < functions; ++f) {
+    const auto& series = series_[static_cast<std::size_t>(f)];
+    double sum = 0.0;
+    for (const double c : series) sum += std::fabs(c);
+    rest += kRounding * sum;
+    for (std::size_t k = QuadraticForm::kMaxDegree + 1; k < kNodes; ++k) rest += std::fabs(series[k]);
+  }
+  if (!(rest <= tolerance)) return -1;
+  int degree = QuadraticForm::kMaxDegree;
+  for (; degree > 1; degree -= 2) {
+    for (int f = 0; f < functions; ++f)
+      for (const int k : {degree, degree - 1})
+        rest += std::fabs(series_[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)]);
+    if (!(rest <= tolerance)) break;
+  }
+  return degree;
+}
+
+void QuadraticScore::Prepare(const ModeData& data, const ParamVector& about, QuadraticScratch* scratch) noexcept {
+  ready_ = false;
+  if (!applies_ || data.start_fit != nullptr || !about.allFinite()) return;
+  num_samples_ = data.num_samples;
+  for (int d = 0; d < space_.dim; ++d) form_.about[static_cast<std::size_t>(d)] = about[d];
+  TakeSums(data, scratch);
+  const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
+  if (part_.curved < 0) {
+    form_.degree = 0;
+    ready_ = true;
+    for (std::size_t f = 0; f < functions; ++f) {
+      form_.coefficient[f][0] = sums_[f][0];
+      ready_ = ready_ && std::isfinite(sums_[f][0]);
+    }
+    return;
+  }
+  const CosineTable& transform = transform_[0];
+  for (std::size_t f = 0; f < functions; ++f)
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      std::array<double, 4> part{};
+      for (std::size_t j = 0; j < kNodes; j += 4)
+        for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums_[f][j + l];
+      series_[f][k] = (part[0] + part[1]) + (part[2] + part[3]);
+    }
+  const double scale = std::exp(space_.LogNoiseScale(about.data()));
+  const int degree = Degree(scale * scale);
+  if (degree < 0) return;
+  form_.degree = degree;
+  for (std::size_t f = 0; f < functions; ++f)
+    std::copy_n(series_[f].begin(), static_cast<std::size_t>(degree) + 1, form_.coefficient[f].begin());
+  ready_ = true;
+}
+
+void QuadraticScore::Score(const double* const* u, int first, double* out) const noexcept {
+  kernels_.score_quadratic(form_, space_, noise_, num_samples_, u, first, out);
+}
+
+}  // namespace armcmc

@@ -1,0 +1,128 @@
+// Squared errors of laws that are linear in some parameters; included by kernels.inl, once per instruction set.
+
+namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
+namespace {
+
+void QuadraticSums(const ModeData& data, double noise_mean, int num_linear, const PredictionTile* prediction,
+                   double* const* sums) noexcept ARMCMC_NONBLOCKING {
+  for (int v = 0; v < kVectors; ++v) {
+    const auto lane = static_cast<unsigned>(v * Simd::kLanes);
+    V total[QuadraticForm::kMaxFunctions] = {};
+    for (int n = 0; n < data.num_samples; ++n) {
+      const auto in = static_cast<unsigned>(n);
+      const V weight = Simd::Set(data.weight[in]);
+      const V law = Simd::Load(&prediction[0].value[in][lane]);
+      const V error = (Simd::Set(data.target[in] - noise_mean) - law) * weight;
+      V slope[static_cast<unsigned>(kMaxParams)];
+      for (int i = 0; i < num_linear; ++i) slope[i] = (Simd::Load(&prediction[1 + i].value[in][lane]) - law) * weight;
+      int f = 0;
+      total[f] = Simd::Fma(error, error, total[f]);
+      for (int i = 0; i < num_linear; ++i) {
+        ++f;
+        total[f] = Simd::Fma(error, slope[i], total[f]);
+        for (int j = i; j < num_linear; ++j) {
+          ++f;
+          total[f] = Simd::Fma(slope[i], slope[j], total[f]);
+        }
+      }
+    }
+    // (e - sum_i d_i s_i)^2: every product of two is there twice.
+    int f = 0;
+    Simd::Store(sums[f] + lane, total[f]);
+    for (int i = 0; i < num_linear; ++i) {
+      ++f;
+      Simd::Store(sums[f] + lane, Simd::Set(-2.0) * total[f]);
+      for (int j = i; j < num_linear; ++j) {
+        ++f;
+        Simd::Store(sums[f] + lane, i == j ? total[f] : Simd::Set(2.0) * total[f]);
+      }
+    }
+  }
+}
+
+/// Several vectors side by side: one would keep the arithmetic units waiting.
+constexpr int kQuadraticGroup = 4;
+struct QuadraticVectors {
+  V at[static_cast<unsigned>(kQuadraticGroup)];
+};
+
+/// Chebyshev polynomials T_0 .. T_degree of t.
+struct ChebyshevBasis {
+  QuadraticVectors power[QuadraticForm::kMaxDegree + 1];
+
+  void Fill(const QuadraticVectors& t, int degree) noexcept {
+    for (int g = 0; g < kQuadraticGroup; ++g) {
+      power[0].at[g] = Simd::Set(1.0);
+      power[1].at[g] = t.at[g];
+    }
+    for (int k = 2; k <= degree; ++k)
+      for (int g = 0; g < kQuadraticGroup; ++g)
+        power[k].at[g] = Simd::Fma(t.at[g] + t.at[g], power[k - 1].at[g], -power[k - 2].at[g]);
+  }
+  /// sum_k coefficient_k T_k, even and odd terms by themselves. @pre degree is odd.
+  [[gnu::always_inline]] QuadraticVectors Sum(const double* coefficient, int degree) const noexcept {
+    QuadraticVectors even, odd;
+    for (int g = 0; g < kQuadraticGroup; ++g) even.at[g] = odd.at[g] = V{};
+    for (int k = 0; k < degree; k += 2)
+      for (int g = 0; g < kQuadraticGroup; ++g) {
+        even.at[g] = Simd::Fma(power[k].at[g], Simd::Set(coefficient[k]), even.at[g]);
+        odd.at[g] = Simd::Fma(power[k + 1].at[g], Simd::Set(coefficient[k + 1]), odd.at[g]);
+      }
+    for (int g = 0; g < kQuadraticGroup; ++g) even.at[g] = even.at[g] + odd.at[g];
+    return even;
+  }
+};
+
+void ScoreQuadratic(const QuadraticForm& form, const ParameterSpace& space, const NoiseModel& noise, int num_samples,
+                    const double* const* u, int first, double* out) noexcept ARMCMC_NONBLOCKING {
+  const V samples = Simd::Set(static_cast<double>(num_samples));
+  const V constant = Simd::Set(noise.log_constant());
+  for (int v0 = 0; v0 < kVectors; v0 += kQuadraticGroup) {
+    const int lane = v0 * Simd::kLanes;
+    const auto coordinate = [&](int d, int g) noexcept { return Simd::Load(u[d] + first + lane + g * Simd::kLanes); };
+    ChebyshevBasis basis;
+    if (form.curved >= 0) {
+      QuadraticVectors t;
+      for (int g = 0; g < kQuadraticGroup; ++g) {
+        const V place = Simd::Fma(coordinate(form.curved, g), Simd::Set(form.slope), Simd::Set(form.origin));
+        t.at[g] = Simd::Min(Simd::Max(place, Simd::Set(-1.0)), Simd::Set(1.0));
+      }
+      basis.Fill(t, form.degree);
+    }
+    const auto function = [&](int f) noexcept {
+      const double* const coefficient = form.coefficient[static_cast<unsigned>(f)].data();
+      if (form.curved >= 0) return basis.Sum(coefficient, form.degree);
+      QuadraticVectors value;
+      for (int g = 0; g < kQuadraticGroup; ++g) value.at[g] = Simd::Set(coefficient[0]);
+      return value;
+    };
+    int f = 0;
+    QuadraticVectors sum = function(f);
+    QuadraticVectors d[static_cast<unsigned>(kMaxParams)];
+    for (int i = 0; i < form.num_linear; ++i)
+      for (int g = 0; g < kQuadraticGroup; ++g)
+        d[i].at[g] = coordinate(form.linear[static_cast<unsigned>(i)], g) -
+                     Simd::Set(form.about[static_cast<unsigned>(form.linear[static_cast<unsigned>(i)])]);
+    for (int i = 0; i < form.num_linear; ++i) {
+      QuadraticVectors inner = function(++f);
+      for (int j = i; j < form.num_linear; ++j) {
+        const QuadraticVectors a = function(++f);
+        for (int g = 0; g < kQuadraticGroup; ++g) inner.at[g] = Simd::Fma(a.at[g], d[j].at[g], inner.at[g]);
+      }
+      for (int g = 0; g < kQuadraticGroup; ++g) sum.at[g] = Simd::Fma(inner.at[g], d[i].at[g], sum.at[g]);
+    }
+    for (int g = 0; g < kQuadraticGroup; ++g) {
+      const V log_s =
+          space.samples_noise_scale()
+              ? Simd::Fma(Simd::Set(space.scale[static_cast<unsigned>(space.dim - 1)]), coordinate(space.dim - 1, g),
+                          Simd::Set(space.offset[static_cast<unsigned>(space.dim - 1)]))
+              : Simd::Set(space.log_noise_scale);
+      const V precision = Simd::Exp2(log_s * Simd::Set(-2.0 * kLog2E));
+      Simd::Store(out + lane + g * Simd::kLanes,
+                  Simd::Fma(Simd::Set(-0.5) * precision, sum.at[g], samples * (constant - log_s)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE

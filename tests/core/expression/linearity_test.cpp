@@ -1,0 +1,41 @@
+#include "armcmc/expression/linearity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "armcmc/expression/check.hpp"
+#include "core/expression/plant_words.hpp"
+
+namespace armcmc::linearity_test {
+namespace {
+
+using expression::Graph;
+using expression::SymbolKind;
+
+/// In K and B, by the form of the text.
+bool LinearInKAndB(const std::string& text) {
+  Graph graph;
+  const expression::Scope scope = test::PlantWords();
+  const int node = graph.Lower(expression::Parse(text), scope, {});
+  const std::vector<int> symbols{graph.Symbol(SymbolKind::kParameter, 0), graph.Symbol(SymbolKind::kParameter, 1)};
+  return expression::IsLinear(graph, node, symbols);
+}
+
+TEST(IsLinear, WhereParametersAreMultipliedByWhatIsKnown) {
+  for (const char* text : {"K*x + B*v", "x^p * (K*x + B*v)", "-(K*x) / exp(p) - 3*B*v", "u", "p^2 + sin(p*t)",
+                           "if(x > 0, K*x, B*v)", "lowpass(x, 0.1)*K", "K*sign(v) + B*abs(v)", "(K + K)*x - K*x/2"})
+    EXPECT_TRUE(LinearInKAndB(text)) << text;
+}
+
+TEST(IsLinear, NotWhereTheyBendOrMeet) {
+  for (const char* text : {"K^2*x", "K*B*x", "x/K", "abs(K)*x", "exp(K*x)", "max(K*x, B*v)", "if(K*x > 1, x, v)",
+                           "step(K*x - 1)*v + B*v", "sign(K - 2)*x", "K*x^B", "sqrt(K*K)*x", "lowpass(K*x, 0.1)"})
+    EXPECT_FALSE(LinearInKAndB(text)) << text;
+}
+
+TEST(IsLinear, NothingIsKnownOfStates) { EXPECT_FALSE(LinearInKAndB("K*s")); }
+
+}  // namespace
+}  // namespace armcmc::linearity_test
