@@ -56,7 +56,7 @@ struct Kernels {
                          const double* log_scale, double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// predict, then log_likelihood, in one; under Gaussian noise, where every sample depends on its own inputs alone
-  /// (no delays, lags or limits), the predictions never reach memory and powers carry a relative error of 4e-11.
+  /// (no delays, lags or limits), the predictions never reach memory. Powers carry a relative error of 4e-11.
   /// `scratch` holds nothing of use afterwards.
   void (*score)(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta,
                 const double* log_scale, PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING;

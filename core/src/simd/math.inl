@@ -303,7 +303,16 @@ struct ScoreSimd : Simd {
     const V magic = Set(6755399441055744.0);  // 1.5 * 2^52: rounds to an integer, which it leaves in the lowest bits
     const V x = Set(log2_x);
     const V shifted = Fma(exponent, x, magic);
-    const V f = Fma(exponent, x, magic - shifted);
+    return OfParts(Fma(exponent, x, magic - shifted), shifted);
+  }
+  /// 2^x for |x| <= 1000.
+  static V Exp2(V x) noexcept {
+    const V magic = Set(6755399441055744.0);
+    const V shifted = x + magic;
+    return OfParts(x - (shifted - magic), shifted);
+  }
+  /// 2^(f + the integer in the lowest bits of `shifted`), |f| <= 1/2.
+  static V OfParts(V f, V shifted) noexcept {
     V p = Set(1.52019226419755621e-05);
     p = Fma(p, f, Set(1.54692911308010610e-04));
     p = Fma(p, f, Set(1.33339225590775254e-03));

@@ -68,12 +68,60 @@ void SumSquaresOf(const Forward& forward, const ModeData& data, const ThetaTile&
   }
 }
 
+/// Log-likelihood under another law than the Gaussian, without predictions in memory.
+template <class Forward>
+void ScoreLaw(const Forward& forward, const ModeData& data, const ThetaTile& theta, const NoiseModel& noise,
+              const double* log_scale, double* out) noexcept {
+  constexpr int kGroup = 2;
+  alignas(64) double inverse_scale[kTileLanes];
+  InverseScale(log_scale, inverse_scale);
+  const NoiseSettings& s = noise.settings();
+  ForLaw<ScoreSimd, kGroup>(s.kind, [&]<class Law>() noexcept {
+    for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
+      Law law(s);
+      V inv[static_cast<unsigned>(kGroup)];
+      V parameters[static_cast<unsigned>(kGroup)][Forward::kRows];
+      for (int g = 0; g < kGroup; ++g) {
+        const auto lane = static_cast<unsigned>((v0 + g) * Simd::kLanes);
+        inv[g] = Simd::Load(inverse_scale + lane);
+        for (unsigned i = 0; i < Forward::kRows; ++i) parameters[g][i] = forward.Load(theta, i, lane);
+      }
+      for (int n0 = 0; n0 < data.num_samples; n0 += kRun) {
+        const int end = n0 + kRun < data.num_samples ? n0 + kRun : data.num_samples;
+        for (int n = n0; n < end; ++n) {
+          const auto in = static_cast<unsigned>(n);
+          const V minus_target = Simd::Set(s.mean - data.target[in]);
+          const V weight = Simd::Set(data.weight[in]);
+          const bool far = forward.Far(n);
+          for (int g = 0; g < kGroup; ++g) {
+            const V e = far ? forward.template AddTo<Simd>(minus_target, parameters[g], n)
+                            : forward.template AddTo<ScoreSimd>(minus_target, parameters[g], n);
+            law.Add(g, e * (weight * inv[g]));
+          }
+        }
+        law.EndRun();
+      }
+      for (int g = 0; g < kGroup; ++g) Simd::Store(out + (v0 + g) * Simd::kLanes, law.Result(g));
+    }
+    AddConstant(noise, Law::Slope(s), data.num_samples, log_scale, out);
+  });
+}
+
+template <class Model>
+void ScoreLawPlain(const ModeData& data, const ThetaTile& theta, const NoiseModel& noise, const double* log_scale,
+                   double* out) noexcept ARMCMC_NONBLOCKING {
+  ScoreLaw(PlainForward<Model>{data}, data, theta, noise, log_scale, out);
+}
+
 template <class Model>
 void SumSquaresPlain(const ModeData& data, const ThetaTile& theta, double noise_mean,
                      double* out) noexcept ARMCMC_NONBLOCKING {
   SumSquaresOf(PlainForward<Model>{data}, data, theta, noise_mean, out);
 }
 
+/// out[lane] = log-likelihood, see Kernels::score.
+using ScoreLawFn = void (*)(const ModeData&, const ThetaTile&, const NoiseModel&, const double* log_scale,
+                            double*) noexcept ARMCMC_NONBLOCKING;
 /// out[lane] = sum_n (weight_n (target_n - mean - F))^2.
 using SumSquaresFn = void (*)(const ModeData&, const ThetaTile&, double, double*) noexcept ARMCMC_NONBLOCKING;
 

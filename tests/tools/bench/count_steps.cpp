@@ -57,7 +57,9 @@ Case MakeCase(const std::string& name) {
   Case made{BuiltinSettings(contact), true};
   for (NoiseSettings& noise : made.settings.noise) noise.std = bench::Press().noise;
   if (name == "press") return made;
-  if (name == "press_mixture") {
+  if (name == "press_every_sample") {
+    made.settings.sampler.use_linearity = false;
+  } else if (name == "press_mixture") {
     for (NoiseSettings& noise : made.settings.noise) noise.kind = NoiseKind::kMixture;
   } else if (name == "press_effects") {
     const ModelInfo& info = *CompiledModels()[static_cast<std::size_t>(FindModel(contact))];
