@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "armcmc/bench/peer_case.hpp"
 #include "armcmc/bench/suite.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/support/program.hpp"
@@ -16,6 +17,8 @@ struct Arguments {
   std::vector<std::string> models;
   std::string instruction_set;
   bool no_quality = false;
+  std::string write_packs;
+  int replicates = 200;
 };
 
 void Declare(CLI::App* app, Arguments* a) {
@@ -25,6 +28,11 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--instruction-set", a->instruction_set,
                   "avx512, avx2 or sse2 instead of the widest that this CPU runs");
   app->add_flag("--no-quality", a->no_quality, "Leave out BM_EffectiveDraws");
+  app->add_option(
+      "--write-packs", a->write_packs,
+      "Measure nothing else: write the packs of BM_EffectiveDraws that start from the prior to this folder, "
+      "for other programs, with the posterior by quadrature and replicates of the estimator's own result");
+  app->add_option("--replicates", a->replicates, "Replicates for --write-packs (200)")->check(CLI::Range(1, 100000));
   app->allow_extras();
   app->footer(
       "Measures the step of the estimator, part by part, on packs that armcmc-plant simulates with a fixed seed, and\n"
@@ -33,6 +41,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "--benchmark_list_tests. Times on a shared machine vary: compare figures of one run.\n\n"
       "Benchmarks:\n"
       "  BM_AdjustStep/PLANT/DRAWS/SAMPLES   draw and remember; BM_Draw, BM_Remember and BM_Execute are the parts\n"
+      "  BM_Dimension/PARAMETERS             draw and remember with described laws of 2 to 6 parameters\n"
       "  BM_Memory/PLANT                     construction; the counter `bytes` is the heap that it takes\n"
       "  BM_Noise/PLANT/LAW                  a whole step under another law of the noise\n"
       "  BM_Effects/PLANT/COUNT              a whole step with effects added to the law\n"
@@ -42,6 +51,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "Examples:\n"
       "  armcmc-bench --benchmark_filter=AdjustStep\n"
       "  armcmc-bench --model my_axis.toml --benchmark_format=json\n"
+      "  armcmc-bench --write-packs packs\n"
       "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.");
 }
 
@@ -49,6 +59,12 @@ int Run(const CLI::App& app, const Arguments& a, const std::string& program) {
   if (!a.instruction_set.empty() && !armcmc::UseInstructionSet(a.instruction_set))
     throw armcmc::support::InputError("--instruction-set " + a.instruction_set +
                                       ": not of this build or this CPU; there are avx512, avx2, sse2");
+  if (!a.write_packs.empty()) {
+    if (!app.remaining().empty())
+      throw armcmc::support::InputError(app.remaining().front() + ": no option of --write-packs (see --help)");
+    armcmc::bench::WritePeerCases(a.write_packs, a.replicates);
+    return armcmc::support::kExitOk;
+  }
   std::vector<std::string> words = app.remaining();
   words.insert(words.begin(), program);
   std::vector<char*> argv;

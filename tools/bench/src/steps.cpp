@@ -4,6 +4,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "armcmc/adjust_result.hpp"
+#include "armcmc/bench/law_family.hpp"
 #include "armcmc/effects/effect.hpp"
 #include "armcmc/estimator.hpp"
 #include "armcmc/models/registry.hpp"
@@ -121,6 +123,7 @@ void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesy
   if (draws > 0) {
     settings.sampler.rule = DrawRule::kFixed;
     settings.sampler.fixed_draws = draws;
+    settings.sampler.max_draws = std::max(settings.sampler.max_draws, draws);
   } else {
     draws = ChernoffDraws(settings.sampler.epsilon, settings.sampler.delta);
   }
@@ -130,6 +133,15 @@ void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesy
   Add("BM_Draw" + of, settings, packs, Part::kDraw);
   Add("BM_Remember" + of, settings, packs, Part::kRemember);
   Add("BM_Execute" + of, settings, packs, Part::kExecute);
+}
+
+void RegisterDimensions() {
+  constexpr int kPacks = 32, kSamples = 100;
+  for (int d = kFewestLawParameters; d <= kMostLawParameters; ++d) {
+    const EstimatorSettings settings = LawSettings(d);
+    Add("BM_Dimension/" + std::to_string(d), settings,
+        std::make_shared<const std::vector<DataPack>>(LawPacks(d, settings, kPacks, kSamples)), Part::kAdjust);
+  }
 }
 
 void RegisterMemory(const Plant& plant) {

@@ -6,6 +6,8 @@ namespace armcmc::bench {
 
 /// BM_AdjustStep, BM_Draw, BM_Remember, BM_Execute of one plant.
 void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesystem::path& folder);
+/// BM_Dimension: draw and remember with laws of 2 to 6 parameters, default number of draws, 100 samples.
+void RegisterDimensions();
 /// BM_Memory: heap of an estimator with one result slot, all of it allocated at construction.
 void RegisterMemory(const Plant& plant);
 /// BM_Noise: one for each law.

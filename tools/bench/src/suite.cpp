@@ -5,14 +5,15 @@
 #include "armcmc/bench/press.hpp"
 #include "armcmc/sample_size.hpp"
 #include "armcmc/settings.hpp"
+#include "armcmc/types.hpp"
 #include "steps.hpp"
 
 namespace armcmc::bench {
 
 Suite MakeSuite(const std::vector<std::string>& models) {
   Suite suite;
-  suite.draws = {0, 2000, 5000};
-  suite.samples = {50, 100, 200};
+  suite.draws = {0, 500, 2000, 5000, 50'000};
+  suite.samples = {20, 50, 100, 200, kMaxPackSamples};
   for (const std::string& model : models) {
     const std::vector<Plant> known = KnownPlants();
     const auto it = std::find_if(known.begin(), known.end(), [&](const Plant& plant) { return plant.name == model; });
@@ -34,6 +35,7 @@ void Register(const Suite& suite, const std::filesystem::path& folder) {
       if (draws > 0) RegisterSteps(plant, draws, kSamples, folder);
     for (const int samples : suite.samples)
       if (samples != kSamples) RegisterSteps(plant, 0, samples, folder);
+    RegisterDimensions();
     RegisterNoise(plant, folder);
     RegisterEffects(plant, folder);
     RegisterNaiveLoop(ChernoffDraws(SamplerSettings().epsilon, SamplerSettings().delta), kSamples);

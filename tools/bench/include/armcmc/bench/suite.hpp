@@ -24,6 +24,7 @@ struct Suite {
 ///
 ///   BM_AdjustStep/PLANT/DRAWS/SAMPLES      draw and remember: what the adjust stage computes in a period
 ///   BM_Draw, BM_Remember, BM_Execute       its parts, and the execute stage; same arguments
+///   BM_Dimension/PARAMETERS                draw and remember with laws of 2 to 6 parameters (law_family.hpp)
 ///   BM_Memory/PLANT                        construction; the counter `bytes` is the heap that it takes
 ///   BM_Noise/PLANT/LAW                     draw, execute and remember under another law of the noise
 ///   BM_Effects/PLANT/COUNT                 the same with effects added to the law
