@@ -120,6 +120,7 @@ int Run(const Options& options) {
   if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
   if (injects) pipeline_options.injection = &injection;
   std::vector<rt::LanePlant> lanes;
+  lanes.reserve(plants.size());
   for (const auto& plant : plants)
     lanes.push_back(plant->ForPipeline(injects ? static_cast<rt::StepEngine*>(&disturbed) : &plant->engine()));
   rt::Pipeline pipeline(configuration.rt, lanes, pipeline_options);

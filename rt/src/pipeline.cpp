@@ -51,6 +51,7 @@ std::vector<std::unique_ptr<Lane>> MakeLanes(const RtSettings& settings, const s
 
 std::vector<std::string> ChannelsOf(const std::vector<std::unique_ptr<Lane>>& lanes) {
   std::vector<std::string> channels;
+  channels.reserve(lanes.size());
   for (const auto& lane : lanes) channels.push_back(lane->channel());
   return channels;
 }
@@ -169,9 +170,9 @@ void Pipeline::StartThreads() {
   // Adjust first: it warms the engine up before anything can be released. Collect last: it releases.
   // The monitor knows its witnesses before a thread that asks it starts.
   const auto trust = [this](auto meter_of, const ThreadPlacement& placement) {
-    for (const auto& lane : lanes_) meter_of(lane.get())->SetTrusted(placement.fifo && placement.pinned);
+    for (const auto& lane : lanes_) meter_of(*lane)->SetTrusted(placement.fifo && placement.pinned);
   };
-  trust([](Lane* lane) { return lane->adjust_.cpu_time(); },
+  trust([](Lane& lane) { return lane.adjust_.cpu_time(); },
         StartThread(&adjust_thread_, "adjust", settings_.adjust, [](void* self) noexcept {
           static_cast<Pipeline*>(self)->WarmUpEngines();
           static_cast<Pipeline*>(self)->AdjustLoop();
@@ -180,12 +181,12 @@ void Pipeline::StartThreads() {
   }
   StartWitnesses();
   ShareCpuTimes();
-  trust([](Lane* lane) { return lane->execute_.cpu_time(); },
+  trust([](Lane& lane) { return lane.execute_.cpu_time(); },
         StartThread(&execute_thread_, "execute", settings_.execute,
                     [](void* self) noexcept { static_cast<Pipeline*>(self)->ExecuteLoop(); }));
   StartThread(&publish_thread_, "publish", settings_.publish,
               [](void* self) noexcept { static_cast<Pipeline*>(self)->PublishLoop(); });
-  trust([](Lane* lane) { return lane->collect_.cpu_time(); },
+  trust([](Lane& lane) { return lane.collect_.cpu_time(); },
         StartThread(&collect_thread_, "collect", settings_.collect,
                     [](void* self) noexcept { static_cast<Pipeline*>(self)->CollectLoop(); }));
   watchdog_.Start();
