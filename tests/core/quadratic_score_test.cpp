@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <memory>
 #include <random>
 #include <string>
@@ -108,7 +107,7 @@ TEST(QuadraticScore, FusedInstructionSetsGiveTheSameBits) {
     ASSERT_TRUE(score.ready());
     score.Score(c.u.data(), 0, out.emplace_back(kTileLanes).data());
   }
-  EXPECT_EQ(std::memcmp(out[0].data(), out[1].data(), kTileLanes * sizeof(double)), 0);
+  EXPECT_EQ(out[0], out[1]);
 }
 
 TEST(QuadraticScore, IsNotReadyWhereItCannotBeExact) {

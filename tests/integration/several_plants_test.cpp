@@ -32,6 +32,7 @@ TEST_F(SeveralPlants, EachIsLearntByItself) {
   Process estimator(Program("armcmc-estimator"), arguments);
   ASSERT_TRUE(recorder_->WaitUntil([this] { return !recorder_->statuses().empty(); })) << estimator.err();
   std::vector<std::unique_ptr<Process>> processes;
+  processes.reserve(plants.size());
   for (const Plant& plant : plants)
     processes.push_back(std::make_unique<Process>(
         Program("armcmc-plant"), std::vector<std::string>{"--scenario", plant.scenario, "--duration", "4", "--prefix",

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/pipeline.hpp"
 #include "fake_engine.hpp"
+#include "support/paths.hpp"
 #include "test_bus.hpp"
 #include "test_packs.hpp"
 
