@@ -37,7 +37,7 @@ std::unique_ptr<OutputWatch> MakeOutputWatch(const EstimatorSettings& settings, 
 
 }  // namespace
 
-Estimator::Impl::Impl(const EstimatorSettings& s)
+Estimator::Impl::Impl(const EstimatorSettings& s, const Impl* lender)
     : settings(s),
       model(ModelIndex(s)),
       composition(Regressed(s)),
@@ -47,7 +47,7 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       predictor(info.compiled != nullptr ? info.compiled->make_predictor(info, s.constants, composition.rows())
                                          : nullptr),
       trajectory(info.described != nullptr ? info.described->prediction() : nullptr, kernels),
-      summary(s.sampler.max_draws),
+      summary(lender != nullptr ? lender->summary : std::make_shared<SummaryWorkspace>(s.sampler.max_draws)),
       gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
       output_watch(MakeOutputWatch(settings, info, predictor.get())) {
   dim = info.num_parameters;
@@ -64,7 +64,8 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
     if (settings.method != Method::kArmcmc)
       filters.emplace_back(MakeFilter({kernels, model, settings, space, NoiseModel(noise)}));
   }
-  workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws, num_linear);
+  workspace = lender != nullptr ? lender->workspace
+                                : std::make_shared<SamplerWorkspace>(dim, settings.sampler.max_draws, num_linear);
   ShowPrior();
   ForgetStates();
 }
@@ -108,7 +109,9 @@ void Estimator::Impl::PrepareMode(const DataPack& pack, const EffectPack& effect
     data->weight[static_cast<std::size_t>(n)] = rho > 0.0 ? std::exp(-rho * (data->num_samples - 1 - n)) : 1.0;
 }
 
-Estimator::Estimator(const EstimatorSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Estimator::Estimator(const EstimatorSettings& settings) : impl_(std::make_unique<Impl>(settings, nullptr)) {}
+Estimator::Estimator(const EstimatorSettings& settings, const Estimator& lender)
+    : impl_(std::make_unique<Impl>(settings, lender.impl_.get())) {}
 Estimator::~Estimator() = default;
 
 std::unique_ptr<AdjustResult> Estimator::MakeResult() const {
@@ -124,7 +127,7 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
   return status;
 }
 
-Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                        const DrawLimits& limits) noexcept {
   Impl& s = *impl_;
   s.Remember(clock);
@@ -135,16 +138,21 @@ Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, 
     draws.known = memory.slot[memory.current].valid && memory.slot[memory.current].informed;
     draws.num_samples = 0;
   }
-  if (pack.Validate() != Status::kOk || pack.plant != s.info.plant || !s.IsOfThisPlant(pack) ||
-      pack.num_inputs < s.info.num_inputs ||
-      (!s.composition.empty() && !s.composition.Prepare(pack, &result->effects))) {
+  const bool is_usable = new_pack.Validate() == Status::kOk && new_pack.plant == s.info.plant &&
+                         s.IsOfThisPlant(new_pack) && new_pack.num_inputs >= s.info.num_inputs &&
+                         new_pack.num_samples % s.settings.overlap == 0;
+  if (is_usable) {
+    result->pack = new_pack;
+    result->pack.seq_step = s.settings.overlap;
+  }
+  const DataPack& pack = result->pack;
+  if (!is_usable || (!s.composition.empty() && !s.composition.Prepare(pack, &result->effects))) {
     result->status = Status::kBadPack;
     result->pack = DataPack{};
-    result->pack.seq = pack.seq;
-    result->pack.run_id = pack.run_id;
+    result->pack.seq = new_pack.seq;
+    result->pack.run_id = new_pack.run_id;
     return Status::kBadPack;
   }
-  result->pack = pack;
 
   int pending = 0;
   std::array<bool, kMaxModes> active{};

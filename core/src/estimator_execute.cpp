@@ -205,6 +205,8 @@ const GapState& Estimator::Impl::Gap() const noexcept {
   return output.log_evidence - output.log_threshold > fitted.log_evidence - fitted.log_threshold ? output : fitted;
 }
 
+const GapState& Estimator::gap() const noexcept { return impl_->Gap(); }
+
 void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   Impl& s = *impl_;
   const DataPack& pack = result.pack;
@@ -224,7 +226,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     last.updated = false;
     last.num_samples = draws.num_samples;
     if (draws.updated) {
-      Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, &s.summary, &last);
+      Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, s.summary.get(), &last);
     } else {
       // Held: the parameters stay, the numbers that describe one step do not.
       last.decision = Decision::kHold;
