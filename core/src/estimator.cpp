@@ -48,7 +48,9 @@ Estimator::Impl::Impl(const EstimatorSettings& s, const Impl* lender)
                                          : nullptr),
       trajectory(info.described != nullptr ? info.described->prediction() : nullptr, kernels),
       summary(lender != nullptr ? lender->summary : std::make_shared<SummaryWorkspace>(s.sampler.max_draws)),
-      gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
+      gap_watch(lender == nullptr || settings.gap_watch.enabled
+                    ? std::make_unique<GapWatch>(settings, model, kernels, FalseAlarmRate(settings, info))
+                    : nullptr),
       output_watch(MakeOutputWatch(settings, info, predictor.get())) {
   dim = info.num_parameters;
   int num_linear = 0;
@@ -298,7 +300,7 @@ void Estimator::Reset() noexcept {
   s.trajectory.Reset();
   s.composition.Reset();
   s.ForgetStates();
-  s.gap_watch.Reset();
+  if (s.gap_watch) s.gap_watch->Reset();
   if (s.output_watch) s.output_watch->Reset();
   s.report_mode = 0;
 }
@@ -317,10 +319,10 @@ ReportedQuantity Estimator::reported(int index) const noexcept {
   return {r.name, r.unit};
 }
 
-bool Estimator::watches_gap() const noexcept { return impl_->gap_watch.enabled(); }
+bool Estimator::watches_gap() const noexcept { return impl_->gap_watch && impl_->gap_watch->enabled(); }
 
 std::string_view Estimator::gap_check_name(int check) const noexcept {
-  const std::string_view fitted = impl_->gap_watch.CheckName(check);
+  const std::string_view fitted = impl_->gap_watch ? impl_->gap_watch->CheckName(check) : "";
   return fitted.empty() && impl_->output_watch ? impl_->output_watch->CheckName(check) : fitted;
 }
 

@@ -11,6 +11,7 @@ namespace armcmc {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr GapState kNothingWatched{};
 
 }  // namespace
 
@@ -191,13 +192,13 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     drifts = drifts || (mode.updated && mode.p_drifted > 0.5);
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
-  gap_watch.Step(pack, estimate, changed, drifts);
+  if (gap_watch) gap_watch->Step(pack, estimate, changed, drifts);
   if (output_watch) output_watch->Step(pack, shown[0]);
   e->gap = Gap();
 }
 
 const GapState& Estimator::Impl::Gap() const noexcept {
-  const GapState& fitted = gap_watch.state();
+  const GapState& fitted = gap_watch ? gap_watch->state() : kNothingWatched;
   if (!output_watch) return fitted;
   const GapState& output = output_watch->state();
   if (fitted.suspected != output.suspected) return output.suspected ? output : fitted;

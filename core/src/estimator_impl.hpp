@@ -86,7 +86,7 @@ struct Estimator::Impl {
   std::array<ShownEstimates, 2> shown;        ///< After the previous pack, and after the one before it.
   std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
-  GapWatch gap_watch;
+  std::unique_ptr<GapWatch> gap_watch;        ///< Null where an estimator with a lender watches nothing.
   std::unique_ptr<OutputWatch> output_watch;  ///< Of a plant that has a second equation.
 
   [[nodiscard]] bool IsOfThisPlant(const DataPack& pack) const noexcept {
