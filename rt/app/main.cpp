@@ -95,6 +95,7 @@ Configuration Load(const Options& options) {
   configuration.estimator = support::ReadEstimatorSettings(root, decides ? options.model : "");
   configuration.rt = ReadRtSettings(root);
   configuration.gap_log = ReadGapLogSettings(root);
+  configuration.gap_log.overlap = configuration.estimator.overlap;
   configuration.inject = ReadInjections(root);
   root.Finish();
   if (!options.lcm_url.empty()) configuration.rt.lcm_url = options.lcm_url;
@@ -179,6 +180,11 @@ int Run(const Options& options) {
   CheckPath("--resume", options.resume);
   if (!options.resume.empty() && configuration.estimator.method != Method::kArmcmc) {
     throw support::InputError("--resume: only method = \"armcmc\" keeps what it has learnt; leave --resume out");
+  }
+  if (!options.resume.empty() && configuration.estimator.overlap > 1) {
+    throw support::InputError("--resume: keeps one posterior, and with [timing] overlap = " +
+                              std::to_string(configuration.estimator.overlap) +
+                              " there are as many; leave --resume out");
   }
 
   // Blocked before the first thread starts: all inherit it, and sigtimedwait() below is the only one to hear them.

@@ -90,6 +90,7 @@ class Pipeline {
   [[nodiscard]] const DeadlineMonitor& monitor() const noexcept { return monitor_; }
   [[nodiscard]] const ExecuteStage& execute() const noexcept { return execute_; }
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return publish_.last_estimate(); }
+  [[nodiscard]] const PublicationLatency& latency() const noexcept { return publish_.latency(); }
   [[nodiscard]] const std::vector<std::unique_ptr<Witness>>& witnesses() const noexcept { return witnesses_; }
   [[nodiscard]] std::vector<ThreadPlacement> placements() const;
   [[nodiscard]] std::int32_t degraded_flags() const noexcept { return degraded_flags_; }
