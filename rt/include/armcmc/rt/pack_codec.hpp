@@ -59,6 +59,8 @@ class PackCodec {
     return described() ? described_.t_last_ns : message_.t_last_ns;
   }
   [[nodiscard]] double t_last_s() const noexcept { return described() ? described_.t_last_s : message_.t_last_s; }
+  [[nodiscard]] double dt() const noexcept { return described() ? described_.dt : message_.dt; }
+  [[nodiscard]] int num_samples() const noexcept { return described() ? described_.n_samples : message_.n_samples; }
   /// Copies the used rows and columns. @pre the last Decode() returned kNone.
   void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
 
