@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <functional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "armcmc/last_pack.hpp"
@@ -224,6 +225,47 @@ TEST(InterleavedEstimator, ARecursionOfAPlantWithStatesGoesOnFromItsOwnPackBefor
       EXPECT_LT(sd, anew) << seq;
     }
   }
+}
+
+/// What a plant remembers from pack to pack holds for the packs of a recursion: whoever takes each for a new start
+/// computes something else from the same packs and the same random numbers.
+void ExpectMemory(const EstimatorSettings& settings, const std::function<DataPack(std::int64_t k)>& pack_at,
+                  const std::string& what) {
+  Rig goes_on(Overlapping(settings)), starts_anew(settings);
+  bool differs = false;
+  for (std::int64_t k = 1; k <= 6; ++k) {
+    DataPack pack = pack_at(k);
+    pack.seq = kOverlap * k;
+    const Estimate &a = goes_on.Step(pack), &b = starts_anew.Step(pack);
+    ASSERT_TRUE(goes_on.status == Status::kOk || goes_on.status == Status::kHeld) << what << ", pack " << k;
+    differs = differs || !test::SameBits(a.modes[0].marginal[0].sd, b.modes[0].marginal[0].sd) ||
+              !test::SameBits(a.y_shown_free_run[0], b.y_shown_free_run[0]);
+    if (k == 1) {
+      ASSERT_FALSE(differs) << what;
+    }
+  }
+  EXPECT_TRUE(differs) << what;
+}
+
+TEST(InterleavedEstimator, PlantsRememberFromPackToPackOfARecursion) {
+  const auto actuator = [](std::int64_t k) { return test::Actuator{}.Pack(k, 50); };
+  ExpectMemory(test::ActuatorSettings(), actuator, "bending");
+  EstimatorSettings lagging = test::ActuatorSettings();
+  lagging.effects[0] = MakeEffect(SoftActuator::kInfo, "valve_lag");
+  lagging.num_effects = 1;
+  lagging.noise[0].std = lagging.noise[1].std = 1e4;  // of the pressure rate
+  ExpectMemory(lagging, actuator, "valve lag");
+  EstimatorSettings contact = BuiltinSettings("hunt_crossley");
+  contact.effects[0] = MakeEffect(HuntCrossley::kInfo, "sensor_lag");
+  contact.num_effects = 1;
+  ExpectMemory(
+      contact, [](std::int64_t k) { return test::Contact{}.Pack(k + 8); }, "sensor lag");
+  PlantDescription description = test::DescribedAxis();
+  description.law = "M*lowpass(a, 0.05) + Fv*v + off";
+  const auto plant = test::Program(description);
+  const Series series = AxisSeries(*plant, 24);
+  ExpectMemory(
+      DescribedSettings(plant), [&series](std::int64_t k) { return series.Pack(kOverlap * (k - 1) + 1); }, "lowpass");
 }
 
 TEST(InterleavedEstimator, ShowsTheGapWatchOfTheFirstRecursionWithEveryPack) {
