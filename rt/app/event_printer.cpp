@@ -86,7 +86,7 @@ void EventPrinter::Line(Nanos t_ns, const std::string& text) {
   char time[32];
   std::snprintf(time, sizeof time, "[%9.3f s] ",
                 static_cast<double>(t_ns - start_ns_) / static_cast<double>(rt::kNanosPerSecond));
-  out_ << time << text << '\n' << std::flush;
+  out_ << time << plant_ << (plant_.empty() ? "" : ": ") << text << '\n' << std::flush;
 }
 
 void EventPrinter::Print(const rt::Event& event) {

@@ -23,8 +23,9 @@ class EventPrinter {
  public:
   static constexpr int kMaxPerSecond = 5;
 
-  EventPrinter(std::ostream& out, Nanos start_ns, bool verbose, GapCheckNames gap_check = {})
-      : out_(out), start_ns_(start_ns), verbose_(verbose), gap_check_(std::move(gap_check)) {}
+  /// @param plant  Stands before every line; empty: nothing does.
+  EventPrinter(std::ostream& out, Nanos start_ns, bool verbose, GapCheckNames gap_check = {}, std::string plant = "")
+      : out_(out), start_ns_(start_ns), verbose_(verbose), gap_check_(std::move(gap_check)), plant_(std::move(plant)) {}
 
   void Print(const rt::Event& event);
   /// Says how many lines were held back since the last call. Call it about once a second and at the end.
@@ -37,6 +38,7 @@ class EventPrinter {
   Nanos start_ns_;
   bool verbose_;
   GapCheckNames gap_check_;
+  std::string plant_;
   std::array<int, rt::kNumEventKinds> printed_{}, held_back_{};
 };
 

@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "armcmc/estimator.hpp"
@@ -20,21 +17,11 @@
 #include "armcmc/rt/disturbed_engine.hpp"
 #include "armcmc/rt/pipeline.hpp"
 #include "armcmc/rt/process_setup.hpp"
-#include "armcmc/rt/snapshot_hand_over.hpp"
-#include "armcmc/rt/step_engine.hpp"
-#include "armcmc/snapshot.hpp"
-#include "armcmc/support/estimator_config.hpp"
-#include "armcmc/support/model_file.hpp"
 #include "armcmc/support/program.hpp"
-#include "armcmc/support/shared_files.hpp"
-#include "armcmc/support/strict_toml.hpp"
 #include "event_printer.hpp"
-#include "gap_log.hpp"
-#include "report.hpp"
-#include "rt_config.hpp"
+#include "options.hpp"
+#include "plant_run.hpp"
 #include "service_notify.hpp"
-#include "snapshot_saver.hpp"
-#include "summary.hpp"
 
 namespace armcmc::app {
 namespace {
@@ -54,55 +41,11 @@ std::string Footer() {
          DefaultModel() + " --report estimator.json\n  armcmc-plant --scenario " + DefaultModel() +
          "_paper --duration 20\n"
          "A plant of your own, from a file of 25 lines (armcmc-model new):\n"
-         "  armcmc-estimator --model my_axis.toml --report estimator.json\n";
-}
-
-struct Options {
-  std::string config;
-  std::string model;
-  std::string lcm_url;
-  std::string prefix;
-  std::string report;
-  std::string gap_log;
-  std::string resume;
-  std::int64_t steps = 0;
-  bool verbose = false;
-};
-
-struct Configuration {
-  EstimatorSettings estimator;
-  rt::RtSettings rt;
-  GapLogSettings gap_log;
-  std::vector<rt::InjectionItem> inject;
-};
-
-/// Without --config a built-in model has a file of its own, a plant that a file describes the defaults; with --config,
-/// --model replaces the model of the file.
-support::StrictTable OpenConfiguration(const Options& options, bool described) {
-  // A wrong name or model file is told first: it is the model's fault, not the configuration's.
-  const std::string base = options.model.empty() || described ? DefaultModel() : support::BaseModel(options.model);
-  if (described && options.config.empty())
-    return support::StrictTable::FromText("schema = 1\n", "the default configuration");
-  return support::StrictTable::FromFile(
-      support::FindSharedFile("config", options.config.empty() ? base : options.config));
-}
-
-Configuration Load(const Options& options) {
-  const bool described = support::DescribedPlant(options.model) != nullptr;
-  support::StrictTable root = OpenConfiguration(options, described);
-  const bool decides = described || !options.config.empty() || support::IsModelFile(options.model);
-  Configuration configuration;
-  configuration.estimator = support::ReadEstimatorSettings(root, decides ? options.model : "");
-  configuration.rt = ReadRtSettings(root);
-  configuration.gap_log = ReadGapLogSettings(root);
-  configuration.gap_log.overlap = configuration.estimator.overlap;
-  configuration.inject = ReadInjections(root);
-  root.Finish();
-  if (!options.lcm_url.empty()) configuration.rt.lcm_url = options.lcm_url;
-  if (!options.prefix.empty()) configuration.rt.prefix = options.prefix;
-  if (!options.gap_log.empty()) configuration.gap_log.directory = options.gap_log;
-  configuration.rt.Validate();
-  return configuration;
+         "  armcmc-estimator --model my_axis.toml --report estimator.json\n"
+         "Several plants in one process, up to " +
+         std::to_string(rt::Pipeline::kMaxLanes) +
+         ": --model, --prefix and --report once for each\n"
+         "  armcmc-estimator --model joint.toml --model joint.toml --prefix J1_ --prefix J2_\n";
 }
 
 void WarnWhenDegraded(const rt::Pipeline& pipeline) {
@@ -123,7 +66,8 @@ void WarnWhenDegraded(const rt::Pipeline& pipeline) {
 /// Prints events until the pipeline stops by itself or a signal of the set asks it to.
 /// A service manager hears that all stages are alive, and only then.
 /// @return false when a stage hangs and the configuration wants the process to end then.
-bool Attend(rt::Pipeline* pipeline, const sigset_t& signals, EventPrinter* printer) {
+bool Attend(rt::Pipeline* pipeline, const sigset_t& signals, const std::vector<std::unique_ptr<PlantRun>>& plants,
+            EventPrinter* printer) {
   constexpr timespec kPoll{0, 50'000'000};
   ServiceNotify service;
   service.Ready();
@@ -138,54 +82,25 @@ bool Attend(rt::Pipeline* pipeline, const sigset_t& signals, EventPrinter* print
     if (!running && !give_up) pipeline->Join();
     rt::Event event;
     while (pipeline->TakeEvent(&event)) printer->Print(event);
+    const Nanos now = rt::MonotonicNow();
+    const bool second = now >= next_second || !running;
+    for (const auto& plant : plants) plant->PrintEvents(now, second && !give_up);
     if (give_up) return false;
-    if (const Nanos now = rt::MonotonicNow(); now >= next_second || !running) {
-      printer->PrintHeldBack(now);
-      next_second = now + rt::kNanosPerSecond;
-    }
+    if (second) next_second = now + rt::kNanosPerSecond;
   }
   return true;
 }
 
-/// A file that cannot be written is found out before the run, not after it.
-void CheckPath(const std::string& option, const std::string& path) {
-  if (path.empty()) return;
-  const auto folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder) || std::filesystem::is_directory(path)) {
-    throw support::InputError(option + " " + path + ": expected a file in a folder that exists");
+/// What runs beside the pipeline looks at its lanes until it is stopped.
+struct StopBeforeThePipelineGoes {
+  const std::vector<std::unique_ptr<PlantRun>>& plants;
+  ~StopBeforeThePipelineGoes() {
+    for (const auto& plant : plants) plant->Stop();
   }
-}
-
-void Say(const std::string& line) { std::cerr << std::string(kName) + ": " + line + "\n"; }
-
-/// Reads the snapshot of --resume into the engine and sets up its successor. nullptr without --resume.
-std::unique_ptr<SnapshotSaver> Resume(const Options& options, rt::EstimatorEngine* engine,
-                                      rt::SnapshotHandOver* snapshots, const SnapshotSaver::OnFailure& on_failure) {
-  if (options.resume.empty()) return nullptr;
-  Snapshot start = LoadSnapshot(
-      options.resume, SnapshotIdentity(engine->estimator().settings()), rt::RealtimeMicros(),
-      [engine](const Snapshot& s) { return engine->Resume(s.adjusted, s.executed); }, Say);
-  engine->SetSnapshots(snapshots);
-  return std::make_unique<SnapshotSaver>(options.resume, std::move(start), snapshots, Say, on_failure);
-}
-
-std::optional<rt::SnapshotCounts> SnapshotReport(const SnapshotSaver* saver) {
-  if (saver == nullptr) return std::nullopt;
-  return rt::SnapshotCounts{saver->path(), saver->resumed_from(), saver->written(), saver->failed()};
-}
+};
 
 int Run(const Options& options) {
   const Configuration configuration = Load(options);
-  CheckPath("--report", options.report);
-  CheckPath("--resume", options.resume);
-  if (!options.resume.empty() && configuration.estimator.method != Method::kArmcmc) {
-    throw support::InputError("--resume: only method = \"armcmc\" keeps what it has learnt; leave --resume out");
-  }
-  if (!options.resume.empty() && configuration.estimator.overlap > 1) {
-    throw support::InputError("--resume: keeps one posterior, and with [timing] overlap = " +
-                              std::to_string(configuration.estimator.overlap) +
-                              " there are as many; leave --resume out");
-  }
 
   // Blocked before the first thread starts: all inherit it, and sigtimedwait() below is the only one to hear them.
   sigset_t signals;
@@ -194,21 +109,25 @@ int Run(const Options& options) {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  const auto snapshots = std::make_unique<rt::SnapshotHandOver>(Estimator::kSnapshotBytes);
-  rt::EstimatorEngine engine(configuration.estimator);
+  std::vector<std::unique_ptr<PlantRun>> plants;
+  for (const PlantConfiguration& plant : configuration.plants)
+    plants.push_back(std::make_unique<PlantRun>(plant, configuration.plants.size() > 1));
   rt::Injection injection(configuration.inject);
-  rt::DisturbedEngine disturbed(&engine, &injection);
+  rt::DisturbedEngine disturbed(&plants[0]->engine(), &injection);
   const bool injects = !configuration.inject.empty();
   rt::PipelineOptions pipeline_options;
   pipeline_options.max_steps = options.steps;
   if (rt::HeapCallsAreCounted()) pipeline_options.heap_probe = &rt::ThreadHeapCalls;
-  pipeline_options.record_packs = engine.estimator().watches_gap();
   if (injects) pipeline_options.injection = &injection;
-  rt::StepEngine* computes = &engine;
-  if (injects) computes = &disturbed;
-  rt::Pipeline pipeline(configuration.rt, computes, pipeline_options);
-  const auto saver = Resume(options, &engine, snapshots.get(),
-                            [&pipeline] { pipeline.RaiseFault(estimator_status_t::FAULT_SNAPSHOT); });
+  std::vector<rt::LanePlant> lanes;
+  lanes.reserve(plants.size());
+  for (const auto& plant : plants)
+    lanes.push_back(plant->ForPipeline(injects ? static_cast<rt::StepEngine*>(&disturbed) : &plant->engine()));
+  rt::Pipeline pipeline(configuration.rt, lanes, pipeline_options);
+  const StopBeforeThePipelineGoes stop_plants{plants};
+  const auto say = [](const std::string& line) { std::cerr << line + "\n"; };
+  for (std::size_t i = 0; i < plants.size(); ++i)
+    plants[i]->Resume(&pipeline.lane(i), [&say](const std::string& line) { say(std::string(kName) + ": " + line); });
   const Nanos start_ns = rt::MonotonicNow();
   try {
     pipeline.Start();
@@ -218,33 +137,20 @@ int Run(const Options& options) {
   }
   WarnWhenDegraded(pipeline);
   if (options.verbose) {
-    std::cerr << kName << ": " << configuration.estimator.model << " on " << configuration.rt.lcm_url
-              << ", scoring with " << InstructionSet() << '\n';
+    for (const PlantConfiguration& plant : configuration.plants)
+      std::cerr << kName << ": " << plant.prefix << (plant.prefix.empty() ? "" : ": ") << plant.estimator.model
+                << " on " << configuration.rt.lcm_url << ", scoring with " << InstructionSet() << '\n';
   }
-  EventPrinter printer(std::cerr, start_ns, options.verbose,
-                       [&engine](int check) { return std::string(engine.estimator().gap_check_name(check)); });
-  std::unique_ptr<GapLog> gap_log;
-  if (pipeline.record() != nullptr) {
-    gap_log =
-        std::make_unique<GapLog>(configuration.gap_log, ColumnsOf(configuration.estimator), pipeline.record(),
-                                 &pipeline.gap_alarm(), [](const std::string& line) { std::cerr << line + "\n"; });
-    gap_log->Start();
-  }
-  if (saver) saver->Start();
-  if (!Attend(&pipeline, signals, &printer)) {
+  for (const auto& plant : plants) plant->Start(start_ns, options.verbose, say);
+  EventPrinter printer(std::cerr, start_ns, options.verbose);  // of what concerns no plant in particular
+  if (!Attend(&pipeline, signals, plants, &printer)) {
     std::cerr << kName << ": a stage hangs and [rt.watchdog] on_hang = \"exit\": the process ends now.\n";
     std::_Exit(support::kExitFailure);  // a thread that hangs cannot be joined
   }
-  if (gap_log) gap_log->Stop();
-  if (saver) saver->Stop();
-  const std::string window = gap_log ? gap_log->path() : "";
+  for (const auto& plant : plants) plant->Stop();
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second Ctrl-C may end a program whose disk hangs
 
-  std::cout << SummaryText(pipeline, engine.estimator(), window);
-  if (!options.report.empty()) {
-    rt::WriteReport(pipeline, options.report, window, SnapshotReport(saver.get()));
-    std::cout << "\nreport: " << options.report << '\n';
-  }
+  for (const auto& plant : plants) plant->Conclude(pipeline);
   return support::kExitOk;
 }
 
@@ -257,27 +163,37 @@ int main(int argc, char** argv) {
   CLI::App cli{app::kDescription};
   cli.footer(app::Footer());
   cli.add_option("--config", options.config,
-                 "Configuration: a file, or the name of one that came with the product. Default: that of the model")
-      ->type_name("FILE");
+                 "Configuration: a file, or the name of one that came with the product. Default: that of the model.\n"
+                 "Several plants: once for all or once for each; threads, timing and bus are those of all")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   cli.add_option("--model", options.model,
                  "Model: " + ModelNames() +
-                     ", a plant that came along (armcmc-model list),\na plant file or a model file (.toml)")
-      ->type_name("NAME");
+                     ", a plant that came along (armcmc-model list),\na plant file or a model file (.toml). Once for "
+                     "each of several plants")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   cli.add_option("--lcm-url", options.lcm_url,
                  "LCM bus, for example udpm://239.255.76.67:7667?ttl=0. Default: the configuration's")
       ->type_name("URL");
-  cli.add_option("--prefix", options.prefix, "Put before every channel name. Default: the configuration's")
-      ->type_name("P");
+  cli.add_option("--prefix", options.prefix,
+                 "Put before every channel name. Default: the configuration's. Once for each of several plants")
+      ->type_name("P")
+      ->allow_extra_args(false);
   cli.add_option("--steps", options.steps, "Stop after N steps. Default: run until stopped")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62));
-  cli.add_option("--report", options.report, "Write a JSON report of the run")->type_name("FILE");
+  cli.add_option("--report", options.report, "Write a JSON report of the run. Once for each of several plants")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   cli.add_option("--gap-log", options.gap_log,
                  "Folder for the data around a suspected gap. Default: the configuration's (gap_logs)")
       ->type_name("DIR");
   cli.add_option("--resume", options.resume,
-                 "Go on from what was learnt before, kept in this file, and keep it up to date, once per second")
-      ->type_name("FILE");
+                 "Go on from what was learnt before, kept in this file, and keep it up to date, once per second.\nOnce "
+                 "for each of several plants")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   cli.add_flag("--verbose", options.verbose, "Also print lost and dropped packs");
   return support::RunProgram(cli, app::kName, argc, argv, [&options] { return app::Run(options); });
 }

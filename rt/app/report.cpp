@@ -23,8 +23,7 @@ Json LatencyMs(const LogHistogram& h) {
           {"count", h.count()}};
 }
 
-Json Misses(const Pipeline& p) {
-  const DeadlineMonitor& m = p.monitor();
+Json Misses(const DeadlineMonitor& m) {
   return {{"own", m.misses(MissCause::kOwn)},
           {"machine", m.misses(MissCause::kMachine)},
           {"late_data", m.misses(MissCause::kLateData)}};
@@ -42,9 +41,9 @@ Json LatencyToPublished(const PublicationLatency& latency) {
   return {{"from_arrival", LatencyMs(latency.from_arrival())}, {"from_last_sample", LatencyMs(latency.from_sample())}};
 }
 
-Json Allocations(const Pipeline& p) {
-  const auto of = [&p](Stage stage) {
-    return p.heap_calls_counted() ? Json(p.counters().heap_calls[IndexOf(stage)].Get()) : Json(nullptr);
+Json Allocations(const Counters& c, bool counted) {
+  const auto of = [&c, counted](Stage stage) {
+    return counted ? Json(c.heap_calls[IndexOf(stage)].Get()) : Json(nullptr);
   };
   return {{"collect", of(Stage::kCollect)}, {"adjust", of(Stage::kAdjust)}, {"execute", of(Stage::kExecute)}};
 }
@@ -97,18 +96,19 @@ Json RtState(const Pipeline& p) {
 
 Json Finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json Parameters(const Pipeline& p) {
+Json Parameters(const Lane& lane) {
   Json modes = Json::array();
-  const Estimate& e = p.last_estimate();
-  for (int m = 0; m < p.engine().num_modes(); ++m) {
+  const Estimate& e = lane.last_estimate();
+  const StepEngine& engine = lane.engine();
+  for (int m = 0; m < engine.num_modes(); ++m) {
     const ModeEstimate& mode = e.modes[static_cast<std::size_t>(m)];
     Json parameters = Json::object();
-    for (int i = 0; mode.known && i < p.engine().num_reported(); ++i) {
+    for (int i = 0; mode.known && i < engine.num_reported(); ++i) {
       const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(i)];
-      parameters[std::string(p.engine().reported(i).name)] = {{"ar_map", Finite(marginal.ar_map)},
-                                                              {"ar_ap", Finite(marginal.ar_ap)},
-                                                              {"sd", Finite(marginal.sd)},
-                                                              {"unit", p.engine().reported(i).unit}};
+      parameters[std::string(engine.reported(i).name)] = {{"ar_map", Finite(marginal.ar_map)},
+                                                          {"ar_ap", Finite(marginal.ar_ap)},
+                                                          {"sd", Finite(marginal.sd)},
+                                                          {"unit", engine.reported(i).unit}};
     }
     modes.push_back({{"mode", m}, {"known", mode.known}, {"parameters", parameters}});
   }
@@ -148,32 +148,33 @@ Json SnapshotState(const std::optional<SnapshotCounts>& s) {
 
 }  // namespace
 
-std::string ReportJson(const Pipeline& p, const std::string& gap_window,
+std::string ReportJson(const Pipeline& p, const Lane& lane, const std::string& gap_window,
                        const std::optional<SnapshotCounts>& snapshot) {
   const RtSettings& s = p.settings();
-  const Counters& c = p.counters();
-  const DeadlineMonitor& m = p.monitor();
-  const LogHistogram& draws = p.execute().draws();
-  const LogHistogram& ess = p.execute().ess();
+  const Counters& c = lane.counters();
+  const DeadlineMonitor& m = lane.monitor();
+  const LogHistogram& draws = lane.execute().draws();
+  const LogHistogram& ess = lane.execute().ess();
   const Json report = {
       {"schema", 1},
       {"steps", c.execute.steps.Get()},
+      {"plants_in_process", p.num_lanes()},
       {"period_ms", Ms(static_cast<double>(s.period_ns))},
       {"deadline_ms", Ms(static_cast<double>(s.deadline_ns))},
       {"adjust_budget_ms", Ms(static_cast<double>(s.adjust_budget_ns))},
-      {"misses", Misses(p)},
+      {"misses", Misses(m)},
       {"stage_ms", StageTimes(m)},
-      {"published_ms", LatencyToPublished(p.latency())},
+      {"published_ms", LatencyToPublished(lane.latency())},
       {"stage_overruns",
        {{"collect", m.stage_overruns(Stage::kCollect)},
         {"adjust", m.stage_overruns(Stage::kAdjust)},
         {"execute", m.stage_overruns(Stage::kExecute)}}},
-      {"allocations", Allocations(p)},
+      {"allocations", Allocations(c, p.heap_calls_counted())},
       {"packs", Packs(c)},
       {"plant", {{"silent_periods", c.collect.silent_periods.Get()}, {"restarts", c.collect.restarts.Get()}}},
       {"bus",
        {{"url", s.lcm_url},
-        {"prefix", s.prefix},
+        {"prefix", lane.prefix()},
         {"messages", c.publish.messages.Get()},
         {"publish_errors", c.publish.errors.Get() + c.execute.unpublished.Get()},
         {"foreign", c.collect.foreign.Get()},
@@ -190,15 +191,15 @@ std::string ReportJson(const Pipeline& p, const std::string& gap_window,
       {"hangs", p.watchdog().hangs()},
       {"injected", Injected(p.injection())},
       {"numeric_troubles", c.adjust.numeric.Get()},
-      {"gap", Gap(p.last_estimate().gap, gap_window)},
+      {"gap", Gap(lane.last_estimate().gap, gap_window)},
       {"snapshot", SnapshotState(snapshot)},
-      {"parameters", Parameters(p)}};
+      {"parameters", Parameters(lane)}};
   return report.dump(2) + "\n";
 }
 
-void WriteReport(const Pipeline& pipeline, const std::string& path, const std::string& gap_window,
+void WriteReport(const Pipeline& pipeline, const Lane& lane, const std::string& path, const std::string& gap_window,
                  const std::optional<SnapshotCounts>& snapshot) {
-  const std::string text = ReportJson(pipeline, gap_window, snapshot);
+  const std::string text = ReportJson(pipeline, lane, gap_window, snapshot);
   const std::string temporary = path + ".tmp";
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);

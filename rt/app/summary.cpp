@@ -18,28 +18,28 @@ void AddTimes(const char* name, const rt::LogHistogram& h, TextTable* table) {
   table->AddRow({name, Ms(h.Quantile(0.5)), Ms(h.Quantile(0.99)), Ms(h.Quantile(0.999)), Ms(h.max())});
 }
 
-std::string StageTimes(const rt::Pipeline& pipeline) {
+std::string StageTimes(const rt::Pipeline& pipeline, const rt::Lane& lane) {
   TextTable table({"time, ms", "p50", "p99", "p99.9", "max"});
-  const rt::DeadlineMonitor& monitor = pipeline.monitor();
+  const rt::DeadlineMonitor& monitor = lane.monitor();
   if (monitor.end_to_end().count() == 0) return {};
   AddTimes("collect", monitor.stage_times(rt::Stage::kCollect), &table);
   AddTimes("adjust", monitor.stage_times(rt::Stage::kAdjust), &table);
   AddTimes("execute", monitor.stage_times(rt::Stage::kExecute), &table);
   AddTimes("release to estimate", monitor.end_to_end(), &table);
-  AddTimes("arrival to published", pipeline.latency().from_arrival(), &table);
-  if (pipeline.latency().from_sample().count() > 0)  // not of a plant with another clock
-    AddTimes("last sample to published", pipeline.latency().from_sample(), &table);
+  AddTimes("arrival to published", lane.latency().from_arrival(), &table);
+  if (lane.latency().from_sample().count() > 0)  // not of a plant with another clock
+    AddTimes("last sample to published", lane.latency().from_sample(), &table);
   rt::LogHistogram witness;
   for (const auto& w : pipeline.witnesses()) witness.Merge(w->delays());
   AddTimes("the machine's wake-ups", witness, &table);
   return table.ToString();
 }
 
-std::string Parameters(const rt::Pipeline& pipeline, const Estimator& estimator) {
+std::string Parameters(const rt::Lane& lane, const Estimator& estimator) {
   TextTable table({"parameter", "estimate", "sd", "unit"});
   bool any = false;
   for (int m = 0; m < estimator.num_modes(); ++m) {
-    const ModeEstimate& mode = pipeline.last_estimate().modes[static_cast<std::size_t>(m)];
+    const ModeEstimate& mode = lane.last_estimate().modes[static_cast<std::size_t>(m)];
     if (!mode.known) continue;
     for (int i = 0; i < estimator.num_reported(); ++i) {
       const MarginalSummary& marginal = mode.marginal[static_cast<std::size_t>(i)];
@@ -73,9 +73,10 @@ std::string Gap(const GapState& gap, const std::string& window, const std::strin
 
 }  // namespace
 
-std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator, const std::string& gap_window) {
-  const rt::Counters& c = pipeline.counters();
-  const rt::DeadlineMonitor& m = pipeline.monitor();
+std::string SummaryText(const rt::Pipeline& pipeline, const rt::Lane& lane, const Estimator& estimator,
+                        const std::string& gap_window) {
+  const rt::Counters& c = lane.counters();
+  const rt::DeadlineMonitor& m = lane.monitor();
   std::ostringstream out;
   const auto missed = [&m](rt::MissCause cause) { return m.misses(cause); };
   out << "steps " << c.execute.steps.Get() << ", deadline " << Ms(static_cast<double>(pipeline.settings().deadline_ns))
@@ -84,13 +85,13 @@ std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator
   out << "packs " << c.collect.received.Get() << ", lost " << c.collect.lost.Get() << ", rejected " << c.Rejected()
       << ", duplicate " << c.collect.duplicate.Get() << ", reordered " << c.collect.reordered.Get() << ", dropped "
       << c.Dropped() << '\n';
-  const rt::LogHistogram& draws = pipeline.execute().draws();
+  const rt::LogHistogram& draws = lane.execute().draws();
   if (draws.count() > 0) {
     out << "draws a posterior: median " << draws.Quantile(0.5) << ", least " << draws.min() << "; effective: median "
-        << pipeline.execute().ess().Quantile(0.5) << '\n';
+        << lane.execute().ess().Quantile(0.5) << '\n';
   }
   const EstimatorSettings& settings = estimator.settings();
-  out << Gap(pipeline.last_estimate().gap, gap_window,
+  out << Gap(lane.last_estimate().gap, gap_window,
              settings.plant != nullptr ? settings.plant->plant().description().name : settings.model);
   const auto degraded = rt::DegradedNames(pipeline.degraded_flags());
   if (!degraded.empty()) {
@@ -98,7 +99,7 @@ std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator
     for (const std::string& name : degraded) out << ' ' << name;
     out << '\n';
   }
-  out << '\n' << StageTimes(pipeline) << (c.execute.steps.Get() > 0 ? "\n" : "") << Parameters(pipeline, estimator);
+  out << '\n' << StageTimes(pipeline, lane) << (c.execute.steps.Get() > 0 ? "\n" : "") << Parameters(lane, estimator);
   return out.str();
 }
 

@@ -6,9 +6,9 @@
 
 namespace armcmc::app {
 
-/// The table at the end of a run. `gap_window`: file with the data around a suspected gap. @pre the pipeline has been
-/// joined.
-[[nodiscard]] std::string SummaryText(const rt::Pipeline& pipeline, const Estimator& estimator,
+/// The table at the end of a run, of one of its plants. `gap_window`: file with the data around a suspected gap. @pre
+/// the pipeline has been joined.
+[[nodiscard]] std::string SummaryText(const rt::Pipeline& pipeline, const rt::Lane& lane, const Estimator& estimator,
                                       const std::string& gap_window = "");
 
 }  // namespace armcmc::app

@@ -54,7 +54,7 @@ void AdjustStage::Remember() noexcept {
   monitor_->RecordRemembered(handed_over_, end_ns, cpu_time_.GoOn(end_ns));
 }
 
-bool AdjustStage::Step() noexcept {
+bool AdjustStage::Step(int waiting) noexcept {
   DropUnkeepable();
   PackSlot* slot = ring_->Front();
   if (slot == nullptr) return false;
@@ -66,8 +66,8 @@ bool AdjustStage::Step() noexcept {
   info.run_id = slot->pack.run_id;
   info.times = slot->times;
   info.times.start_ns[IndexOf(Stage::kAdjust)] = start_ns;
-  info.status = engine_->Adjust(slot->pack, AdjustDeadline(start_ns, info.times.deadline_ns, budget_ns_, reserve_ns_),
-                                MonotonicClock(), result);
+  const Nanos until_ns = AdjustDeadline(start_ns, info.times.deadline_ns, budget_ns_, reserve_ns_);
+  info.status = engine_->Adjust(slot->pack, FairDeadline(start_ns, until_ns, waiting), MonotonicClock(), result);
   const Nanos end_ns = MonotonicNow();
   info.times.end_ns[IndexOf(Stage::kAdjust)] = end_ns;
   info.times.withheld_before_ns[IndexOf(Stage::kAdjust)] = cpu_time_.withheld_before_ns();

@@ -58,11 +58,12 @@ DatagramKind ParseDatagram(std::span<const std::uint8_t> bytes, const std::strin
                                                                        : DatagramKind::kMalformed;
 }
 
-LcmReceiver::LcmReceiver(const LcmUrl& url, std::string channel) : channel_(std::move(channel)) {
-  if (channel_.size() > kMaxChannelLength) {
-    throw std::invalid_argument("channel \"" + channel_ + "\" is longer than " + std::to_string(kMaxChannelLength) +
-                                " characters");
-  }
+LcmReceiver::LcmReceiver(const LcmUrl& url, std::vector<std::string> channels) : channels_(std::move(channels)) {
+  for (const std::string& channel : channels_)
+    if (channel.size() > kMaxChannelLength) {
+      throw std::invalid_argument("channel \"" + channel + "\" is longer than " + std::to_string(kMaxChannelLength) +
+                                  " characters");
+    }
   CheckMulticastRoute(url);
   try {
     wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
@@ -151,11 +152,21 @@ void LcmReceiver::Wake() noexcept ARMCMC_NONBLOCKING {
 
 ARMCMC_TRUST_NONBLOCKING_END
 
+DatagramKind LcmReceiver::Sort(std::size_t size, Datagram* datagram) const noexcept {
+  DatagramKind kind = DatagramKind::kMalformed;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    kind = ParseDatagram({buffer_.data(), size}, channels_[c], &datagram->payload);
+    datagram->channel = c;
+    if (kind == DatagramKind::kOurs) break;
+  }
+  return kind;
+}
+
 bool LcmReceiver::TryReceive(Datagram* datagram) noexcept {
   for (int i = 0; i <= kMaxSkipped; ++i) {
     std::size_t size = 0;
     if (!ReadOne(&size, &datagram->arrival_ns)) return false;
-    switch (ParseDatagram({buffer_.data(), size}, channel_, &datagram->payload)) {
+    switch (Sort(size, datagram)) {
       case DatagramKind::kOurs: return true;
       case DatagramKind::kForeign: ++counts_.foreign; break;
       case DatagramKind::kFragment: ++counts_.fragments; break;

@@ -1,8 +1,11 @@
 #include "armcmc/rt/pipeline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <set>
+#include <stdexcept>
 
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/rt/clock.hpp"
@@ -23,28 +26,45 @@ std::vector<std::string> DegradedNames(std::int32_t flags) {
   return names;
 }
 
-Pipeline::Pipeline(const RtSettings& settings, StepEngine* engine, const PipelineOptions& options)
+namespace {
+
+std::vector<std::unique_ptr<Lane>> MakeLanes(const RtSettings& settings, const std::vector<LanePlant>& plants,
+                                             Injection* injection) {
+  if (plants.empty() || plants.size() > Pipeline::kMaxLanes)
+    throw std::invalid_argument("a pipeline takes 1 to " + std::to_string(Pipeline::kMaxLanes) + " plants, not " +
+                                std::to_string(plants.size()));
+  if (injection != nullptr && plants.size() > 1)
+    throw std::invalid_argument("faults on purpose are made with one plant, not " + std::to_string(plants.size()));
+  std::set<std::string> prefixes;
+  std::vector<std::unique_ptr<Lane>> lanes;
+  for (const LanePlant& plant : plants) {
+    if (!prefixes.insert(plant.prefix).second)
+      throw std::invalid_argument("two plants have the prefix \"" + plant.prefix +
+                                  "\": their messages could not be told apart");
+    if (plant.prefix.size() > kMaxPrefixLength)
+      throw std::invalid_argument("the prefix \"" + plant.prefix + "\" is longer than " +
+                                  std::to_string(kMaxPrefixLength) + " characters");
+    lanes.push_back(std::make_unique<Lane>(settings, plant, injection));
+  }
+  return lanes;
+}
+
+std::vector<std::string> ChannelsOf(const std::vector<std::unique_ptr<Lane>>& lanes) {
+  std::vector<std::string> channels;
+  channels.reserve(lanes.size());
+  for (const auto& lane : lanes) channels.push_back(lane->channel());
+  return channels;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const RtSettings& settings, const std::vector<LanePlant>& plants, const PipelineOptions& options)
     : settings_((settings.Validate(), settings)),
       options_(options),
-      engine_(engine),
-      monitor_(settings_),
-      receiver_(ParseLcmUrl(settings_.lcm_url), settings_.prefix + engine->pack_format().channel()),
-      publisher_(ParseLcmUrl(settings_.lcm_url), settings_.prefix),
-      collect_(settings_, engine->pack_format(), &packs_, &counters_, &events_[0]),
-      adjust_(settings_, engine, &packs_, &results_, &monitor_, &counters_, &events_[1]),
-      execute_(engine, &results_, &outputs_, &monitor_, &counters_, &events_[2]),
-      publish_(settings_, engine, &outputs_, &publisher_, &monitor_, &counters_, &events_[3]),
-      watchdog_(settings_, &events_[4]) {
-  publish_.SetWatchdog(&watchdog_);
-  if (options_.injection != nullptr) {
-    options_.injection->SetEventLogs({&events_[0], &events_[1], &events_[2], &events_[3]});
-    collect_.SetInjection(options_.injection);
-    publish_.SetInjection(options_.injection);
-    degraded_flags_ |= estimator_status_t::DEGRADED_INJECTED;
-  }
-  if (!options_.record_packs) return;
-  record_ = std::make_unique<RecordRing>();
-  collect_.SetRecord(record_.get());
+      lanes_(MakeLanes(settings_, plants, options.injection)),
+      receiver_(ParseLcmUrl(settings_.lcm_url), ChannelsOf(lanes_)),
+      watchdog_(settings_, &watchdog_events_) {
+  if (options_.injection != nullptr) degraded_flags_ |= estimator_status_t::DEGRADED_INJECTED;
 }
 
 Pipeline::~Pipeline() {
@@ -75,49 +95,50 @@ const ThreadPlacement& Pipeline::StartThread(RtThread* thread, const char* name,
   const ThreadPlacement& placement = thread->Start(request, settings_.mode, entry, this);
   if (!placement.fifo) degraded_flags_ |= estimator_status_t::DEGRADED_NO_FIFO;
   if (!placement.pinned) degraded_flags_ |= estimator_status_t::DEGRADED_NO_AFFINITY;
-  publish_.SetDegraded(degraded_flags_);
+  for (const auto& lane : lanes_) lane->publish_.SetDegraded(degraded_flags_);
   return placement;
 }
 
 void Pipeline::StartWitnesses() {
   const std::array<int, kNumStages> cpu{settings_.collect.cpu, settings_.adjust.cpu, settings_.execute.cpu};
-  std::vector<Witness*> views;
   for (std::size_t i = 0; i < kNumStages; ++i) {
     auto found = std::find_if(witnesses_.begin(), witnesses_.end(), [&](const auto& w) { return w->cpu() == cpu[i]; });
     if (found == witnesses_.end()) {
       witnesses_.push_back(std::make_unique<Witness>(cpu[i], Witness::PeriodFor(settings_.deadline_ns)));
       witnesses_.back()->Start(settings_.witness_priority, settings_.mode);
-      views.push_back(witnesses_.back().get());
       found = witnesses_.end() - 1;
     }
     if ((*found)->trustworthy()) {
-      monitor_.SetWitness(static_cast<Stage>(i), &(*found)->wake_ups());
+      for (const auto& lane : lanes_) lane->monitor_.SetWitness(static_cast<Stage>(i), &(*found)->wake_ups());
     } else {
       degraded_flags_ |= estimator_status_t::DEGRADED_NO_WITNESS;
     }
   }
-  publish_.SetWitnesses(std::move(views));
 }
 
 void Pipeline::ShareCpuTimes() {
   struct StageThread {
-    CpuTimeMeter* meter;
     const RtThread* thread;
     const ThreadSettings* settings;
   };
-  const std::array<StageThread, kNumStages> stages{{{collect_.cpu_time(), &collect_thread_, &settings_.collect},
-                                                    {adjust_.cpu_time(), &adjust_thread_, &settings_.adjust},
-                                                    {execute_.cpu_time(), &execute_thread_, &settings_.execute}}};
-  for (const StageThread& stage : stages) {
-    const auto share = [&](const RtThread& thread, int cpu, bool goes_first) {
-      if (cpu == stage.settings->cpu) stage.meter->AddOther(&thread.cpu_time_ns(), goes_first);
-    };
-    for (const StageThread& other : stages)
-      if (other.thread != stage.thread)
-        share(*other.thread, other.settings->cpu, other.settings->priority >= stage.settings->priority);
-    share(publish_thread_, settings_.publish.cpu, false);
-    share(watchdog_.thread(), watchdog_.cpu(), false);
-    for (const auto& witness : witnesses_) share(witness->thread(), witness->cpu(), false);
+  const std::array<StageThread, kNumStages> stages{{{&collect_thread_, &settings_.collect},
+                                                    {&adjust_thread_, &settings_.adjust},
+                                                    {&execute_thread_, &settings_.execute}}};
+  for (const auto& lane : lanes_) {
+    const std::array<CpuTimeMeter*, kNumStages> meters{lane->collect_.cpu_time(), lane->adjust_.cpu_time(),
+                                                       lane->execute_.cpu_time()};
+    for (std::size_t i = 0; i < kNumStages; ++i) {
+      const StageThread& stage = stages[i];
+      const auto share = [&](const RtThread& thread, int cpu, bool goes_first) {
+        if (cpu == stage.settings->cpu) meters[i]->AddOther(&thread.cpu_time_ns(), goes_first);
+      };
+      for (const StageThread& other : stages)
+        if (other.thread != stage.thread)
+          share(*other.thread, other.settings->cpu, other.settings->priority >= stage.settings->priority);
+      share(publish_thread_, settings_.publish.cpu, false);
+      share(watchdog_.thread(), watchdog_.cpu(), false);
+      for (const auto& witness : witnesses_) share(witness->thread(), witness->cpu(), false);
+    }
   }
 }
 
@@ -148,23 +169,26 @@ void Pipeline::KeepCpusAwake() {
 void Pipeline::StartThreads() {
   // Adjust first: it warms the engine up before anything can be released. Collect last: it releases.
   // The monitor knows its witnesses before a thread that asks it starts.
-  const auto trust = [](CpuTimeMeter* meter, const ThreadPlacement& placement) {
-    meter->SetTrusted(placement.fifo && placement.pinned);
+  const auto trust = [this](auto meter_of, const ThreadPlacement& placement) {
+    for (const auto& lane : lanes_) meter_of(*lane)->SetTrusted(placement.fifo && placement.pinned);
   };
-  trust(adjust_.cpu_time(), StartThread(&adjust_thread_, "adjust", settings_.adjust, [](void* self) noexcept {
-          static_cast<Pipeline*>(self)->WarmUpEngine();
+  trust([](Lane& lane) { return lane.adjust_.cpu_time(); },
+        StartThread(&adjust_thread_, "adjust", settings_.adjust, [](void* self) noexcept {
+          static_cast<Pipeline*>(self)->WarmUpEngines();
           static_cast<Pipeline*>(self)->AdjustLoop();
         }));
   while (!warm_waiter_.WaitUntil(MonotonicNow() + kNanosPerSecond)) {
   }
   StartWitnesses();
   ShareCpuTimes();
-  trust(execute_.cpu_time(), StartThread(&execute_thread_, "execute", settings_.execute,
-                                         [](void* self) noexcept { static_cast<Pipeline*>(self)->ExecuteLoop(); }));
+  trust([](Lane& lane) { return lane.execute_.cpu_time(); },
+        StartThread(&execute_thread_, "execute", settings_.execute,
+                    [](void* self) noexcept { static_cast<Pipeline*>(self)->ExecuteLoop(); }));
   StartThread(&publish_thread_, "publish", settings_.publish,
               [](void* self) noexcept { static_cast<Pipeline*>(self)->PublishLoop(); });
-  trust(collect_.cpu_time(), StartThread(&collect_thread_, "collect", settings_.collect,
-                                         [](void* self) noexcept { static_cast<Pipeline*>(self)->CollectLoop(); }));
+  trust([](Lane& lane) { return lane.collect_.cpu_time(); },
+        StartThread(&collect_thread_, "collect", settings_.collect,
+                    [](void* self) noexcept { static_cast<Pipeline*>(self)->CollectLoop(); }));
   watchdog_.Start();
 }
 
@@ -192,52 +216,59 @@ std::uint64_t Pipeline::HeapCalls() const noexcept {
 }
 
 void Pipeline::CountHeapCalls(Stage stage, std::uint64_t baseline) noexcept {
-  counters_.heap_calls[IndexOf(stage)].Set(static_cast<std::int64_t>(HeapCalls() - baseline));
+  // Of the thread, which serves all plants.
+  const auto calls = static_cast<std::int64_t>(HeapCalls() - baseline);
+  for (const auto& lane : lanes_) lane->counters_.heap_calls[IndexOf(stage)].Set(calls);
 }
 
 void Pipeline::CollectLoop() noexcept {
   constexpr int kMaxPacksPerWait = 64;
   constexpr Nanos kDatagramNs = 20'000;  // to take one from the socket and to look at it, several times over
   std::int64_t passed_over = 0;
-  auto& count = counters_.collect;
   receiver_.Drain();  // packs that came during the warm-up are older than any deadline
-  collect_.Begin(MonotonicNow());
+  const Nanos begin_ns = MonotonicNow();
+  for (const auto& lane : lanes_) lane->collect_.Begin(begin_ns);
   const std::uint64_t baseline = HeapCalls();
   while (!stopping()) {
     Datagram datagram;
     std::int64_t heard = 0;
-    const Nanos wait_ns = std::max<Nanos>(0, collect_.next_tick_ns() - MonotonicNow());
+    Nanos next_tick_ns = lanes_[0]->collect_.next_tick_ns();
+    for (const auto& lane : lanes_) next_tick_ns = std::min(next_tick_ns, lane->collect_.next_tick_ns());
+    const Nanos wait_ns = std::max<Nanos>(0, next_tick_ns - MonotonicNow());
     watchdog_.Promise(Watched::kCollect, MonotonicNow(), wait_ns);
-    if (receiver_.WaitUntil(collect_.next_tick_ns())) {
+    if (receiver_.WaitUntil(next_tick_ns)) {
       watchdog_.Promise(Watched::kCollect, MonotonicNow(), settings_.period_ns / 2);
       for (int i = 0; i < kMaxPacksPerWait && receiver_.TryReceive(&datagram); ++i) {
         ++heard;
-        if (collect_.Step(datagram)) adjust_waiter_.Post();
+        if (lanes_[datagram.channel]->collect_.Step(datagram)) adjust_waiter_.Post();
       }
-      count.foreign.Set(receiver_.counts().foreign);
-      count.fragments.Set(receiver_.counts().fragments);
-      count.malformed.Set(receiver_.counts().malformed);
     }
     // Also when others keep the bus busy: only the time decides.
+    const LcmReceiver::Counts& bus = receiver_.counts();
     const Nanos now_ns = MonotonicNow();
-    collect_.NoteForeign(receiver_.counts().foreign, now_ns);
-    if (now_ns >= collect_.next_tick_ns()) {
-      collect_.Tick(now_ns);
-      status_due_.store(true, std::memory_order_release);
+    for (const auto& lane : lanes_) {
+      Counters::Collect& count = lane->counters_.collect;
+      count.foreign.Set(bus.foreign);
+      count.fragments.Set(bus.fragments);
+      count.malformed.Set(bus.malformed);
+      lane->collect_.NoteForeign(bus.foreign, now_ns);
+      if (now_ns < lane->collect_.next_tick_ns()) continue;
+      lane->collect_.Tick(now_ns);
+      lane->status_due_.store(true, std::memory_order_release);
       publish_waiter_.Post();
     }
     CountHeapCalls(Stage::kCollect, baseline);
     // A stall that the hypervisor does not report is charged to whoever ran. What was told to disturb may use any time.
-    heard += receiver_.counts().passed_over() - passed_over;
-    passed_over = receiver_.counts().passed_over();
+    heard += bus.passed_over() - passed_over;
+    passed_over = bus.passed_over();
     collect_thread_.NoteCpuTime(options_.injection != nullptr ? RtThread::kNoLimit
                                                               : RtThread::kShortTurnNs + heard * kDatagramNs);
   }
   watchdog_.Dismiss(Watched::kCollect);
 }
 
-void Pipeline::WarmUpEngine() noexcept {
-  WarmUp(engine_);
+void Pipeline::WarmUpEngines() noexcept {
+  for (const auto& lane : lanes_) WarmUp(lane->engine_);
   warm_waiter_.Post();
 }
 
@@ -246,18 +277,60 @@ void Pipeline::AdjustLoop() noexcept {
   while (!stopping()) {
     watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.period_ns);
     (void)adjust_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
-    adjust_.cpu_time()->NoteWoken(adjust_waiter_.TakePostTime());
+    const Nanos woken_ns = adjust_waiter_.TakePostTime();
+    for (const auto& lane : lanes_) lane->adjust_.cpu_time()->NoteWoken(woken_ns);
     watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
-    while (!stopping() && adjust_.Step()) {
-      execute_waiter_.Post();
-      watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
-      adjust_.Remember();
-      watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
-    }
+    AdjustWaiting();
     CountHeapCalls(Stage::kAdjust, baseline);
     adjust_thread_.NoteCpuTime();
   }
   watchdog_.Dismiss(Watched::kAdjust);
+}
+
+Lane* Pipeline::NextToAdjust(int* waiting) noexcept {
+  const Nanos now_ns = MonotonicNow();
+  Lane* next = nullptr;
+  bool next_keeps = false;
+  *waiting = 0;
+  for (const auto& lane : lanes_) {
+    const PackSlot* const pack = lane->packs_.Front();
+    if (pack == nullptr || lane->refused_) continue;
+    ++*waiting;
+    const Nanos deadline_ns = pack->times.deadline_ns;
+    const bool keeps = now_ns < deadline_ns;
+    const bool sooner = next == nullptr || deadline_ns < next->packs_.Front()->times.deadline_ns;
+    if (next != nullptr && (keeps != next_keeps ? next_keeps : !sooner)) continue;
+    next = lane.get();
+    next_keeps = keeps;
+  }
+  return next;
+}
+
+void Pipeline::RememberIn(Lane* lane) noexcept {
+  if (!lane->not_remembered_) return;
+  lane->not_remembered_ = false;
+  watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+  lane->adjust_.Remember();
+}
+
+void Pipeline::AdjustWaiting() noexcept {
+  for (const auto& lane : lanes_) lane->refused_ = false;
+  int waiting = 0;
+  for (Lane* lane = NextToAdjust(&waiting); lane != nullptr && !stopping(); lane = NextToAdjust(&waiting)) {
+    RememberIn(lane);  // of its pack before; that of the others can wait until no pack does
+    watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+    lane->not_remembered_ = lane->adjust_.Step(waiting);
+    lane->refused_ = !lane->not_remembered_;
+    if (lane->not_remembered_) execute_waiter_.Post();
+  }
+  for (const auto& lane : lanes_) RememberIn(lane.get());
+  watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+}
+
+bool Pipeline::AllStepsDone() const noexcept {
+  return options_.max_steps > 0 && std::all_of(lanes_.begin(), lanes_.end(), [this](const auto& lane) noexcept {
+           return lane->counters_.execute.steps.Get() >= options_.max_steps;
+         });
 }
 
 void Pipeline::ExecuteLoop() noexcept {
@@ -265,13 +338,16 @@ void Pipeline::ExecuteLoop() noexcept {
   while (!stopping()) {
     watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns);
     (void)execute_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
-    execute_.cpu_time()->NoteWoken(execute_waiter_.TakePostTime());
-    watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
-    while (!stopping() && execute_.Step()) {
+    const Nanos woken_ns = execute_waiter_.TakePostTime();
+    for (const auto& lane : lanes_) lane->execute_.cpu_time()->NoteWoken(woken_ns);
+    for (const auto& lane : lanes_) {
       watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
-      publish_waiter_.Post();
-      if (packs_.size() > 0) adjust_waiter_.Post();  // it may have waited for us
-      if (options_.max_steps > 0 && counters_.execute.steps.Get() >= options_.max_steps) RequestStop();
+      while (!stopping() && lane->execute_.Step()) {
+        watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
+        publish_waiter_.Post();
+        if (lane->packs_.size() > 0) adjust_waiter_.Post();  // it may have waited for us
+        if (AllStepsDone()) RequestStop();
+      }
     }
     CountHeapCalls(Stage::kExecute, baseline);
     execute_thread_.NoteCpuTime();
@@ -286,24 +362,20 @@ void Pipeline::PublishLoop() noexcept {
     watchdog_.Promise(Watched::kPublish, MonotonicNow(), 2 * settings_.period_ns);
     const bool posted = publish_waiter_.WaitUntil(MonotonicNow() + 2 * settings_.period_ns);
     const bool ended = execute_ended_.load(std::memory_order_acquire);
-    watchdog_.Promise(Watched::kPublish, MonotonicNow(), settings_.period_ns);
-    const int published = publish_.PublishSteps();
-    const bool due = status_due_.exchange(false, std::memory_order_acq_rel);
-    if (published == 0 && (due || !posted)) publish_.PublishIdleStatus();
+    Nanos worst_ns = 0;
+    for (const auto& witness : witnesses_) worst_ns = std::max(worst_ns, witness->TakeWorst());
+    const bool hung = watchdog_.TakeHung();
+    for (const auto& lane : lanes_) {
+      watchdog_.Promise(Watched::kPublish, MonotonicNow(), settings_.period_ns);
+      lane->publish_.Note(worst_ns, hung);
+      const int published = lane->publish_.PublishSteps();
+      const bool due = lane->status_due_.exchange(false, std::memory_order_acq_rel);
+      if (published == 0 && (due || !posted)) lane->publish_.PublishIdleStatus();
+    }
     publish_thread_.NoteCpuTime();
     if (ended) break;
   }
   watchdog_.Dismiss(Watched::kPublish);
-}
-
-bool Pipeline::TakeEvent(Event* event) noexcept {
-  return std::any_of(events_.begin(), events_.end(), [event](EventLog& log) { return log.Take(event); });
-}
-
-std::int64_t Pipeline::events_dropped() const noexcept {
-  std::int64_t sum = 0;
-  for (const EventLog& log : events_) sum += log.dropped();
-  return sum;
 }
 
 std::vector<ThreadPlacement> Pipeline::placements() const {

@@ -1,13 +1,13 @@
 #include "armcmc/rt/publish_stage.hpp"
 
-#include <algorithm>
+#include <utility>
 
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/messages.hpp"
 
 namespace armcmc::rt {
 
-void PublishStage::Note(bool sent) noexcept {
+void PublishStage::CountSent(bool sent) noexcept {
   if (sent) {
     counters_->publish.messages.Add();
     return;
@@ -52,12 +52,12 @@ void PublishStage::PublishStatus(const StepOutput* output) noexcept {
   context.now_ns = MonotonicNow();
   context.output = output;
   context.gap = last_.gap;
-  for (Witness* witness : witnesses_) context.witness_max_ns = std::max(context.witness_max_ns, witness->TakeWorst());
+  context.witness_max_ns = std::exchange(witness_worst_ns_, 0);
   context.fault_flags = counters_->faults.Take();
   if (counters_->collect.silent.load(std::memory_order_relaxed)) {
     context.fault_flags |= estimator_status_t::FAULT_PLANT_SILENT;
   }
-  if (watchdog_ != nullptr && watchdog_->TakeHung()) context.fault_flags |= estimator_status_t::FAULT_STAGE_HUNG;
+  if (std::exchange(hung_, false)) context.fault_flags |= estimator_status_t::FAULT_STAGE_HUNG;
   context.degraded_flags = degraded_flags_.load(std::memory_order_relaxed);
   FillStatus(context, settings_, *counters_, *monitor_, &status_);
   Send(status_, output != nullptr ? output->info.seq : 0);

@@ -50,7 +50,7 @@ class LcmReceiverTest : public ::testing::Test {
  protected:
   void SetUp() override {
     ARMCMC_REQUIRE_MULTICAST();
-    receiver_ = std::make_unique<LcmReceiver>(ParseLcmUrl(bus_.url()), "PLANT_PACK");
+    receiver_ = std::make_unique<LcmReceiver>(ParseLcmUrl(bus_.url()), std::vector<std::string>{"PLANT_PACK"});
     peer_ = std::make_unique<test::Peer>(bus_.url());
   }
 
@@ -151,8 +151,9 @@ TEST_F(LcmReceiverTest, HoldsAHundredPacksThatNobodyReads) {
 }
 
 TEST(LcmReceiver, RefusesAChannelNameThatLcmWouldNotSend) {
-  EXPECT_THROW(LcmReceiver(ParseLcmUrl("udpm://239.255.76.67:21000?ttl=0"), std::string(64, 'x')),
-               std::invalid_argument);
+  EXPECT_THROW(
+      LcmReceiver(ParseLcmUrl("udpm://239.255.76.67:21000?ttl=0"), std::vector<std::string>{std::string(64, 'x')}),
+      std::invalid_argument);
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ namespace {
 template <typename Message>
 class Listener {
  public:
-  Listener(const std::string& url, const std::string& channel) : receiver_(ParseLcmUrl(url), channel) {}
+  Listener(const std::string& url, const std::string& channel)
+      : receiver_(ParseLcmUrl(url), std::vector<std::string>{channel}) {}
   const std::vector<Message>& Poll() {
     Datagram datagram;
     while (receiver_.TryReceive(&datagram)) {
@@ -79,13 +80,13 @@ class PipelineTest : public ::testing::Test {
     return false;
   }
   bool WaitForSteps(std::int64_t steps) {
-    return WaitFor([this, steps] { return pipeline_->counters().execute.steps.Get() >= steps; });
+    return WaitFor([this, steps] { return pipeline_->lane().counters().execute.steps.Get() >= steps; });
   }
   void Stop() {
     pipeline_->RequestStop();
     pipeline_->Join();
   }
-  std::int64_t Misses(MissCause cause) const { return pipeline_->monitor().misses(cause); }
+  std::int64_t Misses(MissCause cause) const { return pipeline_->lane().monitor().misses(cause); }
 
   armcmc::test::TestBus bus_;
   RtSettings settings_;
@@ -124,7 +125,7 @@ TEST_F(PipelineTest, AnswersEveryPackWithEstimatePosteriorChangeAndStatus) {
   EXPECT_EQ(last.packs_lost, 0);
   EXPECT_NE(last.degraded_flags & estimator_status_t::DEGRADED_NO_MLOCK, 0) << "not locked here, and it says so";
   // 0 also where a sanitizer owns malloc and nothing is counted; the next test tells the two apart.
-  for (const Counter& calls : pipeline_->counters().heap_calls) EXPECT_EQ(calls.Get(), 0);
+  for (const Counter& calls : pipeline_->lane().counters().heap_calls) EXPECT_EQ(calls.Get(), 0);
 }
 
 TEST_F(PipelineTest, CountsAHeapCallInAStage) {
@@ -134,8 +135,8 @@ TEST_F(PipelineTest, CountsAHeapCallInAStage) {
   Publish(test::ValidPack(1));
   ASSERT_TRUE(WaitForSteps(1));
   Stop();
-  EXPECT_EQ(pipeline_->counters().heap_calls[IndexOf(Stage::kAdjust)].Get(), 2) << "one allocation, one release";
-  EXPECT_EQ(pipeline_->counters().heap_calls[IndexOf(Stage::kExecute)].Get(), 0);
+  EXPECT_EQ(pipeline_->lane().counters().heap_calls[IndexOf(Stage::kAdjust)].Get(), 2) << "one allocation, one release";
+  EXPECT_EQ(pipeline_->lane().counters().heap_calls[IndexOf(Stage::kExecute)].Get(), 0);
 }
 
 TEST_F(PipelineTest, GoesOnPublishingItsStatusWhileThePlantIsSilent) {
@@ -171,7 +172,7 @@ TEST_F(PipelineTest, AnOverrunOfAStageIsAMissOfOurOwn) {
   EXPECT_EQ(Misses(MissCause::kOwn) + Misses(MissCause::kMachine), 3);
   EXPECT_GE(Misses(MissCause::kOwn), 1);
   EXPECT_EQ(Misses(MissCause::kLateData), 0);
-  EXPECT_GE(pipeline_->monitor().stage_overruns(Stage::kAdjust), 3);
+  EXPECT_GE(pipeline_->lane().monitor().stage_overruns(Stage::kAdjust), 3);
 }
 
 TEST_F(PipelineTest, APackThatComesAfterItsDeadlineIsLateData) {
@@ -193,7 +194,7 @@ TEST_F(PipelineTest, StopsByItselfAfterTheNumberOfSteps) {
   }
   ASSERT_TRUE(WaitFor([this] { return pipeline_->stopping(); }));
   pipeline_->Join();
-  EXPECT_EQ(pipeline_->counters().execute.steps.Get(), 2);
+  EXPECT_EQ(pipeline_->lane().counters().execute.steps.Get(), 2);
   ASSERT_EQ(estimates_->Poll().size(), 2U) << "finished steps are published before the end";
 }
 
@@ -202,7 +203,7 @@ TEST_F(PipelineTest, ReportsWithTheAgreedKeys) {
   for (std::int64_t seq = 1; seq <= 3; ++seq) Publish(test::ValidPack(seq));
   ASSERT_TRUE(WaitForSteps(3));
   Stop();
-  const auto report = armcmc::test::Json::Parse(ReportJson(*pipeline_));
+  const auto report = armcmc::test::Json::Parse(ReportJson(*pipeline_, pipeline_->lane()));
   EXPECT_EQ(report.at("schema"), 1);
   EXPECT_EQ(report.at("steps"), 3);
   EXPECT_EQ(report.at("period_ms"), 50.0);
@@ -237,7 +238,7 @@ TEST(WriteReport, NamesAFileThatCannotBeWritten) {
   test::FakeEngine engine;
   const Pipeline pipeline(settings, &engine, {});
   try {
-    WriteReport(pipeline, "/nonexistent/report.json");
+    WriteReport(pipeline, pipeline.lane(), "/nonexistent/report.json");
     ADD_FAILURE() << "written";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/nonexistent/report.json"), std::string::npos);

@@ -60,9 +60,10 @@ TEST(StolenCpu, WhatIsTakenInShortSlicesIsNotOurOwn) {
   thief.join();
   pipeline.RequestStop();
   pipeline.Join();
-  EXPECT_GE(pipeline.monitor().misses(MissCause::kMachine), 4);
+  EXPECT_GE(pipeline.lane().monitor().misses(MissCause::kMachine), 4);
   // Without the CPU time of the stages more than half of them are taken for our own.
-  EXPECT_LE(10 * pipeline.monitor().misses(MissCause::kOwn), pipeline.monitor().misses(MissCause::kMachine));
+  EXPECT_LE(10 * pipeline.lane().monitor().misses(MissCause::kOwn),
+            pipeline.lane().monitor().misses(MissCause::kMachine));
 }
 
 }  // namespace

@@ -90,8 +90,8 @@ TEST_P(Instructions, OfAStepAreThoseThatWereCommitted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Instructions,
-                         ::testing::Values("press", "press_every_sample", "press_mixture", "press_effects", "press_tape", "waves_servo_axis",
-                                           "waves_oscillator"),
+                         ::testing::Values("press", "press_every_sample", "press_mixture", "press_effects",
+                                           "press_tape", "waves_servo_axis", "waves_oscillator"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

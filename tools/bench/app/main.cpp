@@ -43,6 +43,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "  BM_AdjustStep/PLANT/DRAWS/SAMPLES   draw and remember; BM_Draw, BM_Remember and BM_Execute are the parts\n"
       "  BM_Dimension/PARAMETERS             draw and remember with described laws of 2 to 6 parameters\n"
       "  BM_Memory/PLANT                     construction; the counter `bytes` is the heap that it takes\n"
+      "  BM_EverySample/PLANT/DRAWS/SAMPLES  BM_AdjustStep, every candidate compared with every sample\n"
       "  BM_Noise/PLANT/LAW                  a whole step under another law of the noise\n"
       "  BM_Effects/PLANT/COUNT              a whole step with effects added to the law\n"
       "  BM_NaiveLoop/DRAWS/SAMPLES          the likelihood alone, as a plain loop with std::pow\n"

@@ -144,6 +144,14 @@ void RegisterDimensions() {
   }
 }
 
+void RegisterEverySample(const Plant& plant, int samples, const std::filesystem::path& folder) {
+  EstimatorSettings settings = SettingsOf(plant);
+  settings.sampler.use_linearity = false;
+  const int draws = ChernoffDraws(settings.sampler.epsilon, settings.sampler.delta);
+  Add("BM_EverySample/" + plant.name + "/" + std::to_string(draws) + "/" + std::to_string(samples), settings,
+      Load(plant, samples, folder), Part::kAdjust);
+}
+
 void RegisterMemory(const Plant& plant) {
   benchmark::RegisterBenchmark(("BM_Memory/" + plant.name).c_str(), [settings =
                                                                          SettingsOf(plant)](benchmark::State& state) {

@@ -9,6 +9,8 @@ void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesy
 /// BM_Dimension: draw and remember with laws of 2 to 6 parameters, default number of draws, 100 samples.
 void RegisterDimensions();
 /// BM_Memory: heap of an estimator with one result slot, all of it allocated at construction.
+/// BM_AdjustStep without the short cut of laws that are linear in all parameters but one.
+void RegisterEverySample(const Plant& plant, int samples, const std::filesystem::path& folder);
 void RegisterMemory(const Plant& plant);
 /// BM_Noise: one for each law.
 void RegisterNoise(const Plant& plant, const std::filesystem::path& folder);

@@ -36,6 +36,7 @@ void Register(const Suite& suite, const std::filesystem::path& folder) {
     for (const int samples : suite.samples)
       if (samples != kSamples) RegisterSteps(plant, 0, samples, folder);
     RegisterDimensions();
+    RegisterEverySample(plant, kSamples, folder);
     RegisterNoise(plant, folder);
     RegisterEffects(plant, folder);
     RegisterNaiveLoop(ChernoffDraws(SamplerSettings().epsilon, SamplerSettings().delta), kSamples);

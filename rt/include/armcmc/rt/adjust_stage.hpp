@@ -41,6 +41,11 @@ class RecentMinimum {
   return start_ns >= latest ? start_ns + budget_ns : std::min(start_ns + budget_ns, latest);
 }
 
+/// The part of the time up to a deadline that falls to one of so many plants that wait for it.
+[[nodiscard]] constexpr Nanos FairDeadline(Nanos start_ns, Nanos deadline_ns, int waiting) noexcept {
+  return start_ns + (deadline_ns - start_ns) / std::max(waiting, 1);
+}
+
 /// Second stage: the draws. Writes straight into the result slot that it hands over.
 class AdjustStage {
  public:
@@ -52,10 +57,11 @@ class AdjustStage {
   /// Packs are taken in order while their deadline can be kept. One that cannot keep it is dropped when a newer
   /// one waits; the newest is always computed. A result that execute has not taken is not overtaken before its
   /// deadline.
+  /// @param waiting  Plants whose packs wait, this one among them: they share the time that is left.
   /// @return true when a result was handed over; false when the ring is empty or execute has to come first.
   /// @rt No heap, no lock, no throw, no system call but those of the CPU time meter. Bounded by the adjust budget plus
   /// the ring's capacity.
-  [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool Step(int waiting = 1) noexcept ARMCMC_NONBLOCKING;
   /// After a Step() that handed over a result, and after whoever takes it was woken: what only the next pack needs.
   /// @rt As Step(), bounded by the draws.
   void Remember() noexcept ARMCMC_NONBLOCKING;

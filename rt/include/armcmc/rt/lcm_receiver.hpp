@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/lcm_url.hpp"
@@ -15,10 +16,11 @@ namespace armcmc::rt {
 /// Largest LCM message that travels in one datagram: channel, NUL and payload together.
 inline constexpr std::size_t kMaxShortMessage = 65'499;
 
-/// One message of the subscribed channel. Valid until the next call of the receiver.
+/// One message of a subscribed channel. Valid until the next call of the receiver.
 struct Datagram {
   std::span<const std::uint8_t> payload;  ///< Starts with the 8-byte fingerprint.
   Nanos arrival_ns = 0;                   ///< CLOCK_MONOTONIC when the kernel received it.
+  std::size_t channel = 0;                ///< Which one, in the order of the subscription.
 };
 
 /// The channel, compared byte by byte against an LCM datagram.
@@ -30,7 +32,7 @@ enum class DatagramKind : std::uint8_t { kOurs, kForeign, kFragment, kMalformed 
 [[nodiscard]] DatagramKind ParseDatagram(std::span<const std::uint8_t> bytes, const std::string& channel,
                                          std::span<const std::uint8_t>* payload) noexcept ARMCMC_NONBLOCKING;
 
-/// Receives one LCM channel on a UDP multicast socket of its own.
+/// Receives LCM channels on a UDP multicast socket of its own.
 ///
 /// liblcm's receiver brings a thread that allocates, takes locks without priority inheritance and drops the newest
 /// message when it is full. This one reads the same datagrams: no thread, no lock, no heap after
@@ -47,7 +49,7 @@ class LcmReceiver {
   };
 
   /// @throws std::runtime_error saying what to do when the machine has no multicast route.
-  LcmReceiver(const LcmUrl& url, std::string channel);
+  LcmReceiver(const LcmUrl& url, std::vector<std::string> channels);
   ~LcmReceiver();
   LcmReceiver(const LcmReceiver&) = delete;
   LcmReceiver& operator=(const LcmReceiver&) = delete;
@@ -56,7 +58,7 @@ class LcmReceiver {
   [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING;
 
   /// Reads one datagram without waiting; skips at most kMaxSkipped others first.
-  /// @return true when *datagram holds a message of the channel.
+  /// @return true when *datagram holds a message of one of the channels.
   [[nodiscard]] bool TryReceive(Datagram* datagram) noexcept ARMCMC_NONBLOCKING;
 
   /// Throws away what the kernel holds; at most as many datagrams as its buffer can hold.
@@ -75,7 +77,10 @@ class LcmReceiver {
   void Close() noexcept;
   [[nodiscard]] bool ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept ARMCMC_NONBLOCKING;
 
-  std::string channel_;
+  /// Of the channel that the datagram in the buffer is of, if it is ours.
+  [[nodiscard]] DatagramKind Sort(std::size_t size, Datagram* datagram) const noexcept ARMCMC_NONBLOCKING;
+
+  std::vector<std::string> channels_;
   int socket_ = -1;
   int wake_ = -1;
   int recv_buf_size_ = 0;

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <utility>
-#include <vector>
 
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/counters.hpp"
@@ -15,8 +14,6 @@
 #include "armcmc/rt/publication_latency.hpp"
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/rt/step_engine.hpp"
-#include "armcmc/rt/watchdog.hpp"
-#include "armcmc/rt/witness.hpp"
 
 namespace armcmc::rt {
 
@@ -33,13 +30,16 @@ class PublishStage {
         counters_(counters),
         events_(events) {}
 
-  /// Set before the thread starts.
-  void SetWitnesses(std::vector<Witness*> witnesses) { witnesses_ = std::move(witnesses); }
-  /// Set before the thread starts; nullptr: no faults on purpose, no watchdog.
+  /// Set before the thread starts; nullptr: no faults on purpose.
   void SetInjection(Injection* injection) noexcept { injection_ = injection; }
-  void SetWatchdog(Watchdog* watchdog) noexcept { watchdog_ = watchdog; }
   /// Any time.
   void SetDegraded(std::int32_t flags) noexcept { degraded_flags_.store(flags, std::memory_order_relaxed); }
+
+  /// What the next status says of the machine: the worst delay of a witness, and whether a thread hung.
+  void Note(Nanos witness_worst_ns, bool hung) noexcept ARMCMC_NONBLOCKING {
+    witness_worst_ns_ = std::max(witness_worst_ns_, witness_worst_ns);
+    hung_ = hung_ || hung;
+  }
 
   /// Sends the messages of all finished steps. @return their number, at most kOutputRingCapacity.
   int PublishSteps() noexcept ARMCMC_NONBLOCKING;
@@ -59,9 +59,9 @@ class PublishStage {
   /// Sends one message and counts what became of it. @param pack  That it belongs to, 0: none.
   template <typename Message>
   void Send(const Message& message, std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
-    Note((injection_ == nullptr || !injection_->FailsPublication(pack)) && publisher_->Publish(message));
+    CountSent((injection_ == nullptr || !injection_->FailsPublication(pack)) && publisher_->Publish(message));
   }
-  void Note(bool sent) noexcept ARMCMC_NONBLOCKING;
+  void CountSent(bool sent) noexcept ARMCMC_NONBLOCKING;
 
   const RtSettings& settings_;
   const StepEngine* engine_;
@@ -70,9 +70,9 @@ class PublishStage {
   const DeadlineMonitor* monitor_;
   Counters* counters_;
   EventLog* events_;
-  std::vector<Witness*> witnesses_;
   Injection* injection_ = nullptr;
-  Watchdog* watchdog_ = nullptr;
+  Nanos witness_worst_ns_ = 0;
+  bool hung_ = false;
   std::atomic<std::int32_t> degraded_flags_{0};
   std::atomic<std::int64_t> gap_alarm_{0};
   estimate_t estimate_{};

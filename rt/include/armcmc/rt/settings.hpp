@@ -30,6 +30,7 @@ enum class CpuIdle : std::uint8_t {
 struct ThreadSettings {
   int priority = 0;  ///< SCHED_FIFO priority in [1, 99].
   int cpu = 0;       ///< CPU that the thread is pinned to, >= 0.
+  bool operator==(const ThreadSettings&) const = default;
 };
 
 /// Everything that decides when and where the estimator computes (not what: that is EstimatorSettings).
@@ -56,6 +57,7 @@ struct RtSettings {
 
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   std::string prefix;  ///< Put before every channel name, so that many plants share one bus.
+  bool operator==(const RtSettings&) const = default;
 
   /// Time that adjust leaves to execute when a pack came late: a fifth of the deadline, or what is left of it.
   [[nodiscard]] Nanos ExecuteReserveNs() const noexcept;

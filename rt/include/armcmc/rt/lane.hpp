@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "armcmc/rt/adjust_stage.hpp"
+#include "armcmc/rt/collect_stage.hpp"
+#include "armcmc/rt/counters.hpp"
+#include "armcmc/rt/deadline_monitor.hpp"
+#include "armcmc/rt/event_log.hpp"
+#include "armcmc/rt/execute_stage.hpp"
+#include "armcmc/rt/hand_over.hpp"
+#include "armcmc/rt/injection.hpp"
+#include "armcmc/rt/lcm_publisher.hpp"
+#include "armcmc/rt/publish_stage.hpp"
+#include "armcmc/rt/settings.hpp"
+#include "armcmc/rt/step_engine.hpp"
+
+namespace armcmc::rt {
+
+/// A plant that a pipeline estimates.
+struct LanePlant {
+  StepEngine* engine = nullptr;  ///< Outlives the pipeline.
+  std::string prefix;            ///< Of its channels.
+  bool record_packs = false;     ///< Keep copies of its packs for Lane::record().
+};
+
+/// What a pipeline keeps of one plant: the way of its packs through the stages, and what is counted on it. The threads
+/// belong to the pipeline, which takes them through its lanes.
+class Lane {
+ public:
+  /// @param settings  Outlives the lane. @param injection  Faults on purpose, or null.
+  Lane(const RtSettings& settings, const LanePlant& plant, Injection* injection);
+  Lane(const Lane&) = delete;
+  Lane& operator=(const Lane&) = delete;
+
+  [[nodiscard]] const StepEngine& engine() const noexcept { return *engine_; }
+  [[nodiscard]] const std::string& prefix() const noexcept { return prefix_; }
+  /// The channel of its packs.
+  [[nodiscard]] std::string channel() const { return prefix_ + engine_->pack_format().channel(); }
+
+  // Counters may be read any time; the rest when the pipeline has ended.
+  [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+  [[nodiscard]] const DeadlineMonitor& monitor() const noexcept { return monitor_; }
+  [[nodiscard]] const ExecuteStage& execute() const noexcept { return execute_; }
+  [[nodiscard]] const Estimate& last_estimate() const noexcept { return publish_.last_estimate(); }
+  [[nodiscard]] const PublicationLatency& latency() const noexcept { return publish_.latency(); }
+
+  /// Flags a fault of another thread in the next status message. Any time, from any thread.
+  void RaiseFault(std::int32_t flags) noexcept { counters_.faults.Raise(flags); }
+  /// Usable packs for one reader; nullptr without record_packs.
+  [[nodiscard]] RecordRing* record() noexcept { return record_.get(); }
+  /// Number of the pack at which the gap watch raised its alarm, 0 while it has not. Any time.
+  [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return publish_.gap_alarm(); }
+  /// Takes one event of any thread; by one thread only. @return false when there is none.
+  [[nodiscard]] bool TakeEvent(Event* event) noexcept;
+  [[nodiscard]] std::int64_t events_dropped() const noexcept;
+
+ private:
+  friend class Pipeline;
+
+  StepEngine* engine_;
+  std::string prefix_;
+  Counters counters_;
+  DeadlineMonitor monitor_;
+  std::array<EventLog, 4> events_;  // collect, adjust, execute, publish: one producer each
+  PackRing packs_;
+  ResultHandOver results_;
+  OutputRing outputs_;
+  std::unique_ptr<RecordRing> record_;
+  LcmPublisher publisher_;
+  CollectStage collect_;
+  AdjustStage adjust_;
+  ExecuteStage execute_;
+  PublishStage publish_;
+  bool not_remembered_ = false;          // of adjust: what its newest step left to Remember()
+  bool refused_ = false;                 // of adjust: execute has to come first
+  std::atomic<bool> status_due_{false};  // collect asks for a status message
+};
+
+}  // namespace armcmc::rt
