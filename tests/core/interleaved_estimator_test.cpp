@@ -189,6 +189,7 @@ TEST(InterleavedEstimator, WithoutOverlapIsOneEstimatorToTheBit) {
 void ExpectRecursionsOfTheirOwn(const EstimatorSettings& settings, const Series& series) {
   Interleaved interleaved(settings);
   std::vector<std::unique_ptr<Rig>> alone;
+  alone.reserve(kOverlap);
   for (int j = 0; j < kOverlap; ++j) alone.push_back(std::make_unique<Rig>(settings));
   for (std::int64_t seq = 1; seq <= series.num_packs(); ++seq) {
     Rig& own = *alone[static_cast<std::size_t>(seq % kOverlap)];
