@@ -37,7 +37,7 @@ std::unique_ptr<OutputWatch> MakeOutputWatch(const EstimatorSettings& settings, 
 
 }  // namespace
 
-Estimator::Impl::Impl(const EstimatorSettings& s)
+Estimator::Impl::Impl(const EstimatorSettings& s, const Impl* lender)
     : settings(s),
       model(ModelIndex(s)),
       composition(Regressed(s)),
@@ -47,8 +47,10 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
       predictor(info.compiled != nullptr ? info.compiled->make_predictor(info, s.constants, composition.rows())
                                          : nullptr),
       trajectory(info.described != nullptr ? info.described->prediction() : nullptr, kernels),
-      summary(s.sampler.max_draws),
-      gap_watch(settings, model, kernels, FalseAlarmRate(settings, info)),
+      summary(lender != nullptr ? lender->summary : std::make_shared<SummaryWorkspace>(s.sampler.max_draws)),
+      gap_watch(lender == nullptr || settings.gap_watch.enabled
+                    ? std::make_unique<GapWatch>(settings, model, kernels, FalseAlarmRate(settings, info))
+                    : nullptr),
       output_watch(MakeOutputWatch(settings, info, predictor.get())) {
   dim = info.num_parameters;
   int num_linear = 0;
@@ -64,7 +66,8 @@ Estimator::Impl::Impl(const EstimatorSettings& s)
     if (settings.method != Method::kArmcmc)
       filters.emplace_back(MakeFilter({kernels, model, settings, space, NoiseModel(noise)}));
   }
-  workspace = std::make_unique<SamplerWorkspace>(dim, settings.sampler.max_draws, num_linear);
+  workspace = lender != nullptr ? lender->workspace
+                                : std::make_shared<SamplerWorkspace>(dim, settings.sampler.max_draws, num_linear);
   ShowPrior();
   ForgetStates();
 }
@@ -108,7 +111,9 @@ void Estimator::Impl::PrepareMode(const DataPack& pack, const EffectPack& effect
     data->weight[static_cast<std::size_t>(n)] = rho > 0.0 ? std::exp(-rho * (data->num_samples - 1 - n)) : 1.0;
 }
 
-Estimator::Estimator(const EstimatorSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Estimator::Estimator(const EstimatorSettings& settings) : impl_(std::make_unique<Impl>(settings, nullptr)) {}
+Estimator::Estimator(const EstimatorSettings& settings, const Estimator& lender)
+    : impl_(std::make_unique<Impl>(settings, lender.impl_.get())) {}
 Estimator::~Estimator() = default;
 
 std::unique_ptr<AdjustResult> Estimator::MakeResult() const {
@@ -124,7 +129,7 @@ Status Estimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock
   return status;
 }
 
-Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                        const DrawLimits& limits) noexcept {
   Impl& s = *impl_;
   s.Remember(clock);
@@ -135,16 +140,21 @@ Status Estimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, 
     draws.known = memory.slot[memory.current].valid && memory.slot[memory.current].informed;
     draws.num_samples = 0;
   }
-  if (pack.Validate() != Status::kOk || pack.plant != s.info.plant || !s.IsOfThisPlant(pack) ||
-      pack.num_inputs < s.info.num_inputs ||
-      (!s.composition.empty() && !s.composition.Prepare(pack, &result->effects))) {
+  const bool is_usable = new_pack.Validate() == Status::kOk && new_pack.plant == s.info.plant &&
+                         s.IsOfThisPlant(new_pack) && new_pack.num_inputs >= s.info.num_inputs &&
+                         new_pack.num_samples % s.settings.overlap == 0;
+  if (is_usable) {
+    result->pack = new_pack;
+    result->pack.seq_step = s.settings.overlap;
+  }
+  const DataPack& pack = result->pack;
+  if (!is_usable || (!s.composition.empty() && !s.composition.Prepare(pack, &result->effects))) {
     result->status = Status::kBadPack;
     result->pack = DataPack{};
-    result->pack.seq = pack.seq;
-    result->pack.run_id = pack.run_id;
+    result->pack.seq = new_pack.seq;
+    result->pack.run_id = new_pack.run_id;
     return Status::kBadPack;
   }
-  result->pack = pack;
 
   int pending = 0;
   std::array<bool, kMaxModes> active{};
@@ -290,7 +300,7 @@ void Estimator::Reset() noexcept {
   s.trajectory.Reset();
   s.composition.Reset();
   s.ForgetStates();
-  s.gap_watch.Reset();
+  if (s.gap_watch) s.gap_watch->Reset();
   if (s.output_watch) s.output_watch->Reset();
   s.report_mode = 0;
 }
@@ -309,10 +319,10 @@ ReportedQuantity Estimator::reported(int index) const noexcept {
   return {r.name, r.unit};
 }
 
-bool Estimator::watches_gap() const noexcept { return impl_->gap_watch.enabled(); }
+bool Estimator::watches_gap() const noexcept { return impl_->gap_watch && impl_->gap_watch->enabled(); }
 
 std::string_view Estimator::gap_check_name(int check) const noexcept {
-  const std::string_view fitted = impl_->gap_watch.CheckName(check);
+  const std::string_view fitted = impl_->gap_watch ? impl_->gap_watch->CheckName(check) : "";
   return fitted.empty() && impl_->output_watch ? impl_->output_watch->CheckName(check) : fitted;
 }
 

@@ -11,6 +11,7 @@ namespace armcmc {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr GapState kNothingWatched{};
 
 }  // namespace
 
@@ -191,19 +192,21 @@ void Estimator::Impl::WatchGap(const DataPack& pack, Estimate* e) noexcept {
     drifts = drifts || (mode.updated && mode.p_drifted > 0.5);
     changed = changed || (mode.updated && (mode.decision == Decision::kModification || mode.p_changed > 0.5));
   }
-  gap_watch.Step(pack, estimate, changed, drifts);
+  if (gap_watch) gap_watch->Step(pack, estimate, changed, drifts);
   if (output_watch) output_watch->Step(pack, shown[0]);
   e->gap = Gap();
 }
 
 const GapState& Estimator::Impl::Gap() const noexcept {
-  const GapState& fitted = gap_watch.state();
+  const GapState& fitted = gap_watch ? gap_watch->state() : kNothingWatched;
   if (!output_watch) return fitted;
   const GapState& output = output_watch->state();
   if (fitted.suspected != output.suspected) return output.suspected ? output : fitted;
   if (fitted.num_blocks == 0 || output.num_blocks == 0) return output.num_blocks == 0 ? fitted : output;
   return output.log_evidence - output.log_threshold > fitted.log_evidence - fitted.log_threshold ? output : fitted;
 }
+
+const GapState& Estimator::gap() const noexcept { return impl_->Gap(); }
 
 void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
   Impl& s = *impl_;
@@ -224,7 +227,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     last.updated = false;
     last.num_samples = draws.num_samples;
     if (draws.updated) {
-      Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, &s.summary, &last);
+      Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, s.summary.get(), &last);
     } else {
       // Held: the parameters stay, the numbers that describe one step do not.
       last.decision = Decision::kHold;

@@ -29,8 +29,8 @@ struct ModeMemory {
 /// State of the estimator, by the stage that owns it. Adjust is in estimator.cpp, execute in estimator_execute.cpp,
 /// what a restart needs in estimator_snapshot.cpp.
 struct Estimator::Impl {
-  /// @throws std::invalid_argument from settings.Validate().
-  explicit Impl(const EstimatorSettings& s);
+  /// @param lender  Of the scratch; null: of its own. @throws std::invalid_argument from settings.Validate().
+  Impl(const EstimatorSettings& s, const Impl* lender);
 
   /// What is on display before the first pack: where that predicts the output the prior's mean, else nothing.
   void ShowPrior() noexcept ARMCMC_NONBLOCKING;
@@ -65,7 +65,7 @@ struct Estimator::Impl {
   std::array<bool, kMaxModes> acted{};               ///< In the pack before.
   std::vector<std::unique_ptr<ModeSampler>> samplers;
   std::vector<std::unique_ptr<ModeMemory>> memories;
-  std::unique_ptr<SamplerWorkspace> workspace;
+  std::shared_ptr<SamplerWorkspace> workspace;
   ModeDraws* not_remembered = nullptr;  ///< Draws that no memory has been made of.
   std::size_t not_remembered_mode = 0;
   std::array<ModeData, kMaxModes> adjust_data;
@@ -77,7 +77,7 @@ struct Estimator::Impl {
   // Execute stage.
   std::unique_ptr<OutputPredictor> predictor;  ///< Null of a described plant.
   OutputTrajectory trajectory;  ///< Of a described plant that predicts something else than its laws explain.
-  SummaryWorkspace summary;
+  std::shared_ptr<SummaryWorkspace> summary;
   ModeData execute_data;
   std::array<ThetaTile, kMaxModes> band_theta;  ///< Thinned chain of the last update of each mode.
   PredictionTile band_prediction;
@@ -86,7 +86,7 @@ struct Estimator::Impl {
   std::array<ShownEstimates, 2> shown;        ///< After the previous pack, and after the one before it.
   std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
-  GapWatch gap_watch;
+  std::unique_ptr<GapWatch> gap_watch;        ///< Null where an estimator with a lender watches nothing.
   std::unique_ptr<OutputWatch> output_watch;  ///< Of a plant that has a second equation.
 
   [[nodiscard]] bool IsOfThisPlant(const DataPack& pack) const noexcept {

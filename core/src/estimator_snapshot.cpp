@@ -37,7 +37,7 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
       out.PutRow(shown.theta[m].data(), static_cast<std::size_t>(s.info.num_parameters));
     }
   }
-  s.gap_watch.Save(&out);
+  if (s.gap_watch) s.gap_watch->Save(&out);
   if (s.output_watch) s.output_watch->Save(&out);
   for (std::size_t m = 0; m < static_cast<std::size_t>(s.info.num_modes); ++m)
     s.last_estimates[m].SaveDrift(s.info.num_reported, &out);
@@ -77,7 +77,7 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
     }
   }
   // Snapshots of described plants end here that were written when those were not watched.
-  if (s.info.described == nullptr || !display.finished()) s.gap_watch.Restore(&display);
+  if (s.gap_watch && (s.info.described == nullptr || !display.finished())) s.gap_watch->Restore(&display);
   if (s.output_watch) s.output_watch->Restore(&display);
   // Older ones say nothing of drift.
   for (std::size_t m = 0; !display.finished() && m < s.memories.size(); ++m)

@@ -206,8 +206,9 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
     worst_draw_ns = std::max(worst_draw_ns, static_cast<double>(spent) / chunk);
     slowness = draw_pace_.Slowness(draw_ns, timed);
     // One late correction, still inside the half of the chain that is thrown away: what was drawn so far is a better
-    // guide than the pilot where that was a poor match.
-    if (!refitted && wanted > 2 * kChunkDraws && made >= wanted / 4 && made + kChunkDraws <= wanted) {
+    // guide than the pilot where that was a poor match. Who is done, in haste or at a limit, draws no further chunk for
+    // it.
+    if (!refitted && made < target && wanted > 2 * kChunkDraws && made >= wanted / 4 && made + kChunkDraws <= wanted) {
       refitted = true;
       double ess = 0.0;
       if (std::isnan(Weigh(previous, lambda, pilot, made, ws))) continue;

@@ -217,6 +217,7 @@ void EstimatorSettings::Validate() const {
     throw std::invalid_argument("model.regress_rate: '" + model + "' has no rate to regress; remove it");
   if (num_effects > 0 && (method == Method::kRls || (method == Method::kParticleFilter && baseline.pf_updates > 1)))
     throw std::invalid_argument("this method takes no effects: remove them or choose method = \"armcmc\"");
+  Closed("timing.overlap", overlap, 1, kMaxPackSamples);
   Open("gap_watch.false_alarm_rate", gap_watch.false_alarm_rate, 0.0, 1.0);
   Closed("gap_watch.tolerance", gap_watch.tolerance, 0.0, 1.0);
   if (info.compiled != nullptr) ValidateConstants(*this, info.compiled->constants);

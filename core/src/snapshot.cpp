@@ -60,6 +60,7 @@ std::uint64_t SnapshotIdentity(const EstimatorSettings& s) noexcept {
     for (const ParameterSettings& a : e.amplitudes) hash.Add(a);
     for (const double v : e.shapes) hash.Add(v);
   }
+  if (s.overlap > 1) hash.Add(s.overlap);
   return hash.value();
 }
 

@@ -18,6 +18,7 @@ namespace armcmc::plant_sim {
 ///   rate_hz = 1000
 ///   duration_s = 10
 ///   seed = 1
+///   pack_stride = 10   samples from pack to pack; left out: as many as a pack has
 ///   [truth]     M = 95.0, or a list of one value a mode; left out: the mean of the prior
 ///   [inputs]    q = { kind = "multisine" | "sine" | "chirp" | "steps", amplitude, offset, frequency_hz, bandwidth_hz }
 ///               or { expression = "0.1*sin(t)" } or { state = "x" }

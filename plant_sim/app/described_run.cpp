@@ -92,7 +92,8 @@ void WriteCsv(const SampleRuns& runs, const std::string& path) {
 /// Without a clock: packs are stamped with the plant's time.
 void WriteDescribedLog(const SampleRuns& runs, int samples_per_pack, std::uint64_t seed, const PlantOptions& options) {
   LcmLogWriter log(options.log_path);
-  DescribedPackBuilder builder(runs, samples_per_pack, static_cast<std::int64_t>(seed));
+  CheckStride(options.stride, samples_per_pack);
+  DescribedPackBuilder builder(runs, samples_per_pack, static_cast<std::int64_t>(seed), options.stride);
   DescribedPackSender sender(options.prefix, &log, nullptr);
   for (std::int64_t k = 1; builder.Next(); ++k) {
     const std::int64_t t_ns = std::llround(static_cast<double>(k) * builder.pack_period_s() * 1e9);
@@ -134,8 +135,10 @@ int RunDescribed(const fs::path& plant_file, const DescribedRequest& request, co
   }
   if (!options.csv_path.empty()) WriteCsv(runs, options.csv_path);
   const int samples = support::SuitablePackLength(runs.dt, data_pack_v2_t::MAX_SAMPLES);
-  if (request.live) return PlayRuns(runs, plant.name, samples, request.speed, options);
-  if (!options.log_path.empty()) WriteDescribedLog(runs, samples, scenario.seed, options);
+  PlantOptions packs = options;
+  if (packs.stride == 0) packs.stride = scenario.pack_stride;
+  if (request.live) return PlayRuns(runs, plant.name, samples, request.speed, packs);
+  if (!options.log_path.empty()) WriteDescribedLog(runs, samples, scenario.seed, packs);
   std::printf("%s: %zu samples written to %s\n", plant.name.c_str(), runs.num_rows(), options.csv_path.c_str());
   return 0;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/data_pack_v2_t.hpp"
 #include "described_files.hpp"
 
 namespace armcmc::plant_sim {
@@ -74,6 +75,7 @@ DescribedScenario ReadDescribedScenario(StrictTable root) {
   scenario.dt = 1.0 / root.Number("rate_hz", 1000.0, 1e-6, kFastest);
   scenario.duration_s = root.Number("duration_s", scenario.duration_s, 1e-6, kLongest);
   scenario.seed = static_cast<std::uint64_t>(root.Integer("seed", 1, 0, kMaxSeed));
+  scenario.pack_stride = static_cast<int>(root.Integer("pack_stride", 0, 1, data_pack_v2_t::MAX_SAMPLES));
   StrictTable truth = root.Table("truth");
   for (const std::string& name : truth.Keys()) {
     try {

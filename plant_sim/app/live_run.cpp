@@ -29,6 +29,7 @@ namespace {
 
 // Two messages a pack and a drain every 10 ms: at 1 kHz a disk may stall for 0.1 s before a message is lost.
 constexpr int kLogSlots = 256;
+constexpr std::int64_t kPoll = 10'000'000;  // ns, between two looks at what came: no silence is told sooner
 
 /// A line on stderr, with a progress line wiped first.
 void Say(const std::string& text) {
@@ -47,7 +48,7 @@ class Observer final : public EstimateListener::Handler {
   Observer(const Scenario& scenario, const PlantOptions& options, LogRing* ring)
       : scenario_(scenario),
         scorer_(scenario, options.seed),
-        watch_(std::llround(scenario.pack_period_s() * 1e9)),
+        watch_(std::max<std::int64_t>(std::llround(scenario.pack_period_s() * 1e9), kPoll)),
         ring_(ring) {
     result_.run_id = MakeRunId();
     result_.packs_planned = scenario.num_packs();
@@ -72,7 +73,7 @@ class Observer final : public EstimateListener::Handler {
     if (answered) return;
     answered = true;
     ++result_.packs_answered;
-    result_.estimate_latency.Add(now - (start_ns_ + estimate.seq * PeriodNs()));
+    result_.estimate_latency.Add(now - (start_ns_ + scenario_.end_of_pack_ns(estimate.seq)));
     scorer_.Add(ReadEstimate(*scenario_.family, estimate, static_cast<double>(now - start_ns_) * 1e-9));
   }
 
@@ -83,7 +84,7 @@ class Observer final : public EstimateListener::Handler {
 
   /// What has to be done now and then. @param drained_ns every message that came before this time was handled.
   void Work(std::int64_t drained_ns, std::int64_t packs_sent, bool publishing) {
-    const long long sent = packs_sent * scenario_.pack_samples;
+    const long long sent = scenario_.last_sample(packs_sent);
     const auto passed =
         static_cast<long long>(static_cast<double>(drained_ns - start_ns_) * 1e-9 / scenario_.sample_interval_s);
     scorer_.ScoreThrough(std::min(sent, passed));
@@ -94,7 +95,7 @@ class Observer final : public EstimateListener::Handler {
   }
 
   void Finish(const Publisher& publisher) {
-    scorer_.ScoreThrough(publisher.packs_sent() * scenario_.pack_samples);
+    scorer_.ScoreThrough(scenario_.last_sample(publisher.packs_sent()));
     DrainLog();
     if (csv_) csv_->Close();
     if (log_ && log_->errors() > 0)

@@ -15,6 +15,7 @@
 #include "live_run.hpp"
 #include "model_file.hpp"
 #include "offline_run.hpp"
+#include "play_runs.hpp"
 #include "recording_run.hpp"
 #include "scenario_file.hpp"
 #include "sealed_file.hpp"
@@ -193,6 +194,9 @@ int main(int argc, char** argv) {
   app.add_option("--duration", duration_s, "Seconds to run, instead of the scenario's duration");
   CLI::Option* url =
       app.add_option("--lcm-url", options.lcm_url, "LCM bus; another port is another bus")->capture_default_str();
+  CLI::Option* stride =
+      app.add_option("--stride", options.stride,
+                     "Samples from pack to pack, a divisor of those of a pack: packs overlap. Default: the scenario's");
   app.add_option("--prefix", options.prefix, "Goes before every channel name, so that many plants share one bus");
   app.add_option("--log", options.log_path, "Write what is published to an LCM log");
   app.add_option("--csv", options.csv_path, "Write the samples and the truth; without --lcm-url nothing is published");
@@ -214,6 +218,8 @@ int main(int argc, char** argv) {
       }
     }
     CheckPrefix(options.prefix);
+    if (stride->count() > 0 && options.stride < 1)
+      throw InputError("--stride " + std::to_string(options.stride) + ": expected a number of samples, at least 1");
     if (!(recording.speed >= 1e-3 && recording.speed <= 1e6))
       throw InputError("--speed " + std::to_string(recording.speed) + ": expected a factor in [0.001, 1000000]");
     if (!recording.path.empty()) return Play(app, recording, options);
@@ -234,9 +240,11 @@ int main(int argc, char** argv) {
     Scenario scenario = armcmc::plant_sim::LoadScenario(armcmc::support::FindSharedFile("scenarios", scenario_name),
                                                         duration, options.seed);
     if (!model_path.empty()) armcmc::plant_sim::ApplyModelFile(model_path, &scenario);
+    armcmc::plant_sim::CheckStride(options.stride, scenario.pack_samples);
+    if (options.stride > 0) scenario.pack_stride = options.stride;
     if (scenario.num_packs() < 1)
       throw InputError("the duration of " + std::to_string(scenario.duration_s) + " s does not hold one pack of " +
-                       std::to_string(scenario.pack_period_s()) + " s");
+                       std::to_string(scenario.pack_span_s()) + " s");
     const bool live = options.csv_path.empty() || url->count() > 0;
     if (!live && !options.report_path.empty())
       throw InputError("--report needs a live run: give --lcm-url, or leave --csv out");

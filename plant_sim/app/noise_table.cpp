@@ -87,7 +87,7 @@ std::vector<double> Rms(const Scenario& scenario) {
   const std::unique_ptr<Plant> plant = scenario.MakePlant();
   std::vector<double> sum(num_inputs + 1);
   long long acting = 0;
-  const long long last = std::min(scenario.num_packs() * scenario.pack_samples, kMaxSamples);
+  const long long last = std::min(scenario.last_sample(scenario.num_packs()), kMaxSamples);
   for (long long i = 0; i <= last; ++i) {
     PlantSample sample;
     plant->Advance(&sample);

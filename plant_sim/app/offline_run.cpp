@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <armcmc/support/progress.hpp>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <stdexcept>
@@ -19,10 +18,9 @@ void WriteLog(const Scenario& scenario, const PlantOptions& options) {
   LcmLogWriter log(options.log_path);
   PackBuilder builder(scenario, options.seed, static_cast<std::int64_t>(options.seed));
   PackSender sender(options.prefix, options.faults, &log);
-  const std::int64_t period_ns = std::llround(scenario.pack_period_s() * 1e9);
   for (std::int64_t k = 1; k <= scenario.num_packs(); ++k) {
     if (!builder.Next()) throw std::runtime_error("the plant left the finite range: check the scenario's parameters");
-    builder.Stamp(k * period_ns, k * period_ns / 1000);
+    builder.Stamp(scenario.end_of_pack_ns(k), scenario.end_of_pack_ns(k) / 1000);
     sender.Send(builder.pack(), builder.truth());
   }
   sender.Flush();
@@ -32,7 +30,7 @@ void WriteLog(const Scenario& scenario, const PlantOptions& options) {
 }  // namespace
 
 int RunOffline(const Scenario& scenario, const PlantOptions& options) {
-  const long long last = scenario.num_packs() * scenario.pack_samples;
+  const long long last = scenario.last_sample(scenario.num_packs());
   CsvWriter csv(scenario, options.seed, options.csv_path);
   support::Progress progress(scenario.name);
   constexpr long long kChunk = 10'000;

@@ -13,6 +13,7 @@ struct PlantOptions {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   std::string prefix;
   std::string log_path, csv_path, report_path;
+  int stride = 0;  ///< Samples from pack to pack; 0: as many as a pack has, or what the scenario says.
   FaultPlan faults;
 };
 

@@ -23,9 +23,17 @@ std::string Counted(std::int64_t count, const std::string& what) {
 
 }  // namespace
 
+void CheckStride(int stride, int samples_per_pack) {
+  if (stride != 0 && samples_per_pack % stride != 0)
+    throw support::InputError("a pack every " + std::to_string(stride) +
+                              " samples (--stride, pack_stride): expected a " + "divisor of the " +
+                              std::to_string(samples_per_pack) + " samples of a pack");
+}
+
 int PlayRuns(const SampleRuns& runs, const std::string& title, int samples_per_pack, double speed,
              const PlantOptions& options) {
-  DescribedPackBuilder builder(runs, samples_per_pack, MakeRunId());
+  CheckStride(options.stride, samples_per_pack);
+  DescribedPackBuilder builder(runs, samples_per_pack, MakeRunId(), options.stride);
   const std::int64_t planned = builder.num_packs();
   if (planned == 0)
     throw support::InputError(title + ": no run has the " + std::to_string(samples_per_pack) + " samples of a pack");

@@ -7,6 +7,9 @@
 
 namespace armcmc::plant_sim {
 
+/// @throws support::InputError where a stride that is given, not 0, does not divide the samples of a pack.
+void CheckStride(int stride, int samples_per_pack);
+
 /// Publishes the samples of a described plant as packs in real time, one run after another, prints what was sent, and
 /// writes the log that was asked for. Ends after the last pack, or early and cleanly on SIGINT or SIGTERM.
 /// @param title             Stands in what is printed.

@@ -38,6 +38,14 @@ int ReadPackSamples(StrictTable* root, double interval) {
   return static_cast<int>(whole);
 }
 
+int ReadPackStride(StrictTable* root, int pack_samples) {
+  if (!root->Has("pack_stride")) return 0;
+  const auto stride = static_cast<int>(root->Integer("pack_stride", pack_samples, 1, pack_samples));
+  if (pack_samples % stride != 0)
+    throw root->Error("pack_stride", "must divide the " + std::to_string(pack_samples) + " samples of a pack");
+  return stride;
+}
+
 int ParameterIndex(const PlantFamily& family, const std::string& name) {
   const auto it = std::find_if(family.parameters.begin(), family.parameters.end(),
                                [&name](const ParameterSpec& spec) { return spec.name == name; });
@@ -144,6 +152,7 @@ Scenario LoadScenario(const std::filesystem::path& path, std::optional<double> d
   scenario.duration_s = root.Number("duration_s", scenario.duration_s, 1e-3, kMaxDuration);
   scenario.sample_interval_s = root.Number("sample_interval_s", scenario.sample_interval_s, 1e-5, 1.0);
   scenario.pack_samples = ReadPackSamples(&root, scenario.sample_interval_s);
+  scenario.pack_stride = ReadPackStride(&root, scenario.pack_samples);
   scenario.schedule = ReadSchedule(&root, *scenario.family, seed);
   scenario.options = ReadOptions(&root, *scenario.family, path);
   scenario.noise = ReadNoise(root.Table("noise"), *scenario.family, seed, path);

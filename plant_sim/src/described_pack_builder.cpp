@@ -14,7 +14,7 @@ void CopyText(const std::string& text, Byte (&field)[kSize]) {
   for (std::size_t i = 0; i < std::min(text.size(), kSize); ++i) field[i] = static_cast<Byte>(text[i]);
 }
 
-void CheckSizes(const SampleRuns& runs, int samples_per_pack) {
+void CheckSizes(const SampleRuns& runs, int samples_per_pack, int stride) {
   const std::size_t inputs = runs.signals.empty() ? 0 : runs.signals.size() - 1;
   if (inputs < 1 || inputs > static_cast<std::size_t>(data_pack_v2_t::MAX_INPUTS) || runs.output > inputs)
     throw std::invalid_argument(runs.plant + ": has " + std::to_string(inputs) +
@@ -23,6 +23,10 @@ void CheckSizes(const SampleRuns& runs, int samples_per_pack) {
   if (samples_per_pack < 1 || samples_per_pack > data_pack_v2_t::MAX_SAMPLES)
     throw std::invalid_argument(runs.plant + ": packs of " + std::to_string(samples_per_pack) +
                                 " samples; a pack takes 1 to " + std::to_string(data_pack_v2_t::MAX_SAMPLES));
+  if (stride < 1 || samples_per_pack % stride != 0)
+    throw std::invalid_argument(runs.plant + ": a pack every " + std::to_string(stride) +
+                                " samples; expected a divisor of the " + std::to_string(samples_per_pack) +
+                                " samples of a pack");
   if (!(runs.dt > 0.0) || !std::isfinite(runs.dt))
     throw std::invalid_argument(runs.plant + ": a sample interval of " + std::to_string(runs.dt) + " s");
   for (const SignalSamples& signal : runs.signals)
@@ -35,9 +39,12 @@ void CheckSizes(const SampleRuns& runs, int samples_per_pack) {
 
 }  // namespace
 
-DescribedPackBuilder::DescribedPackBuilder(const SampleRuns& runs, int samples_per_pack, std::int64_t run_id)
-    : runs_(runs), samples_(static_cast<std::size_t>(std::max(samples_per_pack, 1))) {
-  CheckSizes(runs, samples_per_pack);
+DescribedPackBuilder::DescribedPackBuilder(const SampleRuns& runs, int samples_per_pack, std::int64_t run_id,
+                                           int stride)
+    : runs_(runs),
+      samples_(static_cast<std::size_t>(std::max(samples_per_pack, 1))),
+      stride_(stride == 0 ? samples_ : static_cast<std::size_t>(std::max(stride, 1))) {
+  CheckSizes(runs, samples_per_pack, stride == 0 ? samples_per_pack : stride);
   pack_.run_id = run_id;
   pack_.dt = runs.dt;
   pack_.fingerprint = static_cast<std::int64_t>(runs.fingerprint);
@@ -53,8 +60,9 @@ DescribedPackBuilder::DescribedPackBuilder(const SampleRuns& runs, int samples_p
   }
   for (std::size_t run = 0; run < runs.runs.size(); ++run) {
     const std::size_t length = runs.RunEnd(run) - runs.runs[run];
-    num_packs_ += static_cast<std::int64_t>(length / samples_);
-    left_out_ += length % samples_;
+    const bool fills = length >= samples_;
+    num_packs_ += fills ? static_cast<std::int64_t>((length - samples_) / stride_ + 1) : 0;
+    left_out_ += fills ? (length - samples_) % stride_ : length;
   }
   if (!runs.runs.empty()) row_ = runs.runs.front();
 }
@@ -79,8 +87,8 @@ bool DescribedPackBuilder::Next() noexcept {
     for (std::size_t n = 0; n < samples_; ++n) pack_.u[n][column] = values[n];
     ++column;
   }
-  row_ += samples_;
-  pack_.t_last_s = static_cast<double>(row_ - 1 - runs_.runs[run_]) * runs_.dt;
+  pack_.t_last_s = static_cast<double>(row_ + samples_ - 1 - runs_.runs[run_]) * runs_.dt;
+  row_ += stride_;
   return true;
 }
 

@@ -18,7 +18,8 @@ bool Publisher::Tee::Send(const char* channel, const void* data, int size, std::
 
 Publisher::Publisher(const Scenario& scenario, std::uint64_t seed, std::int64_t run_id, const std::string& prefix,
                      const FaultPlan& faults, MessageSink* bus, LogRing* log)
-    : period_ns_(std::llround(scenario.pack_period_s() * 1e9)),
+    : span_ns_(std::llround(scenario.pack_span_s() * 1e9)),
+      period_ns_(std::llround(scenario.pack_period_s() * 1e9)),
       num_packs_(scenario.num_packs()),
       faults_(faults),
       builder_(scenario, seed, run_id),
@@ -60,7 +61,7 @@ void Publisher::Run(std::int64_t start_ns) noexcept {
       diverged_ = true;
       break;
     }
-    const std::int64_t due_ns = start_ns + k * period_ns_;
+    const std::int64_t due_ns = start_ns + span_ns_ + (k - 1) * period_ns_;
     const std::int64_t wanted_ns = std::max(free_ns, due_ns + static_cast<std::int64_t>(faults_.LateMs(k) * 1e6));
     if (!WaitUntil(wanted_ns)) break;
     free_ns = wanted_ns;

@@ -17,6 +17,7 @@ double Mean(double sum, std::int64_t n) {
 Scorer::Scorer(const Scenario& scenario, std::uint64_t seed)
     : family_(*scenario.family),
       pack_samples_(scenario.pack_samples),
+      stride_(scenario.stride()),
       dt_(scenario.sample_interval_s),
       simulation_(scenario, seed) {
   for (View& view : views_)
@@ -27,14 +28,14 @@ Scorer::Scorer(const Scenario& scenario, std::uint64_t seed)
 void Scorer::Add(const ReceivedEstimate& estimate) {
   // Rounding must not show an estimate at the sample that stands exactly on its arrival.
   const auto arrival = static_cast<long long>(std::floor(estimate.arrival_s / dt_)) + 1;
-  const long long later = static_cast<long long>(estimate.seq + 1) * pack_samples_;
+  const long long later = pack_samples_ + static_cast<long long>(estimate.seq) * stride_;
   for (const Convention convention : {Convention::kOnePackLater, Convention::kFromArrival}) {
     const long long from = convention == Convention::kOnePackLater ? std::max(arrival, later) : arrival;
     views_[static_cast<std::size_t>(convention)].pending.push_back({from, estimate});
   }
   if (estimate.interval_mode < 0) return;
   ++num_intervals_;
-  const double t_last = static_cast<double>(estimate.seq * pack_samples_) * dt_;
+  const double t_last = static_cast<double>(pack_samples_ + (estimate.seq - 1) * stride_) * dt_;
   const Theta truth = simulation_.plant().Truth(estimate.interval_mode, t_last);
   for (std::size_t i = 0; i < family_.truth_names.size(); ++i)
     covered_[i] += estimate.lo[i] <= truth[i] && truth[i] <= estimate.hi[i] ? 1 : 0;

@@ -74,6 +74,10 @@ std::string EventText(const rt::Event& event, const GapCheckNames& gap_check) {
              Millis(event.a);
     case EventKind::kInjected:
       return "INJECTED " + std::string(rt::ToString(static_cast<rt::InjectionKind>(event.detail))) + " at pack " + a;
+    case EventKind::kOverlapDiffers:
+      return "packs come every " + Count(event.a, "sample") + ", and by [timing] overlap it is " +
+             std::to_string(event.b) +
+             (event.a < event.b ? ": samples are counted more than once" : ": packs of a recursion leave samples out");
   }
   return "unknown event";
 }

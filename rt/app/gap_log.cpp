@@ -96,21 +96,26 @@ void GapLog::Stop() {
 }
 
 void GapLog::Take(const DataPack& pack) {
-  const double first_t = pack.t_last_s - (pack.num_samples - 1) * pack.dt;
+  // Of packs that overlap all but the newest samples have come before, unless packs were lost.
+  const int fresh = std::max(1, pack.num_samples / settings_.overlap);
+  const auto time_of = [&pack](int n) { return pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt; };
+  int first = pack.num_samples - fresh;
   // A file holds one run of the plant, in order.
-  if (count_ > 0 && (pack.run_id != run_id_ || first_t <= Row(count_ - 1)[0])) {
-    if (raised_) return;  // what belongs to the alarm is not mixed with what came after
+  if (count_ == 0 || pack.run_id != run_id_ || time_of(first) <= Row(count_ - 1)[0]) {
+    if (count_ > 0 && raised_) return;  // what belongs to the alarm is not mixed with what came after
     count_ = 0;
+    first = 0;
   }
+  while (first > 0 && time_of(first - 1) > Row(count_ - 1)[0] + 0.5 * pack.dt) --first;
   run_id_ = pack.run_id;
-  for (int n = 0; n < pack.num_samples; ++n) {
+  for (int n = first; n < pack.num_samples; ++n) {
     if (count_ == kMaxRows) {
       first_ = (first_ + 1) % kMaxRows;
       --count_;
     }
     double* row = Row(count_++);
     // Nanoseconds: the product of a number of samples and an interval has digits that nobody measured.
-    row[0] = std::round((pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt) * 1e9) / 1e9;
+    row[0] = std::round(time_of(n) * 1e9) / 1e9;
     const auto& inputs = pack.u[static_cast<std::size_t>(n)];
     std::copy_n(inputs.begin(), num_columns_ - 2, row + 1);
     row[num_columns_ - 1] = pack.y[static_cast<std::size_t>(n)];

@@ -21,6 +21,7 @@ struct GapLogSettings {
   double window_s = 60.0;              ///< Data before the alarm.
   double after_s = 20.0;               ///< Data after it.
   int max_files = 10;                  ///< Oldest of our files in the directory are removed beyond that.
+  int overlap = 1;                     ///< EstimatorSettings::overlap: samples that packs share are kept once.
 };
 
 /// What a recording calls the inputs and, last, the output of the plant that is estimated.

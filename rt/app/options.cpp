@@ -68,6 +68,7 @@ Configuration Load(const Options& options) {
     plant.estimator = support::ReadEstimatorSettings(root, decides ? model : "");
     rt::RtSettings rt = ReadRtSettings(root);
     plant.gap_log = ReadGapLogSettings(root);
+    plant.gap_log.overlap = plant.estimator.overlap;
     const std::vector<rt::InjectionItem> inject = ReadInjections(root);
     root.Finish();
     all.inject.insert(all.inject.end(), inject.begin(), inject.end());
@@ -79,6 +80,9 @@ Configuration Load(const Options& options) {
     CheckPath("--resume", plant.resume);
     if (!plant.resume.empty() && plant.estimator.method != Method::kArmcmc)
       throw support::InputError("--resume: only method = \"armcmc\" keeps what it has learnt; leave --resume out");
+    if (!plant.resume.empty() && plant.estimator.overlap > 1)
+      throw support::InputError("--resume: keeps one posterior, and with [timing] overlap = " +
+                                std::to_string(plant.estimator.overlap) + " there are as many; leave --resume out");
     if (!options.gap_log.empty()) plant.gap_log.directory = options.gap_log;
     // Files of several plants are told apart by their folder.
     if (plants > 1 && !plant.gap_log.directory.empty())

@@ -36,6 +36,11 @@ Json StageTimes(const DeadlineMonitor& m) {
           {"end_to_end", LatencyMs(m.end_to_end())}};
 }
 
+/// From the data to their estimate on the bus; `end_to_end` of stage_ms is from the release to the end of execute.
+Json LatencyToPublished(const PublicationLatency& latency) {
+  return {{"from_arrival", LatencyMs(latency.from_arrival())}, {"from_last_sample", LatencyMs(latency.from_sample())}};
+}
+
 Json Allocations(const Counters& c, bool counted) {
   const auto of = [&c, counted](Stage stage) {
     return counted ? Json(c.heap_calls[IndexOf(stage)].Get()) : Json(nullptr);
@@ -159,6 +164,7 @@ std::string ReportJson(const Pipeline& p, const Lane& lane, const std::string& g
       {"adjust_budget_ms", Ms(static_cast<double>(s.adjust_budget_ns))},
       {"misses", Misses(m)},
       {"stage_ms", StageTimes(m)},
+      {"published_ms", LatencyToPublished(lane.latency())},
       {"stage_overruns",
        {{"collect", m.stage_overruns(Stage::kCollect)},
         {"adjust", m.stage_overruns(Stage::kAdjust)},

@@ -26,6 +26,9 @@ std::string StageTimes(const rt::Pipeline& pipeline, const rt::Lane& lane) {
   AddTimes("adjust", monitor.stage_times(rt::Stage::kAdjust), &table);
   AddTimes("execute", monitor.stage_times(rt::Stage::kExecute), &table);
   AddTimes("release to estimate", monitor.end_to_end(), &table);
+  AddTimes("arrival to published", lane.latency().from_arrival(), &table);
+  if (lane.latency().from_sample().count() > 0)  // not of a plant with another clock
+    AddTimes("last sample to published", lane.latency().from_sample(), &table);
   rt::LogHistogram witness;
   for (const auto& w : pipeline.witnesses()) witness.Merge(w->delays());
   AddTimes("the machine's wake-ups", witness, &table);

@@ -22,6 +22,7 @@ CollectStage::CollectStage(const RtSettings& settings, const PackFormat& format,
                            EventLog* events) noexcept
     : period_ns_(settings.period_ns),
       deadline_ns_(settings.deadline_ns),
+      overlap_(format.overlap),
       codec_(format),
       grid_(settings.period_ns),
       ring_(ring),
@@ -62,6 +63,17 @@ void CollectStage::NoteClock(bool continues, Nanos now_ns) noexcept {
   }
   plant_clock_ns_ = codec_.t_last_ns();
   plant_time_s_ = codec_.t_last_s();
+}
+
+void CollectStage::NoteOverlap(std::int64_t steps, Nanos now_ns) noexcept {
+  if (overlap_told_) return;
+  const double expected = static_cast<double>(codec_.num_samples()) / overlap_;
+  const double stride = (codec_.t_last_s() - plant_time_s_) / (codec_.dt() * static_cast<double>(steps));
+  // Packs that do not overlap may leave time between them.
+  const bool differs = stride < expected - 0.5 || (overlap_ > 1 && stride > expected + 0.5);
+  if (!differs || !(std::fabs(stride) < 1e9)) return;
+  overlap_told_ = true;
+  events_->Add({now_ns, EventKind::kOverlapDiffers, 0, std::llround(stride), std::llround(expected)});
 }
 
 void CollectStage::NoteForeign(std::int64_t foreign, Nanos now_ns) noexcept ARMCMC_NONBLOCKING {
@@ -116,6 +128,11 @@ bool CollectStage::Step(const Datagram& datagram) noexcept {
       events_->Add({start_ns, EventKind::kPlantFirstSeen, 0, codec_.seq(), 0});
     }
     point = grid_.Lock(datagram.arrival_ns);
+  }
+  if (sequence.verdict == SequenceVerdict::kNext) {
+    NoteOverlap(sequence.steps + skipped_steps_, start_ns);
+  } else {
+    overlap_told_ = false;
   }
   NoteClock(sequence.verdict == SequenceVerdict::kNext, start_ns);
   skipped_steps_ = 0;

@@ -27,8 +27,10 @@ std::int64_t ReadFingerprint(std::span<const std::uint8_t> payload) noexcept {
 
 /// Checks the numbers of a pack of the right type and plant.
 template <typename Message>
-RejectCause Check(const Message& m, int num_inputs) noexcept ARMCMC_NONBLOCKING {
+RejectCause Check(const Message& m, const PackFormat& format) noexcept ARMCMC_NONBLOCKING {
+  const int num_inputs = format.num_inputs;
   if (m.n_samples < 1 || m.n_samples > kMaxPackSamples) return RejectCause::kSampleCount;
+  if (m.n_samples % format.overlap != 0) return RejectCause::kOverlap;
   if (m.n_inputs != num_inputs) return RejectCause::kInputCount;
   if (!(m.dt > 0.0 && m.dt <= PackCodec::kMaxSampleInterval)) return RejectCause::kSampleInterval;
   if (!std::isfinite(m.t_last_s)) return RejectCause::kNotFinite;
@@ -79,6 +81,7 @@ std::string_view ToString(RejectCause cause) noexcept {
     case RejectCause::kNotFinite: return "NaN or infinite value";
     case RejectCause::kOutOfRange: return "value out of range";
     case RejectCause::kAllZero: return "every value is zero";
+    case RejectCause::kOverlap: return "n_samples is no multiple of timing.overlap";
   }
   return "unknown";
 }
@@ -127,7 +130,7 @@ RejectCause PackCodec::Decode(std::span<const std::uint8_t> payload) noexcept {
   if (!DecodeMessage(payload)) return RejectCause::kLength;
   decoded_ = true;
   if (!IsOfThePlant()) return RejectCause::kOtherPlant;
-  return described() ? Check(described_, format_.num_inputs) : Check(message_, format_.num_inputs);
+  return described() ? Check(described_, format_) : Check(message_, format_);
 }
 
 void PackCodec::CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING {

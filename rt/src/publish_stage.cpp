@@ -25,6 +25,7 @@ int PublishStage::PublishSteps() noexcept {
     const std::int64_t utime = RealtimeMicros();
     FillEstimate(*output, *engine_, utime, &estimate_);
     Send(estimate_, output->info.seq);
+    latency_.Add(output->estimate.t_last_ns, output->info.times.arrival_ns, MonotonicNow());
     FillPosterior(*output, *engine_, utime, &posterior_);
     Send(posterior_, output->info.seq);
     FillChange(*output, *engine_, utime, &change_);

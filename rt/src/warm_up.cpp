@@ -1,5 +1,6 @@
 #include "armcmc/rt/warm_up.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -13,7 +14,7 @@ namespace armcmc::rt {
 namespace {
 
 constexpr int kPacks = 4;
-constexpr int kSamples = 100;
+constexpr int kUsualSamples = 100;
 constexpr double kDt = 1e-3;
 constexpr Nanos kNoDeadline = std::numeric_limits<Nanos>::max();
 
@@ -32,11 +33,12 @@ DataPack SyntheticPack(const PackFormat& format, int index) noexcept {
   pack.dt = kDt;
   pack.plant = format.plant;
   pack.fingerprint = format.fingerprint;
-  pack.num_samples = kSamples;
+  const int samples = format.overlap * std::max(1, kUsualSamples / format.overlap);
+  pack.num_samples = samples;
   pack.num_inputs = format.num_inputs;
   const ModelInfo* model = ModelOf(format.plant);
-  for (int n = 0; n < kSamples; ++n) {
-    const double t = kDt * (index * kSamples + n);
+  for (int n = 0; n < samples; ++n) {
+    const double t = kDt * (index * samples + n);
     const auto row = static_cast<std::size_t>(n);
     if (model != nullptr) {
       model->compiled->typical_sample(t, row, &pack);
@@ -52,7 +54,9 @@ void WarmUp(StepEngine* engine) noexcept {
   // Static: a megabyte stack need not hold them, and their pages are the process's own.
   static Estimate estimate;
   static DataPack pack;
-  for (int i = 0; i < kPacks; ++i) {
+  // Where packs overlap every recursion gets one, three times.
+  const int packs = std::max(kPacks, engine->pack_format().overlap);
+  for (int i = 0; i < packs; ++i) {
     pack = SyntheticPack(engine->pack_format(), i);
     for (int slot = 0; slot < LatestValue::kSlots; ++slot) {
       // No deadline: the draws run to their full number, so that every page of the slot is touched. With the clock, so

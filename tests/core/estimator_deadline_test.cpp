@@ -62,15 +62,30 @@ TEST(Deadline, DrawLimitsRepeatATruncatedRunOfTwoModesToTheBit) {
   ExpectRepeatable(test::ActuatorSettings(), packs);
 }
 
-TEST(Deadline, DrawLimitsRepeatAPilotThatWasCutShortToTheBit) {
-  // Short packs of a plant that changes: pilots of up to seven rounds.
+/// Short packs of a plant that changes: pilots of up to seven rounds.
+std::vector<DataPack> PacksOfLongPilots() {
   std::vector<DataPack> packs;
   test::Normal normal(11);
   for (std::int64_t seq = 1; seq <= 120; ++seq) {
     const test::ContactTruth truth = seq % 8 >= 5 ? test::ContactTruth{.k = 2.0, .b = 1.15} : test::ContactTruth{};
     packs.push_back(test::MakeContactPack(seq, {1.6, 1.4, 0.66, 0.0}, truth, 0.1, &normal, 100, 1e-4));
   }
-  ExpectRepeatable(BuiltinSettings("hunt_crossley"), packs);
+  return packs;
+}
+
+TEST(Deadline, DrawLimitsRepeatAPilotThatWasCutShortToTheBit) {
+  ExpectRepeatable(BuiltinSettings("hunt_crossley"), PacksOfLongPilots());
+}
+
+TEST(Deadline, DrawLimitsRepeatRunsOfFewDrawsToTheBit) {
+  // The pilot and what follows it in haste are a quarter of the draws and more.
+  for (const int draws : {1500, 2000, 2500, 4000}) {
+    SCOPED_TRACE(draws);
+    EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+    settings.sampler.rule = DrawRule::kFixed;
+    settings.sampler.fixed_draws = draws;
+    ExpectRepeatable(settings, PacksOfLongPilots());
+  }
 }
 
 TEST(Deadline, BudgetOfACertainLengthCutsTheDrawsAndSaysSo) {

@@ -93,6 +93,31 @@ TEST(DescribedPackBuilder, EveryRunIsARestartAndARemainderIsLeftOut) {
   EXPECT_FALSE(builder.Next());
 }
 
+TEST(DescribedPackBuilder, PacksMayOverlapInsideARun) {
+  const SampleRuns runs = Rows(18, {0, 8, 10});  // 8, 2 and 8 samples
+  DescribedPackBuilder builder(runs, 4, 40, 2);
+  EXPECT_EQ(builder.num_packs(), 6);
+  EXPECT_EQ(builder.left_out(), 2u);
+  EXPECT_DOUBLE_EQ(builder.pack_period_s(), 0.02);
+  using Seen = std::tuple<std::int64_t, std::int64_t, double, double>;
+  std::vector<Seen> seen;
+  std::vector<double> last_s;
+  while (builder.Next()) {
+    const data_pack_v2_t& pack = builder.pack();
+    seen.emplace_back(pack.run_id, pack.seq, pack.y[0], pack.y[3]);
+    last_s.push_back(pack.t_last_s);
+  }
+  EXPECT_THAT(seen, ElementsAre(Seen(40, 1, 100.0, 103.0), Seen(40, 2, 102.0, 105.0), Seen(40, 3, 104.0, 107.0),
+                                Seen(42, 1, 110.0, 113.0), Seen(42, 2, 112.0, 115.0), Seen(42, 3, 114.0, 117.0)));
+  EXPECT_THAT(last_s, ElementsAre(0.03, 0.05, 0.07, 0.03, 0.05, 0.07));
+}
+
+TEST(DescribedPackBuilder, TheStrideDividesAPack) {
+  const SampleRuns runs = Rows(18, {0});
+  for (const int stride : {3, 5, -1, 8}) EXPECT_THROW(DescribedPackBuilder(runs, 4, 1, stride), std::invalid_argument);
+  EXPECT_NO_THROW(DescribedPackBuilder(runs, 4, 1, 1));
+}
+
 TEST(DescribedPackBuilder, PassesOnWhatIsNotFinite) {
   SampleRuns runs = Rows(3, {0});
   runs.signals[1].value[1] = std::nan("");

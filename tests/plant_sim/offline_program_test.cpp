@@ -58,6 +58,28 @@ TEST(PlantProgram, WritesALogOfPacksWithoutABus) {
   EXPECT_EQ(seqs[4], 6);
 }
 
+TEST(PlantProgram, AStrideMakesPacksOverlap) {
+  const test::ScratchDir folder;
+  const test::Outcome ended =
+      RunPlant({"--duration", "0.3", "--stride", "10", "--csv", "a.csv", "--log", "a.lcm"}, folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ReadTable(folder / "a.csv").rows.size(), 301u) << "a CSV has every sample once";
+  lcm::LogFile log((folder / "a.lcm").string(), "r");
+  std::vector<data_pack_t> packs;
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    if (event->channel != "PLANT_PACK") continue;
+    ASSERT_GT(packs.emplace_back().decode(event->data, 0, event->datalen), 0);
+  }
+  ASSERT_EQ(packs.size(), 21u);
+  for (std::size_t k = 1; k < packs.size(); ++k) {
+    EXPECT_EQ(packs[k].seq, static_cast<std::int64_t>(k) + 1);
+    EXPECT_NEAR(packs[k].t_last_s - packs[k - 1].t_last_s, 0.01, 1e-12);
+    EXPECT_EQ(packs[k].t_last_ns - packs[k - 1].t_last_ns, 10'000'000);
+    EXPECT_TRUE(std::equal(packs[k].y, packs[k].y + 90, packs[k - 1].y + 10));
+  }
+  EXPECT_EQ(packs[0].t_last_ns, 100'000'000);
+}
+
 TEST(PlantProgram, BadUsageEndsWithTwoAndOneClearLine) {
   const test::ScratchDir folder;
   const auto expect = [&folder](const std::vector<std::string>& arguments, const std::string& words) {
@@ -75,6 +97,8 @@ TEST(PlantProgram, BadUsageEndsWithTwoAndOneClearLine) {
   expect({"--csv", "a.csv", "--report", "a.json"}, "--report");
   expect({"--lcm-url", "foo://bar", "--duration", "1"}, "udpm://");
   expect({"--sed", "3"}, "--sed");
+  expect({"--stride", "30", "--csv", "a.csv"}, "a divisor of the 100 samples of a pack");
+  expect({"--stride", "0", "--csv", "a.csv"}, "--stride 0");
   std::ofstream(folder / "bad.toml") << "schema = 1\nplant = \"hunt_crossley\"\n[parameters]\nK = true\n";
   expect({"--scenario", "bad.toml", "--csv", "a.csv"}, "bad.toml:4");
 }

@@ -41,6 +41,34 @@ TEST(PackBuilder, PackKHoldsSamplesAfterTheLastPackAndSampleZeroIsInNone) {
   }
 }
 
+TEST(PackBuilder, PacksOverlapByAllSamplesButTheNewest) {
+  Scenario scenario = BuiltinScenario("hunt_crossley_paper");
+  scenario.pack_stride = 10;
+  PackBuilder builder(scenario, 7, 42);
+  Simulation simulation(scenario, 7);
+  std::vector<PlantSample> measured, truth;
+  for (int n = 0; n <= 300; ++n) {
+    ASSERT_TRUE(simulation.Next());
+    measured.push_back(simulation.measured());
+    truth.push_back(simulation.truth());
+  }
+  for (int k = 1; k <= 21; ++k) {
+    ASSERT_TRUE(builder.Next());
+    const data_pack_t& pack = builder.pack();
+    EXPECT_EQ(pack.seq, k);
+    EXPECT_EQ(builder.truth().seq, k);
+    EXPECT_EQ(pack.n_samples, 100);
+    const auto first = static_cast<std::size_t>(10 * (k - 1) + 1);
+    for (std::size_t i = 0; i < 100; ++i) {
+      ASSERT_EQ(pack.y[i], measured[first + i].output) << "pack " << k << ", sample " << i;
+      ASSERT_EQ(pack.u[i][0], measured[first + i].inputs[0]);
+      ASSERT_EQ(pack.u[i][1], measured[first + i].inputs[1]);
+      ASSERT_EQ(builder.truth().y_true[i], truth[first + i].output);
+    }
+    EXPECT_EQ(pack.t_last_s, truth[first + 99].t_s) << "advances by 10 samples";
+  }
+}
+
 TEST(PackBuilder, TruthFollowsAStepOfTheParameters) {
   PackBuilder builder(BuiltinScenario("hunt_crossley_step"), 1, 1);
   for (int k = 1; k <= 80; ++k) ASSERT_TRUE(builder.Next());

@@ -71,6 +71,27 @@ TEST(RecordingProgram, PlaysRunAfterRunAndSaysWhatItSent) {
   EXPECT_EQ(packs[0].u_unit[0][0], 'V');
 }
 
+TEST(RecordingProgram, AStrideMakesPacksOverlap) {
+  const test::ScratchDir folder;
+  WriteRecording(folder);
+  const test::Outcome ended = RunPlant({"--recording", "day.toml", "--lcm-url", "memq://", "--speed", "10", "--log",
+                                        "a.lcm", "--prefix", "P_", "--stride", "25"},
+                                       folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("9 packs of 100 samples of thermometer, one every 2.5 ms"));
+  EXPECT_THAT(ended.out, HasSubstr("9 of 9 packs sent, 2 runs"));
+  EXPECT_THAT(ended.out, HasSubstr("5 samples at the ends of runs fill no pack"));
+  const std::vector<data_pack_v2_t> packs = ReadPacks(folder / "a.lcm");
+  ASSERT_EQ(packs.size(), 9u);
+  EXPECT_DOUBLE_EQ(packs[1].u[0][0], 25.0);
+  EXPECT_DOUBLE_EQ(packs[1].t_last_s, 0.124);
+  EXPECT_DOUBLE_EQ(packs[8].u[0][0], 275.0) << "the second pack of the second run";
+  EXPECT_EQ(packs[8].seq, 2);
+  const test::Outcome wrong = RunPlant({"--recording", "day.toml", "--lcm-url", "memq://", "--stride", "30"}, folder);
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("a divisor of the 100 samples of a pack"));
+}
+
 TEST(RecordingProgram, PlaysEmpsToItsLastPack) {
   ARMCMC_REQUIRE_DATA("measured/emps_estimation.csv");
   const test::ScratchDir folder;

@@ -48,7 +48,7 @@ TEST(ScenarioFile, EveryScenarioThatComesWithTheProgramRunsToItsEnd) {
   for (const auto& entry : std::filesystem::directory_iterator(test::SourceDir() / "plant_sim" / "scenarios")) {
     const Scenario scenario = LoadScenario(entry.path());
     Simulation simulation(scenario, 1);
-    const long long last = scenario.num_packs() * scenario.pack_samples;
+    const long long last = scenario.last_sample(scenario.num_packs());
     EXPECT_GE(last, 10'000) << entry.path();
     for (long long i = 0; i <= last; ++i) ASSERT_TRUE(simulation.Next()) << entry.path() << " sample " << i;
     ++count;
@@ -61,6 +61,32 @@ TEST(ScenarioFile, ChatterSwitchesModesAgainAndAgain) {
   int switches = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) switches += samples[i].mode != samples[i - 1].mode ? 1 : 0;
   EXPECT_GT(switches, 50);
+}
+
+TEST(ScenarioFile, ReadsPacksThatOverlap) {
+  const Scenario scenario = LoadChanged("pack_period_s = 0.1", "pack_period_s = 0.1\npack_stride = 10");
+  EXPECT_EQ(scenario.pack_samples, 100);
+  EXPECT_EQ(scenario.stride(), 10);
+  EXPECT_DOUBLE_EQ(scenario.pack_period_s(), 0.01);
+  EXPECT_EQ(scenario.num_packs(), 1991) << "the last one ends with the 20 s";
+  EXPECT_EQ(scenario.last_sample(1), 100);
+  EXPECT_EQ(scenario.last_sample(1991), 20'000);
+  EXPECT_EQ(scenario.end_of_pack_ns(1), 100'000'000);
+  EXPECT_EQ(scenario.end_of_pack_ns(3), 120'000'000);
+  const Scenario plain = BuiltinScenario("hunt_crossley_paper");
+  EXPECT_EQ(plain.stride(), 100);
+  EXPECT_EQ(plain.num_packs(), 200);
+  EXPECT_EQ(plain.last_sample(2), 200);
+  EXPECT_EQ(plain.end_of_pack_ns(2), 200'000'000);
+}
+
+TEST(ScenarioFile, AStrideThatDoesNotDivideAPackIsAnError) {
+  for (const char* stride : {"0", "-1", "101", "30", "1.5"}) {
+    const std::string problem =
+        Problem("pack_period_s = 0.1", "pack_period_s = 0.1\npack_stride = " + std::string(stride));
+    EXPECT_THAT(problem, HasSubstr("changed.toml:7:")) << stride;
+    EXPECT_THAT(problem, HasSubstr("pack_stride")) << stride;
+  }
 }
 
 TEST(ScenarioFile, ReadsPacksDownToOneMillisecond) {

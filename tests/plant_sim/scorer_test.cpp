@@ -39,6 +39,33 @@ TEST(Scorer, APerfectEstimateOfEveryPackLeavesOnlyTheWaitForTheFirst) {
   EXPECT_NEAR(later.target_noisy_l2, 0.1 * std::sqrt(20'001.0), 0.3);
 }
 
+TEST(Scorer, WherePacksOverlapAnEstimateIsShownFromTheEndOfTheNextPackOn) {
+  Scenario scenario = BuiltinScenario("hunt_crossley_paper");
+  scenario.pack_stride = 10;
+  Scorer scorer(scenario, 3);
+  scorer.Add(Contact(1, 0.1025, {4.0, 2.3, 1.7}));  // of the samples up to 0.1 s
+  scorer.ScoreThrough(150);
+  const auto unknown = [&scorer](Convention convention) {
+    const ParameterScore& score = scorer.Result(convention).modes[0][0];
+    return score.samples - score.active_samples;
+  };
+  EXPECT_EQ(unknown(Convention::kOnePackLater) - unknown(Convention::kFromArrival), 7) << "from 110 on, and from 103";
+}
+
+TEST(Scorer, CoverageOfPacksThatOverlapComparesWithTheTruthAtTheirEnd) {
+  Scenario scenario = BuiltinScenario("hunt_crossley_step");  // K halves at 8 s
+  scenario.pack_stride = 10;
+  Scorer scorer(scenario, 3);
+  for (const std::int64_t seq : {790, 791}) {  // to 7.99 s, and to 8 s
+    ReceivedEstimate estimate = Contact(seq, 9.0, {4.0, 2.3, 1.7});
+    estimate.interval_mode = 0;
+    estimate.lo = {3.9, 2.2, 1.6};
+    estimate.hi = {4.1, 2.4, 1.8};
+    scorer.Add(estimate);
+  }
+  EXPECT_EQ(scorer.Coverage(0), 0.5);
+}
+
 TEST(Scorer, ScoresTheShareOfContactOfThePaper) {
   Scorer scorer(BuiltinScenario("hunt_crossley_paper"), 1);
   scorer.ScoreThrough(20'000);

@@ -73,6 +73,41 @@ TEST_F(GapLogTest, WritesNothingWithoutAnAlarm) {
   EXPECT_TRUE(said_.empty());
 }
 
+TEST_F(GapLogTest, WritesSamplesThatPacksShareOnce) {
+  GapLogSettings settings = Settings();
+  settings.overlap = 10;
+  auto log = Make(settings);
+  const auto send = [&](std::int64_t seq, std::int64_t run_id) {
+    DataPack* pack = ring_.Claim();
+    ASSERT_NE(pack, nullptr);
+    pack->seq = seq;
+    pack->run_id = run_id;
+    pack->dt = 1e-3;
+    pack->num_samples = 100;
+    pack->num_inputs = 2;
+    pack->t_last_s = 0.099 + 0.01 * static_cast<double>(seq - 1);
+    for (std::size_t n = 0; n < 100; ++n) {
+      const double number = static_cast<double>(10 * (seq - 1)) + static_cast<double>(n);
+      pack->u[n] = {number, -number};
+      pack->y[n] = number;
+    }
+    ring_.Commit();
+    log->Poll();
+  };
+  for (std::int64_t seq = 1; seq <= 5; ++seq) send(seq, 1);
+  // Another run; some packs of it are lost, and as many that not all of their samples came with others.
+  for (const std::int64_t seq : {1, 2, 3, 7, 8, 25, 26}) send(seq, 2);
+  alarm_ = 26;
+  log->Poll();
+  ASSERT_FALSE(log->path().empty());
+  const auto samples = Read(log->path());
+  std::vector<double> expected;
+  for (int n = 0; n < 170; ++n) expected.push_back(n);    // packs 1 to 8
+  for (int n = 240; n < 350; ++n) expected.push_back(n);  // packs 25 and 26
+  EXPECT_EQ(samples.columns[3], expected);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(samples.columns[0][i], 1e-3 * expected[i], 1e-12);
+}
+
 TEST_F(GapLogTest, WritesTheWindowAtTheAlarmAndTheRestLater) {
   auto log = Make(Settings());
   for (std::int64_t seq = 1; seq <= 50; ++seq) Send(log.get(), seq);

@@ -77,6 +77,17 @@ TEST(PackCodec, RejectsCountsOutOfRange) {
   }
 }
 
+TEST(PackCodec, RejectsCountsThatTheOverlapDoesNotDivide) {
+  PackCodec codec({.plant = HuntCrossley::kInfo.plant, .num_inputs = 2, .overlap = 25});
+  data_pack_t pack = ValidPack(7);
+  for (const auto& [samples, cause] :
+       {std::pair(100, RejectCause::kNone), std::pair(75, RejectCause::kNone), std::pair(99, RejectCause::kOverlap),
+        std::pair(24, RejectCause::kOverlap), std::pair(0, RejectCause::kSampleCount)}) {
+    pack.n_samples = samples;
+    EXPECT_EQ(codec.Decode(Encode(pack)), cause) << samples;
+  }
+}
+
 TEST(PackCodec, RejectsNonFiniteAndImpossibleValues) {
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     EXPECT_EQ(DecodeWith([bad](data_pack_t* p) { p->y[99] = bad; }), RejectCause::kNotFinite);

@@ -132,5 +132,24 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
                          ::testing::Values("hunt_crossley", "soft_actuator", "soft_actuator_excited"),
                          [](const auto& at) { return std::string(at.param); });
 
+TEST(OverlappingConfig, AHundredHertzAndAThousandAreReadCompletely) {
+  const struct {
+    const char* name;
+    Nanos period_ns;
+    int overlap;
+  } kShipped[] = {{"hunt_crossley_100hz", 10'000'000, 10}, {"hunt_crossley_1khz", 1'000'000, 100}};
+  for (const auto& shipped : kShipped) {
+    const auto path = armcmc::test::SourceDir() / "rt" / "config" / (std::string(shipped.name) + ".toml");
+    StrictTable root = StrictTable::FromFile(path);
+    const EstimatorSettings estimator = support::ReadEstimatorSettings(root, "");
+    const rt::RtSettings settings = ReadRtSettings(root);
+    EXPECT_NO_THROW(root.Finish()) << shipped.name;
+    EXPECT_EQ(estimator.overlap, shipped.overlap);
+    EXPECT_EQ(settings.period_ns, shipped.period_ns);
+    EXPECT_EQ(settings.deadline_ns, shipped.period_ns) << "one at a time, none waits for the one before";
+    EXPECT_LT(settings.adjust_budget_ns, settings.deadline_ns);
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::app::rt_config_test

@@ -51,6 +51,16 @@ TEST(EstimatorConfig, AnEmptyFileIsTheBuiltInModel) {
   EXPECT_EQ(read.sampler.rule, built_in.sampler.rule);
 }
 
+TEST(EstimatorConfig, ReadsHowManyPacksShareASample) {
+  EXPECT_EQ(Read(kHunt).overlap, 1);
+  EXPECT_EQ(Read(kHunt + "[timing]\noverlap = 10\n").overlap, 10);
+  EXPECT_EQ(Read(kHunt + "[timing]\noverlap = 256\n").overlap, 256);
+  for (const char* wrong : {"0", "-1", "257", "2.5", "\"10\""})
+    EXPECT_THAT(ErrorOf(kHunt + "[timing]\noverlap = " + wrong + "\n"),
+                AllOf(HasSubstr("f.toml:5:"), HasSubstr("timing.overlap"), HasSubstr("[1, 256]")))
+        << wrong;
+}
+
 TEST(EstimatorConfig, EveryKeyArrives) {
   const EstimatorSettings s = Read(kHunt + R"(
 [model.parameters.K]

@@ -72,6 +72,51 @@ TEST_F(PackSourceTest, CsvPackKHoldsTheSamplesAfterKMinusOneTimesN) {
   EXPECT_EQ(source_->progress(), 1.0);
 }
 
+TEST_F(PackSourceTest, CsvPacksOverlapByWhatTheSettingsSay) {
+  Csv(ContactCsv(331));
+  request_.period = 0.025;
+  request_.overlap = 4;
+  const auto packs = ReadAll();
+  ASSERT_EQ(packs.size(), 10u) << "the last one ends at 325";
+  for (int k = 1; k <= 10; ++k) {
+    const DataPack& pack = packs[static_cast<std::size_t>(k - 1)].pack;
+    EXPECT_EQ(pack.seq, k);
+    EXPECT_EQ(pack.num_samples, 100);
+    EXPECT_DOUBLE_EQ(pack.t_last_s, 0.1 + 0.025 * (k - 1));
+    EXPECT_EQ(pack.u[0][0], ContactAt(25 * (k - 1) + 1).x);
+    EXPECT_EQ(pack.y[99], ContactAt(25 * (k - 1) + 100).f);
+  }
+  EXPECT_THAT(source_->notes(), Contains(HasSubstr("the last 5 samples do not fill a pack")));
+  request_.one_recursion = true;
+  const auto of_one = ReadAll();
+  ASSERT_EQ(of_one.size(), 2u);
+  EXPECT_EQ(of_one[0].pack.seq, 4);
+  EXPECT_EQ(of_one[1].pack.seq, 8);
+  EXPECT_EQ(of_one[1].pack.y, packs[7].pack.y);
+  request_.period = 0.1;  // 400 samples
+  EXPECT_THAT(ErrorOf(), HasSubstr("into 1 to 64 samples; change timing.period_ms or timing.overlap"));
+}
+
+TEST_F(PackSourceTest, AGapInACsvIsLeftOutOfAllPacksThatOverlapIt) {
+  std::string text = ContactCsv(601);
+  const std::size_t from = text.find("\n0.101,"), to = text.find("\n0.401,");
+  text.erase(from, to - from);  // the samples 101 to 400
+  Csv(text);
+  request_.period = 0.025;
+  request_.overlap = 4;
+  const auto packs = ReadAll();
+  // Of pack k with the samples 25 (k - 1) + 1 .. 25 (k - 1) + 100: what is left.
+  std::vector<std::pair<std::int64_t, int>> seen, expected;
+  for (const RecordedPack& p : packs) seen.emplace_back(p.pack.seq, p.pack.num_samples);
+  for (int k = 1; k <= 21; ++k) {
+    const int left = std::clamp(100 - 25 * (k - 1), 0, 100) + std::clamp(25 * (k - 1) + 100 - 400, 0, 100);
+    if (left > 0) expected.emplace_back(k, left);
+  }
+  EXPECT_EQ(seen, expected);
+  EXPECT_EQ(source_->counts().lost, 21 - static_cast<std::int64_t>(expected.size()));
+  EXPECT_EQ(packs.back().pack.y[99], ContactAt(600).f);
+}
+
 TEST_F(PackSourceTest, CsvAndLogGiveTheSamePacks) {
   Csv(ContactCsv(301));
   const auto from_csv = ReadAll();

@@ -153,6 +153,14 @@ TEST(StrictToml, KeysLeftToOthersAreNotChecked) {
   EXPECT_NO_THROW(t.Finish());
 }
 
+TEST(StrictToml, ATableOfWhichSomeKeysAreReadCanBeLeftToOthers) {
+  auto t = Toml("[rt]\nknown = 1\nanything = 1\n");
+  EXPECT_EQ(t.Table("rt").Integer("known", 0, 0, 9), 1);
+  EXPECT_THROW(t.Finish(), ConfigError);
+  t.LeaveToOthers("rt");
+  EXPECT_NO_THROW(t.Finish());
+}
+
 TEST(StrictToml, KeysComeInTheOrderOfTheFile) {
   EXPECT_THAT(Toml("zeta = 1\nalpha = 2\n[mid]\n").Keys(), ElementsAre("zeta", "alpha", "mid"));
 }

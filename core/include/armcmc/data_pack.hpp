@@ -24,7 +24,10 @@ struct DataPack {
   double t_last_s = 0.0;    ///< Plant time of the last sample, s.
   double dt = 0.0;          ///< Sample interval T, s, > 0.
   PlantNumber plant = PlantNumber::kNone;
-  std::uint64_t fingerprint = 0;            ///< Of a described plant: Plant::fingerprint().
+  std::uint64_t fingerprint = 0;  ///< Of a described plant: Plant::fingerprint().
+  /// The samples of the pack seq + seq_step follow the last one of this: 1, or as many packs as share a sample
+  /// (EstimatorSettings::overlap). An estimator sets it in what it hands on.
+  int seq_step = 1;
   int num_samples = 0;                      ///< [1, kMaxPackSamples].
   int num_inputs = 0;                       ///< [1, kMaxPackInputs].
   std::array<double, kMaxPackSamples> y{};  ///< Output, in its unit.

@@ -36,6 +36,10 @@ class Estimator {
  public:
   /// @throws std::invalid_argument from settings.Validate(). Allocates all memory that it will ever use.
   explicit Estimator(const EstimatorSettings& settings);
+  /// Uses the scratch of another one with the same model and sampler, which lives as long or longer: most of the memory
+  /// of an estimator. Of both, one at a time may adjust, and one execute; Remember() comes before the other's Draw().
+  /// @throws std::invalid_argument from settings.Validate().
+  Estimator(const EstimatorSettings& settings, const Estimator& lender);
   ~Estimator();
   Estimator(const Estimator&) = delete;
   Estimator& operator=(const Estimator&) = delete;
@@ -79,6 +83,9 @@ class Estimator {
   /// @param result  Of Adjust() for the newest pack, before Execute() has seen it.
   /// @rt No heap, no lock, no throw; O(samples). While neither Adjust() nor Execute() runs.
   void Forecast(const AdjustResult& result, PackForecast* forecast) noexcept ARMCMC_NONBLOCKING;
+
+  /// What the gap watch has found, as the newest Execute() left it. @rt O(1). While Execute() does not run.
+  [[nodiscard]] const GapState& gap() const noexcept ARMCMC_NONBLOCKING;
 
   /// Forgets everything learnt: the next pack meets the initial prior. (A restarted plant is no reason to
   /// call it: the mismatch test decides whether the old posterior still holds.)

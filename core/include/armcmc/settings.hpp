@@ -149,6 +149,10 @@ struct EstimatorSettings {
   std::array<EffectSettings, kMaxEffects> effects;  ///< Each at most once.
   int num_effects = 0;
   GapWatchSettings gap_watch;  ///< Changes no estimate.
+  /// L, in [1, kMaxPackSamples]: a pack shares samples with the L - 1 before it, and its window begins where that of
+  /// the pack seq - L ended. An Estimator gets every L-th pack, so that it counts a sample once; InterleavedEstimator
+  /// deals them out. The samples of a pack are a multiple of L.
+  int overlap = 1;
 
   /// @throws std::invalid_argument naming the key, its value and the allowed range.
   void Validate() const;

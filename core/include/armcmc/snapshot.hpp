@@ -96,8 +96,8 @@ class SnapshotReader {
 };
 
 /// A number for everything in the settings that gives a posterior its meaning: model, parameters, priors, bounds,
-/// noise, constants, effects. A snapshot of other settings must not be restored. (Draws, seed and forgetting may
-/// differ.)
+/// noise, constants, effects, overlap. A snapshot of other settings must not be restored. (Draws, seed and forgetting
+/// may differ.)
 [[nodiscard]] std::uint64_t SnapshotIdentity(const EstimatorSettings& settings) noexcept;
 
 }  // namespace armcmc

@@ -101,7 +101,7 @@ void BendPredictor::Predict(const DataPack& pack, const ShownEstimates& shown,
                             std::array<double, kMaxPackSamples>* output,
                             std::array<double, kMaxPackSamples>* free_run) noexcept {
   motion_.SetInterval(pack.dt);
-  const bool continues = pack.seq == last_seq_ + 1 && pack.run_id == last_run_;
+  const bool continues = pack.seq == last_seq_ + pack.seq_step && pack.run_id == last_run_;
   last_seq_ = pack.seq;
   last_run_ = pack.run_id;
   const double first_s = pack.t_last_s - (pack.num_samples - 1) * pack.dt;

@@ -58,8 +58,8 @@ void BendWatch::Step(const DataPack& pack, const ShownEstimates& shown) noexcept
     const int valve = u[0] != 0.0 ? 0 : (u[1] != 0.0 ? 1 : 2);
     return sensor_.TruePressure(u[2], first_s + n * pack.dt, valve, shown);
   };
-  const bool continues =
-      last_seq_ > 0 && pack.seq == last_seq_ + 1 && pack.run_id == last_run_ && pack.dt == motion_.interval();
+  const bool continues = last_seq_ > 0 && pack.seq == last_seq_ + pack.seq_step && pack.run_id == last_run_ &&
+                         pack.dt == motion_.interval();
   motion_.SetInterval(pack.dt);
   if (!continues) Start(pack, pressure(0));
   last_seq_ = pack.seq;

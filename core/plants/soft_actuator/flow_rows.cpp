@@ -47,7 +47,7 @@ FlowPlan::FlowPlan(const EstimatorSettings& settings, int first_amplitude)
 FlowRows::FlowRows(const FlowPlan& plan) : plan_(plan) {}
 
 void FlowRows::Recall(const DataPack& pack) noexcept {
-  const bool continues = seq_ >= 0 && pack.seq == seq_ + 1 && pack.run_id == run_id_ && pack.dt == dt_;
+  const bool continues = seq_ >= 0 && pack.seq == seq_ + pack.seq_step && pack.run_id == run_id_ && pack.dt == dt_;
   seq_ = pack.seq;
   run_id_ = pack.run_id;
   dt_ = pack.dt;

@@ -84,7 +84,7 @@ void GapWatch::AnalysePiece() noexcept {
 bool GapWatch::Record(const DataPack& pack, bool changed, bool drifts) noexcept {
   Recording& block = recordings_[At(recording_)];
   const DataPack* last = joining_ ? &block.packs[At(block.count)] : nullptr;
-  const bool follows = last_seq_ > 0 && pack.seq == last_seq_ + 1 && pack.run_id == last_run_;
+  const bool follows = last_seq_ > 0 && pack.seq == last_seq_ + pack.seq_step && pack.run_id == last_run_;
   // A block knows one run of one plant, in order.
   if (pack.run_id != last_run_ || pack.seq <= last_seq_) block.count = 0;
   last_seq_ = pack.seq;
@@ -102,6 +102,7 @@ bool GapWatch::Record(const DataPack& pack, bool changed, bool drifts) noexcept 
   if (!joining_) {
     own = pack;
     own.seq = ++number_;
+    own.seq_step = 1;
     block.changed[At(block.count)] = changed;
   } else {
     const auto at = static_cast<std::ptrdiff_t>(own.num_samples);

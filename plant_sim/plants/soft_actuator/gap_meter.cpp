@@ -33,7 +33,7 @@ class ActuatorGapMeter final : public GapMeter {
     const auto plant = scenario_.MakePlant();
     plant->Hide(effects, timing);
     EffectChain chain(effects, timing, plant.get());
-    const long long last = std::min(scenario_.num_packs() * scenario_.pack_samples, kMaxGapSamples);
+    const long long last = std::min(scenario_.last_sample(scenario_.num_packs()), kMaxGapSamples);
     const double p_atm = scenario_.options.Number("p_atm");
     std::array<Valve, 2> valves;
     Eigen::Vector2d bend = Eigen::Vector2d::Zero();

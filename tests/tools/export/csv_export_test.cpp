@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -162,6 +163,38 @@ TEST_F(CsvExport, SamplesOfAPackHaveARowAndATimeEach) {
   EXPECT_EQ(Number(rows[150].at("v [m s^-1]")), replay::ContactAt(151).v);
   EXPECT_EQ(Number(rows[150].at("f [N]")), replay::ContactAt(151).f);
   EXPECT_EQ(rows[150].at("seq"), "2");
+}
+
+TEST_F(CsvExport, SamplesThatPacksShareHaveOneRow) {
+  {
+    LogWriter log(request_.log);
+    for (int k = 1; k <= 21; ++k) {  // a pack every 10 samples
+      data_pack_t pack = ContactPack(1);
+      pack.seq = k;
+      for (int n = 0; n < 100; ++n) {
+        const replay::ContactSample s = replay::ContactAt(10 * (k - 1) + 1 + n);
+        pack.u[n][0] = s.x;
+        pack.u[n][1] = s.v;
+        pack.y[n] = s.f;
+        pack.t_last_s = s.t;
+      }
+      log.Write("PLANT_PACK", pack);
+      if (k % 5 == 0) log.Write("PLANT_PACK", pack);  // twice: as it came
+    }
+  }
+  request_.channels = {"PLANT_PACK"};
+  Export();
+  Rows rows = Table("PLANT_PACK");
+  EXPECT_EQ(rows.size(), 300u + 4 * 100u);
+  std::erase_if(
+      rows, [seen = std::set<std::string>()](const auto& row) mutable { return !seen.insert(row.at("f [N]")).second; });
+  ASSERT_EQ(rows.size(), 300u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(Number(rows[i].at("f [N]")), replay::ContactAt(static_cast<int>(i) + 1).f) << i;
+    if (i > 0) {
+      EXPECT_NEAR(Number(rows[i].at("t [s]")) - Number(rows[i - 1].at("t [s]")), 0.001, 1e-12) << i;
+    }
+  }
 }
 
 TEST_F(CsvExport, PosteriorsAreWideOrLong) {

@@ -96,7 +96,16 @@ class Table {
       dt = pack->second.dt;
       t = plant_.start.at(integer("run_id")) + pack->second.t_last;
     }
-    for (std::int64_t n = 0; n < samples; ++n)
+    const std::int64_t run = integer("run_id"), seq = integer("seq");
+    // Packs may overlap: their samples are written once.
+    std::int64_t known = 0;
+    if (dt > 0.0 && run == last_run_ && seq > last_seq_)
+      while (known < samples && t - static_cast<double>(samples - 1 - known) * dt < last_t_ + 0.5 * dt) ++known;
+    if (known == samples) known = 0;  // a clock that stands still says nothing
+    last_run_ = run;
+    last_seq_ = seq;
+    last_t_ = t;
+    for (std::int64_t n = known; n < samples; ++n)
       WriteRow(data, t - static_cast<double>(samples - 1 - n) * dt, static_cast<std::size_t>(n));
   }
 
@@ -140,6 +149,8 @@ class Table {
   std::string row_;
   bool per_sample_ = false, long_ = false;
   std::int64_t rows_ = 0;
+  std::int64_t last_run_ = 0, last_seq_ = 0;  ///< Of a table with a row for each sample.
+  double last_t_ = 0.0;
 };
 
 bool Wanted(const ChannelScan& channel, const ExportRequest& request) {

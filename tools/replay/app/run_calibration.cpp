@@ -46,6 +46,7 @@ int RunCalibration(const Arguments& a) {
   const Estimator estimator(session.settings);
   SourceRequest source = RequestFor(a, session, estimator);
   source.repeat_draws = false;
+  source.one_recursion = true;
 
   calibrate::CalibrationRequest request;
   request.settings = session.settings;

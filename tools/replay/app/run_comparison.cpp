@@ -20,6 +20,7 @@ compare::RunTrace Trace(const Arguments& a, const Session& session, const std::s
   const Estimator names(session.settings);
   SourceRequest request = RequestFor(a, session, names);
   request.repeat_draws = false;
+  request.one_recursion = true;
   const auto source = OpenSource(request);
   support::Progress progress("compare");
   return compare::TraceRun(session.settings, source.get(), label,

@@ -18,7 +18,8 @@ namespace armcmc::replay {
 
 int RunEstimates(const Arguments& a) {
   const Session session = ReadSession(a.config, a.model, a.seed);
-  Estimator estimator(session.settings);
+  InterleavedEstimator recursions(session.settings);
+  const Estimator& estimator = recursions.first();
   const auto source = OpenSource(RequestFor(a, session, estimator));
   std::optional<Verifier> verifier;
   if (a.verify) verifier.emplace(a.data, a.prefix, session.settings);
@@ -32,13 +33,13 @@ int RunEstimates(const Arguments& a) {
   std::optional<PredictionCsv> predictions;
   if (!a.predictions.empty()) {
     predictions_file = OpenOutput(a.predictions);
-    predictions.emplace(&predictions_file);
+    predictions.emplace(&predictions_file, recursions.overlap());
   }
-  StepCheck steps(session.settings.plant);
+  StepCheck steps(session.settings.plant, recursions.overlap());
   ReplaySummary summary;
   {
     support::Progress progress(a.verify ? "verify" : "replay");
-    summary = Replay(source.get(), &estimator, [&](const RecordedPack& recorded, const Estimate& estimate) {
+    summary = Replay(source.get(), &recursions, [&](const RecordedPack& recorded, const Estimate& estimate) {
       steps.Add(recorded.pack);
       if (estimates) estimates->Write(estimate);
       if (predictions) predictions->Write(recorded, estimate);

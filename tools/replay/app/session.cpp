@@ -41,6 +41,7 @@ SourceRequest RequestFor(const Arguments& a, const Session& session, const Estim
     request.recording = std::move(recording);
   }
   request.period = session.period;
+  request.overlap = session.settings.overlap;
   request.skip_bad = a.skip_bad;
   request.prefix = a.prefix;
   request.draws_from = a.draws_from;

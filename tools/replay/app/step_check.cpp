@@ -23,7 +23,8 @@ double Reported(const Estimator& estimator, const Estimate& last, const std::str
 
 }  // namespace
 
-StepCheck::StepCheck(std::shared_ptr<const PlantProgram> plant) : plant_(std::move(plant)) {
+StepCheck::StepCheck(std::shared_ptr<const PlantProgram> plant, int overlap)
+    : plant_(std::move(plant)), overlap_(overlap) {
   if (plant_ == nullptr || plant_->plant().states().empty()) {
     plant_ = nullptr;
     return;
@@ -32,8 +33,8 @@ StepCheck::StepCheck(std::shared_ptr<const PlantProgram> plant) : plant_(std::mo
 }
 
 void StepCheck::Add(const DataPack& pack) {
-  if (plant_ == nullptr || series_.num_rows() >= kMostRows) return;
-  if (pack.seq != last_seq_ + 1 || pack.run_id != last_run_ || series_.runs.empty())
+  if (plant_ == nullptr || series_.num_rows() >= kMostRows || pack.seq % overlap_ != 0) return;
+  if (pack.seq != last_seq_ + overlap_ || pack.run_id != last_run_ || series_.runs.empty())
     series_.runs.push_back(series_.num_rows());
   last_seq_ = pack.seq;
   last_run_ = pack.run_id;

@@ -14,7 +14,8 @@ namespace armcmc::replay {
 class StepCheck {
  public:
   /// @param plant  Null, or without states: there is nothing to look at.
-  explicit StepCheck(std::shared_ptr<const PlantProgram> plant);
+  /// @param overlap  EstimatorSettings::overlap: of the packs that share a sample one is looked at.
+  StepCheck(std::shared_ptr<const PlantProgram> plant, int overlap);
 
   void Add(const DataPack& pack);
   /// A line that says what to do, for the parameters of the last estimate; empty: the steps are short enough.
@@ -22,6 +23,7 @@ class StepCheck {
 
  private:
   std::shared_ptr<const PlantProgram> plant_;
+  int overlap_;
   identify::Series series_;
   std::int64_t last_seq_ = 0, last_run_ = 0;
 };

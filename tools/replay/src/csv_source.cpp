@@ -70,7 +70,7 @@ CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> rec
     throw support::InputError(request.data.string() + ": one row is too few, the sample interval is unknown");
   if (request.described != nullptr) fingerprint_ = request.described->plant().fingerprint();
   NumberSamples(request);
-  last_pack_ = number_.back() / samples_per_pack_;
+  if (number_.back() >= samples_per_pack_) last_pack_ = (number_.back() - samples_per_pack_) / stride_ + 1;
   if (last_pack_ == 0)
     throw support::InputError(request.data.string() + ": " + std::to_string(number_.size()) +
                               " rows do not fill a pack; expected " +
@@ -88,18 +88,20 @@ void CsvSource::NumberSamples(const SourceRequest& request) {
     number_[i] = number_[i - 1] + static_cast<std::int64_t>(std::clamp(steps, 1.0, 1e12));
   }
   dt_ = Snapped((t.back() - t.front()) / static_cast<double>(number_.back() - number_[0]));
+  const int most = kMaxPackSamples / request.overlap;
   if (request.period == 0.0) {
-    samples_per_pack_ = support::SuitablePackLength(dt_, kMaxPackSamples);
+    stride_ = support::SuitablePackLength(dt_, most);
+    samples_per_pack_ = stride_ * request.overlap;
     return;
   }
   const double ratio = request.period / dt_;
-  samples_per_pack_ = std::llround(std::min(ratio, 1e6));
-  if (samples_per_pack_ < 1 || samples_per_pack_ > kMaxPackSamples ||
-      std::fabs(ratio - std::round(ratio)) > 1e-3 * ratio)
+  stride_ = std::llround(std::min(ratio, 1e6));
+  samples_per_pack_ = stride_ * request.overlap;
+  if (stride_ < 1 || stride_ > most || std::fabs(ratio - std::round(ratio)) > 1e-3 * ratio)
     throw support::InputError(
         request.data.string() + ": is sampled every " + support::ExactNumber(dt_) +
         " s, which does not divide timing.period_ms = " + support::ExactNumber(request.period * 1e3) + " into 1 to " +
-        std::to_string(kMaxPackSamples) + " samples; change timing.period_ms");
+        std::to_string(most) + " samples; change timing.period_ms" + (request.overlap > 1 ? " or timing.overlap" : ""));
 }
 
 void CsvSource::Fill(std::size_t end_row, DataPack* pack, std::array<double, kMaxPackSamples>* t) const {
@@ -123,7 +125,9 @@ void CsvSource::Fill(std::size_t end_row, DataPack* pack, std::array<double, kMa
 
 void CsvSource::SkipEmptyPacks() {
   if (row_ >= number_.size()) return;
-  const std::int64_t filled = (number_[row_] + samples_per_pack_ - 1) / samples_per_pack_;
+  // The first pack that reaches up to the next row.
+  const std::int64_t beyond = std::max<std::int64_t>(number_[row_] - samples_per_pack_, 0);
+  const std::int64_t filled = (beyond + stride_ - 1) / stride_ + 1;
   const std::int64_t before = std::min(filled, last_pack_) - 1;
   if (before <= pack_) return;
   counts_.lost += before - pack_;
@@ -135,11 +139,11 @@ bool CsvSource::Next(RecordedPack* next) {
     SkipEmptyPacks();
     ++pack_;
     std::size_t end_row = row_;
-    while (end_row < number_.size() && number_[end_row] <= pack_ * samples_per_pack_) ++end_row;
+    while (end_row < number_.size() && number_[end_row] <= (pack_ - 1) * stride_ + samples_per_pack_) ++end_row;
     const auto missing = samples_per_pack_ - static_cast<std::int64_t>(end_row - row_);
     const bool usable = missing == 0 || (missing < samples_per_pack_ && takes_gaps_);
     if (usable) Fill(end_row, &next->pack, &next->t);
-    row_ = end_row;
+    while (row_ < number_.size() && number_[row_] <= pack_ * stride_) ++row_;
     if (!usable) {
       ++counts_.lost;
       continue;
@@ -162,7 +166,7 @@ bool CsvSource::Next(RecordedPack* next) {
 std::vector<std::string> CsvSource::notes() const {
   std::vector<std::string> notes = samples_.notes;
   if (incomplete_ > 0) notes.push_back(std::to_string(incomplete_) + " packs are used although samples are missing");
-  if (const std::int64_t left = number_.back() % samples_per_pack_; left > 0)
+  if (const std::int64_t left = (number_.back() - samples_per_pack_) % stride_; left > 0)
     notes.push_back("the last " + std::to_string(left) + " samples do not fill a pack and are left out");
   return notes;
 }

@@ -17,7 +17,7 @@ namespace armcmc::replay {
 namespace {
 
 rt::PackFormat FormatOf(const SourceRequest& request) {
-  rt::PackFormat format{.plant = request.plant, .num_inputs = request.num_inputs};
+  rt::PackFormat format{.plant = request.plant, .num_inputs = request.num_inputs, .overlap = request.overlap};
   if (request.described != nullptr) {
     format.name = request.described->plant().description().name;
     format.fingerprint = request.described->plant().fingerprint();

@@ -12,16 +12,29 @@
 #include "armcmc/support/program.hpp"
 
 namespace armcmc::replay {
+namespace {
 
-bool IsLcmLog(const std::filesystem::path& path) {
-  if (path.extension() == ".lcm" || path.extension() == ".lcmlog") return true;
-  std::array<char, 4> start{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(start.data(), start.size());
-  return file && start == std::array<char, 4>{'\xED', '\xA1', '\xDA', '\x01'};
-}
+/// The packs of one recursion.
+class OneRecursion final : public PackSource {
+ public:
+  OneRecursion(std::unique_ptr<PackSource> source, int overlap) : source_(std::move(source)), overlap_(overlap) {}
 
-std::unique_ptr<PackSource> OpenSource(const SourceRequest& request) {
+  bool Next(RecordedPack* next) override {
+    while (source_->Next(next))
+      if (next->pack.seq % overlap_ == 0) return true;
+    return false;
+  }
+  [[nodiscard]] PackCounts counts() const override { return source_->counts(); }
+  [[nodiscard]] std::vector<std::string> notes() const override { return source_->notes(); }
+  [[nodiscard]] double progress() const override { return source_->progress(); }
+  [[nodiscard]] support::LcmLogDamage damage() const override { return source_->damage(); }
+
+ private:
+  std::unique_ptr<PackSource> source_;
+  int overlap_;
+};
+
+std::unique_ptr<PackSource> OpenWhole(const SourceRequest& request) {
   const bool is_log = request.recording == nullptr && IsLcmLog(request.data);
   std::optional<DrawRecord> record;
   if (!request.draws_from.empty()) {
@@ -37,6 +50,22 @@ std::unique_ptr<PackSource> OpenSource(const SourceRequest& request) {
   if (request.recording != nullptr) return std::make_unique<RecordingSource>(request, std::move(record));
   if (record) record->ForgetRuns(request.draws_from);
   return std::make_unique<CsvSource>(request, std::move(record));
+}
+
+}  // namespace
+
+bool IsLcmLog(const std::filesystem::path& path) {
+  if (path.extension() == ".lcm" || path.extension() == ".lcmlog") return true;
+  std::array<char, 4> start{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), start.size());
+  return file && start == std::array<char, 4>{'\xED', '\xA1', '\xDA', '\x01'};
+}
+
+std::unique_ptr<PackSource> OpenSource(const SourceRequest& request) {
+  std::unique_ptr<PackSource> source = OpenWhole(request);
+  if (!request.one_recursion || request.overlap == 1) return source;
+  return std::make_unique<OneRecursion>(std::move(source), request.overlap);
 }
 
 }  // namespace armcmc::replay

@@ -1,5 +1,6 @@
 #include "armcmc/replay/prediction_csv.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -16,11 +17,21 @@ void Append(double value, std::string* row) {
 
 }  // namespace
 
-PredictionCsv::PredictionCsv(std::ostream* out) : out_(out) { *out_ << "t,pack,y,y_shown,y_shown_free_run\n"; }
+PredictionCsv::PredictionCsv(std::ostream* out, int overlap) : out_(out), overlap_(overlap) {
+  *out_ << "t,pack,y,y_shown,y_shown_free_run\n";
+}
 
 void PredictionCsv::Write(const RecordedPack& recorded, const Estimate& estimate) {
+  const DataPack& pack = recorded.pack;
+  const bool goes_on = pack.run_id == last_run_ && pack.seq > last_seq_ && last_seq_ > 0;
+  const std::int64_t stride = pack.num_samples / overlap_;
+  const std::int64_t fresh =
+      goes_on ? std::min<std::int64_t>((pack.seq - last_seq_) * stride, pack.num_samples) : pack.num_samples;
+  last_run_ = pack.run_id;
+  last_seq_ = pack.seq;
   std::string row;
-  for (std::size_t n = 0; n < static_cast<std::size_t>(recorded.pack.num_samples); ++n) {
+  for (auto n = static_cast<std::size_t>(pack.num_samples - fresh); n < static_cast<std::size_t>(pack.num_samples);
+       ++n) {
     row.clear();
     Append(recorded.t[n], &row);
     row.append(",").append(std::to_string(estimate.seq)).append(",");

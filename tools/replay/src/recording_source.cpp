@@ -11,9 +11,11 @@ namespace armcmc::replay {
 RecordingSource::RecordingSource(const SourceRequest& request, std::optional<DrawRecord> record)
     : recording_(request.recording), record_(std::move(record)) {
   const support::Recording& r = *recording_;
-  samples_per_pack_ =
-      static_cast<std::size_t>(request.period > 0.0 ? std::lround(std::min(request.period / r.dt, 1e6))
-                                                    : support::SuitablePackLength(r.dt, kMaxPackSamples));
+  const auto overlap = static_cast<std::size_t>(request.overlap);
+  stride_ = static_cast<std::size_t>(request.period > 0.0
+                                         ? std::lround(std::min(request.period / r.dt, 1e6))
+                                         : support::SuitablePackLength(r.dt, kMaxPackSamples / request.overlap));
+  samples_per_pack_ = stride_ * overlap;
   if (samples_per_pack_ < 1 || samples_per_pack_ > kMaxPackSamples)
     throw support::InputError(r.title + ": has a sample every " + std::to_string(r.dt) +
                               " s, so that a period does not hold 1 to " + std::to_string(kMaxPackSamples) +
@@ -69,7 +71,7 @@ bool RecordingSource::Next(RecordedPack* next) {
     }
     ++pack_;
     Fill(next);
-    row_ += samples_per_pack_;
+    row_ += stride_;
     next->limits = kNoDrawLimits;
     if (record_) {
       const std::optional<DrawLimits> limits = record_->Find(next->pack.run_id, pack_);
@@ -89,7 +91,8 @@ std::vector<std::string> RecordingSource::notes() const {
   std::size_t left = 0;
   for (std::size_t run = 0; run < recording_->runs.size(); ++run) {
     const std::size_t end = run + 1 < recording_->runs.size() ? recording_->runs[run + 1] : recording_->num_rows();
-    left += (end - recording_->runs[run]) % samples_per_pack_;
+    const std::size_t length = end - recording_->runs[run];
+    left += length < samples_per_pack_ ? length : (length - samples_per_pack_) % stride_;
   }
   if (left > 0)
     notes.push_back(std::to_string(left) + " samples at the ends of runs do not fill a pack and are left out");

@@ -7,10 +7,14 @@
 #include "armcmc/adjust_result.hpp"
 
 namespace armcmc::replay {
+namespace {
 
-ReplaySummary Replay(PackSource* source, Estimator* estimator,
-                     const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate,
-                     PackForecast* forecast) {
+using OnEstimate = std::function<void(const RecordedPack&, const Estimate&)>;
+
+/// @param fresh  Share of the samples of a pack that no pack before it has.
+template <typename AnyEstimator>
+ReplaySummary Run(PackSource* source, AnyEstimator* estimator, double fresh, const OnEstimate& on_estimate,
+                  PackForecast* forecast) {
   using Clock = std::chrono::steady_clock;
   constexpr Nanos kNever = std::numeric_limits<Nanos>::max();
   const std::unique_ptr<AdjustResult> result = estimator->MakeResult();
@@ -31,7 +35,7 @@ ReplaySummary Replay(PackSource* source, Estimator* estimator,
     compute += took;
     summary.pack_compute_s.push_back(std::chrono::duration<double>(took).count());
     ++summary.packs;
-    summary.data_s += recorded->pack.num_samples * recorded->pack.dt;
+    summary.data_s += fresh * recorded->pack.num_samples * recorded->pack.dt;
     bool updated = false, modified = false, truncated = false;
     for (const ModeEstimate& mode : estimate->modes) {
       updated = updated || mode.updated;
@@ -46,6 +50,17 @@ ReplaySummary Replay(PackSource* source, Estimator* estimator,
   summary.compute_s = std::chrono::duration<double>(compute).count();
   summary.last = *estimate;
   return summary;
+}
+
+}  // namespace
+
+ReplaySummary Replay(PackSource* source, Estimator* estimator, const OnEstimate& on_estimate, PackForecast* forecast) {
+  return Run(source, estimator, 1.0, on_estimate, forecast);
+}
+
+ReplaySummary Replay(PackSource* source, InterleavedEstimator* estimator, const OnEstimate& on_estimate,
+                     PackForecast* forecast) {
+  return Run(source, estimator, 1.0 / estimator->overlap(), on_estimate, forecast);
 }
 
 }  // namespace armcmc::replay

@@ -116,6 +116,7 @@ EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& mo
   ReadForgetting(root.Table("forgetting"), &settings.forgetting);
   ReadSampler(root.Table("sampler"), &settings.sampler);
   ReadGapWatch(root.Table("gap_watch"), &settings.gap_watch);
+  settings.overlap = static_cast<int>(root.Table("timing").Integer("overlap", settings.overlap, 1, kMaxPackSamples));
   if (plant == nullptr && IsModelFile(model_override)) ApplyModelFile(model_override, &settings);
   try {
     settings.Validate();

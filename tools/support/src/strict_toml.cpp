@@ -206,7 +206,10 @@ bool StrictTable::IsTable(std::string_view key) const {
   return node != nullptr && node->is_table();
 }
 
-void StrictTable::LeaveToOthers(std::string_view key) { static_cast<void>(node_->Ask(key)); }
+void StrictTable::LeaveToOthers(std::string_view key) {
+  static_cast<void>(node_->Ask(key));
+  std::erase_if(node_->children, [key](const auto& child) { return child.first == key; });
+}
 
 double StrictTable::Number(std::string_view key, double fallback, double lo, double hi) {
   const toml::node* node = node_->Ask(key);

@@ -30,6 +30,7 @@ struct DescribedScenario {
   double dt = 1e-3;  ///< s, sample interval.
   double duration_s = 10.0;
   std::uint64_t seed = 1;  ///< Of multisines, steps and noise.
+  int pack_stride = 0;     ///< Samples from pack to pack; 0: as many as a pack has.
   std::map<std::string, std::vector<double>>
       truth;                                   ///< By parameter: one value, or one a mode. Left out: the usual one.
   std::map<std::string, InputProgram> inputs;  ///< By signal.

@@ -8,7 +8,8 @@
 
 namespace armcmc::plant_sim {
 
-/// Fills packs from a simulation. Pack k holds samples N (k-1) + 1 .. N k; sample 0 is in no pack.
+/// Fills packs from a simulation. Pack k holds samples S (k-1) + 1 .. S (k-1) + N, S = Scenario::stride(); sample 0 is
+/// in no pack.
 class PackBuilder {
  public:
   PackBuilder(const Scenario& scenario, std::uint64_t seed, std::int64_t run_id);
@@ -24,6 +25,7 @@ class PackBuilder {
 
  private:
   Simulation simulation_;
+  int stride_;
   const PlantFamily& family_;
   data_pack_t pack_{};
   plant_truth_t truth_{};

@@ -16,7 +16,7 @@ struct PlaybackResult {
 
 /// Sends all packs of a builder, pack k when it is due:
 ///
-///   due(k) = start + k T_s / speed     on CLOCK_MONOTONIC, k counted on over the runs, T_s = N dt
+///   due(k) = start + k T_s / speed     on CLOCK_MONOTONIC, k counted on over the runs, T_s = S dt
 ///
 /// The times are absolute, so that the grid never drifts. A stall of the machine delays packs but loses none.
 /// @param speed   > 0; 2: twice as fast as the plant was.

@@ -14,9 +14,9 @@ namespace armcmc::plant_sim {
 
 /// Publishes packs in real time from a thread of its own.
 ///
-/// Pack k is due at start + k T_s on CLOCK_MONOTONIC (absolute sleeps, so that the grid never drifts). It is
-/// simulated before it is due, and stamped and sent when it is due. A stall of the machine delays packs but
-/// loses none: what is overdue is sent at once.
+/// Pack k is due at its last sample, start + N T + (k - 1) T_s on CLOCK_MONOTONIC (absolute sleeps: the grid never
+/// drifts). It is simulated before it is due, and stamped and sent when it is due. A stall of the machine delays packs
+/// but loses none: what is overdue is sent at once.
 class Publisher {
  public:
   /// @param log also gets every message when not null. All pointers must outlive the publisher.
@@ -59,7 +59,7 @@ class Publisher {
   /// False when a stop was asked for.
   [[nodiscard]] bool WaitUntil(std::int64_t t_ns) const noexcept;
 
-  std::int64_t period_ns_;
+  std::int64_t span_ns_, period_ns_;
   std::int64_t num_packs_;
   FaultPlan faults_;
   PackBuilder builder_;

@@ -81,7 +81,7 @@ class Scorer {
   void ScoreSample(View* view) const;
 
   const PlantFamily& family_;
-  int pack_samples_;
+  int pack_samples_, stride_;
   double dt_;
   Simulation simulation_;
   std::array<View, 2> views_;

@@ -48,9 +48,12 @@ class CollectStage {
   void PublishSequenceCounts() noexcept ARMCMC_NONBLOCKING;
   void Reject(RejectCause cause, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
   void NoteClock(bool continues, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
+  /// Whether packs share as many samples as is counted on. @param steps  Difference of the pack numbers.
+  void NoteOverlap(std::int64_t steps, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
   void NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
 
   Nanos period_ns_, deadline_ns_;
+  int overlap_;
   PackCodec codec_;
   SequenceTracker tracker_;
   ReleaseGrid grid_;
@@ -66,6 +69,7 @@ class CollectStage {
   std::int64_t silent_in_a_row_ = 0;
   std::int64_t plant_clock_ns_ = 0;  // of the newest usable pack
   double plant_time_s_ = 0.0;
+  bool overlap_told_ = false;        // in this run of the plant
   std::int64_t foreign_before_ = 0;  // at the begin of the window
   Nanos foreign_since_ns_ = 0;
   bool traffic_ = false;  // something came on the channel since the last tick

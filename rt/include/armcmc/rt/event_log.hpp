@@ -26,8 +26,9 @@ enum class EventKind : std::uint8_t {
   kBusFlooded,       ///< a: messages of other channels in one period.
   kStageHung,        ///< a: ns overdue when it was seen; `detail` is the Watched.
   kInjected,         ///< a: pack number, b: amount; `detail` is the InjectionKind.
+  kOverlapDiffers,   ///< a: samples from pack to pack, b: what PackFormat::overlap says. Once in a run of the plant.
 };
-inline constexpr int kNumEventKinds = 16;
+inline constexpr int kNumEventKinds = 17;
 
 struct Event {
   Nanos t_ns = 0;  ///< CLOCK_MONOTONIC.

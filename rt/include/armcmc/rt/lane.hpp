@@ -47,6 +47,7 @@ class Lane {
   [[nodiscard]] const DeadlineMonitor& monitor() const noexcept { return monitor_; }
   [[nodiscard]] const ExecuteStage& execute() const noexcept { return execute_; }
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return publish_.last_estimate(); }
+  [[nodiscard]] const PublicationLatency& latency() const noexcept { return publish_.latency(); }
 
   /// Flags a fault of another thread in the next status message. Any time, from any thread.
   void RaiseFault(std::int32_t flags) noexcept { counters_.faults.Raise(flags); }

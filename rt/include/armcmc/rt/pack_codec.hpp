@@ -26,8 +26,9 @@ enum class RejectCause : std::uint8_t {
   kNotFinite,       ///< NaN or infinity in a value that is used.
   kOutOfRange,      ///< A value beyond kMaxMagnitude, a pack number outside [1, 2^62], a negative plant time.
   kAllZero,         ///< Two samples or more and every value exactly zero: a dead sensor, no measurement.
+  kOverlap,         ///< n_samples is no multiple of PackFormat::overlap.
 };
-inline constexpr std::size_t kNumRejectCauses = 10;
+inline constexpr std::size_t kNumRejectCauses = 11;
 
 /// The three groups in which estimator_status_t counts them.
 enum class RejectGroup : std::uint8_t { kSize = 0, kType = 1, kValue = 2 };
@@ -58,6 +59,8 @@ class PackCodec {
     return described() ? described_.t_last_ns : message_.t_last_ns;
   }
   [[nodiscard]] double t_last_s() const noexcept { return described() ? described_.t_last_s : message_.t_last_s; }
+  [[nodiscard]] double dt() const noexcept { return described() ? described_.dt : message_.dt; }
+  [[nodiscard]] int num_samples() const noexcept { return described() ? described_.n_samples : message_.n_samples; }
   /// Copies the used rows and columns. @pre the last Decode() returned kNone.
   void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
 

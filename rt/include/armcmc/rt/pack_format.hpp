@@ -14,6 +14,7 @@ struct PackFormat {
   int num_inputs = 0;
   std::string_view name = {};     ///< Of a described plant; outlives whoever is given the format.
   std::uint64_t fingerprint = 0;  ///< Of a described plant's signals.
+  int overlap = 1;                ///< EstimatorSettings::overlap, of which the number of samples is a multiple.
 
   /// The channel behind the prefix.
   [[nodiscard]] const char* channel() const noexcept {

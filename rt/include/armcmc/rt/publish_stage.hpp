@@ -11,6 +11,7 @@
 #include "armcmc/rt/hand_over.hpp"
 #include "armcmc/rt/injection.hpp"
 #include "armcmc/rt/lcm_publisher.hpp"
+#include "armcmc/rt/publication_latency.hpp"
 #include "armcmc/rt/settings.hpp"
 #include "armcmc/rt/step_engine.hpp"
 
@@ -49,6 +50,8 @@ class PublishStage {
   [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return gap_alarm_; }
   /// The newest estimate that was published. @pre the thread has ended.
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return last_; }
+  /// Of all estimates that were published. @pre the thread has ended.
+  [[nodiscard]] const PublicationLatency& latency() const noexcept { return latency_; }
 
  private:
   void PublishStatus(const StepOutput* output) noexcept ARMCMC_NONBLOCKING;
@@ -77,6 +80,7 @@ class PublishStage {
   change_t change_{};
   estimator_status_t status_{};
   Estimate last_;
+  PublicationLatency latency_;
 };
 
 }  // namespace armcmc::rt

@@ -10,6 +10,7 @@
 #include "armcmc/data_pack.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/interleaved_estimator.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/rt/latest_value.hpp"
 #include "armcmc/rt/pack_format.hpp"
@@ -50,7 +51,7 @@ class StepEngine {
 /// The packs that an estimator takes. Its name lives as long as the estimator.
 [[nodiscard]] PackFormat PackFormatOf(const Estimator& estimator) noexcept ARMCMC_NONBLOCKING;
 
-/// The estimator of core as a StepEngine.
+/// The estimator of core as a StepEngine: one recursion, or as many as packs overlap.
 class EstimatorEngine final : public StepEngine {
  public:
   /// @throws std::invalid_argument from the settings. Allocates all memory.
@@ -68,6 +69,7 @@ class EstimatorEngine final : public StepEngine {
   void Reset() noexcept ARMCMC_NONBLOCKING override;
 
   /// Hands what is learnt to another thread after every step. Before the pipeline starts.
+  /// @pre estimator().settings().overlap == 1, as of Resume().
   /// @param snapshots  Of Estimator::kSnapshotBytes; outlives the engine.
   void SetSnapshots(SnapshotHandOver* snapshots) noexcept { snapshots_ = snapshots; }
   /// Goes on from what an engine of the same SnapshotIdentity() has saved; kept, so that Reset(), which ends the
@@ -75,10 +77,11 @@ class EstimatorEngine final : public StepEngine {
   /// @return false when it is damaged: starts afresh.
   [[nodiscard]] bool Resume(std::span<const std::byte> adjusted, std::span<const std::byte> executed);
 
-  [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
+  /// For names, units and settings; where packs overlap, the first of the recursions.
+  [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_.first(); }
 
  private:
-  Estimator estimator_;
+  InterleavedEstimator estimator_;
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
   SnapshotHandOver* snapshots_ = nullptr;
   bool warm_ = false;    // what the warm-up learns is handed to nobody

@@ -8,8 +8,9 @@
 
 namespace armcmc::replay {
 
-/// Packs from a CSV of samples. The first row is sample 0; pack k holds the samples (k-1) N + 1 .. k N, N = period /
-/// dt. Of a plant that a file describes the first row is sample 1, so that its packs are those that it sends.
+/// Packs from a CSV of samples. The first row is sample 0; pack k holds the samples (k-1) S + 1 .. (k-1) S + N, S =
+/// period / dt and N = S overlap. Of a plant that a file describes the first row is sample 1, so that its packs are
+/// those that it sends.
 ///
 /// A sample's number follows from its time, so that a row that is missing or was skipped leaves a gap. Such a pack is
 /// used with the samples that it has when the model has no memory of those before, else it counts as lost, as does one
@@ -18,7 +19,7 @@ class CsvSource final : public PackSource {
  public:
   /// Without a period packs are of 0.1 s where that is 20 samples at least, and of 100 samples where it is fewer.
   /// @throws support::InputError when the file is bad, or the period is not a whole number of samples in
-  /// [1, kMaxPackSamples].
+  /// [1, kMaxPackSamples / overlap].
   CsvSource(const SourceRequest& request, std::optional<DrawRecord> record);
 
   bool Next(RecordedPack* next) override;
@@ -38,7 +39,7 @@ class CsvSource final : public PackSource {
   support::CsvSamples samples_;
   std::optional<DrawRecord> record_;
   double dt_ = 0.0;
-  std::int64_t samples_per_pack_ = 0;
+  std::int64_t samples_per_pack_ = 0, stride_ = 0;
   std::vector<std::int64_t> number_;  // of each row
   std::size_t row_;
   std::int64_t pack_ = 0;  // the last one looked at

@@ -53,7 +53,9 @@ struct SourceRequest {
   int num_inputs = 2;
   std::shared_ptr<const PlantProgram> described;        ///< Of a plant that a file describes.
   std::shared_ptr<const support::Recording> recording;  ///< Of such a plant, instead of `data`; null: none.
-  double period = 0.1;               ///< s, T_s: a CSV is cut into packs of this length; 0: of one that suits it.
+  double period = 0.1;                                  ///< s, T_s between packs: a CSV is cut so; 0: as suits it.
+  int overlap = 1;                   ///< EstimatorSettings::overlap: a pack of a CSV spans so many periods.
+  bool one_recursion = false;        ///< Every overlap-th pack alone: for one Estimator, which counts a sample once.
   bool skip_bad = false;             ///< CSV: count and skip bad rows.
   std::string prefix;                ///< LCM: of the channel names.
   std::filesystem::path draws_from;  ///< Estimates of the run to repeat, CSV or LCM log; empty: those in the data.

@@ -8,8 +8,9 @@
 
 namespace armcmc::replay {
 
-/// Packs of a recording of a described plant, cut run by run: pack k of a run holds its samples (k-1) N .. k N - 1, as
-/// when the recording is played onto a bus. What does not fill a pack at the end of a run is left out.
+/// Packs of a recording of a described plant, cut run by run: pack k of a run holds its samples (k-1) S .. (k-1) S + N
+/// - 1, N = S overlap, as when the recording is played onto a bus. What does not fill a pack at the end of a run is
+/// left out.
 class RecordingSource final : public PackSource {
  public:
   /// @pre request.recording, request.described.
@@ -27,7 +28,7 @@ class RecordingSource final : public PackSource {
 
   std::shared_ptr<const support::Recording> recording_;
   std::optional<DrawRecord> record_;
-  std::size_t samples_per_pack_;
+  std::size_t samples_per_pack_ = 0, stride_ = 0;
   std::size_t run_ = 0;
   std::size_t row_ = 0;
   std::int64_t pack_ = 0;  ///< Of the run, the last one handed out.

@@ -6,6 +6,7 @@
 
 #include "armcmc/estimate.hpp"
 #include "armcmc/estimator.hpp"
+#include "armcmc/interleaved_estimator.hpp"
 #include "armcmc/replay/pack_source.hpp"
 
 namespace armcmc::replay {
@@ -27,6 +28,10 @@ struct ReplaySummary {
 /// @param on_estimate  Called after each pack.
 /// @param forecast     Filled with what was expected of the pack before it was seen, before on_estimate; may be null.
 ReplaySummary Replay(PackSource* source, Estimator* estimator,
+                     const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate,
+                     PackForecast* forecast = nullptr);
+/// The same where packs overlap: as in the real-time process, every pack by the recursion whose turn it is.
+ReplaySummary Replay(PackSource* source, InterleavedEstimator* estimator,
                      const std::function<void(const RecordedPack&, const Estimate&)>& on_estimate,
                      PackForecast* forecast = nullptr);
 

@@ -1,0 +1,51 @@
+#include "armcmc/interleaved_estimator.hpp"
+
+namespace armcmc {
+
+InterleavedEstimator::InterleavedEstimator(const EstimatorSettings& settings) {
+  estimators_.push_back(std::make_unique<Estimator>(settings));
+  EstimatorSettings others = settings;
+  others.gap_watch.enabled = false;
+  for (int j = 1; j < settings.overlap; ++j)
+    estimators_.push_back(std::make_unique<Estimator>(others, *estimators_.front()));
+  drawn_ = estimators_.front().get();
+}
+
+Estimator& InterleavedEstimator::Of(std::int64_t seq) noexcept {
+  const auto count = static_cast<std::int64_t>(estimators_.size());
+  // A number below 1 is no pack's: whoever gets it refuses it.
+  return *estimators_[static_cast<std::size_t>(seq > 0 ? seq % count : 0)];
+}
+
+Status InterleavedEstimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+                                  const DrawLimits& limits) noexcept {
+  Estimator& estimator = Of(pack.seq);
+  if (drawn_ != &estimator) drawn_->Remember(clock);  // the scratch that it has its draws in is shared
+  drawn_ = &estimator;
+  return estimator.Draw(pack, deadline_ns, clock, result, limits);
+}
+
+void InterleavedEstimator::Remember(ClockRef clock) noexcept { drawn_->Remember(clock); }
+
+Status InterleavedEstimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
+                                    const DrawLimits& limits) noexcept {
+  const Status status = Draw(pack, deadline_ns, clock, result, limits);
+  Remember(clock);
+  return status;
+}
+
+void InterleavedEstimator::Execute(const AdjustResult& result, Estimate* estimate) noexcept {
+  Estimator& estimator = Of(result.pack.seq);
+  estimator.Execute(result, estimate);
+  if (&estimator != estimators_.front().get()) estimate->gap = first().gap();
+}
+
+void InterleavedEstimator::Forecast(const AdjustResult& result, PackForecast* forecast) noexcept {
+  Of(result.pack.seq).Forecast(result, forecast);
+}
+
+void InterleavedEstimator::Reset() noexcept {
+  for (const auto& estimator : estimators_) estimator->Reset();
+}
+
+}  // namespace armcmc
