@@ -312,20 +312,29 @@ class Gap(InScratch):
 
 
 class Example(InScratch):
-    def run_example(self, *before):
-        return subprocess.run([sys.executable, *before, SOURCE / "tools/python/examples/posterior.py"], check=True,
-                              capture_output=True, text=True, cwd=self.dir).stdout
+    def run_example(self, **environment):
+        return subprocess.run([sys.executable, SOURCE / "tools/python/examples/posterior.py"], check=True, text=True,
+                              capture_output=True, cwd=self.dir, env={**os.environ, **environment}).stdout
 
-    def test_runs_and_finds_the_truth(self):
-        out = self.run_example()
+    def check_table(self, out):
+        self.assertEqual(len(out.splitlines()), 2)
         for line, true in zip(out.splitlines(), (4.0, 2.3)):
             mean, sd = float(line.split()[2]), float(line.split()[4])
             self.assertLess(abs(mean - true), 4.0 * sd, line)
+
+    def test_runs_and_finds_the_truth(self):
+        self.check_table(self.run_example())
         try:
             import matplotlib  # noqa: F401
         except ImportError:
             return
         self.assertTrue((self.dir / "posterior.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_prints_the_table_without_matplotlib(self):
+        self.file("matplotlib.py", "raise ImportError\n")
+        path = os.pathsep.join([str(self.dir), os.environ["PYTHONPATH"]])
+        self.check_table(self.run_example(PYTHONPATH=path))
+        self.assertFalse((self.dir / "posterior.png").exists())
 
 
 if __name__ == "__main__":
