@@ -34,7 +34,7 @@ std::string PartOf(const std::filesystem::path& file) {
   if (it == file.end()) return "";
   const std::string top = it->string();
   const std::string second = ++it == file.end() ? "" : it->string();
-  if (top == "tools") return second == "support" ? "tools/support" : "tools";
+  if (top == "tools") return second == "support" || second == "python" ? "tools/" + second : "tools";
   if (second == "app") return top + "/app";
   return top;
 }
@@ -52,6 +52,8 @@ Rule RuleOf(const std::string& part) {
   if (part == "plant_sim/app") return {{"plant_sim", "lcm_types", "support"}, foreign_of_programs};
   if (part == "tools/support") return {{"core", "lcm_types", "support"}, foreign_of_programs};
   Names all = foreign_of_programs;
+  // The module stands on what is no program: core, and what reads files.
+  if (part == "tools/python") return {{"core", "support"}, {"std", "pybind11"}};
   all.insert({"Eigen", "benchmark"});
   return {{"core", "rt", "lcm_types", "support", "tools"}, all};
 }
@@ -72,7 +74,8 @@ std::string KindOfForeign(const std::string& header) {
   if (header == "immintrin.h") return "simd";
   const std::size_t slash = header.find('/');
   const std::string top = slash == std::string::npos ? header : header.substr(0, slash);
-  if (top == "Eigen" || top == "lcm" || top == "benchmark" || kProgramLibraries.contains(top)) return top;
+  if (top == "Eigen" || top == "lcm" || top == "benchmark" || top == "pybind11" || kProgramLibraries.contains(top))
+    return top;
   // The standard library has no ".h" and no folder; what is left is the C library and the operating system.
   return slash == std::string::npos && header.find('.') == std::string::npos ? "std" : "posix";
 }

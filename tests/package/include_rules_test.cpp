@@ -56,6 +56,15 @@ TEST(IncludeRules, ThePlantNeverSeesTheCore) {
   EXPECT_THAT(Check("plant_sim/src/x.cpp", "\"armcmc/data_pack_v2_t.hpp\""), IsEmpty());
 }
 
+TEST(IncludeRules, PythonIsKnownToItsModuleOnlyWhichStandsOnCoreAndSupport) {
+  EXPECT_THAT(Check("tools/python/src/x.cpp", "<pybind11/pybind11.h>"), IsEmpty());
+  EXPECT_THAT(Check("tools/python/src/x.cpp", "\"armcmc/support/estimator_config.hpp\""), IsEmpty());
+  EXPECT_THAT(Check("tools/python/src/x.cpp", "\"armcmc/rt/clock.hpp\""), SizeIs(1));
+  EXPECT_THAT(Check("tools/python/src/x.cpp", "\"armcmc/replay/replay.hpp\""), SizeIs(1));
+  for (const char* file : {"core/src/x.cpp", "rt/app/main.cpp", "tools/replay/src/x.cpp", "tools/support/src/x.cpp"})
+    EXPECT_THAT(Check(file, "<pybind11/pybind11.h>"), SizeIs(1)) << file;
+}
+
 TEST(IncludeRules, NothingUsesTheTests) {
   for (const char* file : {"core/src/x.cpp", "rt/app/main.cpp", "tools/replay/app/main.cpp"}) {
     EXPECT_THAT(Check(file, "\"support/alloc_counter.hpp\""), SizeIs(1)) << file;

@@ -69,4 +69,21 @@ set(CPACK_DEBIAN_PACKAGE_SUGGESTS "liblcm-dev, libeigen3-dev, stress-ng, liblcm-
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/rt/deploy/debian/postinst"
   "${PROJECT_SOURCE_DIR}/rt/deploy/debian/prerm" "${PROJECT_SOURCE_DIR}/rt/deploy/debian/postrm")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+if(TARGET armcmc_python)
+  # A package of its own; what belongs to no component stays the package that it is without Python.
+  set(CPACK_DEB_COMPONENT_INSTALL ON)
+  set(CPACK_COMPONENTS_ALL Unspecified python)
+  set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME armcmc)
+  foreach(field IN ITEMS CONTROL_EXTRA RECOMMENDS SUGGESTS)
+    set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_${field} ${CPACK_DEBIAN_PACKAGE_${field}})
+    unset(CPACK_DEBIAN_PACKAGE_${field})  # none of Python's
+  endforeach()
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The estimator behind numpy arrays")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-armcmc)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
+  math(EXPR armcmc_next_python "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "armcmc (= ${PROJECT_VERSION}), python3-numpy, \
+python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${armcmc_next_python})")
+endif()
 include(CPack)

@@ -9,7 +9,19 @@
 namespace armcmc::support {
 namespace fs = std::filesystem;
 
+namespace {
+
+fs::path& GivenPrefix() {
+  static fs::path prefix;
+  return prefix;
+}
+
+}  // namespace
+
+void UseSharedPrefix(const fs::path& prefix) { GivenPrefix() = prefix; }
+
 fs::path SharedFolder(const std::string& kind) {
+  if (!GivenPrefix().empty()) return GivenPrefix() / "share" / "armcmc" / kind;
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   return program.parent_path().parent_path() / "share" / "armcmc" / kind;

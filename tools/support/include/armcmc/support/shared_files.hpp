@@ -10,6 +10,10 @@ namespace armcmc::support {
 /// files from any folder and after being moved.
 [[nodiscard]] std::filesystem::path SharedFolder(const std::string& kind);
 
+/// Makes SharedFolder() <prefix>/share/armcmc/<kind>, for code whose process is no program of the product: a Python
+/// interpreter. Set-up only: before other threads look for files. An empty path takes it back.
+void UseSharedPrefix(const std::filesystem::path& prefix);
+
 /// Finds a file that came with the product: a configuration or a scenario.
 ///
 /// In this order: `name` as a path; `name` with ".toml"; the same in the shared folder.

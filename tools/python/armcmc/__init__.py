@@ -1,0 +1,25 @@
+"""Adaptive recursive MCMC: the posterior of a plant's parameters, pack by pack.
+
+    estimator = armcmc.Estimator("servo_axis")
+    estimate = estimator.step(u, y, dt)            # u: (samples, inputs), y: (samples,)
+    samples, weights = estimator.draws()
+
+The same code as the programs armcmc-replay and armcmc-estimator: equal packs and equal settings give results that are
+equal to the bit. Not for real time: for that there is armcmc-estimator.
+"""
+
+from . import _armcmc
+from ._estimator import Estimate, Estimator, Record
+from ._gap import gap
+from ._prefix import PREFIX as _PREFIX
+
+_armcmc.use_shared_prefix(str(_PREFIX))
+
+__version__ = _armcmc.version
+MAX_PACK_SAMPLES = _armcmc.max_pack_samples
+__all__ = ["Estimate", "Estimator", "MAX_PACK_SAMPLES", "Record", "gap", "models"]
+
+
+def models():
+    """Names of the plants that came along, as `armcmc-model list` shows them."""
+    return _armcmc.plant_names()

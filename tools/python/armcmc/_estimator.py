@@ -1,0 +1,117 @@
+import os
+
+import numpy as np
+
+from . import _armcmc, _toml
+
+
+class Record(dict):
+    """A dict whose keys are attributes, too."""
+
+    def __getattr__(self, name):
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"no {name!r} here; there are {', '.join(map(str, self))}") from None
+
+
+class Estimate(Record):
+    """What one step published: see the table in the README. `estimate["K"]` is quantity K of the reported mode."""
+
+    def __missing__(self, name):
+        return self["modes"][self["report_mode"]]["quantities"][name]
+
+
+def _records(value):
+    if isinstance(value, dict):
+        return Record((key, _records(item)) for key, item in value.items())
+    return [_records(item) for item in value] if isinstance(value, list) else value
+
+
+def _numbers(name, value):
+    try:
+        array = np.asarray(value)
+        if np.iscomplexobj(array):
+            raise TypeError("complex numbers")
+        return np.ascontiguousarray(array, dtype=float) if array.ndim else array.astype(float)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} is no array of real numbers: {error}") from None
+
+
+def _seconds(name, value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r}: give a number of seconds") from None
+
+
+class Estimator:
+    """The estimator of one plant.
+
+    model   Built-in name, name of a plant that came along (armcmc.models()), or path of a plant or model file.
+    config  Configuration of armcmc-estimator, by path or by name; None: the values that the programs start from.
+    Keywords replace tables and keys of it: sampler={"draws": 5000, "seed": 3}, noise={"std": 0.1}, method="rls".
+
+    Raises ValueError with the key, its value and what was expected.
+    """
+
+    def __init__(self, model, config=None, **overrides):
+        model = os.fspath(model)
+        config = None if config is None else os.fspath(config)
+        if config is not None and not overrides:
+            self._own = _armcmc.Estimator.from_file(model, config)
+            return
+        table, name = {"schema": 1}, "the keywords"
+        if config is not None:
+            path = _armcmc.config_path(config)
+            try:
+                table = _toml.read(path)
+            except (OSError, _toml.tomllib.TOMLDecodeError) as error:
+                raise ValueError(f"{path}: {error}") from None
+            name = f"{path} with the keywords"
+        self._own = _armcmc.Estimator.from_text(model, _toml.text(_toml.merged(table, overrides)), name)
+
+    def step(self, u, y, dt, t_last=None):
+        """One pack: draws, summary, and the posterior that the next pack starts from. Other threads run meanwhile.
+
+        u       (samples, inputs), columns as in `inputs`, in their units; at most 256 samples.
+        y       (samples,), the output.
+        dt      Sample interval, s.
+        t_last  Time of the last sample, s; None: the pack follows the one before. Whole packs that are missing before
+                it leave out their numbers.
+
+        Returns an Estimate. Raises ValueError, and is as before, where something is wrong with the pack.
+        """
+        own_t_last = None if t_last is None else _seconds("t_last", t_last)
+        return Estimate(_records(self._own.step(_numbers("u", u), _numbers("y", y), _seconds("dt", dt), own_t_last)))
+
+    def draws(self, mode=0):
+        """(samples, weights) of the newest step: (n, dim) in the units of the columns, and (n,) with sum 1.
+
+        The candidates that have a weight, each once; what the columns are is in draw_names(mode).
+        Raises ValueError where the step said nothing about that mode.
+        """
+        return self._own.draws(mode)
+
+    def draw_names(self, mode=0):
+        """The parameters' names, then "noise_std" where the scale of the noise is estimated."""
+        return self._own.draw_columns(mode)
+
+    def reset(self):
+        """Forgets everything learnt; the next pack is the first, and begins at time 0."""
+        self._own.reset()
+
+    @property
+    def parameters(self):
+        """Name, unit and prior of each parameter that is sampled; mean, sd and bounds as it is sampled."""
+        return _records(self._own.parameters())
+
+    @property
+    def inputs(self):
+        """Name and unit of each column of u."""
+        return _records(self._own.inputs())
+
+    @property
+    def output(self):
+        """Name and unit of y."""
+        return _records(self._own.output())

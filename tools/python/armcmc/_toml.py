@@ -1,0 +1,53 @@
+"""A configuration as the estimator reads it, from a file with some keys replaced."""
+
+import json
+import numbers
+import tomllib
+from collections.abc import Mapping
+
+
+def merged(base, changes):
+    """`base` with the keys of `changes`, table by table."""
+    result = dict(base)
+    for key, value in changes.items():
+        old = result.get(key)
+        both = isinstance(value, Mapping) and isinstance(old, Mapping)
+        result[key] = merged(old, value) if both else value
+    return result
+
+
+def text(table):
+    """TOML of a table: one key a line, what is below it inline."""
+    return "".join(f"{_key(key)} = {_value(key, value)}\n" for key, value in table.items())
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return tomllib.load(file)
+
+
+def _key(key):
+    if not isinstance(key, str):
+        raise ValueError(f"key {key!r} of the configuration is no text")
+    return _string(key)
+
+
+def _string(value):
+    # What JSON escapes TOML escapes likewise, but for DEL.
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _value(key, value):
+    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _string(value)
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        return repr(float(value))
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(k)} = {_value(k, v)}" for k, v in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_value(key, v) for v in value) + "]"
+    raise ValueError(f"{key} = {value!r}: expected a number, a text, True or False, a list or a dict")
