@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
 import unittest
 from pathlib import Path
 
@@ -186,29 +185,6 @@ class Steps(InScratch):
         e.reset()
         again = e.step(u, y, DT)
         self.assertEqual((again.seq, again["a"].mean), (1, first["a"].mean))
-
-    def test_other_threads_run_during_a_step(self):
-        e = armcmc.Estimator("hunt_crossley", sampler={"draws": 150000})
-        _, u, y = contact(250)
-        began, done, count = threading.Event(), threading.Event(), 0
-
-        def steps():
-            began.set()
-            for _ in range(20):
-                e.step(u, y, DT)
-            done.set()
-
-        interval = sys.getswitchinterval()
-        self.addCleanup(sys.setswitchinterval, interval)
-        sys.setswitchinterval(60.0)  # s: nobody is made to hand the interpreter over
-        thread = threading.Thread(target=steps)
-        thread.start()
-        began.wait()
-        while not done.is_set() and count < 10:
-            count += 1
-            done.wait(1e-3)
-        thread.join()
-        self.assertGreater(count, 1)
 
 
 class Draws(InScratch):
