@@ -173,7 +173,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const bool informed = last.valid && last.informed;  // else the result has to wait for Remember()
   const Nanos fit_start = clock.Now();
   FitLaplace(data, previous, use_previous, ws);
-  quadratic_.Prepare(data, (use_previous ? fit_persisted_ : fit_fresh_).mean, &ws->quadratic);
+  quadratic_.Prepare(data, use_previous ? fit_persisted_ : fit_fresh_, &ws->quadratic);
   const Nanos anchor_ns = (clock.Now() - fit_start) / 2;  // they start nearer to where they end
   Proposal proposal;
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);

@@ -6,6 +6,12 @@
 #include "simd/kernels.hpp"
 
 namespace armcmc {
+namespace {
+
+/// Nats: candidates at a distance are held to the bound of those within a standard deviation of the prior no further.
+constexpr double kConfirmed = 1e-4;
+
+}  // namespace
 
 QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const ParameterSpace& space,
                                const NoiseModel& noise, const LinearPart& part)
@@ -83,8 +89,40 @@ int QuadraticScore::Degree(double variance) const noexcept {
   return degree;
 }
 
-void QuadraticScore::Prepare(const ModeData& data, const ParamVector& about, QuadraticScratch* scratch) noexcept {
+bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
+                                 QuadraticScratch* scratch) const noexcept {
+  constexpr int kNear = kTileLanes / 2 - 1;  // odd: the place itself is one of them
+  constexpr double kReach = 4.0;             // standard deviations
+  alignas(64) std::array<std::array<double, kTileLanes>, kMaxParams> rows;
+  std::array<const double*, kMaxParams> u{};
+  for (int d = 0; d < space_.dim; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    u[i] = rows[i].data();
+    for (int l = 0; l < kTileLanes; ++l) {
+      const double side = (l + d) % 2 == 0 ? 1.0 : -1.0;
+      double x = form_.about[i] + side * sd[d];
+      if (d == part_.curved && l < kNear) {
+        x = form_.about[i] + sd[d] * kReach * (2.0 * l / (kNear - 1) - 1.0);
+      } else if (d == part_.curved) {  // between the points, in places that have nothing to do with them
+        const double part = (l - kNear + 0.61803398874989485) / (kTileLanes - kNear);
+        x = space_.lower[i] + part * (space_.upper[i] - space_.lower[i]);
+      }
+      rows[i][static_cast<std::size_t>(l)] = std::clamp(x, space_.lower[i], space_.upper[i]);
+    }
+  }
+  alignas(64) std::array<double, kTileLanes> log_scale, by_samples, by_sums;
+  kernels_.to_physical(space_, u.data(), 0, &scratch->theta, log_scale.data());
+  kernels_.predict(model_, data, scratch->theta, &scratch->prediction[0]);
+  kernels_.log_likelihood(noise_, data, scratch->prediction[0], log_scale.data(), by_samples.data());
+  Score(u.data(), 0, by_sums.data());
+  for (std::size_t l = 0; l < kTileLanes; ++l)
+    if (!(std::fabs(by_sums[l] - by_samples[l]) <= kConfirmed + kTolerance * std::fabs(by_samples[l]))) return false;
+  return true;
+}
+
+void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept {
   ready_ = false;
+  const ParamVector& about = fit.mean;
   if (!applies_ || data.start_fit != nullptr || !about.allFinite()) return;
   num_samples_ = data.num_samples;
   for (int d = 0; d < space_.dim; ++d) form_.about[static_cast<std::size_t>(d)] = about[d];
@@ -113,7 +151,9 @@ void QuadraticScore::Prepare(const ModeData& data, const ParamVector& about, Qua
   form_.degree = degree;
   for (std::size_t f = 0; f < functions; ++f)
     std::copy_n(series_[f].begin(), static_cast<std::size_t>(degree) + 1, form_.coefficient[f].begin());
-  ready_ = true;
+  ParamVector sd = Inverse(fit.precision).diagonal();
+  for (int d = 0; d < space_.dim; ++d) sd[d] = sd[d] > 0.0 ? std::sqrt(sd[d]) : 1.0;
+  ready_ = IsConfirmed(data, sd, scratch);
 }
 
 void QuadraticScore::Score(const double* const* u, int first, double* out) const noexcept {

@@ -30,7 +30,7 @@ struct ContactCase {
   ModeData data;
   std::vector<std::vector<double>> rows;
   std::vector<const double*> u;
-  ParamVector about;
+  Gaussian about;  ///< Where the posterior lies.
 
   /// @param spread  Of the candidates, in prior standard deviations.
   ContactCase(double noise_std, bool estimate_std, bool weighted, double spread) {
@@ -45,12 +45,12 @@ struct ContactCase {
     for (int n = 0; n < data.num_samples; ++n)
       data.weight[static_cast<std::size_t>(n)] = weighted ? std::exp(-0.01 * (data.num_samples - n)) : 1.0;
     const double truth[] = {(4.0 - 2.5) / 2.0, (2.3 - 2.5) / 2.0, (1.7 - 1.5) / 0.35, 0.0};
-    about = ParamVector::Zero(space.dim);
+    about = {ParamVector::Zero(space.dim), ParamMatrix::Identity(space.dim, space.dim) * 1e4};
     std::mt19937_64 g(3);
     std::normal_distribution<double> normal;
     for (int d = 0; d < space.dim; ++d) {
       const auto i = static_cast<std::size_t>(d);
-      about[d] = truth[i];
+      about.mean[d] = truth[i];
       rows.emplace_back();
       for (int l = 0; l < kTileLanes; ++l)
         rows[i].push_back(std::clamp(truth[i] + spread * normal(g), space.lower[i], space.upper[i]));
@@ -225,6 +225,35 @@ TEST(QuadraticScore, ServesDescribedLaws) {
   ExpectSamePosteriors(DescribedSettings(curved), AxisPacks(*curved, [](double v, double a) {
                          return 95.0 * a + 210.0 * std::tanh(v / 0.06) - 3.0;
                        }));
+}
+
+TEST(QuadraticScore, SeesALawThatBendsBetweenThePoints) {
+  // A dip of the exponent's own, narrower than the points are apart, where the posterior lies: at none of them it
+  // shows.
+  PlantDescription description = test::DescribedContact();
+  description.modes[0].law = "x^p * (K + B*v) * (1 - 0.5*exp(-((p - 1.7)/1e-4)^2))";
+  const auto plant = test::Program(description);
+  ASSERT_EQ(plant->info().linear[0].curved, 2);
+  const ContactCase c(0.1, false, false, 0.1);
+  const DataPack pack = test::DescribedPack(*plant, 1, [](double t) {
+    return test::PlantSample{{0.3 + 0.2 * std::sin(20.0 * t), 4.0 * std::cos(20.0 * t)}, 1.0};
+  });
+  PlantPack prepared;
+  expression::FeatureMemory memory;
+  memory.Clear();
+  ASSERT_TRUE(plant->Prepare(pack, &memory, nullptr, &prepared));
+  auto data = std::make_unique<ModeData>();
+  plant->Fill(prepared, pack.num_samples, 0, data.get());
+  data->weight.fill(1.0);
+  data->weighted = false;
+  QuadraticScratch scratch(2);
+  QuadraticScore score(simd::Best(), -1, c.space, c.noise, plant->info().linear[0]);
+  score.Prepare(*data, c.about, &scratch);
+  EXPECT_FALSE(score.ready());
+  Gaussian elsewhere = c.about;
+  elsewhere.mean[2] -= 1.0;
+  score.Prepare(*data, elsewhere, &scratch);
+  EXPECT_TRUE(score.ready()) << "nobody comes to the dip";
 }
 
 TEST(QuadraticScore, LeavesAloneWhatBendsTooMuch) {

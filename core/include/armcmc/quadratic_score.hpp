@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "armcmc/laplace.hpp"
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/linear_part.hpp"
 #include "armcmc/mode_data.hpp"
@@ -33,7 +34,8 @@ class QuadraticScratch {
 ///
 /// Made once a pack. The error of the log-likelihood, in nats, is bounded by the rest of the series and rounding; where
 /// that exceeds kTolerance at candidates within a prior standard deviation, ready() is false and the samples have to be
-/// scored.
+/// scored. So it is where a tile of candidates, half of them where the posterior lies, does not get what the samples
+/// give: a law may bend within less than the points are apart.
 class QuadraticScore {
  public:
   static constexpr double kTolerance = 1e-6;
@@ -44,9 +46,9 @@ class QuadraticScore {
   /// The pack can be tried at all: the noise is Gaussian, and something is linear.
   [[nodiscard]] bool applies() const noexcept { return applies_; }
 
-  /// @param about  Standardised coordinates, near those that are likely.
-  /// @rt No heap, no lock, no throw. 2 (num_linear + 1) tiles of candidates, and their products.
-  void Prepare(const ModeData& data, const ParamVector& about, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// @param fit  Where the posterior lies, about.
+  /// @rt No heap, no lock, no throw. 2 (num_linear + 1) + 1 tiles of candidates, and their products.
+  void Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool ready() const noexcept { return ready_; }
 
   /// out[lane] = log-likelihood of u[., first + lane], kTileLanes of them. @pre ready().
@@ -56,9 +58,12 @@ class QuadraticScore {
   static constexpr int kNodes = 2 * kTileLanes;
 
   void TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// Candidates get what the samples give.
+  [[nodiscard]] bool IsConfirmed(const ModeData& data, const ParamVector& sd,
+                                 QuadraticScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
   /// Degree after which the series may end, -1 where they do not settle.
   [[nodiscard]] int Degree(double variance) const noexcept ARMCMC_NONBLOCKING;
-  /// chebyshev_[k][j] = 2 / kNodes cos(pi k (j + 1/2) / kNodes), half of it for k = 0.
+  /// [k][j] = 2 / kNodes cos(pi k (j + 1/2) / kNodes), half of it for k = 0.
   using CosineTable = std::array<std::array<double, kNodes>, kNodes>;
 
   const simd::Kernels& kernels_;

@@ -52,4 +52,18 @@ bool IsLinear(const Graph& graph, int node, const std::vector<int>& symbols) {
   return Degrees(graph, symbols).Of(node) <= 1;
 }
 
+LinearPart FindLinearPart(Graph* graph, const std::vector<int>& laws, int num_parameters) {
+  for (int curved = -1; curved < num_parameters; ++curved) {
+    LinearPart part{.curved = curved};
+    std::vector<int> symbols;
+    for (int d = 0; d < num_parameters; ++d) {
+      if (d == curved) continue;
+      part.linear[static_cast<std::size_t>(part.num_linear++)] = d;
+      symbols.push_back(graph->Symbol(SymbolKind::kParameter, d));
+    }
+    if (std::all_of(laws.begin(), laws.end(), [&](int law) { return IsLinear(*graph, law, symbols); })) return part;
+  }
+  return {};
+}
+
 }  // namespace armcmc::expression

@@ -163,25 +163,10 @@ void PlantProgram::CompileModes() {
     if (a == 0 || !merged_) modes_.push_back({.name = merged_ ? "active" : described[active_[a]].name});
     CompileLaw(laws[a], mode.target, key_of(a), &scalars);
     modes_.back().law_is_output = modes_.back().law_is_output && mode.target == output;
-    modes_.back().linear = LinearPartOf(merged_ ? laws : std::vector<int>{laws[a]});
+    modes_.back().linear =
+        FindLinearPart(&graph_, merged_ ? laws : std::vector<int>{laws[a]}, static_cast<int>(sampled_.size()));
   }
   CompileFeatures(scalars, remembered);
-}
-
-LinearPart PlantProgram::LinearPartOf(const std::vector<int>& laws) {
-  const int count = static_cast<int>(sampled_.size());
-  // All of them, or all but one.
-  for (int curved = -1; curved < count; ++curved) {
-    LinearPart part{.curved = curved};
-    std::vector<int> symbols;
-    for (int d = 0; d < count; ++d) {
-      if (d == curved) continue;
-      part.linear[static_cast<std::size_t>(part.num_linear++)] = d;
-      symbols.push_back(graph_.Symbol(SymbolKind::kParameter, d));
-    }
-    if (std::all_of(laws.begin(), laws.end(), [&](int law) { return IsLinear(graph_, law, symbols); })) return part;
-  }
-  return {};
 }
 
 void PlantProgram::CompileFeatures(const std::vector<int>& scalars, const Remembered& remembered) {

@@ -3,11 +3,16 @@
 #include <vector>
 
 #include "armcmc/expression/graph.hpp"
+#include "armcmc/linear_part.hpp"
 
 namespace armcmc::expression {
 
 /// True where `node` is f_0 + sum_i symbol_i f_i with f that need none of the symbols, by the form of the expression:
 /// false may only mean that this does not show. Of what depends on a state nothing is known.
 [[nodiscard]] bool IsLinear(const Graph& graph, int node, const std::vector<int>& symbols);
+
+/// What all of some laws, which are nodes of the graph, are linear in: all of num_parameters parameters, else all but
+/// the first that makes it so, else nothing.
+[[nodiscard]] LinearPart FindLinearPart(Graph* graph, const std::vector<int>& laws, int num_parameters);
 
 }  // namespace armcmc::expression

@@ -121,8 +121,6 @@ class PlantProgram {
   void CompileModes();
   /// One more for the newest sampled mode.
   void CompileLaw(int law, int target, const std::string& key, std::vector<int>* scalars);
-  /// Of all laws of one sampled mode, which are nodes.
-  [[nodiscard]] LinearPart LinearPartOf(const std::vector<int>& laws);
   void CompileFeatures(const std::vector<int>& scalars, const Remembered& remembered);
   void MakePrediction();
   void CompileStates(Remembered* remembered, std::vector<int>* scalars);
