@@ -272,4 +272,17 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
   return ess;
 }
 
+void AppendIndependent(double mean, double sd, const MarginalTable& law, MarginalTable* table,
+                       DensityBlock* block) noexcept {
+  const auto i = static_cast<std::size_t>(block->dim++);
+  *table = law;
+  block->mean[i] = mean;
+  block->whiten[i][i] = 1.0 / sd;
+  block->unwhiten[i][i] = sd;
+  block->marginal[i] = table;
+  block->scale[i] = 1.0 / std::sqrt(law.Variance());
+  block->center[i] = -block->scale[i] * law.Mean();
+  block->norm /= sd * block->scale[i];
+}
+
 }  // namespace armcmc

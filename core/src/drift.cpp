@@ -12,9 +12,10 @@
 namespace armcmc {
 namespace {
 
-constexpr double kMixedReach = 6.0;  // standard deviations
-constexpr double kMixedTail = 1e-3;  // of a normal law in a mixture
-constexpr double kLeftOut = 1e-5;    // share below which a filter is no part of it
+constexpr double kMixedReach = 6.0;     // standard deviations
+constexpr double kMixedTail = 1e-3;     // of a normal law in a mixture
+constexpr std::int64_t kBothParts = 4;  // in a snapshot, added to the part of the first block
+constexpr double kLeftOut = 1e-5;       // share below which a filter is no part of it
 
 void MakeSymmetric(ParamMatrix* m) noexcept {
   for (Eigen::Index i = 0; i < m->rows(); ++i)
@@ -57,7 +58,7 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
 }
 
 void Drift::Forget() noexcept {
-  started_ = split_ = mixed_ = false;
+  started_ = split_ = mixed_ = both_ = false;
   share_ = rate_ = 0.0;
 }
 
@@ -172,16 +173,36 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   carried_.weight = last.weight;
   carried_.num_blocks = last.num_blocks;
   const bool rests = share_ < kNegligible;
-  if (rests && fitted_ == Part::kRest) return last;
-  if (last.num_blocks == 1 && !rests && share_ < 1.0 - kNegligible) {
+  if (rests && fitted_ == Part::kRest && !both_) return last;
+  const int rest_from = both_ && fitted_ == Part::kDrift ? 1 : 0;
+  const int drift_from = both_ && fitted_ == Part::kRest ? 1 : 0;
+  const auto block_moments = [&](int b) noexcept ARMCMC_NONBLOCKING {
+    if (b == 0) return from;
+    const DensityBlock& block = last.block[static_cast<std::size_t>(b)];
+    return Moments{
+        .weight = 1.0, .mean = MeanOf(block).head(dim_), .covariance = CovarianceOf(block).topLeftCorner(dim_, dim_)};
+  };
+  if ((both_ || last.num_blocks == 1) && !rests && share_ < 1.0 - kNegligible) {
     // The more probable one first.
     drifting_block_ = share_ > 0.5 ? 0 : 1;
-    if (!Move(last, Part::kDrift, from, 0, drifting_block_) || !Move(last, Part::kRest, from, 0, 1 - drifting_block_) ||
+    if (!Move(last, Part::kDrift, block_moments(drift_from), drift_from, drifting_block_) ||
+        !Move(last, Part::kRest, block_moments(rest_from), rest_from, 1 - drifting_block_) ||
         !SetMoments(last, Part::kWhole, from))
       return last;
     carried_.num_blocks = 2;
     carried_.weight = {std::fmax(share_, 1.0 - share_), std::fmin(share_, 1.0 - share_)};
     split_ = true;
+    return carried_;
+  }
+  if (both_) {
+    const Part part = CarriedPart();
+    const int block = part == Part::kDrift ? drift_from : rest_from;
+    const Moments own = block_moments(block);
+    if (!Move(last, part, own, block, 0)) return last;
+    carried_.num_blocks = 1;
+    carried_.weight = {1.0, 0.0};
+    carried_.mean = MeanOf(carried_.block[0]);
+    carried_.covariance = CovarianceOf(carried_.block[0]);
     return carried_;
   }
   // Two posteriors, of parameters that stayed and of some that changed, stay two.
@@ -209,11 +230,28 @@ void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
   }
 }
 
-bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noexcept {
+Drift::Sampled Drift::SampledBlock(const ModeData& data, const PosteriorMemory& next, int block, Part part,
+                                   LaplaceScratch* scratch) const noexcept {
+  Sampled sampled{.part = part, .mean = {}, .covariance = {}, .local = {}};
+  if (block == 0) {
+    sampled.mean = next.mean.head(dim_);
+    sampled.covariance = next.covariance.topLeftCorner(dim_, dim_);
+  } else {
+    const DensityBlock& other = next.block[static_cast<std::size_t>(block)];
+    sampled.mean = MeanOf(other).head(dim_);
+    sampled.covariance = CovarianceOf(other).topLeftCorner(dim_, dim_);
+  }
+  sampled.local = ExpandLikelihood(kernels_, model_, data, noise_, space_, sampled.mean, next.log_noise_scale, scratch);
+  return sampled;
+}
+
+bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
+  const LocalLikelihood& local = sampled.local;
   const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
   std::array<double, kFilters> log_weight{};
   double top = -HUGE_VAL;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
+    if (!IsOf(part, i)) continue;
     Filter& f = bank_[i];
     f = predicted_[i];
     if (!(f.weight > 0.0)) continue;
@@ -221,7 +259,7 @@ bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noex
     ParamMatrix spread = Product(local.information, f.uu);
     spread += identity;
     const ParamMatrix t = Inverse(spread);
-    const ParamVector apart = f.u - centre;
+    const ParamVector apart = f.u - sampled.mean;
     const ParamVector pulled = Multiply(local.information, apart);
     const ParamVector residual = local.gradient - pulled;
     const ParamVector step = Multiply(t, residual);
@@ -242,32 +280,35 @@ bool Drift::Update(const LocalLikelihood& local, const ParamVector& centre) noex
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
+    if (!IsOf(part, i)) continue;
     if (bank_[i].weight > 0.0) bank_[i].weight = std::exp(log_weight[i] - top);
     sum += bank_[i].weight;
   }
-  for (Filter& f : bank_) f.weight /= sum;
+  for (std::size_t i = 0; i < bank_.size(); ++i)
+    if (IsOf(part, i)) bank_[i].weight *= weight / sum;
   return true;
 }
 
-bool Drift::Recentre(const LocalLikelihood& local, const PosteriorMemory& next) noexcept {
+bool Drift::Recentre(const Sampled& sampled) noexcept {
+  const LocalLikelihood& local = sampled.local;
   // What the sampler's prior becomes where the likelihood is as expanded: the bank itself, or a Gaussian with its
   // moments.
-  const bool as_the_bank = fitted_ == Part::kDrift ? mixed_ : split_ && fitted_ == Part::kWhole;
-  Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, fitted_);
+  const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
+  Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, sampled.part);
   if (!as_the_bank) {
     ParamMatrix spread = Product(local.information, now.covariance);
     spread += ParamMatrix::Identity(dim_, dim_);
-    const ParamVector pulled = Multiply(local.information, now.mean - next.mean.head(dim_));
+    const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
     now.covariance = Product(now.covariance, Inverse(spread));
     MakeSymmetric(&now.covariance);
     now.mean += Multiply(now.covariance, local.gradient - pulled);
   }
   ParamMatrix map;
-  if (!MapBetween(now.covariance, next.covariance.topLeftCorner(dim_, dim_), &map)) return false;
+  if (!MapBetween(now.covariance, sampled.covariance, &map)) return false;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
     Filter& f = bank_[i];
-    if (!(f.weight > 0.0) || !IsOf(fitted_, i)) continue;
-    f.u = next.mean.head(dim_) + Multiply(map, f.u - now.mean);
+    if (!(f.weight > 0.0) || !IsOf(sampled.part, i)) continue;
+    f.u = sampled.mean + Multiply(map, f.u - now.mean);
     f.uu = Product(Product(map, f.uu), map.transpose());
     MakeSymmetric(&f.uu);
     f.uw = Product(map, f.uw);
@@ -275,19 +316,27 @@ bool Drift::Recentre(const LocalLikelihood& local, const PosteriorMemory& next) 
   return true;
 }
 
-void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool renewed,
+void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
                   LaplaceScratch* scratch) noexcept {
   if (!enabled_ || !next.valid || !next.informed) return;
   time_s_ = data.time_s;
   fitted_ = part;
+  both_ = false;
   const bool known = started_;
   started_ = true;
   packs_ = known ? packs_ + 1 : 0;
   if (known && !renewed) {
-    const ParamVector centre = next.mean.head(dim_);
-    const LocalLikelihood local =
-        ExpandLikelihood(kernels_, model_, data, noise_, space_, centre, next.log_noise_scale, scratch);
-    if (Update(local, centre) && Recentre(local, next)) return;
+    const Sampled first = SampledBlock(data, next, 0, part, scratch);
+    if (both) {
+      // The linearised law of each holds where it lies; how probable they are was sampled.
+      const Part other = part == Part::kRest ? Part::kDrift : Part::kRest;
+      const Sampled second = SampledBlock(data, next, 1, other, scratch);
+      both_ = Update(first, part, next.weight[0]) && Update(second, other, next.weight[1]) && Recentre(first) &&
+              Recentre(second);
+      if (both_) return;
+    } else if (Update(first, Part::kWhole, 1.0) && Recentre(first)) {
+      return;
+    }
   }
   Start(next, known);
 }
@@ -297,7 +346,7 @@ void Drift::Save(SnapshotWriter* out) const noexcept {
   if (!started_) return;
   out->Put(time_s_);
   out->Put(packs_);
-  out->Put(static_cast<std::int64_t>(fitted_));
+  out->Put(static_cast<std::int64_t>(fitted_) + (both_ ? kBothParts : 0));
   const auto put = [out](const auto& m) noexcept ARMCMC_NONBLOCKING {
     out->PutRow(m.data(), static_cast<std::size_t>(m.size()));
   };
@@ -317,7 +366,9 @@ void Drift::Restore(SnapshotReader* in) noexcept {
   if (!started) return;
   time_s_ = in->Number();
   packs_ = in->Integer(0, std::numeric_limits<std::int64_t>::max());
-  fitted_ = static_cast<Part>(in->Integer(0, static_cast<std::int64_t>(Part::kDrift)));
+  const std::int64_t fitted = in->Integer(0, static_cast<std::int64_t>(Part::kDrift) + kBothParts);
+  both_ = fitted >= kBothParts;
+  fitted_ = static_cast<Part>(both_ ? fitted - kBothParts : fitted);
   const auto take = [in, this](auto* m, Eigen::Index columns) noexcept ARMCMC_NONBLOCKING {
     m->resize(dim_, columns);
     in->Row(m->data(), static_cast<std::size_t>(m->size()));

@@ -35,6 +35,13 @@ SymmetricEigen EigenOfSymmetric(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKIN
   if (eigen.converged) {
     eigen.values = solver.eigenvalues();
     eigen.vectors = solver.eigenvectors();
+    // The solver leaves the signs to the number of its iterations, which the last bit of the matrix may change.
+    constexpr double kGolden = 0.6180339887498949;  // no two components that are equal but for their sign cancel
+    for (Eigen::Index j = 0; j < eigen.vectors.cols(); ++j) {
+      double sum = 0.0;
+      for (Eigen::Index i = eigen.vectors.rows(); i-- > 0;) sum = kGolden * sum + eigen.vectors(i, j);
+      if (sum < 0.0) eigen.vectors.col(j) *= -1.0;
+    }
   }
   return eigen;
 }

@@ -10,14 +10,14 @@
 namespace armcmc {
 namespace {
 
-constexpr double kStudentDof = 5.0;  // tails of the Laplace components
+constexpr double kChanges = 0.01;    // share of P_0 in the prior from which on its posterior is drawn for sure
 constexpr double kRefitShare = 0.4;  // effective share of the draws below which the proposal is fitted once more
 
 enum Purpose : std::uint64_t {
   kMismatchStream = 0,
   kDrawStream = 1,
   kAcceptStream = 2,
-  kNoiseStream = 3,
+  kStartStream = 3,
   kNumPurposes = 4
 };
 
@@ -25,8 +25,7 @@ enum Purpose : std::uint64_t {
 
 SamplerWorkspace::SamplerWorkspace(int dim, int capacity, int num_linear) : quadratic(num_linear) {
   const auto cap = static_cast<std::size_t>(std::max(RoundUpToTile(capacity), Proposal::kMaxBatch) + kTileLanes);
-  for (auto* v : {&log_likelihood, &proposal, &initial_prior, &weight, &group_weight, &first_share, &noise_coordinate})
-    v->resize(cap);
+  for (auto* v : {&log_likelihood, &proposal, &initial_prior, &weight, &group_weight, &first_share}) v->resize(cap);
   for (auto& m : memory) m.resize(cap);
   component.resize(cap);
   straight[kMaxParams].resize(cap);
@@ -170,12 +169,15 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
                               ? sampler_.lambda_q_min
                               : std::clamp(lambda, sampler_.lambda_q_min, sampler_.lambda_q_max);
 
+  may_have_changed_ = lambda < 1.0 - kChanges;
   const bool informed = last.valid && last.informed;  // else the result has to wait for Remember()
   const Nanos fit_start = clock.Now();
-  FitLaplace(data, previous, use_previous, ws);
+  FitLaplace(data, previous, use_previous, stream_of(kStartStream), ws);
   quadratic_.Prepare(data, use_previous ? fit_persisted_ : fit_fresh_, &ws->quadratic);
-  const Nanos anchor_ns = (clock.Now() - fit_start) / 2;  // they start nearer to where they end
+  const Nanos anchor_ns =
+      (clock.Now() - fit_start) / laplace_fits_;  // more than they take: they start next to each other
   Proposal proposal;
+  pilot_groups_ = 1;
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);
   const RandomStream stream = stream_of(kDrawStream);
   memory_inside_ = 1.0;
@@ -257,13 +259,8 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   out->num_samples = data.num_samples;
   FindMode(data, !use_previous, ws, out);
   RunChain(stream_of(kAcceptStream), pilot, ws, out);
-  unfinished_ = {.data = &data,
-                 .previous = &previous,
-                 .lambda = lambda,
-                 .first = pilot,
-                 .mass_first = 0.0,
-                 .mass_new = 1.0,
-                 .noise_stream = stream_of(kNoiseStream)};
+  unfinished_ = {
+      .data = &data, .previous = &previous, .lambda = lambda, .first = pilot, .mass_first = 0.0, .mass_new = 1.0};
   ShareAmongPriors(ws, out);
   out->known = informed;
   out->updated = true;
@@ -285,7 +282,8 @@ void ModeSampler::Remember(ClockRef clock, SamplerWorkspace* ws, PosteriorMemory
   }
   next->log_noise_scale = log_scale;
   transition_.Accept(*next, out->decision);
-  drift_.Learn(*unfinished_.data, *next, unfinished_.part, out->p_changed > 0.5, &ws->laplace);
+  drift_.Learn(*unfinished_.data, *next, unfinished_.part, unfinished_.split && next->num_blocks == 2,
+               out->p_changed > 0.5, &ws->laplace);
   if (!out->known) out->known = next->informed;  // once it is, the result may be read by another thread
   remember_time_.Add(clock.Now() - start, out->draws);
 }

@@ -16,6 +16,8 @@ namespace armcmc {
 namespace {
 
 constexpr double kMinimumGroup = 2e-3;  // posterior probability below which a group of draws gets no block
+constexpr double kLesserPart = 0.2;     // posterior probability from which on a group is not left out
+constexpr int kMostRoots = 8;           // of the weights of a group that has too few effective draws
 constexpr double kNoiseMemory = 0.1;    // standard deviation of log s that a posterior hands on at least
 constexpr double kInformedSd = 0.9;  // of the prior's: a posterior narrower than that in any parameter says something
 constexpr FitOptions kMemoryFit{
@@ -107,25 +109,17 @@ void ModeSampler::RunChain(const RandomStream& stream, int first, SamplerWorkspa
   out->acceptance = static_cast<double>(accepted) / (draws - out->burn_in);
 }
 
-const double* ModeSampler::SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
-                                            const ModeDraws& draws) const noexcept {
+void ModeSampler::AppendNoiseScale(int first, int count, const double* weight, MarginalTable* table,
+                                   const ModeDraws& draws, DensityBlock* block) const noexcept {
   const auto d = static_cast<std::size_t>(space_.dim - 1);
-  const double* u = draws.u[d];
-  double mean = 0.0;
+  const double* const row = draws.u[d] + first;
+  std::array<double, 3> sums{};
+  kernels_.first_moments(1, &row, weight, count, sums.data());
+  const double mean = sums[2] / sums[0];
   double square = 0.0;
-  for (int k = first; k < draws.draws; ++k) {
-    mean += draws.weight[k] * u[k];
-    square += draws.weight[k] * u[k] * u[k];
-  }
-  const double variance = std::fmax(square - mean * mean, 0.0);
-  const double wanted = kNoiseMemory / space_.scale[d];
-  const double jitter = std::sqrt(std::fmax(wanted * wanted - variance, 0.0) / student_table_.Variance());
-  const int end = first + RoundUpToTile(draws.draws - first);
-  double* row = ws->noise_coordinate.data();
-  kernels_.uniforms(stream.origin(), 0, 1, end - first, row + first);
-  for (int k = first; k < end; ++k)
-    row[k] = std::clamp(u[k] + jitter * student_table_.Draw(row[k]), space_.lower[d], space_.upper[d]);
-  return row;
+  kernels_.second_moments(1, &row, weight, &mean, count, &square);
+  const double sd = std::fmax(std::sqrt(square / sums[0]), kNoiseMemory / space_.scale[d]);
+  AppendIndependent(mean, sd, student_table_, table, block);
 }
 
 void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept {
@@ -155,7 +149,7 @@ void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcep
     } else if (split) {
       const bool first = mass_first >= 0.5;
       u.part = first == (drift_.drifting_block() == 0) ? Drift::Part::kDrift : Drift::Part::kRest;
-      u.one_part = true;
+      u.split = true;
     }
   }
   out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(u.mass_new, 0.0, 1.0);
@@ -170,14 +164,11 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
   const int first = unfinished_.first;
   const int count = out->draws - first;
   const auto offset = static_cast<std::size_t>(first);
-  WeightedDraws group{.dim = space_.dim, .size = count, .u = {}, .weight = ws->group_weight.data() + offset};
-  for (int d = 0; d < space_.dim; ++d)
-    group.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
   // The level of the noise is carried on loosely. Held as tightly as thousands of samples allow, a quieter or louder
   // stretch could only be explained by everything having changed, and the parameters would be forgotten with it.
-  if (space_.samples_noise_scale())
-    group.u[static_cast<std::size_t>(space_.dim - 1)] =
-        SpreadNoiseScale(first, unfinished_.noise_stream, ws, *out) + first;
+  WeightedDraws group{.dim = space_.num_parameters, .size = count, .u = {}, .weight = ws->group_weight.data() + offset};
+  for (int d = 0; d < group.dim; ++d)
+    group.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
 
   const double mass_first = unfinished_.mass_first;
   next->num_blocks = 0;
@@ -193,27 +184,32 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
       for (int k = first; k < out->draws; ++k) group_weight[k] = out->weight[k] * (constant + slope * share[k]);
     }
     const auto b = static_cast<std::size_t>(next->num_blocks);
-    const double ess =
-        FitBlock(kernels_, group, kMemoryFit, ws->StraightRows().data(), next->tables[b].data(), &next->block[b]);
-    if (ess < kMinimumEss) return;
+    const auto fit = [&]() noexcept {
+      return FitBlock(kernels_, group, kMemoryFit, ws->StraightRows().data(), next->tables[b].data(), &next->block[b]);
+    };
+    bool fitted = fit() >= kMinimumEss;
+    // Too few effective draws of a group that may not be left out: its posterior to a power below one, times the
+    // proposal, is broad enough to be fitted by them. Less is learnt than the pack tells, and nothing else.
+    for (int root = 0; root < kMostRoots && !fitted && mass >= kLesserPart; ++root) {
+      for (int k = first; k < out->draws; ++k) group_weight[k] = std::sqrt(std::fmax(group_weight[k], 0.0));
+      fitted = fit() >= 2.0 * kMinimumEss;
+    }
+    if (!fitted) return;
+    if (space_.samples_noise_scale())
+      AppendNoiseScale(first, count, group.weight, &next->tables[b][static_cast<std::size_t>(group.dim)], *out,
+                       &next->block[b]);
     next->weight[b] = mass;
     ++next->num_blocks;
   };
   if (!use_previous) {
     fit_group(1.0, 1.0, 0.0);
-  } else if (unfinished_.one_part) {
-    // Of rest and drift the more probable: where the other is, relative to it, Drift knows.
-    if (mass_first >= 0.5) {
-      fit_group(mass_first, 0.0, 1.0);
-    } else {
-      fit_group(1.0 - mass_first, 1.0, -1.0);
-    }
-  } else if (mass_first >= 0.5) {
-    fit_group(mass_first, 0.0, 1.0);
-    fit_group(1.0 - mass_first, 1.0, -1.0);
   } else {
-    fit_group(1.0 - mass_first, 1.0, -1.0);
-    fit_group(mass_first, 0.0, 1.0);
+    for (const bool of_first : {mass_first >= 0.5, mass_first < 0.5}) {
+      const double mass = of_first ? mass_first : 1.0 - mass_first;
+      // Of rest and drift the lesser need not be drawn: where it is, relative to the other, Drift knows.
+      if (unfinished_.split && mass < kLesserPart) continue;
+      of_first ? fit_group(mass, 0.0, 1.0) : fit_group(mass, 1.0, -1.0);
+    }
   }
   if (next->num_blocks == 0) {
     // Too few effective draws for moments: the Laplace fit, widened, is the safer summary.

@@ -16,15 +16,69 @@ constexpr double kPilotEssShare = 0.24;    // of a round's draws, when there are
 constexpr double kLaplaceInflation = 1.2;  // standard deviations of the Laplace components
 constexpr double kInitialShare = 0.10;     // of P_0 in the data-driven part of q
 constexpr double kLaplaceShare = 0.15;     // of the Laplace fits there, once the pilot's fit exists
-constexpr int kDrawsPerAnchor = 16;        // of a round: finer steps than its draws can tell apart only cost time
+constexpr double kLackingShare = 0.5;      // the same where a part of the posterior has no block of the pilot
+constexpr double kBetterMode = 0.1;  // nats by which another mode has to be better: the same one, found again, is not
+constexpr int kScattered = 256;      // draws from P_0 that look for where a fit should start
+constexpr int kScatteredStarts = 3;  // fits from the best of them
+constexpr double kScatteredApart = 0.25;  // squared distance of two starts, standard deviations of the prior
+constexpr double kNoiseSurprise = 4.0;    // squared distance of the noise scale from what it was, in its variance
+constexpr int kDrawsPerAnchor = 16;       // of a round: finer steps than its draws can tell apart only cost time
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
 constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
 
 }  // namespace
 
-void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous,
-                             SamplerWorkspace* ws) noexcept {
+void ModeSampler::FitFromScattered(const ModeData& data, const RandomStream& stream, SamplerWorkspace* ws, double best,
+                                   Gaussian* fit) const noexcept {
   const int dim = space_.dim;
+  std::array<double*, kMaxParams> u{};
+  for (int d = 0; d < dim; ++d) u[static_cast<std::size_t>(d)] = ws->mismatch_u[static_cast<std::size_t>(d)].data();
+  Proposal scattered;
+  scattered.Add(&initial_block_, 1.0);
+  scattered.Normalise();
+  scattered.Draw(kernels_, stream, 0, kScattered, u.data(), ws->component.data(), ws->StraightRows().data());
+  double* const value = ws->group_weight.data();
+  alignas(64) std::array<double, kTileLanes> log_scale;
+  for (int k = 0; k < kScattered; k += kTileLanes) {
+    kernels_.to_physical(space_, u.data(), k, ws->theta.data(), log_scale.data());
+    kernels_.score(model_, noise_, data, ws->theta[0], log_scale.data(), &ws->prediction, value + k);
+  }
+  const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
+  const auto quality = [](double log_posterior, const Gaussian& of) noexcept {
+    return log_posterior - 0.5 * std::log(Determinant(of.precision));
+  };
+  double leading = quality(best, *fit);
+  for (int start = 0; start < kScatteredStarts; ++start) {
+    int chosen = -1;
+    for (int k = 0; k < kScattered; ++k)
+      if (std::isfinite(value[k]) && (chosen < 0 || value[k] > value[chosen])) chosen = k;
+    if (chosen < 0) return;
+    ParamVector from(dim);
+    for (int d = 0; d < dim; ++d) from[d] = u[static_cast<std::size_t>(d)][chosen];
+    Gaussian other;
+    const double log_posterior =
+        LaplaceFit(kernels_, model_, data, noise_, space_, initial, from, kModeTolerance, &ws->laplace, &other);
+    const double other_quality = quality(log_posterior, other);
+    if (other.mean.allFinite() && other_quality > leading + kBetterMode) {
+      leading = other_quality;
+      *fit = other;
+    }
+    // The next from elsewhere.
+    for (int k = 0; k < kScattered; ++k) {
+      double apart = 0.0;
+      for (int d = 0; d < dim; ++d) {
+        const double difference = u[static_cast<std::size_t>(d)][k] - from[d];
+        apart += difference * difference;
+      }
+      if (apart < kScatteredApart) value[k] = std::nan("");
+    }
+  }
+}
+
+void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous,
+                             const RandomStream& stream, SamplerWorkspace* ws) noexcept {
+  const int dim = space_.dim;
+  laplace_fits_ = 1;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
   const auto fit_from = [&](const ParamVector& start, Gaussian* fit) noexcept ARMCMC_NONBLOCKING {
     return LaplaceFit(kernels_, model_, data, noise_, space_, initial, start, kModeTolerance, &ws->laplace, fit);
@@ -33,9 +87,18 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
   if (use_previous && !transition_.Offers(previous)) {
     (void)fit_from(previous.mean, &fit_fresh_);
   } else {
-    const double best = fit_from(initial.mean, &fit_fresh_);
+    double best = fit_from(initial.mean, &fit_fresh_);
     Gaussian other;
-    if (previous.valid && fit_from(previous.mean, &other) > best) fit_fresh_ = other;
+    if (previous.valid) {
+      ++laplace_fits_;
+      const double from_previous = fit_from(previous.mean, &other);
+      if (from_previous > best + kBetterMode) {
+        fit_fresh_ = other;
+        best = from_previous;
+      }
+    }
+    FitFromScattered(data, stream, ws, best, &fit_fresh_);
+    laplace_fits_ += kScatteredStarts;
   }
   SetElliptic(fit_fresh_.mean, Inverse(fit_fresh_.precision), kLaplaceInflation, &student_table_, &laplace_fresh_);
   num_persisted_ = 0;
@@ -49,10 +112,33 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
     for (int b = 0; b < previous.num_blocks; ++b) add(transition_.fit(b));
     return;
   }
-  const Gaussian prior{previous.mean, Inverse(previous.covariance)};
-  LaplaceFit(kernels_, model_, data, noise_, space_, prior, previous.mean, kModeTolerance, &ws->laplace,
-             &fit_persisted_);
-  add(fit_persisted_);
+  const auto fit_under = [&](const ParamVector& mean, const ParamMatrix& covariance, Gaussian* fit) noexcept {
+    Gaussian prior{mean, Inverse(covariance)};
+    ++laplace_fits_;
+    (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, mean, kModeTolerance, &ws->laplace, fit);
+    if (!space_.samples_noise_scale()) return;
+    // Of the noise scale the memory has the tails of a t law, which let go of what is far away.
+    const Eigen::Index last = space_.dim - 1;
+    const double away = (fit->mean[last] - mean[last]) * (fit->mean[last] - mean[last]) / covariance(last, last);
+    if (!(away > kNoiseSurprise)) return;
+    const double hold = std::sqrt((kStudentDof + 1.0) / (kStudentDof - 2.0 + away));
+    prior.precision.row(last) *= hold;
+    prior.precision.col(last) *= hold;
+    const ParamVector start = fit->mean;
+    (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, kModeTolerance, &ws->laplace, fit);
+  };
+  fit_under(previous.mean, previous.covariance, &fit_persisted_);
+  if (!drift_.Splits(previous)) {
+    add(fit_persisted_);
+    return;
+  }
+  // What rests and what drifts may have come apart.
+  for (int b = 0; b < previous.num_blocks; ++b) {
+    const DensityBlock& block = previous.block[static_cast<std::size_t>(b)];
+    Gaussian fit;
+    fit_under(MeanOf(block), CovarianceOf(block), &fit);
+    add(fit);
+  }
 }
 
 ParamVector ModeSampler::ModeFromPrior(const ModeData& data, SamplerWorkspace* ws) const noexcept {
@@ -76,17 +162,20 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
       proposal->Add(&previous.block[static_cast<std::size_t>(b)],
                     lambda_q * std::fmax(previous.weight[static_cast<std::size_t>(b)], 0.05));
   const double rest = use_previous ? 1.0 - lambda_q : 1.0;
-  const double laplace = num_pilot_blocks > 0 ? kLaplaceShare : 1.0 - kInitialShare;
+  // A part of the posterior whose draws in the pilot were too few for a block has the Laplace fits alone.
+  const bool lacking = num_pilot_blocks < pilot_groups_;
+  const double laplace = num_pilot_blocks == 0 ? 1.0 - kInitialShare : (lacking ? kLackingShare : kLaplaceShare);
   for (int b = 0; b < num_pilot_blocks; ++b)
     proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)],
-                  rest * (1.0 - kInitialShare - kLaplaceShare) / num_pilot_blocks);
+                  rest * (1.0 - kInitialShare - laplace) / num_pilot_blocks);
   // The pilot's blocks stand in for the Laplace fit of what they were drawn for; after a modification, with P_0 alone
   // in the target, it stays, against a late surprise in the tails.
   // The same holds for changes in part, which are several in one pilot's block.
-  if (use_previous && (num_pilot_blocks == 0 || transition_.Offers(previous))) {
+  if (use_previous && (lacking || transition_.Offers(previous))) {
     AddPersisted(0.6 * rest * laplace, proposal);
     proposal->Add(&laplace_fresh_, 0.4 * rest * laplace);
-  } else if (!use_previous) {
+  } else if (!use_previous || may_have_changed_) {
+    // Where both may be: one draw of P_0's posterior, far from where the others are drawn, would hold all the weight.
     proposal->Add(&laplace_fresh_, rest * laplace);
   }
   proposal->Add(&initial_block_, rest * kInitialShare);
@@ -114,7 +203,7 @@ bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory
     SetElliptic(anchors_[i].mean, anchors_[i].covariance, kLaplaceInflation, &normal_table_, &ridge_blocks_[i]);
     proposal->Add(&ridge_blocks_[i], anchors_[i].share);
   }
-  if (partial) AddPersisted(1.0, proposal);
+  if (partial || num_persisted_ > 1) AddPersisted(1.0, proposal);
   proposal->Add(&laplace_fresh_, kInitialShare);
   proposal->Add(&initial_block_, kInitialShare);
   proposal->Normalise();
@@ -132,34 +221,47 @@ int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int fi
     return FitBlock(kernels_, group, kPilotFit, ws->StraightRows().data(), ws->pilot_tables[b].data(),
                     &pilot_blocks_[b]);
   };
-  // Persisted and changed parameters get a block each where both have a say.
-  if (lambda > 0.0) {
+  pilot_groups_ = 1;
+  // Persisted and changed parameters get a block each where both have a say, else those that rest and those that drift.
+  const auto fit_apart = [&](auto density_of, double density_share, auto rest_of) noexcept ARMCMC_NONBLOCKING {
     double total = 0.0;
-    double changed = 0.0;
+    double apart = 0.0;
     for (int k = first; k < last; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      const double fresh = (1.0 - lambda) * ws->initial_prior[i];
-      double persisted = previous.weight[0] * ws->memory[0][i];
-      if (previous.num_blocks > 1) persisted += previous.weight[1] * ws->memory[1][i];
-      const double share = fresh / (fresh + lambda * persisted / memory_inside_ + 1e-300);
-      ws->group_weight[i] = ws->weight[i] * share;
+      const double one = density_share * density_of(i);
+      ws->group_weight[i] = ws->weight[i] * (one / (one + rest_of(i) + 1e-300));
       total += ws->weight[i];
-      changed += ws->group_weight[i];
+      apart += ws->group_weight[i];
     }
-    if (changed > 0.02 * total && changed < 0.98 * total) {
-      WeightedDraws group = weighted;
-      group.weight = ws->group_weight.data() + offset;
-      *ess = fit(group, 0);
-      int blocks = *ess >= kMinimumEss ? 1 : 0;
-      for (int k = first; k < last; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        ws->group_weight[i] = ws->weight[i] - ws->group_weight[i];
-      }
-      const double other = fit(group, blocks);
-      blocks += other >= kMinimumEss ? 1 : 0;
-      *ess += other;
-      return blocks;
+    if (!(apart > 0.02 * total && apart < 0.98 * total)) return 0;
+    WeightedDraws group = weighted;
+    group.weight = ws->group_weight.data() + offset;
+    const double one = fit(group, 0);
+    int blocks = one >= kMinimumEss ? 1 : 0;
+    for (int k = first; k < last; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      ws->group_weight[i] = ws->weight[i] - ws->group_weight[i];
     }
+    const double other = fit(group, blocks);
+    blocks += other >= kMinimumEss ? 1 : 0;
+    *ess = blocks == 2 ? one + other : std::fmin(one, other);
+    pilot_groups_ = 2;
+    return blocks == 0 ? -1 : blocks;
+  };
+  if (lambda > 0.0) {
+    const double* const fresh = ws->initial_prior.data();
+    const double* const one = ws->memory[0].data();
+    const double* const two = ws->memory[1].data();
+    const double share_one = lambda * previous.weight[0] / memory_inside_;
+    const double share_two = previous.num_blocks > 1 ? lambda * previous.weight[1] / memory_inside_ : 0.0;
+    int blocks = fit_apart([=](std::size_t i) noexcept ARMCMC_NONBLOCKING { return fresh[i]; }, 1.0 - lambda,
+                           [=](std::size_t i) noexcept ARMCMC_NONBLOCKING {
+                             return share_one * one[i] + (share_two > 0.0 ? share_two * two[i] : 0.0);
+                           });
+    if (blocks == 0 && drift_.Splits(previous))
+      blocks = fit_apart([=](std::size_t i) noexcept ARMCMC_NONBLOCKING { return two[i]; }, share_two,
+                         [=](std::size_t i) noexcept ARMCMC_NONBLOCKING { return share_one * one[i]; });
+    if (blocks != 0) return std::max(blocks, 0);
   }
   *ess = fit(weighted, 0);
   if (*ess >= kMinimumEss) return 1;

@@ -213,6 +213,23 @@ TEST(FitBlock, DoesNotDependOnTheScaleOfACoordinate) {
   }
 }
 
+TEST(AppendIndependent, MultipliesByALawOfItsOwn) {
+  Sample s(2, 2000, &Banana);
+  s.Fit();
+  const DensityBlock before = s.block;
+  const MarginalTable law = MarginalTable::StudentT(5.0);
+  MarginalTable table;
+  AppendIndependent(-0.4, 0.25, law, &table, &s.block);
+  ASSERT_EQ(s.block.dim, 3);
+  EXPECT_DOUBLE_EQ(MeanOf(s.block)[2], -0.4);
+  EXPECT_NEAR(CovarianceOf(s.block)(2, 2), 0.25 * 0.25, 1e-12);
+  const double unit = std::sqrt(law.Variance()) / 0.25;
+  for (const double third : {-2.0, -0.4, -0.1, 1.5}) {
+    const double u[] = {s.row[0][7], s.row[1][7], third};
+    EXPECT_NEAR(s.block.Density(u), before.Density(u) * law.Density((third + 0.4) * unit) * unit, 1e-9);
+  }
+}
+
 TEST(FitBlock, InflationWidensEveryCoordinate) {
   Sample s(1, 4000, [](std::mt19937_64& g, double* u) { u[0] = drawn_normal(g); });
   s.Fit();

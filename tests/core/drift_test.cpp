@@ -252,7 +252,7 @@ class Bank {
     posterior.covariance << 0.04, -0.03, 0.004, -0.03, 0.05, 0.001, 0.004, 0.001, 0.002;
     SetElliptic(posterior.mean, posterior.covariance, 1.0, &normal_, &posterior.block[0]);
     scratch_ = std::make_unique<LaplaceScratch>();
-    drift.Learn(data, posterior, Drift::Part::kRest, true, scratch_.get());
+    drift.Learn(data, posterior, Drift::Part::kRest, false, true, scratch_.get());
   }
 
  private:

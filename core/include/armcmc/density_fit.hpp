@@ -55,4 +55,10 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
                 double* const* scratch, MarginalTable* tables, DensityBlock* block) noexcept ARMCMC_NONBLOCKING;
 inline constexpr double kMinimumEss = 30.0;
 
+/// Gives a block one coordinate more, after the others and independent of them: mean + sd x, x by `law` standardised.
+/// @param table  Storage for its marginal; must outlive the block.
+/// @rt No heap, no lock, no throw. O(nodes).
+void AppendIndependent(double mean, double sd, const MarginalTable& law, MarginalTable* table,
+                       DensityBlock* block) noexcept ARMCMC_NONBLOCKING;
+
 }  // namespace armcmc

@@ -46,18 +46,20 @@ struct Kernels;
 ///            linear that is none. What was not sampled stays as its own filters have it: the draws of what the data
 ///            refute say nothing about it
 ///
-/// Of a sampled posterior only the more probable of rest and drift is handed on, P: its draws each with the
-/// probability that they came from there. Before the next pack it becomes
+/// Of a sampled posterior rest and drift are handed on as two densities, its draws each with the probability that they
+/// came from there; where one of them is improbable or has too few draws, the other alone, P. Before the next pack that
+/// becomes
 ///
 ///   pi_0 P_rest(u) + (1 - pi_0) P_drift(u)
 ///
-/// P_rest is P moved and stretched by an affine map to where the bank has rest then, and to its covariance: drawable
-/// and with a density like P itself. P_drift is the mixture of the hypotheses where there is one parameter, and of
-/// several the Gaussian with its moments: a shape of P that is handed on from pack to pack, narrower than a Gaussian in
-/// its core, would have each posterior narrow the bank a little more. (With a noise scale that is sampled P_drift is P
-/// moved and stretched, too.) While drift is improbable (kNegligible) P stays as it is, to the bit.
+/// Both come from their own density; from P where there is one alone. P_rest is P moved and stretched by an affine map
+/// to where the bank has rest then, and to its covariance: drawable and with a density like P itself. P_drift is the
+/// mixture of the hypotheses where there is one parameter, and of several the Gaussian with its moments: a shape of P
+/// that is handed on from pack to pack, narrower than a Gaussian in its core, would have each posterior narrow the bank
+/// a little more. (With a noise scale that is sampled P_drift is P moved and stretched, too.) While drift is improbable
+/// (kNegligible) P stays as it is, to the bit.
 ///
-/// The noise scale is no coordinate of the bank: its memory is loose as it is (ModeSampler::SpreadNoiseScale).
+/// The noise scale is no coordinate of the bank: its memory is loose as it is (ModeSampler::AppendNoiseScale).
 class Drift {
  public:
   struct Law {
@@ -107,10 +109,11 @@ class Drift {
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
   /// @param part     What its first block was fitted to.
+  /// @param both     Rest and drift have a block each, with the weights that were sampled.
   /// @param renewed  The parameters did not come from where they were: the bank starts again around `next`, with the
   /// rates that it knows.
   /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
-  void Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool renewed,
+  void Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
              LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
 
   /// As of the last Carry(): probability of drift before the pack, and the expected rate, prior standard deviations per
@@ -151,9 +154,20 @@ class Drift {
   void Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
+  /// A sampled density of a part of the bank.
+  struct Sampled {
+    Part part;
+    ParamVector mean;
+    ParamMatrix covariance;
+    LocalLikelihood local;  ///< About the mean.
+  };
+  [[nodiscard]] Sampled SampledBlock(const ModeData& data, const PosteriorMemory& next, int block, Part part,
+                                     LaplaceScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
+  /// Updates the filters of a part and makes `weight` the sum of theirs.
   /// @return false when some number is not finite.
-  bool Update(const LocalLikelihood& local, const ParamVector& centre) noexcept ARMCMC_NONBLOCKING;
-  bool Recentre(const LocalLikelihood& local, const PosteriorMemory& next) noexcept ARMCMC_NONBLOCKING;
+  bool Update(const Sampled& sampled, Part part, double weight) noexcept ARMCMC_NONBLOCKING;
+  /// Moves and stretches the filters of the sampled part to where it was sampled.
+  bool Recentre(const Sampled& sampled) noexcept ARMCMC_NONBLOCKING;
   /// Block `to` of what is carried on: a block of `last`, moved and stretched as from `from` to a part of the bank.
   bool Move(const PosteriorMemory& last, Part part, const Moments& from, int block, int to) noexcept ARMCMC_NONBLOCKING;
   /// Block `to` of what is carried on, of one parameter: the mixture of the hypotheses that drift.
@@ -175,6 +189,7 @@ class Drift {
   Bank predicted_;          ///< Before the next one.
   double share_ = 0.0, rate_ = 0.0;
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
+  bool both_ = false;          ///< Its second block is the other part.
   bool split_ = false;
   bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;

@@ -39,9 +39,8 @@ class SamplerWorkspace {
   std::vector<double> log_likelihood, proposal, initial_prior;
   std::array<std::vector<double>, PosteriorMemory::kMaxBlocks> memory;  ///< Density of each block of the memory.
   std::vector<double> weight, group_weight;
-  std::vector<double> first_share;       ///< Posterior share of the memory's first block at a candidate.
-  std::vector<double> noise_coordinate;  ///< The noise scale's coordinate, spread out for the memory.
-  std::vector<std::int8_t> component;    ///< Component that a candidate was drawn from.
+  std::vector<double> first_share;     ///< Posterior share of the memory's first block at a candidate.
+  std::vector<std::int8_t> component;  ///< Component that a candidate was drawn from.
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;
   LaplaceScratch laplace;
@@ -74,6 +73,7 @@ class ModeSampler {
   static constexpr int kMaxPilotRounds = 7;  ///< Where there are draws enough.
   static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock, at most.
   static constexpr int kMismatchDraws = 256;
+  static constexpr double kStudentDof = 5.0;  ///< Tails of the Laplace components, and of the noise scale's memory.
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
               const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise,
@@ -139,10 +139,10 @@ class ModeSampler {
     double lambda = 0.0;                      ///< Its share in the prior.
     int first = 0;                            ///< Draw that counts, after the pilot.
     double mass_first = 0.0, mass_new = 0.0;  ///< Of the first block of `previous`, and of what was drawn anew.
-    /// Of what was carried on through time, where rest and drift are two blocks: only the more probable is handed on.
-    bool one_part = false;
+    /// What was carried on through time is rest and drift in two blocks: the more probable is handed on, and the other
+    /// where there are draws enough of it.
+    bool split = false;
     Drift::Part part = Drift::Part::kRest;
-    RandomStream noise_stream;
   };
 
   /// Until when a pack may draw, and how much at most.
@@ -167,8 +167,12 @@ class ModeSampler {
 
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
                    SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
-  void FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous,
+  void FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous, const RandomStream& stream,
                   SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
+  /// Laplace fits under P_0 from the best of some draws of it: a law that is not linear may have several modes, and the
+  /// mean of P_0 may lie beside none of them. Leaves the best by its mass in `fit`, which has the log posterior `best`.
+  void FitFromScattered(const ModeData& data, const RandomStream& stream, SamplerWorkspace* ws, double best,
+                        Gaussian* fit) const noexcept ARMCMC_NONBLOCKING;
   void BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous, int num_pilot_blocks,
                      Proposal* proposal) const noexcept ARMCMC_NONBLOCKING;
   /// The Laplace fits under what is carried on.
@@ -212,12 +216,11 @@ class ModeSampler {
   /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
   void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
-  /// Spreads the noise scale's coordinate of the draws [first, draws) to a standard deviation of log s of at least
-  /// kNoiseMemory, with the tails of a t law, so that a level six standard deviations away is not held to be
+  /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law with a standard
+  /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not held to be
   /// impossible.
-  /// @return the spread row.
-  const double* SpreadNoiseScale(int first, const RandomStream& stream, SamplerWorkspace* ws,
-                                 const ModeDraws& draws) const noexcept ARMCMC_NONBLOCKING;
+  void AppendNoiseScale(int first, int count, const double* weight, MarginalTable* table, const ModeDraws& draws,
+                        DensityBlock* block) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
 
   ModeSampler(const ModeSampler&) = delete;  // transition_ refers to other members
@@ -239,10 +242,13 @@ class ModeSampler {
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> laplace_persisted_;  ///< One for each change in part, else one.
   int num_persisted_ = 0;
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> pilot_blocks_;
+  int laplace_fits_ = 1;  ///< That FitLaplace made.
+  int pilot_groups_ = 1;  ///< How many the pilot's draws fall into; some may have too few for a block.
   Gaussian fit_fresh_, fit_persisted_;
   std::array<RidgeAnchor, kRidgeAnchors> anchors_;
   std::array<DensityBlock, kRidgeAnchors> ridge_blocks_;
-  double memory_inside_ = 1.0;  ///< Share of the memory's mass inside the bounds.
+  bool may_have_changed_ = false;  ///< P_0 has a share in the prior that counts.
+  double memory_inside_ = 1.0;     ///< Share of the memory's mass inside the bounds.
   Unfinished unfinished_;
   Drifted drifted_;
   // They steer the deadline only.
