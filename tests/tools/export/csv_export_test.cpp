@@ -1,4 +1,4 @@
-#include "armcmc/log_export/csv_export.hpp"
+#include "armcmc/log_export/log_export.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
