@@ -58,6 +58,7 @@ TEST_F(ForeignCsv, SemicolonsAndTabsSeparateWhereTheyDoInTheHeader) {
   EXPECT_THAT(Read("t;x;\"a;b\"\n0;1.5;2\n1; 2.5 ;3\n").columns[1], ElementsAre(1.5, 2.5));
   EXPECT_THAT(Read("a\tt\tx\n\t0\t1.5\nword\t1\t2.5\n").columns[1], ElementsAre(1.5, 2.5))
       << "with an empty first cell";
+  EXPECT_THAT(Read("a\tt\tx\n\t\"0\"\t1.5\n").columns[1], ElementsAre(1.5)) << "a quoted one behind an empty one";
   EXPECT_THAT(Read("\"t\";\"x\";\"a, b, and c\"\n0;1.5;2\n").columns[1], ElementsAre(1.5)) << "commas in a name";
   EXPECT_THAT(Read("t,x,\"a;b;c;d\"\n0,1.5,2\n").columns[1], ElementsAre(1.5));
 }
