@@ -93,12 +93,11 @@ TEST_F(Version010, TheLogIsReplayedToTheSamePosterior) {
   for (std::size_t n = 0; n < 3; ++n) {
     EXPECT_EQ(now[n].at("draws"), "3000") << "as the configuration says";
     for (const auto& [parameter, unit] : {std::pair{"gain", " [rad (s V)^-1]"}, {"tau", " [s]"}}) {
-      const auto recorded = [&, p = std::string(parameter), u = std::string(unit)](const std::string& what) {
-        return Number(then[n].at(what + "." + p + u));
+      const std::string name = parameter, column = name + unit;
+      const auto recorded = [&](const char* what) {
+        return Number(then[n].at(std::string(what).append(".").append(column)));
       };
-      const auto computed = [&, p = std::string(parameter)](const std::string& what) {
-        return Number(now[n].at(p + what));
-      };
+      const auto computed = [&](const char* what) { return Number(now[n].at(std::string(name).append(what))); };
       const double sd = recorded("sd");
       EXPECT_NEAR(computed("_ap"), recorded("ar_ap"), 0.4 * sd) << parameter << " " << n;
       EXPECT_NEAR(computed("_sd") / sd, 1.0, 0.3) << parameter << " " << n;

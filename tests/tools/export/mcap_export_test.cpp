@@ -29,7 +29,6 @@ using mcap_bytes::McapMessageRead;
 using mcap_bytes::RecordsOf;
 using replay::ContactPack;
 using replay::LogWriter;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 

@@ -35,15 +35,16 @@ std::string FileName(const std::string& channel, std::set<std::string>* taken) {
 
 void RefuseUnknown(const ExportRequest& request, const LogScan& scan) {
   std::string names;
-  for (const ChannelScan& channel : scan.channels) names += (names.empty() ? "" : ", ") + channel.name;
+  for (const ChannelScan& channel : scan.channels) names.append(names.empty() ? "" : ", ").append(channel.name);
   for (const std::string& wanted : request.channels) {
     const bool there = std::any_of(scan.channels.begin(), scan.channels.end(), [&](const ChannelScan& channel) {
       return channel.type != nullptr && channel.name.starts_with(request.prefix) &&
              (channel.name == wanted || channel.name == channel.prefix + wanted);
     });
-    if (!there)
-      throw support::InputError(request.log.string() + ": holds nothing readable on channel " + wanted + "; it has " +
-                                names);
+    if (there) continue;
+    std::string problem = request.log.string();
+    problem.append(": holds nothing readable on channel ").append(wanted).append("; it has ").append(names);
+    throw support::InputError(problem);
   }
 }
 
