@@ -81,7 +81,7 @@ void ReadStates(StrictTable root, DescribedPlant* plant) {
 
 DescribedPlant ReadDescribedPlant(StrictTable root) {
   DescribedPlant plant;
-  static_cast<void>(root.RequiredInteger("schema", 1, 1));
+  root.RequireSchema();
   plant.name = root.RequiredText("name");
   static_cast<void>(root.Text("title", ""));
   plant.output = root.RequiredText("output");

@@ -71,7 +71,7 @@ DescribedScenario ReadDescribedScenario(StrictTable root) {
   constexpr std::int64_t kMaxSeed = 1'000'000'000;
   constexpr std::size_t kMostModes = 16;
   DescribedScenario scenario;
-  static_cast<void>(root.RequiredInteger("schema", 1, 1));
+  root.RequireSchema();
   scenario.dt = 1.0 / root.Number("rate_hz", 1000.0, 1e-6, kFastest);
   scenario.duration_s = root.Number("duration_s", scenario.duration_s, 1e-6, kLongest);
   scenario.seed = static_cast<std::uint64_t>(root.Integer("seed", 1, 0, kMaxSeed));

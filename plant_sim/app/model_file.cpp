@@ -108,7 +108,7 @@ std::string FamiliesWithForms() {
 
 void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
   StrictTable root = StrictTable::FromFile(path);
-  static_cast<void>(root.RequiredInteger("schema", 1, 1));
+  root.RequireSchema();
   const std::string base = root.RequiredText("base");
   const PlantFamily* family = FamilyOf(base);
   if (family == nullptr)

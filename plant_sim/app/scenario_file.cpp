@@ -144,7 +144,7 @@ HiddenEffects ReadHiddenEffects(StrictTable* root, const PlantFamily& family) {
 
 Scenario LoadScenario(const std::filesystem::path& path, std::optional<double> duration_s, std::uint64_t seed) {
   StrictTable root = StrictTable::FromFile(path);
-  static_cast<void>(root.RequiredInteger("schema", 1, 1));
+  root.RequireSchema();
   Scenario scenario;
   scenario.name = path.stem().string();
   scenario.seed = seed;

@@ -113,7 +113,9 @@ std::string DecodeSnapshot(std::span<const std::byte> bytes, std::uint64_t ident
   if (bytes.size() < sizeof header + sizeof(std::uint64_t)) return "is truncated";
   std::memcpy(&header, bytes.data(), sizeof header);
   if (header.version != kSnapshotVersion) {
-    return "has version " + std::to_string(header.version) + ", expected " + std::to_string(kSnapshotVersion);
+    return "has version " + std::to_string(header.version) +
+           (header.version > kSnapshotVersion ? " of a newer program" : "") + ", expected " +
+           std::to_string(kSnapshotVersion);
   }
   const std::size_t whole =
       sizeof header + std::size_t{header.adjusted_size} + std::size_t{header.executed_size} + sizeof(std::uint64_t);

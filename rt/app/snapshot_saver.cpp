@@ -1,6 +1,7 @@
 #include "snapshot_saver.hpp"
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "armcmc/rt/clock.hpp"
@@ -10,6 +11,16 @@ namespace {
 
 constexpr auto kWritePause = std::chrono::milliseconds(50);
 constexpr auto kInterval = std::chrono::seconds(1);
+
+/// Moves a file that will not be used out of the way of the new one. @return what to say of it.
+std::string SetAside(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return "it is no file";
+  std::string aside = path + ".refused";
+  for (int n = 2; std::filesystem::exists(aside, error); ++n) aside = path + ".refused" + std::to_string(n);
+  std::filesystem::rename(path, aside, error);
+  return error ? "it could not be set aside: " + error.message() : "it stays as " + aside;
+}
 
 }  // namespace
 
@@ -89,7 +100,8 @@ Snapshot LoadSnapshot(const std::string& path, std::uint64_t identity, std::int6
     if (reason.empty() && !use(snapshot)) reason = "is damaged: its content makes no sense";
   }
   if (!reason.empty()) {
-    say("the snapshot " + path + " is refused, it " + reason + "; starting afresh");
+    // It may be of use to another program: that of a newer version, or of the model that it belongs to.
+    say("the snapshot " + path + " is refused, it " + reason + "; starting afresh, " + SetAside(path));
     return nothing;
   }
   say("going on from pack " + std::to_string(snapshot.seq) + " in the snapshot " + path + ", saved " +

@@ -55,7 +55,7 @@ TEST(SnapshotFile, RefusesWhatItDoesNotKnowAndSaysWhy) {
   EXPECT_EQ(Refusal(Bytes(2000, 7)), "is no snapshot of an estimator");
   auto foreign = good;
   foreign[8] = std::byte{99};
-  EXPECT_EQ(Refusal(foreign), "has version 99, expected 3");
+  EXPECT_EQ(Refusal(foreign), "has version 99 of a newer program, expected 3");
   EXPECT_EQ(Refusal(good, kIdentity + 1), "belongs to another model, or to other priors, bounds or noise");
 }
 
@@ -204,9 +204,36 @@ TEST_F(SnapshotSaverTest, SaysInOneLineWhatBecomesOfTheFile) {
   ASSERT_EQ(said_.size(), 4U);
   EXPECT_EQ(said_[0], "no snapshot " + file + " yet: starting afresh");
   EXPECT_EQ(said_[1], "going on from pack 17 in the snapshot " + file + ", saved 9 s ago");
-  EXPECT_EQ(said_[2],
-            "the snapshot " + file + " is refused, it is damaged: its content makes no sense; starting afresh");
-  EXPECT_EQ(said_[3], "the snapshot " + file + " is refused, it is no snapshot of an estimator; starting afresh");
+  EXPECT_EQ(said_[2], "the snapshot " + file +
+                          " is refused, it is damaged: its content makes no sense; starting afresh, it stays as " +
+                          file + ".refused");
+  EXPECT_EQ(said_[3], "the snapshot " + file +
+                          " is refused, it is no snapshot of an estimator; starting afresh, it stays as " + file +
+                          ".refused2");
+}
+
+TEST_F(SnapshotSaverTest, AFolderIsNoSnapshotAndStaysWhereItIs) {
+  std::filesystem::create_directory(Path());
+  EXPECT_EQ(Load().seq, 0);
+  EXPECT_TRUE(std::filesystem::is_directory(Path()));
+  EXPECT_NE(said_.back().find("is refused"), std::string::npos) << said_.back();
+}
+
+TEST_F(SnapshotSaverTest, ARefusedFileIsSetAsideAndNeverReplaced) {
+  const std::vector<std::byte> content = EncodeSnapshot(Example());
+  ASSERT_EQ(ReplaceFile(Path(), content), "");
+  EXPECT_EQ(Load(false).seq, 0);
+  auto saver = Make();
+  Learn(1, 1);
+  saver->Save();
+  EXPECT_EQ(saver->written(), 1);
+  ASSERT_EQ(ReplaceFile(Path(), Bytes(100, 3)), "");
+  EXPECT_EQ(Load().seq, 0);
+  std::vector<std::byte> kept;
+  EXPECT_EQ(ReadFile(Path() + ".refused", &kept), "");
+  EXPECT_EQ(kept, content);
+  EXPECT_EQ(ReadFile(Path() + ".refused2", &kept), "");
+  EXPECT_EQ(kept, Bytes(100, 3));
 }
 
 /// The engine of the pipeline: what its warm-up learns reaches nobody, and ends where it was resumed.

@@ -238,7 +238,7 @@ TEST_F(RecordingFile, AMistakeInAColumnStandsWhereItIs) {
   EXPECT_THAT(ErrorOf("[held_out]\nfrom = 5000\n"), HasSubstr("no row that is used is among"));
   EXPECT_THAT(ErrorOf("[rows]\nfrom = 10\nfrom_s = 0.1\n"), HasSubstr("a row or a time, not both"));
   Write("data.csv", "time_ms;part;pos_mm;volt\n0;a;1,5;2\n");
-  EXPECT_THAT(ErrorOf(""), HasSubstr("separated by semicolons, expected commas"));
+  EXPECT_THAT(ErrorOf(""), HasSubstr("data.csv:2: pos_mm = 1,5: expected a finite number with a point as decimal"));
 }
 
 TEST_F(RecordingFile, RowsThatAreLeftOutNeedNotBeReadable) {

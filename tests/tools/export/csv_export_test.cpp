@@ -1,4 +1,4 @@
-#include "armcmc/log_export/csv_export.hpp"
+#include "armcmc/log_export/log_export.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,6 +93,9 @@ TEST(Meaning, UnitsHaveNoSlashWhichPlotJugglerTakesForAFolder) {
   EXPECT_EQ(ColumnUnit("N s/m^(p+1)"), "N s m^-(p+1)");
   EXPECT_EQ(ColumnUnit("m/s"), "m s^-1");
   EXPECT_EQ(ColumnUnit("sqrt(Pa) s/Pa^2"), "sqrt(Pa) s Pa^-2");
+  EXPECT_EQ(ColumnUnit("rad/(s V)"), "rad (s V)^-1");
+  EXPECT_EQ(ColumnUnit("N/(m/s)"), "N (m s^-1)^-1");
+  EXPECT_EQ(ColumnUnit("1/(s V)"), "(s V)^-1");
   EXPECT_EQ(ColumnUnit("1/s"), "s^-1");
   EXPECT_EQ(ColumnUnit("-"), "");
   EXPECT_EQ(ColumnUnit("us"), "us");

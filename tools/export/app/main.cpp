@@ -3,7 +3,7 @@
 #include <iostream>
 #include <string>
 
-#include "armcmc/log_export/csv_export.hpp"
+#include "armcmc/log_export/log_export.hpp"
 #include "armcmc/support/printable.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/progress.hpp"
@@ -14,28 +14,37 @@ namespace {
 
 struct Arguments {
   ExportRequest request;
+  std::string format = "csv";
   std::string histograms = "wide";
 };
 
 void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--data", a->request.log, "LCM log, as lcm-logger writes it")->required();
-  app->add_option("--out", a->request.out, "Folder for the tables, one CSV a channel")->required();
+  app->add_option("--out", a->request.out, "Folder for the tables, one CSV a channel; with --format mcap the file")
+      ->required();
+  app->add_option("--format", a->format, "csv, or mcap, one file that Foxglove and PlotJuggler open")
+      ->check(CLI::IsMember({"csv", "mcap"}))
+      ->capture_default_str();
   app->add_option("--channels", a->request.channels,
                   "Only these channels, comma separated, with or without their prefix (EST_ESTIMATE)")
       ->delimiter(',');
   app->add_option("--prefix", a->request.prefix, "Only channels that begin with this");
   app->add_option("--histograms", a->histograms,
-                  "Posteriors: wide, a row a message (PlotJuggler), or long, a row a bin (pandas)")
+                  "Posteriors in CSV: wide, a row a message (PlotJuggler), or long, a row a bin (pandas)")
       ->check(CLI::IsMember({"wide", "long"}))
       ->capture_default_str();
   app->footer(
       "Turns a log into tables that PlotJuggler and pandas read. The first column is the time in seconds since the "
       "first\n"
       "event of the log; headers carry units: \"ar_map.K [N m^-p]\". Samples of packs have a row each.\n\n"
-      "Example:\n"
+      "With --format mcap the rows are JSON messages of one MCAP file, with a topic for each channel and the units in "
+      "the\n"
+      "schemas. JSON has no number for infinity or \"not a number\": there the value is null.\n\n"
+      "Examples:\n"
       "  armcmc-export --data run.lcm --out tables --channels EST_ESTIMATE,PLANT_PACK\n"
       "  python3 -c \"import pandas; print(pandas.read_csv('tables/EST_ESTIMATE.csv', index_col='t "
-      "[s]').describe())\"");
+      "[s]').describe())\"\n"
+      "  armcmc-export --data run.lcm --format mcap --out run.mcap");
 }
 
 std::string Hex(std::int64_t fingerprint) {
@@ -59,7 +68,10 @@ void Print(const ExportSummary& summary) {
 
 int Run(const Arguments& arguments) {
   ExportRequest request = arguments.request;
+  if (arguments.format == "mcap") request.format = ExportFormat::kMcap;
   request.long_histograms = arguments.histograms == "long";
+  if (request.long_histograms && request.format == ExportFormat::kMcap)
+    throw support::InputError("--histograms long: makes rows of a CSV table, not of --format mcap");
   ExportSummary summary;
   {
     support::Progress progress("export");
@@ -73,7 +85,7 @@ int Run(const Arguments& arguments) {
 }  // namespace armcmc::log_export
 
 int main(int argc, char** argv) {
-  CLI::App app{"Turns an LCM log into CSV tables, one a channel."};
+  CLI::App app{"Turns an LCM log into CSV tables, one a channel, or into one MCAP file."};
   armcmc::log_export::Arguments arguments;
   armcmc::log_export::Declare(&app, &arguments);
   return armcmc::support::RunProgram(app, "armcmc-export", argc, argv,

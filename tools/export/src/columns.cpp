@@ -51,7 +51,8 @@ class Builder {
     Column column;
     column.field = &field;
     column.text = text;
-    Walk(what, field, 0, field.name, ColumnUnit(what.unit), column, columns);
+    column.path = {field.name};
+    Walk(what, field, 0, ColumnUnit(what.unit), column, columns);
   }
 
  private:
@@ -69,13 +70,13 @@ class Builder {
   }
 
   /// One dimension after the other; the last one emits the column.
-  void Walk(const FieldMeaning& what, const MessageField& field, std::size_t dim, const std::string& name,
-            const std::string& unit, const Column& so_far, std::vector<Column>* columns) const {
+  void Walk(const FieldMeaning& what, const MessageField& field, std::size_t dim, const std::string& unit,
+            const Column& so_far, std::vector<Column>* columns) const {
     if (dim == field.dims.size()) {
       Column column = so_far;
-      const std::string shown = Resolved(unit);
-      column.header = name;
-      if (!shown.empty()) column.header.append(" [").append(shown).append("]");
+      column.unit = Resolved(unit);
+      for (const std::string& name : column.path) column.header.append(column.header.empty() ? "" : ".").append(name);
+      if (!column.unit.empty()) column.header.append(" [").append(column.unit).append("]");
       columns->push_back(column);
       return;
     }
@@ -84,28 +85,31 @@ class Builder {
     const Axis axis = dim < what.axes.size() ? what.axes[dim] : Axis::kBin;
     for (std::size_t i = 0; i < Used(axis, field.dims[dim]); ++i) {
       Column next = so_far;
-      std::string next_name = name, next_unit = unit;
+      std::string next_unit = unit;
       next.index += i * stride;
       switch (axis) {
         case Axis::kSample:
           next.sample_stride = stride;
-          if (what.unit == "output") next_name = field.name == "y_true" ? words_.output + "_true" : words_.output;
+          if (what.unit == "output") next.path = {field.name == "y_true" ? words_.output + "_true" : words_.output};
           break;
         case Axis::kInput:
-          next_name = NameOr(words_.inputs, i, "u");
+          next.path = {NameOr(words_.inputs, i, "u")};
           next_unit = UnitOr(words_.input_units, i);
           break;
         case Axis::kParameter:
-          next_name.append(".").append(ParameterName(plant_, i));
+          next.path.push_back(ParameterName(plant_, i));
           if (what.unit == "parameter") next_unit = ParameterUnit(plant_, i);
           if (what.unit == "1/parameter") next_unit = Inverse(ParameterUnit(plant_, i));
           if (what.unit == "parameter/s") next_unit = PerSecond(ParameterUnit(plant_, i));
           break;
-        case Axis::kMode: next_name.append(".").append(NameOr(words_.modes, i, "mode")); break;
-        case Axis::kBin: next_name.append(".").append(std::to_string(i)); break;
+        case Axis::kMode: next.path.push_back(NameOr(words_.modes, i, "mode")); break;
+        case Axis::kBin:
+          next.path.push_back(std::to_string(i));
+          next.bin = true;
+          break;
         case Axis::kText: break;
       }
-      Walk(what, field, dim + 1, next_name, next_unit, next, columns);
+      Walk(what, field, dim + 1, next_unit, next, columns);
     }
   }
 

@@ -68,7 +68,7 @@ PlantWords WordsOf(const ModelInfo& model) {
 
 std::map<std::string, TypeMeaning> ReadMeanings(std::string_view toml) {
   auto root = support::StrictTable::FromText(toml, "columns.toml");
-  root.RequiredInteger("schema", 1, 1);
+  root.RequireSchema();
   std::map<std::string, TypeMeaning> meanings;
   for (const std::string& type : root.Keys()) {
     if (type == "schema") continue;
@@ -104,10 +104,16 @@ std::string ColumnUnit(std::string_view unit) {
       continue;
     }
     if (!text.empty()) text.push_back(' ');
-    // The divisor is one symbol, with an exponent or without.
+    // The divisor is one symbol, or several in parentheses, with an exponent or without.
     std::size_t end = at + 1;
-    while (end < unit.size() && (std::isalpha(static_cast<unsigned char>(unit[end])) != 0)) ++end;
-    text.append(unit.substr(at + 1, end - at - 1));
+    if (const std::size_t closing = unit.find(')', end);
+        unit.substr(end, 1) == "(" && closing != std::string_view::npos) {
+      text.append("(").append(ColumnUnit(unit.substr(end + 1, closing - end - 1))).append(")");
+      end = closing + 1;
+    } else {
+      while (end < unit.size() && (std::isalpha(static_cast<unsigned char>(unit[end])) != 0)) ++end;
+      text.append(unit.substr(at + 1, end - at - 1));
+    }
     if (end < unit.size() && unit[end] == '^') {
       text.append("^-");
       at = end;

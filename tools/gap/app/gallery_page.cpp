@@ -30,6 +30,9 @@ std::filesystem::path WriteGallery(const std::filesystem::path& folder) {
     try {
       std::ifstream file(path);
       parsed.push_back(nlohmann::json::parse(file));
+      if (parsed.back().value("schema", 1) > 1)
+        throw support::InputError(path.string() + ": schema = " + parsed.back().at("schema").dump() +
+                                  ": expected 1; the file is of a newer version of the program");
       entries.push_back({path.parent_path().filename().string(), &parsed.back()});
       (void)GalleryHtml({entries.back()});  // says which of them lacks something
     } catch (const nlohmann::json::exception& error) {

@@ -40,6 +40,8 @@ class Reader {
       throw InputError(path_.string() + ": " + std::to_string(result_.bad.total()) + " rows are bad and only " +
                        std::to_string(result_.num_rows()) + " good; this is not skipping but guessing");
     NoteBadRows();
+    if (time_.start() != 0.0)
+      result_.notes.push_back("times count from the first one, " + ExactNumber(time_.start()) + " s");
     DeriveAll();
     return std::move(result_);
   }
@@ -55,13 +57,18 @@ class Reader {
       if (!lines_.Next(&line))
         throw InputError(path_.string() + ": is empty, expected a header line " + JoinedNames(request_.columns));
     } while (IsBlankOrComment(line));
+    separator_ = SeparatorOf(line);
     const std::vector<std::string> header = HeaderNames(line);
     num_fields_ = header.size();
     for (const std::string& name : request_.columns) source_.push_back(Find(header, name));
+    if (request_.columns.front() == "t" && header[source_.front()] != "t")
+      result_.notes.push_back("column t is missing: the time is " + Printable(header[source_.front()]));
   }
 
   [[nodiscard]] std::size_t Find(const std::vector<std::string>& header, const std::string& name) const {
-    const auto found = std::find(header.begin(), header.end(), name);
+    auto found = std::find(header.begin(), header.end(), name);
+    if (found == header.end() && name == "t" && FindTime(header) != std::string::npos)
+      found = header.begin() + static_cast<std::ptrdiff_t>(FindTime(header));
     if (found == header.end()) {
       const auto derived = std::find_if(request_.derived.begin(), request_.derived.end(),
                                         [&](const DerivedColumn& d) { return d.name == name; });
@@ -69,8 +76,8 @@ class Reader {
       throw Error("column " + name + " is missing" + DidYouMean(name, header) + "; the header has " +
                   JoinedNames(header) + ", expected " + JoinedNames(request_.columns) + HeaderHint(header));
     }
-    if (std::find(found + 1, header.end(), name) != header.end())
-      throw Error("column " + name + " appears twice in the header");
+    if (std::find(found + 1, header.end(), *found) != header.end())
+      throw Error("column " + Printable(*found) + " appears twice in the header");
     return static_cast<std::size_t>(found - header.begin());
   }
 
@@ -81,7 +88,7 @@ class Reader {
   }
 
   void ReadRow(const std::string& line) {
-    SplitFields(line, &fields_);
+    SplitFields(line, separator_, &fields_);
     if (!lines_.complete())
       return Reject(&BadRows::malformed, "the last line has no line end: the file is cut off here");
     if (fields_.size() != num_fields_)
@@ -92,13 +99,18 @@ class Reader {
       if (source_[i] == kAbsent) continue;
       const std::string_view text = fields_[source_[i]];
       const std::string what = request_.columns[i] + " = " + (text.empty() ? "(empty)" : Printable(text));
-      const std::optional<double> value = text.empty() ? std::numeric_limits<double>::quiet_NaN() : ParseNumber(text);
-      if (!value) return Reject(&BadRows::malformed, what + ": expected a number");
-      if (!std::isfinite(*value)) return Reject(&BadRows::non_finite, what + ": expected a finite number");
+      const bool is_time = i == 0 && request_.columns[i] == "t";
+      const std::optional<double> value = text.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                          : is_time    ? time_.Parse(text)
+                                                       : ParseNumber(text);
+      if (!value) return Reject(&BadRows::malformed, what + ": expected a number" + NumberHint(text));
+      if (!std::isfinite(*value))
+        return Reject(&BadRows::non_finite,
+                      what + ": expected a finite number" + (text.empty() ? NumberHint(text) : ""));
       row_.push_back(*value);
     }
     std::vector<double>& t = result_.columns.front();
-    ended_ = row_.front() > request_.until;
+    ended_ = time_.start() + row_.front() > request_.until;
     if (ended_) return;
     if (!t.empty() && row_.front() <= t.back())
       return Reject(&BadRows::not_increasing, request_.columns.front() + " = " + ExactNumber(row_.front()) +
@@ -145,6 +157,8 @@ class Reader {
   const std::filesystem::path& path_;
   const CsvRequest& request_;
   LineReader lines_;
+  char separator_ = ',';
+  TimeCells time_{kFarTime};
   std::size_t num_fields_ = 0;
   std::vector<std::size_t> source_;  // field of each wanted column, or kAbsent
   std::vector<std::string_view> fields_;

@@ -39,11 +39,14 @@ std::vector<std::string> ReadCsvHeader(const std::filesystem::path& path) {
 }
 
 CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<std::string>& numbers,
-                          const std::vector<std::string>& texts, BadRowsAre bad_rows) {
+                          const std::vector<std::string>& texts, BadRowsAre bad_rows, const TimeColumn& time,
+                          bool blanks_are_bad) {
   CsvColumns columns;
   std::string line;
   LineReader lines = Open(path, &line);
   columns.header = HeaderNames(line);
+  const char separator = SeparatorOf(line);
+  TimeCells times(time.far);
   std::vector<std::pair<std::size_t, std::vector<double>*>> number_fields;
   std::vector<std::pair<std::size_t, std::vector<std::string>*>> text_fields;
   number_fields.reserve(numbers.size());
@@ -56,7 +59,7 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
   std::vector<std::string_view> fields;
   std::vector<double> row(number_fields.size());
   while (lines.NextRow(&line)) {
-    SplitFields(line, &fields);
+    SplitFields(line, separator, &fields);
     std::string problem;
     std::fill(row.begin(), row.end(), std::numeric_limits<double>::quiet_NaN());
     if (!lines.complete()) {
@@ -67,10 +70,12 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
     }
     for (std::size_t i = 0; i < number_fields.size() && fields.size() == columns.header.size(); ++i) {
       const std::string_view text = fields[number_fields[i].first];
-      row[i] = ParseNumber(text).value_or(std::numeric_limits<double>::quiet_NaN());
+      const bool is_time = numbers[i] == time.name;
+      row[i] = (is_time ? times.Parse(text) : ParseNumber(text)).value_or(std::numeric_limits<double>::quiet_NaN());
+      if (text.empty() && !blanks_are_bad && !is_time) continue;
       if (!std::isfinite(row[i]) && problem.empty())
         problem = Printable(columns.header[number_fields[i].first]) + " = " +
-                  (text.empty() ? "(empty)" : Printable(text)) + ": expected a finite number";
+                  (text.empty() ? "(empty)" : Printable(text)) + ": expected a finite number" + NumberHint(text);
     }
     if (!problem.empty() && bad_rows != BadRowsAre::kKept) {
       if (bad_rows == BadRowsAre::kErrors)
@@ -85,6 +90,7 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
       text->emplace_back(field < fields.size() ? fields[field] : std::string_view());
     columns.line.push_back(lines.number());
   }
+  columns.start = times.start();
   if (columns.line.size() == columns.bad.size() && !columns.bad.empty())
     throw InputError(path.string() + ":" + std::to_string(columns.line.front()) + ": " + columns.bad.begin()->second);
   if (columns.line.empty()) throw InputError(path.string() + ": holds no valid row of numbers");

@@ -17,6 +17,7 @@ struct CsvColumns {
   std::vector<std::size_t> line;                         ///< [row] Where it stands in the file.
   std::map<std::size_t, std::string> bad;                ///< [row] What is wrong with a bad row that was kept.
   std::size_t skipped = 0;                               ///< Bad rows that were not.
+  double start = 0.0;                                    ///< What the times count from, in the unit of their column.
   [[nodiscard]] std::size_t num_rows() const { return line.size(); }
 };
 
@@ -31,9 +32,19 @@ enum class BadRowsAre : std::uint8_t {
   kKept,     ///< Whoever selects rows may do without them; what cannot be read is not a number, or an empty text.
 };
 
+/// The column of time, if one is read.
+struct TimeColumn {
+  std::string name;  ///< Empty: none.
+  double far = 0.0;  ///< Times from this size on count from the first one, in the unit of the column.
+};
+
 /// Reads the columns.
+/// @param blanks_are_bad  A cell without text is no finite number; otherwise it is not a number in a good row, but for
+/// the
+///                        time, which no row may lack.
 /// @throws InputError naming file, line and column.
 [[nodiscard]] CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<std::string>& numbers,
-                                        const std::vector<std::string>& texts, BadRowsAre bad_rows);
+                                        const std::vector<std::string>& texts, BadRowsAre bad_rows,
+                                        const TimeColumn& time = {}, bool blanks_are_bad = true);
 
 }  // namespace armcmc::support

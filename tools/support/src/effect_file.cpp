@@ -113,7 +113,7 @@ EffectEntry ReadEntry(StrictTable* table) {
 }
 
 EffectEntry Whole(StrictTable root) {
-  (void)root.RequiredInteger("schema", 1, 1);
+  root.RequireSchema();
   EffectEntry entry = ReadEntry(&root);
   root.Finish();
   try {

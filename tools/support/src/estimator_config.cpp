@@ -103,7 +103,7 @@ void ReadBuiltin(StrictTable& root, StrictTable& model, const ModelFacts& facts,
 }  // namespace
 
 EstimatorSettings ReadEstimatorSettings(StrictTable& root, const std::string& model_override) {
-  root.RequiredInteger("schema", 1, 1);
+  root.RequireSchema();
   StrictTable model = root.Table("model");
   const std::string of_file = model.Text("name", "");
   const std::shared_ptr<const PlantProgram> plant = DescribedPlant(model_override.empty() ? of_file : model_override);

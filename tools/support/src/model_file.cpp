@@ -104,7 +104,7 @@ std::string BaseModel(const std::string& model) {
     return model;
   }
   StrictTable root = StrictTable::FromFile(model);
-  root.RequiredInteger("schema", 1, 1);
+  root.RequireSchema();
   std::string base = root.RequiredText("base");
   try {
     (void)BuiltinSettings(base);
@@ -116,7 +116,7 @@ std::string BaseModel(const std::string& model) {
 
 void ApplyModelFile(const std::string& path, EstimatorSettings* settings) {
   StrictTable root = StrictTable::FromFile(path);
-  root.RequiredInteger("schema", 1, 1);
+  root.RequireSchema();
   (void)root.RequiredText("base");
   const ModelFacts facts = FactsOf(*settings);
   ReadParameters(root.Table("parameters"), settings);

@@ -89,7 +89,7 @@ void ReadStates(StrictTable root, PlantDescription* plant) {
 
 PlantDescription Describe(StrictTable root) {
   PlantDescription plant;
-  (void)root.RequiredInteger("schema", 1, 1);
+  root.RequireSchema();
   plant.name = root.RequiredText("name");
   plant.title = root.Text("title", plant.name);
   plant.output = root.RequiredText("output");

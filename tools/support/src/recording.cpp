@@ -92,6 +92,7 @@ Recording ReadRecording(const fs::path& path, const fs::path& data_dir) {
   const auto held = static_cast<std::size_t>(std::count(rows.held_out.begin(), rows.held_out.end(), std::uint8_t{1}));
   if (held == rows.size()) throw file.root->Error("held_out", "nothing is left to learn from");
   if (held == 0) throw file.root->Error("held_out", "no row that is used is among what it keeps apart");
+  recording.notes.insert(recording.notes.end(), rows.notes.begin(), rows.notes.end());
   Resample(rows, &recording);
   if (recording.t.empty())
     throw ConfigError(path.string() + ": every run has fewer than 10 rows; is segment_column right, or the time?");
@@ -111,6 +112,7 @@ Recording ReadRecordedCsv(const fs::path& csv, const std::string& model, bool sk
   RecordingRows rows = ReadRecordingRows(csv, file, {}, description, csv.string(), skip_bad);
   HoldOutByDefault(&rows.held_out);
   if (rows.skipped > 0) recording.notes.push_back("skipped " + std::to_string(rows.skipped) + " bad rows");
+  recording.notes.insert(recording.notes.end(), rows.notes.begin(), rows.notes.end());
   Resample(rows, &recording);
   if (recording.t.empty()) throw ConfigError(csv.string() + ": every run has fewer than 10 rows");
   Derive(file, description, csv.string(), &recording);

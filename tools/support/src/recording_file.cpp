@@ -78,6 +78,10 @@ void ReadRows(StrictTable rows, RecordingFile* file) {
       throw rows.Error(second, std::string("does not go together with `") + number + "`: a row or a time, not both");
   file->drop = ReadRanges(rows, "drop");
   file->every = static_cast<std::size_t>(rows.Integer("every", 1, 1, 1'000'000));
+  const std::string blanks = rows.Choice("blanks", "refuse", {"refuse", "skip", "interpolate"});
+  file->blanks = blanks == "skip"          ? BlanksAre::kSkipped
+                 : blanks == "interpolate" ? BlanksAre::kInterpolated
+                                           : BlanksAre::kErrors;
   file->segment_column = rows.Text("segment_column", "");
   StrictTable only = rows.Table("only");
   for (const std::string& column : only.Keys()) file->only[column] = only.Texts(column);
@@ -108,7 +112,7 @@ void ReadHeldOut(StrictTable& root, const std::vector<std::string>& signals, Rec
 RecordingFile ReadRecordingFile(const std::filesystem::path& path, const std::vector<std::string>& signals) {
   StrictTable root = StrictTable::FromFile(path);
   RecordingFile file;
-  root.RequiredInteger("schema", 1, 1);
+  root.RequireSchema();
   file.title = root.Text("title", path.stem().string());
   file.model = root.RequiredText("model");
   file.file = root.RequiredText("file");

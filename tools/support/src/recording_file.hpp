@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -37,6 +38,13 @@ struct HeldOut {
   std::map<std::string, ColumnSource> columns;  ///< Of a second record; empty: as those of the first.
 };
 
+/// What becomes of rows in which a column that is read has an empty cell.
+enum class BlanksAre : std::uint8_t {
+  kErrors,
+  kSkipped,       ///< The rows are left out.
+  kInterpolated,  ///< Rows without the output are left out; other cells are interpolated between the rows around.
+};
+
 /// A recording file as it is written.
 struct RecordingFile {
   std::string title, model, file;
@@ -46,6 +54,7 @@ struct RecordingFile {
   std::optional<double> from_s, until_s;
   std::vector<RowRange> drop;
   std::size_t every = 1;
+  BlanksAre blanks = BlanksAre::kErrors;
   std::string segment_column;
   std::map<std::string, std::vector<std::string>> only;  ///< By text column.
   double bandwidth_hz = 0.0;                             ///< 0: chosen.

@@ -45,6 +45,14 @@ class Source {
   }
 
   [[nodiscard]] const std::vector<std::string>& columns() const noexcept { return columns_; }
+  /// What one unit of the column is; of a column as it stands.
+  [[nodiscard]] double scale() const noexcept { return source_.scale; }
+  /// A column as it stands, which no signal is made of.
+  [[nodiscard]] bool counts_alone(const std::vector<std::optional<Source>>& signals) const {
+    return source_.value.empty() && source_.scale != 0.0 &&
+           std::none_of(signals.begin(), signals.end(),
+                        [&](const auto& signal) { return signal && Contains(signal->columns(), columns_.front()); });
+  }
 
   [[nodiscard]] std::vector<double> Values(const CsvColumns& csv) const {
     std::vector<double> values(csv.num_rows());
@@ -118,6 +126,59 @@ class Selection {
   const CsvColumns& csv_;
 };
 
+/// What becomes of the empty cells of the columns that are read.
+class Blanks {
+ public:
+  /// @param output_columns  Columns that the output is made of, whose cells are never made up.
+  Blanks(BlanksAre blanks, const std::vector<std::string>& output_columns, const std::vector<double>& t,
+         const Selection& selection, CsvColumns* csv)
+      : unusable_(csv->num_rows(), false) {
+    if (blanks == BlanksAre::kErrors) return;
+    for (auto& [name, cells] : csv->number) {
+      if (blanks == BlanksAre::kInterpolated && !Contains(output_columns, name)) Fill(t, selection, *csv, &cells);
+      for (std::size_t n = 0; n < cells.size(); ++n)
+        if (std::isnan(cells[n]) && !csv->bad.contains(n)) unusable_[n] = true;
+    }
+  }
+  [[nodiscard]] bool Lacks(std::size_t row) const { return unusable_[row]; }
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> notes;
+    const auto rows = std::count(unusable_.begin(), unusable_.end(), true);
+    if (rows > 0) notes.push_back(std::to_string(rows) + " rows with blank cells are left out");
+    if (filled_ > 0) notes.push_back(std::to_string(filled_) + " blank cells are interpolated");
+    return notes;
+  }
+
+ private:
+  /// Between values of one segment that are not further apart than several of its usual intervals.
+  void Fill(const std::vector<double>& t, const Selection& selection, const CsvColumns& csv,
+            std::vector<double>* cells) {
+    constexpr double kGap = 4.5;
+    std::vector<std::size_t> known;
+    for (std::size_t n = 0; n < cells->size(); ++n)
+      if (!std::isnan((*cells)[n])) known.push_back(n);
+    std::vector<double> intervals;
+    for (std::size_t i = 1; i < known.size(); ++i) intervals.push_back(t[known[i]] - t[known[i - 1]]);
+    if (intervals.empty()) return;
+    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+    std::nth_element(intervals.begin(), middle, intervals.end());
+    const double longest = kGap * *middle;
+    for (std::size_t i = 1; i < known.size(); ++i) {
+      const std::size_t from = known[i - 1], to = known[i];
+      const double length = t[to] - t[from];
+      if (!(length > 0.0 && length <= longest) || selection.Segment(from) != selection.Segment(to)) continue;
+      for (std::size_t n = from + 1; n < to; ++n) {
+        if (csv.bad.contains(n)) continue;
+        (*cells)[n] = (*cells)[from] + ((*cells)[to] - (*cells)[from]) * (t[n] - t[from]) / length;
+        ++filled_;
+      }
+    }
+  }
+
+  std::vector<bool> unusable_;
+  std::size_t filled_ = 0;
+};
+
 /// Words that a column is asked for and does not have.
 void RequireWords(const StrictTable& table, const std::string& key, const std::vector<std::string>& words,
                   const std::vector<std::string>& cells) {
@@ -163,6 +224,7 @@ void RecordingRows::Append(const RecordingRows& other) {
   held_out.insert(held_out.end(), other.held_out.begin(), other.held_out.end());
   if (first < size()) new_run[first] = 1;
   skipped += other.skipped;
+  notes.insert(notes.end(), other.notes.begin(), other.notes.end());
 }
 
 RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const RecordingFile& file,
@@ -172,6 +234,8 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
   const auto source_of = [&](const std::string& signal) -> std::optional<Source> {
     if (const auto found = sources.find(signal); found != sources.end()) return Source(found->second, csv_path, header);
     if (Contains(header, signal)) return Source({.column = signal}, csv_path, header);
+    if (signal == "t" && FindTime(header) != std::string::npos)
+      return Source({.column = header[FindTime(header)]}, csv_path, header);
     return std::nullopt;
   };
   std::vector<std::string> numbers;
@@ -194,7 +258,9 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
   }
   const std::vector<std::string> texts = TextColumns(file, csv_path, header);
   const BadRowsAre bad_rows = skip_bad ? BadRowsAre::kSkipped : file.root ? BadRowsAre::kKept : BadRowsAre::kErrors;
-  const CsvColumns csv = ReadCsvColumns(csv_path, numbers, texts, bad_rows);
+  TimeColumn time_column;
+  if (time && time->counts_alone(signals)) time_column = {time->columns().front(), kFarTime / std::fabs(time->scale())};
+  CsvColumns csv = ReadCsvColumns(csv_path, numbers, texts, bad_rows, time_column, file.blanks == BlanksAre::kErrors);
   for (const auto& [column, words] : file.only)
     RequireWords(StrictTable(*file.root).Table("rows").Table("only"), column, words, csv.text.at(column));
   if (!file.held_out.segments.empty() && file.held_out.file.empty())
@@ -207,17 +273,25 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
   } else {
     for (std::size_t n = 0; n < csv.num_rows(); ++n) t.push_back(static_cast<double>(n) / file.rate_hz);
   }
+  // What times that count from the first one count from.
+  const double start = time && csv.start != 0.0 ? csv.start * time->scale() : 0.0;
+  const Selection selection(file, csv);
+  std::vector<std::string> output_columns;
+  for (std::size_t s = 0; s < signals.size(); ++s)
+    if (plant.signals[s].name == plant.output && signals[s]) output_columns = signals[s]->columns();
+  const Blanks blanks(file.blanks, output_columns, t, selection, &csv);
   std::vector<std::vector<double>> values;
   values.reserve(signals.size());
   for (const auto& signal : signals) values.push_back(signal ? signal->Values(csv) : std::vector<double>());
 
-  const Selection selection(file, csv);
   RecordingRows rows;
   rows.signal.resize(plant.signals.size());
   rows.skipped = csv.skipped;
+  rows.notes = blanks.notes();
+  if (start != 0.0) rows.notes.push_back("times count from the first one, " + ExactNumber(start) + " s");
   std::size_t before = 0;
   for (std::size_t n = 0; n < csv.num_rows(); ++n) {
-    if (!selection.Uses(n, t[n])) continue;
+    if (blanks.Lacks(n) || !selection.Uses(n, start + t[n])) continue;
     if (const auto bad = csv.bad.find(n); bad != csv.bad.end())
       throw InputError(csv_path.string() + ":" + std::to_string(csv.line[n]) + ": " + bad->second +
                        "; [rows] drop = [[" + std::to_string(n) + ", " + std::to_string(n + 1) +
@@ -230,7 +304,7 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
                        " of the row before; where another run begins, say [rows] segment_column");
     rows.t.push_back(t[n]);
     rows.new_run.push_back(first || other_segment ? 1 : 0);
-    rows.held_out.push_back(selection.HoldsOut(n, t[n]) ? 1 : 0);
+    rows.held_out.push_back(selection.HoldsOut(n, start + t[n]) ? 1 : 0);
     for (std::size_t s = 0; s < values.size(); ++s) {
       if (values[s].empty()) continue;
       if (!std::isfinite(values[s][n]))

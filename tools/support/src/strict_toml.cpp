@@ -284,6 +284,14 @@ std::int64_t StrictTable::RequiredInteger(std::string_view key, std::int64_t lo,
   return node_->CheckedInteger(key, *node, lo, hi);
 }
 
+void StrictTable::RequireSchema() {
+  constexpr std::int64_t kSchema = 1;
+  const toml::node* node = node_->Ask("schema");
+  if (node != nullptr && node->value<std::int64_t>().value_or(0) > kSchema)
+    throw node_->Wrong("schema", *node, std::to_string(kSchema) + "; the file is of a newer version of the program");
+  (void)RequiredInteger("schema", kSchema, kSchema);
+}
+
 std::string StrictTable::RequiredText(std::string_view key) {
   const toml::node* node = node_->Ask(key);
   if (node == nullptr) throw node_->Missing(key, "a text in quotes");

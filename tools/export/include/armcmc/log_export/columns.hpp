@@ -10,7 +10,10 @@ namespace armcmc::log_export {
 
 /// One column of a table: a number of the message, or of the sample that the row stands for.
 struct Column {
-  std::string header;  ///< "ar_map.K [N m^-p]"
+  std::string header;             ///< "ar_map.K [N m^-p]"
+  std::vector<std::string> path;  ///< Names in the header: "ar_map", "K".
+  std::string unit;               ///< "N m^-p"; empty: none.
+  bool bin = false;               ///< The last name is the number of a bin, which counts from 0 without gaps.
   const MessageField* field = nullptr;
   std::size_t index = 0;          ///< Of the number, or of the text.
   std::size_t sample_stride = 0;  ///< Numbers from one sample to the next; 0: the same on every row.

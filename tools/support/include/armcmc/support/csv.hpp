@@ -39,7 +39,11 @@ struct CsvSamples {
   [[nodiscard]] std::size_t num_rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 
-/// Reads samples from a CSV file: one header line of names, commas, `#` comment lines and blank lines allowed.
+/// Reads samples from a CSV file: one header line of names; fields separated by commas, semicolons or tabs, as the
+/// header is; `#` comment lines, blank lines, quotes, Windows line ends and a byte order mark allowed.
+///
+/// Where the first wanted column is `t` and the file has none, `t [s]`, `__time` or `time` is the time, with a note.
+/// Times since 1970, from 1e8 s on, count from the first one, with a note: their differences are exact.
 ///
 /// Numbers are read to the nearest double, whatever the locale. Other columns are ignored. The last line must
 /// end with a line end: a cut number looks like a number. A missing derived column becomes the central

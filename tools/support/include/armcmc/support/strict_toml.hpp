@@ -50,6 +50,10 @@ class StrictTable {
   /// Array of arrays of `size` numbers each, in [lo, hi]; absent reads as none.
   std::vector<std::vector<double>> NumberLists(std::string_view key, std::size_t size, double lo, double hi);
 
+  /// `schema`, the version of the file's format: 1 so far. To be asked for before anything else, so that a file of a
+  /// newer version is said to be one. @throws ConfigError for another number, or none.
+  void RequireSchema();
+
   // Required keys.
   double RequiredNumber(std::string_view key, double lo, double hi);
   std::int64_t RequiredInteger(std::string_view key, std::int64_t lo, std::int64_t hi);
