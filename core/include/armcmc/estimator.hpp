@@ -127,7 +127,8 @@ class Estimator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Instruction set that the scoring kernels run on: "avx512", "avx2" or "sse2".
+/// Instruction set that the scoring kernels run on: "avx512", "avx2" or "sse2" on x86-64, "neon" or
+/// "portable" on AArch64, "portable" elsewhere.
 [[nodiscard]] std::string_view InstructionSet() noexcept;
 
 /// Makes the estimators that are constructed from now on use that instruction set, for measurements; otherwise it is
