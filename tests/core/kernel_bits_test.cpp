@@ -10,6 +10,7 @@
 #include "armcmc/models/registry.hpp"
 #include "armcmc/rng.hpp"
 #include "core/kernel_sets.hpp"
+#include "plants/soft_actuator/model.hpp"
 
 namespace armcmc::kernel_bits_test {
 namespace {
