@@ -11,12 +11,15 @@ constexpr long double Wide(double x) { return static_cast<long double>(x); }
 
 /// Kernels of every instruction set that was built and that this CPU runs.
 inline std::vector<const simd::Kernels*> RunnableKernels() {
-  std::vector<const simd::Kernels*> sets{&simd::kSse2Kernels};
+  std::vector<const simd::Kernels*> sets{&simd::kPortableKernels};
 #if defined(ARMCMC_HAVE_AVX2)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) sets.push_back(&simd::kAvx2Kernels);
 #endif
 #if defined(ARMCMC_HAVE_AVX512)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) sets.push_back(&simd::kAvx512Kernels);
+#endif
+#if defined(ARMCMC_HAVE_NEON)
+  sets.push_back(&simd::kNeonKernels);
 #endif
   return sets;
 }

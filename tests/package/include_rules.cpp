@@ -71,7 +71,7 @@ std::string OwnerOf(const std::string& header) {
 }
 
 std::string KindOfForeign(const std::string& header) {
-  if (header == "immintrin.h") return "simd";
+  if (header == "arm_neon.h" || header == "immintrin.h") return "simd";
   const std::size_t slash = header.find('/');
   const std::string top = slash == std::string::npos ? header : header.substr(0, slash);
   if (top == "Eigen" || top == "lcm" || top == "benchmark" || top == "pybind11" || kProgramLibraries.contains(top))

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 
 #include "package/page_blocks.hpp"
@@ -46,12 +47,26 @@ void ExpectTheLoopOfThePageWorks(const fs::path& folder, const std::string& pref
   EXPECT_NEAR(last("k = "), 400.0, 10.0) << run.out;
 }
 
-void WriteConsumer(const fs::path& folder) {
+/// A source that includes every header that is installed under `prefix`.
+void WriteAllHeaders(const fs::path& prefix, const fs::path& source) {
+  std::set<std::string> headers;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix / "include"))
+    if (entry.path().extension() == ".hpp") headers.insert(fs::relative(entry.path(), prefix / "include").string());
+  EXPECT_TRUE(headers.contains("armcmc/estimator.hpp"));
+  EXPECT_TRUE(headers.contains("armcmc/data_pack_t.hpp"));
+  EXPECT_TRUE(headers.contains("armcmc/rt/pipeline.hpp"));
+  EXPECT_FALSE(headers.contains("armcmc/rt/allocation_counter.hpp")) << "what it declares is not in the library";
+  std::ofstream out(source);
+  for (const std::string& header : headers) out << "#include <" << header << ">\n";
+}
+
+void WriteConsumer(const fs::path& prefix, const fs::path& folder) {
   fs::create_directories(folder);
+  WriteAllHeaders(prefix, folder / "headers.cpp");
   std::ofstream(folder / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\n"
                                               "project(consumer LANGUAGES CXX)\n"
                                               "find_package(armcmc 0.1 REQUIRED)\n"
-                                              "add_executable(consumer main.cpp)\n"
+                                              "add_executable(consumer main.cpp headers.cpp)\n"
                                               "target_link_libraries(consumer PRIVATE armcmc::core armcmc::rt)\n";
   std::ofstream(folder / "main.cpp") << "#include <armcmc/data_pack_t.hpp>\n"
                                         "#include <armcmc/estimator.hpp>\n"
@@ -70,7 +85,7 @@ TEST(Installed, AnOutsideProjectFindsBuildsAndRuns) {
   const std::string prefix = dir / "prefix", source = dir / "consumer", build = dir / "consumer-build";
   const Outcome install = Shell("cmake --install " + BuildDir().string() + " --prefix " + prefix);
   ASSERT_EQ(install.code, 0) << install.err;
-  WriteConsumer(source);
+  WriteConsumer(prefix, source);
   ASSERT_EQ(BuildConsumer(source, build, prefix), "");
   const Outcome run = RunProgram(fs::path(build) / "consumer", {});
   EXPECT_EQ(run.code, 0);

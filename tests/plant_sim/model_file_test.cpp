@@ -120,7 +120,7 @@ std::vector<double> Predict(const EstimatorSettings& settings, const std::vector
     pack.t_last_s = samples[first + kPack - 1].t_s;
     EXPECT_TRUE(composition.Prepare(pack, effects.get()));
     composition.Fill(pack, *effects, 0, data.get());
-    simd::kSse2Kernels.predict(FindModel("hunt_crossley"), *data, theta, tile.get());
+    simd::kPortableKernels.predict(FindModel("hunt_crossley"), *data, theta, tile.get());
     for (std::size_t n = 0; n < kPack; ++n) predicted.push_back(tile->value[n][0]);
   }
   return predicted;
@@ -304,7 +304,7 @@ double WorstFlow(const std::vector<FlowCase>& cases, double from_s) {
       const double slope = scenario.schedule.Value(static_cast<int>(m) + 1, 0.0);
       theta.value[0].fill(scenario.schedule.Value(static_cast<int>(m), 0.0) + slope * ConstantOf(settings, "p_atm"));
       theta.value[1].fill(slope);
-      simd::kSse2Kernels.predict(FindModel("soft_actuator"), *data, theta, tile.get());
+      simd::kPortableKernels.predict(FindModel("soft_actuator"), *data, theta, tile.get());
       for (std::size_t k = 0; k < static_cast<std::size_t>(data->num_samples); ++k, ++compared) {
         const double measured = data->target[k];
         worst = std::max(worst, std::abs(tile->value[k][0] - measured));

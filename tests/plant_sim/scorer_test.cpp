@@ -46,8 +46,7 @@ TEST(Scorer, WherePacksOverlapAnEstimateIsShownFromTheEndOfTheNextPackOn) {
   scorer.Add(Contact(1, 0.1025, {4.0, 2.3, 1.7}));  // of the samples up to 0.1 s
   scorer.ScoreThrough(150);
   const auto unknown = [&scorer](Convention convention) {
-    const auto result = scorer.Result(convention);
-    const ParameterScore& score = result.modes[0][0];
+    const ParameterScore score = scorer.Result(convention).modes[0][0];
     return score.samples - score.active_samples;
   };
   EXPECT_EQ(unknown(Convention::kOnePackLater) - unknown(Convention::kFromArrival), 7) << "from 110 on, and from 103";

@@ -175,6 +175,9 @@ function(armcmc_add_tests room)
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)
   endif()
+  if(CMAKE_CROSSCOMPILING_EMULATOR)
+    math(EXPR arg_TIMEOUT "20 * ${arg_TIMEOUT}")  # what is emulated takes that much longer
+  endif()
   set(properties TIMEOUT ${arg_TIMEOUT})
   if(arg_DEADLINES)
     # They wait for one another: the first has to start with the first of all.

@@ -1,7 +1,7 @@
 # Finds LCM without pkg-config: Debian's lcm.pc requires glib-2.0, which liblcm-dev does not bring.
 # Defines the target lcm::lcm and LCM_GEN, the path of lcm-gen.
 find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp)
-find_library(LCM_LIBRARY lcm)
+find_library(LCM_LIBRARY NAMES lcm liblcm.so.1)
 find_program(LCM_GEN lcm-gen)
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(LCM

@@ -3,17 +3,15 @@ include(CMakePackageConfigHelpers)
 set(armcmc_cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/armcmc")
 
 set(armcmc_libraries armcmc_warnings armcmc_core armcmc_lcm_types)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/core/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(DIRECTORY "${PROJECT_BINARY_DIR}/lcm_types/gen/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/lcm_types/" DESTINATION "${CMAKE_INSTALL_DATADIR}/armcmc/lcm_types"
   FILES_MATCHING PATTERN "*.lcm")
 if(TARGET armcmc_rt)
   list(APPEND armcmc_libraries armcmc_rt)
-  install(DIRECTORY "${PROJECT_SOURCE_DIR}/rt/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endif()
 install(TARGETS ${armcmc_libraries} EXPORT armcmcTargets
-  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" FILE_SET HEADERS)
 install(EXPORT armcmcTargets NAMESPACE armcmc:: DESTINATION "${armcmc_cmake_dir}")
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/armcmcConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" INSTALL_DESTINATION "${armcmc_cmake_dir}")
@@ -24,7 +22,7 @@ install(FILES "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" "${PROJECT_BINARY_DIR}/
 # What a program says about itself with --help is its manual page, and what a shell completes behind it.
 foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-export armcmc-gap armcmc-gap-bench armcmc-model armcmc-plant
     armcmc-replay armcmc-rtcheck armcmc-stress armcmc-tables armcmc-watch)
-  if(TARGET ${program})
+  if(TARGET ${program} AND NOT CMAKE_CROSSCOMPILING)  # they have to run
     set(page "${PROJECT_BINARY_DIR}/man/${program}.1")
     set(completion "${PROJECT_BINARY_DIR}/completions/${program}")
     foreach(made IN ITEMS page completion)

@@ -51,7 +51,11 @@ class Estimator {
   ///
   /// Draws stop when the predicted end of the next chunk would pass deadline_ns. For equal settings, equal
   /// packs and equal draw counts the result is equal to the bit.
+  /// @param pack         Checked here; num_inputs() columns of u at least.
   /// @param deadline_ns  Absolute, on the clock passed in; a default clock never reaches it.
+  /// @param clock        Read between chunks of draws.
+  /// @param result       Of MakeResult() of this estimator, or of one with the same settings.
+  /// @param limits       Upper bounds on the draws, for a run that is repeated.
   /// @return kOk, kTruncated, kHeld, kBadPack (nothing changed) or kNonFinite (posterior kept).
   /// @rt No heap, no lock, no throw. Bounded by max_draws x num_samples.
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
@@ -73,14 +77,15 @@ class Estimator {
   /// What the posterior before a pack of a described plant says about it, for every sample n of a mode that an earlier
   /// pack has updated (NaN elsewhere, and for a compiled plant):
   ///
-  ///   centre = median of F(X_n, theta_k) over a thinned chain theta_k of that posterior,
-  ///   sd^2   = (half the range of its middle two thirds)^2 + noise_std^2 (S P S')_nn,
+  ///     centre = median of F(X_n, theta_k) over a thinned chain theta_k of that posterior,
+  ///     sd^2   = (half the range of its middle two thirds)^2 + noise_std^2 (S P S')_nn,
   ///
   /// theta_k moved and stretched to what the drift that is believed in has made of mean and covariance since then,
   /// P the covariance of the plant's states where the pack begins, S the law's answer to them (StateFilter). A power
   /// whose exponent is not known yet has no mean that means anything, but a median.
   /// Errors against it are those of a prediction one pack ahead, which fitted nothing to what it predicts.
   /// @param result  Of Adjust() for the newest pack, before Execute() has seen it.
+  /// @param forecast  Centre and sd of each sample.
   /// @rt No heap, no lock, no throw; O(samples). While neither Adjust() nor Execute() runs.
   void Forecast(const AdjustResult& result, PackForecast* forecast) noexcept ARMCMC_NONBLOCKING;
 
@@ -127,7 +132,8 @@ class Estimator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Instruction set that the scoring kernels run on: "avx512", "avx2" or "sse2".
+/// Instruction set that the scoring kernels run on: "avx512", "avx2" or "sse2" on x86-64, "neon" or
+/// "portable" on AArch64, "portable" elsewhere.
 [[nodiscard]] std::string_view InstructionSet() noexcept;
 
 /// Makes the estimators that are constructed from now on use that instruction set, for measurements; otherwise it is

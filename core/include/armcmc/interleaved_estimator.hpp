@@ -13,7 +13,7 @@ namespace armcmc {
 /// A pack has N samples, and the next one begins N / L samples later, L = EstimatorSettings::overlap. L recursions take
 /// turns:
 ///
-///   recursion j  takes the packs with  seq mod L = j
+///     recursion j  takes the packs with  seq mod L = j
 ///
 /// Two packs of one recursion are N samples apart: its windows tile the time axis. So its posterior is that of all
 /// samples from its first window on, each counted once, and the one of pack seq, which is published, reaches up to the

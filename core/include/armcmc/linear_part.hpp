@@ -8,7 +8,7 @@ namespace armcmc {
 
 /// Of the law of a mode, the parameters that it is linear in, given the others:
 ///
-///   F(X, theta) = f_0(X, phi) + sum_i theta_i f_i(X, phi)       i in `linear`, phi the rest
+///     F(X, theta) = f_0(X, phi) + sum_i theta_i f_i(X, phi)       i in `linear`, phi the rest
 ///
 /// Known only where phi is one parameter at most.
 struct LinearPart {

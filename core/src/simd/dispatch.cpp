@@ -31,7 +31,10 @@ Runnable AllRunnable() noexcept {
 #if defined(ARMCMC_HAVE_AVX2)
   if (RunsAvx2()) add(kAvx2Kernels);
 #endif
-  add(kSse2Kernels);
+#if defined(ARMCMC_HAVE_NEON)
+  add(kNeonKernels);  // every AArch64 CPU has it
+#endif
+  add(kPortableKernels);
   return all;
 }
 

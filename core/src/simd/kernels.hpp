@@ -32,7 +32,8 @@ struct LinearControl {
 };
 
 /// The hot loops, once per instruction set. All work on kTileLanes candidates side by side, one candidate a lane:
-/// sums run in data order whatever the lane count, so AVX2 and AVX-512 give the same bits.
+/// sums run in data order whatever the lane count, so sets that fuse multiply and add (AVX2, AVX-512, NEON) give the
+/// same bits, and so do those that do not (SSE2, portable).
 struct Kernels {
   std::string_view name;
 
@@ -174,12 +175,15 @@ struct Kernels {
 /// See UseInstructionSet().
 bool Use(std::string_view name) noexcept;
 
-extern const Kernels kSse2Kernels;
+extern const Kernels kPortableKernels;  ///< Pairs of doubles; nothing is fused. "sse2" on x86-64.
 #if defined(ARMCMC_HAVE_AVX2)
 extern const Kernels kAvx2Kernels;
 #endif
 #if defined(ARMCMC_HAVE_AVX512)
 extern const Kernels kAvx512Kernels;
+#endif
+#if defined(ARMCMC_HAVE_NEON)
+extern const Kernels kNeonKernels;
 #endif
 
 }  // namespace armcmc::simd

@@ -1,11 +1,14 @@
 // No include guard on purpose: compiled once per instruction set, with ARMCMC_SIMD_NAMESPACE and
-// ARMCMC_SIMD_LANES set by the including file. Only this file knows the instruction set.
+// ARMCMC_SIMD_LANES set by the including file, and ARMCMC_SIMD_NEON where it is the vectors of AArch64. Only this file
+// knows the instruction set.
 
 #include <cstdint>
 #include <cstring>
 
 #if defined(__FMA__)
 #include <immintrin.h>
+#elif defined(ARMCMC_SIMD_NEON)
+#include <arm_neon.h>
 #endif
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
@@ -13,7 +16,7 @@ namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 /// Vector arithmetic in the compiler's own vector type: operators + - * / come with it.
 struct Simd {
   static constexpr int kLanes = ARMCMC_SIMD_LANES;
-#if defined(__FMA__)
+#if defined(__FMA__) || defined(ARMCMC_SIMD_NEON)
   static constexpr bool kFused = true;  ///< Fma() rounds once.
 #else
   static constexpr bool kFused = false;
@@ -45,6 +48,8 @@ struct Simd {
     return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask)) != 0;
 #elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
     return _mm256_movemask_pd(FromBits(mask)) != 0;
+#elif defined(ARMCMC_SIMD_NEON)
+    return vmaxvq_u32(reinterpret_cast<uint32x4_t>(mask)) != 0;
 #else
     std::int64_t all = 0;
     for (int i = 0; i < kLanes; ++i) all |= mask[i];
@@ -57,6 +62,8 @@ struct Simd {
     return _mm512_maskz_sqrt_pd(0xff, a);
 #elif defined(__AVX2__) && ARMCMC_SIMD_LANES == 4
     return _mm256_sqrt_pd(a);
+#elif defined(ARMCMC_SIMD_NEON)
+    return vsqrtq_f64(a);
 #else
     for (int i = 0; i < kLanes; ++i) a[i] = __builtin_sqrt(a[i]);
     return a;
@@ -142,6 +149,8 @@ struct Simd {
     return _mm512_fmadd_pd(a, b, c);
 #elif defined(__FMA__) && ARMCMC_SIMD_LANES == 4
     return _mm256_fmadd_pd(a, b, c);
+#elif defined(ARMCMC_SIMD_NEON)
+    return vfmaq_f64(c, a, b);
 #else
     return a * b + c;
 #endif

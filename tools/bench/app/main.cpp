@@ -26,7 +26,7 @@ void Declare(CLI::App* app, Arguments* a) {
                   "Only this plant: built in, NAME:tape for the same run as a file describes it, the name of one that "
                   "came along, or a file. May be repeated");
   app->add_option("--instruction-set", a->instruction_set,
-                  "avx512, avx2 or sse2 instead of the widest that this CPU runs");
+                  "avx512, avx2 or sse2 (on AArch64 neon or portable) instead of the widest that this CPU runs");
   app->add_flag("--no-quality", a->no_quality, "Leave out BM_EffectiveDraws");
   app->add_option(
       "--write-packs", a->write_packs,
@@ -58,8 +58,9 @@ void Declare(CLI::App* app, Arguments* a) {
 
 int Run(const CLI::App& app, const Arguments& a, const std::string& program) {
   if (!a.instruction_set.empty() && !armcmc::UseInstructionSet(a.instruction_set))
-    throw armcmc::support::InputError("--instruction-set " + a.instruction_set +
-                                      ": not of this build or this CPU; there are avx512, avx2, sse2");
+    throw armcmc::support::InputError(
+        "--instruction-set " + a.instruction_set +
+        ": not of this build or this CPU; there are avx512, avx2, sse2, and on AArch64 neon, portable");
   if (!a.write_packs.empty()) {
     if (!app.remaining().empty())
       throw armcmc::support::InputError(app.remaining().front() + ": no option of --write-packs (see --help)");

@@ -26,7 +26,9 @@ struct Meaning {
 ///     without one fit in a product, too;
 ///   - x^p with p that is no whole number, of measured values that can be negative. What `x >= 0` guards is not.
 ///
-/// @param given  A condition that holds wherever the expression is evaluated (a mode's `when`), or null.
+/// @param syntax  The expression.
+/// @param scope   What names mean.
+/// @param given   A condition that holds wherever the expression is evaluated (a mode's `when`), or null.
 /// @throws Error with the column.
 [[nodiscard]] Meaning Check(const Syntax& syntax, const Scope& scope, const Syntax* given = nullptr);
 

@@ -51,20 +51,25 @@ struct FeatureInput {
 /// Everything in a plant that depends on no parameter, computed sample by sample in the order of time.
 ///
 /// Functions with memory are exact for arguments that are linear between samples:
-///   low pass  y <- y E + a (G - E) + b (1 - G),  E = exp(-dt / tau), G = (1 - E) tau / dt, from a to b
-///   integral  y <- y + dt (a + b) / 2
-///   delay     linear between the samples at t - tau; a time constant below 0 counts as 0, and one that is longer than
-///             kMaxDelaySamples has no value
+///
+///     low pass  y <- y E + a (G - E) + b (1 - G),  E = exp(-dt / tau), G = (1 - E) tau / dt, from a to b
+///     integral  y <- y + dt (a + b) / 2
+///     delay     linear between the samples at t - tau; a time constant below 0 counts as 0, and one that is longer
+///               than kMaxDelaySamples has no value
+///
 /// and for those that a third argument marks as held between samples:
-///   low pass  y <- y E + a (1 - E);  integral  y <- y + dt a;  delay  the sample at t - tau or the last one before
+///
+///     low pass  y <- y E + a (1 - E);  integral  y <- y + dt a;  delay  the sample at t - tau or the last one before
 class FeatureProgram {
  public:
   FeatureProgram() = default;
   /// @throws std::length_error naming the limit that is passed.
   FeatureProgram(const Graph& graph, const std::vector<int>& outputs);
 
-  /// out[i] = output i at this sample.
-  /// @param memory  May be null without functions with memory.
+  /// Computes the outputs at the next sample.
+  /// @param input   That sample.
+  /// @param memory  Of what came before it; may be null without functions with memory.
+  /// @param out     out[i] = output i at this sample.
   /// @rt No heap, no lock, no throw. O(nodes).
   void Evaluate(const FeatureInput& input, FeatureMemory* memory, double* out) const noexcept ARMCMC_NONBLOCKING;
 

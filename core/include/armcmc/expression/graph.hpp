@@ -38,8 +38,9 @@ class Graph {
   [[nodiscard]] int Lower(const Syntax& syntax, const Scope& scope, const std::vector<int>& let);
 
   /// d node / d by, exact between the jumps and kinks of the expression; 0 at them.
-  /// @param by  A symbol. Memory functions of it are differentiated along with their argument; where the time constant
-  ///            itself depends on it the derivative is not in the language.
+  /// @param node  What is differentiated.
+  /// @param by    A symbol. Memory functions of it are differentiated along with their argument; where the time
+  ///              constant itself depends on it the derivative is not in the language.
   /// @return -1 where it is not.
   [[nodiscard]] int Differentiate(int node, int by);
 

@@ -34,15 +34,15 @@ inline constexpr int kMaxNesting = 64;  ///< Of parentheses, signs and powers.
 
 /// Reads
 ///
-///   or       := and { "or" and }
-///   and      := not { "and" not }
-///   not      := "not" not | relation
-///   relation := sum [ ("<" | "<=" | ">" | ">=" | "==" | "!=") sum ]
-///   sum      := product { ("+" | "-") product }
-///   product  := signed { ("*" | "/") signed }
-///   signed   := ("-" | "+") signed | power
-///   power    := atom [ "^" signed ]                       right associative, binds more than the sign before it
-///   atom     := number | name | name "(" [ or { "," or } ] ")" | "(" or ")"
+///     or       := and { "or" and }
+///     and      := not { "and" not }
+///     not      := "not" not | relation
+///     relation := sum [ ("<" | "<=" | ">" | ">=" | "==" | "!=") sum ]
+///     sum      := product { ("+" | "-") product }
+///     product  := signed { ("*" | "/") signed }
+///     signed   := ("-" | "+") signed | power
+///     power    := atom [ "^" signed ]                       right associative, binds more than the sign before it
+///     atom     := number | name | name "(" [ or { "," or } ] ")" | "(" or ")"
 ///
 /// a > b becomes b < a. Names are not looked up here. Numbers are read as in C whatever the locale.
 ///

@@ -31,8 +31,8 @@ struct Unit {
 
 /// Reads a unit such as "N s/m", "kg m^2", "1", "mV", "sqrt(Pa) s/Pa^2", "N s/m^(p+1)".
 ///
-///   unit   := factor { [" " | "*" | "/"] factor }       "/" divides by the next factor only
-///   factor := name | number | "sqrt(" unit ")" | "(" unit ")", each with [ "^" exponent ]
+///     unit   := factor { [" " | "*" | "/"] factor }       "/" divides by the next factor only
+///     factor := name | number | "sqrt(" unit ")" | "(" unit ")", each with [ "^" exponent ]
 ///
 /// Names are those of the SI with their prefixes, and a few that laboratories use beside them.
 ///

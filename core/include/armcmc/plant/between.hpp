@@ -19,9 +19,11 @@ enum class Between : std::uint8_t {
   return word == "held" ? Between::kHeld : word == "smooth" ? Between::kSmooth : Between::kLinear;
 }
 
-/// Value in an interval, at `part` in [0, 1] of it.
+/// Value in an interval.
+/// @param between         What the signal does in it.
 /// @param from, to        Samples at its ends.
 /// @param earlier, later  The sample before `from` and the one after `to`; null: not known.
+/// @param part            Where in the interval: 0 at `from`, 1 at `to`.
 /// @rt No heap, no lock, no throw. O(1).
 [[nodiscard]] inline double ValueBetween(Between between, const double* earlier, double from, double to,
                                          const double* later, double part) noexcept ARMCMC_NONBLOCKING {

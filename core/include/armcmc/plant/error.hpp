@@ -11,6 +11,8 @@ class PlantError : public std::runtime_error {
  public:
   /// @param key     "law", "parameters.M.sd", "mode[1].when", ...: the path of the value in a plant file.
   /// @param column  Of a text: the character in it, from 1. 0: the value as a whole.
+  /// @param what    What is wrong, in words.
+  /// @param unknown, known  As below.
   PlantError(std::string key, int column, const std::string& what, std::string unknown = "",
              std::vector<std::string> known = {})
       : std::runtime_error(what),

@@ -61,9 +61,11 @@ class PlantProgram {
   /// The parameter's prior as it is sampled: of a lognormal one that of the logarithm.
   [[nodiscard]] const std::vector<ParameterDescription>& sampled() const noexcept { return sampled_; }
 
-  /// Goes through the samples of a pack, whose inputs are the plant's signals without the output.
+  /// Goes through the samples of a pack.
+  /// @param pack    Its inputs are the plant's signals without the output.
   /// @param memory  Of functions with memory: taken up, and left for the next pack.
   /// @param before  States that the pack before has left, if this one continues it; else null.
+  /// @param out     What the laws need of each sample.
   /// @return false where something that is needed is not finite.
   /// @pre pack.Validate() == kOk, pack.num_inputs >= info().num_inputs.
   /// @rt No heap, no lock, no throw. O(samples).

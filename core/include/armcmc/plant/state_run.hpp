@@ -19,8 +19,8 @@ struct alignas(64) StateTile {
 /// The states of a described plant over the samples of one pack, as every candidate integrates them: the tape `step`
 /// takes them a substep of h further by the classical Runge-Kutta method,
 ///
-///   x(t + h) = x + h/6 (k1 + 2 k2 + 2 k3 + k4),   k1 = f(x, t), k2 = f(x + h/2 k1, t + h/2),
-///   k3 = f(x + h/2 k2, t + h/2), k4 = f(x + h k3, t + h),
+///     x(t + h) = x + h/6 (k1 + 2 k2 + 2 k3 + k4),   k1 = f(x, t), k2 = f(x + h/2 k1, t + h/2),
+///     k3 = f(x + h/2 k2, t + h/2), k4 = f(x + h k3, t + h),
 ///
 /// `substeps` times a sample interval, with inputs that are between samples what the plant says of them. A row holds
 /// the scalars of one substep: those of a pack follow each other.

@@ -36,9 +36,10 @@ struct PlantPoint {
 };
 
 /// A function with memory as a state z of what it takes, a at the beginning of a step of h and b at its end:
-///   lowpass(e, tau)  z <- b + E (z - a) - G (b - a),  E = exp(-h / tau), G = (1 - E) tau / h
-///   integral(e)      z <- z + h (a + b) / 2
-///   delay(x, tau)    of a state x: one that starts like x, and from tau on has the rate that x had tau before
+///
+///     lowpass(e, tau)  z <- b + E (z - a) - G (b - a),  E = exp(-h / tau), G = (1 - E) tau / h
+///     integral(e)      z <- z + h (a + b) / 2
+///     delay(x, tau)    of a state x: one that starts like x, and from tau on has the rate that x had tau before
 struct RememberedState {
   int state = 0;      ///< Its number.
   int argument = -1;  ///< Node.
@@ -65,6 +66,8 @@ class PlantStates {
  public:
   /// None.
   PlantStates() = default;
+  /// @param plant           Whose states they are.
+  /// @param graph           Of its rates and starts; nodes are added to it.
   /// @param rates, starts   A node of the graph a state, parameters replaced by those that are sampled.
   /// @param num_parameters  That are sampled.
   /// @param remembered      The last ones of them that are functions with memory.
@@ -90,8 +93,10 @@ class PlantStates {
   [[nodiscard]] const expression::Tape& step() const noexcept { return step_; }
 
   /// Lays the pack out for integration.
+  /// @param pack    Whose samples are its steps.
   /// @param point   Of each of its samples.
   /// @param before  What the pack before left, of one that this one continues; else null.
+  /// @param out     What the integration reads.
   /// @return false where the pack has more samples than fit, or a start that is not finite.
   /// @rt No heap, no lock, no throw. O(samples x substeps x operations of the rates).
   [[nodiscard]] bool Prepare(const DataPack& pack, const PlantPoint::Values* point, const StateMemory* before,

@@ -18,7 +18,9 @@ namespace armcmc::rt {
 ///
 /// A stage wants its CPU from the moment that it is told of work until that is done: it never waits in between. What it
 /// did not get,
-///   withheld = time - its own CPU time - that of our other threads on this CPU,
+///
+///     withheld = time - its own CPU time - that of our other threads on this CPU,
+///
 /// was taken by a hypervisor, the kernel or a thread that is not ours. A witness only samples: of stalls that come in
 /// slices it sees what is left of each at its next wake-up. This sees all of them, but only while the stage has work.
 ///

@@ -46,20 +46,26 @@ class DeadlineMonitor {
   /// steps before it included. @rt O(wake-ups in the step).
   void RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING;
 
-  /// Adjust was busy until end_ns with what follows the hand-over of its result.
-  /// @param withheld_ns  Of its CPU, since that. @rt O(wake-ups in between).
+  /// Adjust was busy with what follows the hand-over of its result.
+  /// @param times        Of the step that it belongs to.
+  /// @param end_ns       Until when.
+  /// @param withheld_ns  Of its CPU, since the hand-over. @rt O(wake-ups in between).
   void RecordRemembered(const StepTimes& times, Nanos end_ns, Nanos withheld_ns) noexcept ARMCMC_NONBLOCKING;
 
   /// Judges a step that went through all stages. @rt O(wake-ups in execute).
   MissCause Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
 
-  /// Judges a pack that adjust gives up at now_ns in favour of a newer one: always a miss.
+  /// Judges a pack that adjust gives up in favour of a newer one: always a miss.
+  /// @param times        Of the pack until then.
+  /// @param now_ns       When it is given up.
   /// @param typical_ns   What adjust would have taken; now_ns + typical_ns is past the deadline.
   /// @param withheld_ns  Of the CPU of adjust, while it waited. @rt O(wake-ups since its arrival).
   MissCause RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns,
                           Nanos withheld_ns = 0) noexcept ARMCMC_NONBLOCKING;
 
-  /// Judges a result that execute did not come to before now_ns and the next result: always a miss.
+  /// Judges a result that execute did not come to before the next one: always a miss.
+  /// @param times      Of the step until then.
+  /// @param now_ns     When it is given up.
   /// @param lacked_ns  By how much execute was late; at least 1 is assumed. @rt O(wake-ups since adjust).
   MissCause RecordOvertaken(const StepTimes& times, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
 

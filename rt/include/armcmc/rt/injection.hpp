@@ -33,7 +33,7 @@ struct InjectionItem {
   std::int64_t amount = 0;  ///< ms of overruns and hangs, [1, 60000]; messages of kPublish, [1, 1000]; else 0.
 };
 
-/// From "hang_adjust@60:300,squeeze@70": kind@pack, with an amount where the kind has one.
+/// From `hang_adjust@60:300,squeeze@70`: `kind@pack`, with an amount where the kind has one.
 /// @throws std::invalid_argument naming the item that is not understood and what is allowed.
 [[nodiscard]] std::vector<InjectionItem> ParseInjections(const std::string& list);
 

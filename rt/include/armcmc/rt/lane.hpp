@@ -32,7 +32,9 @@ struct LanePlant {
 /// belong to the pipeline, which takes them through its lanes.
 class Lane {
  public:
-  /// @param settings  Outlives the lane. @param injection  Faults on purpose, or null.
+  /// @param settings   Outlives the lane.
+  /// @param plant      Whose packs it takes.
+  /// @param injection  Faults on purpose, or null.
   Lane(const RtSettings& settings, const LanePlant& plant, Injection* injection);
   Lane(const Lane&) = delete;
   Lane& operator=(const Lane&) = delete;

@@ -27,6 +27,8 @@ struct Datagram {
 enum class DatagramKind : std::uint8_t { kOurs, kForeign, kFragment, kMalformed };
 
 /// Splits a datagram of LCM's wire format: be32 "LC02", be32 message number, channel, NUL, payload.
+/// @param bytes    The datagram.
+/// @param channel  Whose datagrams are kOurs.
 /// @param[out] payload  Set for kOurs only.
 /// @rt O(length of channel).
 [[nodiscard]] DatagramKind ParseDatagram(std::span<const std::uint8_t> bytes, const std::string& channel,

@@ -47,7 +47,9 @@ class Pipeline {
   static constexpr std::size_t kMaxLanes = 16;
 
   /// Opens the bus and builds everything; no thread runs yet.
-  /// @param plants  kMaxLanes at most, no two of them with the same prefix. settings.prefix is not read.
+  /// @param settings  Of the threads, the timing and the bus; settings.prefix is not read.
+  /// @param plants    kMaxLanes at most, no two of them with the same prefix.
+  /// @param options   What else is to be done and recorded.
   /// @throws std::invalid_argument from settings.Validate() and for the plants, std::runtime_error when there is no
   /// multicast route.
   Pipeline(const RtSettings& settings, const std::vector<LanePlant>& plants, const PipelineOptions& options);

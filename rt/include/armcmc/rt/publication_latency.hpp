@@ -8,8 +8,8 @@ namespace armcmc::rt {
 
 /// How old data are when their estimate has been handed to the bus, ns:
 ///
-///   from_arrival  its publication minus the arrival of the pack, both on this computer's CLOCK_MONOTONIC,
-///   from_sample   its publication minus t_last of the pack, the plant's clock at the last sample: the bus included.
+///     from_arrival  its publication minus the arrival of the pack, both on this computer's CLOCK_MONOTONIC,
+///     from_sample   its publication minus t_last of the pack, the plant's clock at the last sample: the bus included.
 ///
 /// The clock of a plant on another computer has another zero. What it says is not counted then: an age that is negative
 /// or above kMostAge.

@@ -56,7 +56,8 @@ class ReleaseGrid {
   Point Lock(Nanos arrival_ns) noexcept ARMCMC_NONBLOCKING;
 
   /// Places the next pack on the grid.
-  /// @param steps  Difference of its pack number to that of the pack before, >= 1.
+  /// @param steps       Difference of its pack number to that of the pack before, >= 1.
+  /// @param arrival_ns  When it came.
   /// @pre locked().
   Point OnPack(std::int64_t steps, Nanos arrival_ns) noexcept ARMCMC_NONBLOCKING;
 

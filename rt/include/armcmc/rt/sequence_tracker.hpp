@@ -42,7 +42,9 @@ class SequenceTracker {
     std::int64_t steps = 1;  ///< Pack numbers advanced since the newest, >= 1 for kNext.
   };
 
-  /// @param seq  >= 1. @rt O(1).
+  /// @param seq     >= 1.
+  /// @param run_id  Of the plant; another one begins a new count.
+  /// @rt O(1).
   Result OnPack(std::int64_t seq, std::int64_t run_id) noexcept ARMCMC_NONBLOCKING;
 
   /// Notes the number of a pack that came but cannot be used, so that it is not taken for lost. Only a number shortly

@@ -27,7 +27,9 @@ class SnapshotChannel {
     for (SnapshotPart& part : parts_) part.bytes.resize(bytes);
   }
 
-  /// Stage only. @param save  Writes into the span and returns the bytes used, 0 when they do not fit.
+  /// Stage only.
+  /// @param seq   Of the pack after which it is taken.
+  /// @param save  Writes into the span and returns the bytes used, 0 when they do not fit.
   /// @rt Wait-free, when `save` is.
   template <class Save>
   void Write(std::int64_t seq, const Save& save) noexcept ARMCMC_NONBLOCKING {

@@ -28,7 +28,9 @@ struct StageWork {
 ///
 /// A stall does not only delay the step it hits: the stage comes later to the next one, too, until it has caught up.
 /// Lindley's recursion for a queue with one server, once as it was and three times as it would have been:
-///   start_k = max(ready_k, end_{k-1}) + wake-up,  end_k = start_k + work_k,
+///
+///     start_k = max(ready_k, end_{k-1}) + wake-up,  end_k = start_k + work_k,
+///
 /// where ready, wake-up and work are shortened by what was late or stood still. Times that would have been are never
 /// later than those that were.
 class StageTimeline {
@@ -39,7 +41,8 @@ class StageTimeline {
   }
 
   /// How much earlier work would have begun that begins at start_ns.
-  /// @param ready    How much earlier its input would have been there. @rt O(1).
+  /// @param work   When its input was there, and when it began and ended.
+  /// @param ready  How much earlier its input would have been there. @rt O(1).
   [[nodiscard]] Earlier Begin(const StageWork& work, const Earlier& ready) const noexcept ARMCMC_NONBLOCKING {
     const Nanos begin = CouldBegin(work.ready_ns);
     const auto gained = [&](Nanos ready_gain, Nanos free_gain) {

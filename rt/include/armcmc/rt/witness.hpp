@@ -22,6 +22,8 @@ class WakeUpRing {
   /// A wake-up that comes later than this is a stall; the latency of every wake-up of a machine in health is below it.
   static constexpr Nanos kOrdinaryDelayNs = 100'000;
 
+  /// @param due_ns       When the wake-up was due.
+  /// @param woke_ns      When it came.
   /// @param next_due_ns  When the wake-up after this one is due. @rt Wait-free.
   void Record(Nanos due_ns, Nanos woke_ns, Nanos next_due_ns) noexcept ARMCMC_NONBLOCKING;
 
