@@ -177,7 +177,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const Nanos anchor_ns =
       (clock.Now() - fit_start) / laplace_fits_;  // more than they take: they start next to each other
   Proposal proposal;
-  pilot_groups_ = 1;
+  pilot_lacks_ = false;
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);
   const RandomStream stream = stream_of(kDrawStream);
   memory_inside_ = 1.0;

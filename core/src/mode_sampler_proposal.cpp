@@ -112,32 +112,35 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
     for (int b = 0; b < previous.num_blocks; ++b) add(transition_.fit(b));
     return;
   }
-  const auto fit_under = [&](const ParamVector& mean, const ParamMatrix& covariance, Gaussian* fit) noexcept {
-    Gaussian prior{mean, Inverse(covariance)};
-    ++laplace_fits_;
-    (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, mean, kModeTolerance, &ws->laplace, fit);
-    if (!space_.samples_noise_scale()) return;
-    // Of the noise scale the memory has the tails of a t law, which let go of what is far away.
-    const Eigen::Index last = space_.dim - 1;
-    const double away = (fit->mean[last] - mean[last]) * (fit->mean[last] - mean[last]) / covariance(last, last);
-    if (!(away > kNoiseSurprise)) return;
-    const double hold = std::sqrt((kStudentDof + 1.0) / (kStudentDof - 2.0 + away));
-    prior.precision.row(last) *= hold;
-    prior.precision.col(last) *= hold;
-    const ParamVector start = fit->mean;
-    (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, kModeTolerance, &ws->laplace, fit);
-  };
-  fit_under(previous.mean, previous.covariance, &fit_persisted_);
-  if (!drift_.Splits(previous)) {
-    add(fit_persisted_);
-    return;
-  }
-  // What rests and what drifts may have come apart.
+  FitUnder(previous.mean, previous.covariance, data, ws, &fit_persisted_);
+  add(fit_persisted_);
+}
+
+void ModeSampler::FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data,
+                           SamplerWorkspace* ws, Gaussian* fit) noexcept {
+  Gaussian prior{mean, Inverse(covariance)};
+  ++laplace_fits_;
+  (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, mean, kModeTolerance, &ws->laplace, fit);
+  if (!space_.samples_noise_scale()) return;
+  // Of the noise scale the memory has the tails of a t law, which let go of what is far away.
+  const Eigen::Index last = space_.dim - 1;
+  const double away = (fit->mean[last] - mean[last]) * (fit->mean[last] - mean[last]) / covariance(last, last);
+  if (!(away > kNoiseSurprise)) return;
+  const double hold = std::sqrt((kStudentDof + 1.0) / (kStudentDof - 2.0 + away));
+  prior.precision.row(last) *= hold;
+  prior.precision.col(last) *= hold;
+  const ParamVector start = fit->mean;
+  (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, kModeTolerance, &ws->laplace, fit);
+}
+
+void ModeSampler::FitApart(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws) noexcept {
+  num_persisted_ = 0;
   for (int b = 0; b < previous.num_blocks; ++b) {
     const DensityBlock& block = previous.block[static_cast<std::size_t>(b)];
     Gaussian fit;
-    fit_under(MeanOf(block), CovarianceOf(block), &fit);
-    add(fit);
+    FitUnder(MeanOf(block), CovarianceOf(block), data, ws, &fit);
+    SetElliptic(fit.mean, Inverse(fit.precision), kLaplaceInflation, &student_table_,
+                &laplace_persisted_[static_cast<std::size_t>(num_persisted_++)]);
   }
 }
 
@@ -163,7 +166,7 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
                     lambda_q * std::fmax(previous.weight[static_cast<std::size_t>(b)], 0.05));
   const double rest = use_previous ? 1.0 - lambda_q : 1.0;
   // A part of the posterior whose draws in the pilot were too few for a block has the Laplace fits alone.
-  const bool lacking = num_pilot_blocks < pilot_groups_;
+  const bool lacking = num_pilot_blocks == 0 || pilot_lacks_;
   const double laplace = num_pilot_blocks == 0 ? 1.0 - kInitialShare : (lacking ? kLackingShare : kLaplaceShare);
   for (int b = 0; b < num_pilot_blocks; ++b)
     proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)],
@@ -210,6 +213,29 @@ bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory
   return true;
 }
 
+const double* ModeSampler::GroupWeights(Origin origin, const PosteriorMemory& previous, double lambda, int first,
+                                        int last, SamplerWorkspace* ws) const noexcept {
+  double* const group = ws->group_weight.data();
+  if (origin == Origin::kAny) {
+    std::copy(ws->weight.data() + first, ws->weight.data() + last, group + first);
+    return group;
+  }
+  const bool two = previous.num_blocks > 1;
+  const double share_first = lambda * previous.weight[0] / memory_inside_;
+  const double share_second = two ? lambda * previous.weight[1] / memory_inside_ : 0.0;
+  for (int k = first; k < last; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double changed = (1.0 - lambda) * ws->initial_prior[i];
+    const double of_first = share_first * ws->memory[0][i];
+    const double of_second = two ? share_second * ws->memory[1][i] : 0.0;
+    const double part = origin == Origin::kChanged ? changed
+                                                   : (origin == Origin::kSecond ? 0.0 : of_first) +
+                                                         (origin == Origin::kFirst ? 0.0 : of_second);
+    group[k] = ws->weight[i] * (part / (changed + of_first + of_second + 1e-300));
+  }
+  return group;
+}
+
 int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
                           const ModeDraws& draws, double* ess) noexcept {
   const auto offset = static_cast<std::size_t>(first);
@@ -221,47 +247,45 @@ int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int fi
     return FitBlock(kernels_, group, kPilotFit, ws->StraightRows().data(), ws->pilot_tables[b].data(),
                     &pilot_blocks_[b]);
   };
-  pilot_groups_ = 1;
-  // Persisted and changed parameters get a block each where both have a say, else those that rest and those that drift.
-  const auto fit_apart = [&](auto density_of, double density_share, auto rest_of) noexcept ARMCMC_NONBLOCKING {
-    double total = 0.0;
-    double apart = 0.0;
-    for (int k = first; k < last; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      const double one = density_share * density_of(i);
-      ws->group_weight[i] = ws->weight[i] * (one / (one + rest_of(i) + 1e-300));
-      total += ws->weight[i];
-      apart += ws->group_weight[i];
-    }
-    if (!(apart > 0.02 * total && apart < 0.98 * total)) return 0;
-    WeightedDraws group = weighted;
-    group.weight = ws->group_weight.data() + offset;
-    const double one = fit(group, 0);
-    int blocks = one >= kMinimumEss ? 1 : 0;
-    for (int k = first; k < last; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      ws->group_weight[i] = ws->weight[i] - ws->group_weight[i];
-    }
-    const double other = fit(group, blocks);
-    blocks += other >= kMinimumEss ? 1 : 0;
-    *ess = blocks == 2 ? one + other : std::fmin(one, other);
-    pilot_groups_ = 2;
-    return blocks == 0 ? -1 : blocks;
-  };
+  pilot_lacks_ = false;
+  weighted.weight = GroupWeights(Origin::kAny, previous, lambda, first, last, ws) + offset;
   if (lambda > 0.0) {
-    const double* const fresh = ws->initial_prior.data();
-    const double* const one = ws->memory[0].data();
-    const double* const two = ws->memory[1].data();
-    const double share_one = lambda * previous.weight[0] / memory_inside_;
-    const double share_two = previous.num_blocks > 1 ? lambda * previous.weight[1] / memory_inside_ : 0.0;
-    int blocks = fit_apart([=](std::size_t i) noexcept ARMCMC_NONBLOCKING { return fresh[i]; }, 1.0 - lambda,
-                           [=](std::size_t i) noexcept ARMCMC_NONBLOCKING {
-                             return share_one * one[i] + (share_two > 0.0 ? share_two * two[i] : 0.0);
-                           });
-    if (blocks == 0 && drift_.Splits(previous))
-      blocks = fit_apart([=](std::size_t i) noexcept ARMCMC_NONBLOCKING { return two[i]; }, share_two,
-                         [=](std::size_t i) noexcept ARMCMC_NONBLOCKING { return share_one * one[i]; });
-    if (blocks != 0) return std::max(blocks, 0);
+    // Persisted and changed parameters get a block each where both have a say, else those that rest and those that
+    // drift. What is too little for a block is left out: far away, it would make that of the others too wide.
+    const auto mass_of = [&](Origin origin) noexcept ARMCMC_NONBLOCKING {
+      const double* const group = GroupWeights(origin, previous, lambda, first, last, ws);
+      double mass = 0.0;
+      for (int k = first; k < last; ++k) mass += group[k];
+      return mass;
+    };
+    const auto counts = [](double share) noexcept { return share > 0.02 && share < 0.98; };
+    const double total = mass_of(Origin::kAny);
+    const double changed = may_have_changed_ ? mass_of(Origin::kChanged) / total : 0.0;
+    std::array<Origin, 2> groups{Origin::kChanged, Origin::kPersisted};
+    bool apart = counts(changed);
+    if (!apart && drift_.Splits(previous) && counts(mass_of(Origin::kSecond) / total)) {
+      groups = {Origin::kSecond, Origin::kFirst};
+      apart = true;
+    }
+    if (apart) {
+      int blocks = 0;
+      double least = HUGE_VAL;
+      *ess = 0.0;
+      for (const Origin origin : groups) {
+        (void)GroupWeights(origin, previous, lambda, first, last, ws);
+        const double of_group = fit(weighted, blocks);
+        blocks += of_group >= kMinimumEss ? 1 : 0;
+        least = std::fmin(least, of_group);
+        *ess += of_group;
+      }
+      pilot_lacks_ = blocks < 2;
+      if (pilot_lacks_) *ess = least;
+      return blocks;
+    }
+    if (may_have_changed_)
+      (void)GroupWeights(changed > 0.5 ? Origin::kChanged : Origin::kPersisted, previous, lambda, first, last, ws);
+    else
+      (void)GroupWeights(Origin::kAny, previous, lambda, first, last, ws);
   }
   *ess = fit(weighted, 0);
   if (*ess >= kMinimumEss) return 1;
@@ -270,7 +294,7 @@ int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int fi
   double top = 0.0;
   for (int k = first; k < last; ++k) top = std::fmax(top, ws->weight[static_cast<std::size_t>(k)]);
   if (!(top > 0.0)) return 0;
-  weighted.weight = ws->group_weight.data() + offset;
+  pilot_lacks_ = true;
   for (const double power : kTempers) {
     for (int k = first; k < last; ++k) {
       const auto i = static_cast<std::size_t>(k);
@@ -315,6 +339,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
       *in_haste = now + ahead > time.deadline_ns;
       if (*in_haste) break;
     }
+    if (round == 0 && drift_.Splits(previous)) FitApart(data, previous, ws);
     const bool thin_but_right = on_ridge && (round > 1 || ess >= kMinimumEss);
     if (!thin_but_right) {  // else more of the same
       pooled = made;

@@ -74,7 +74,9 @@ class ReplayOfAPlantFile : public ::testing::Test {
     for (const auto& [name, truth] : {std::pair{"M", kMass}, {"Fv", kViscous}, {"off", kOffset}}) {
       const double half = 0.5 * (last.at(std::string(name) + "_q975") - last.at(std::string(name) + "_q025"));
       EXPECT_GT(half, 0.0) << name;
-      EXPECT_NEAR(last.at(name), truth, 2.5 * half) << name;
+      // The median: derivatives at the end of the recording are poor, so that the last pack leaves a per cent or two to
+      // the possibility that everything changed, and the mean goes with that.
+      EXPECT_NEAR(last.at(std::string(name) + "_q50"), truth, 2.5 * half) << name;
     }
   }
 

@@ -169,6 +169,12 @@ class ModeSampler {
                    SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   void FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous, const RandomStream& stream,
                   SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
+  /// Laplace fit under a memory with these moments.
+  void FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data, SamplerWorkspace* ws,
+                Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
+  /// The Laplace fits of what rests and of what drifts: they may have come apart.
+  void FitApart(const ModeData& data, const PosteriorMemory& previous,
+                SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Laplace fits under P_0 from the best of some draws of it: a law that is not linear may have several modes, and the
   /// mean of P_0 may lie beside none of them. Leaves the best by its mass in `fit`, which has the log posterior `best`.
   void FitFromScattered(const ModeData& data, const RandomStream& stream, SamplerWorkspace* ws, double best,
@@ -187,6 +193,11 @@ class ModeSampler {
   /// prior_t at the candidates from `first` on.
   [[nodiscard]] simd::PriorTerms Prior(const PosteriorMemory& previous, double lambda, int first,
                                        const SamplerWorkspace& ws) const noexcept ARMCMC_NONBLOCKING;
+  /// What of the prior a draw came from: P_0, or the memory with its blocks.
+  enum class Origin : std::uint8_t { kAny, kChanged, kPersisted, kFirst, kSecond };
+  /// Weights of [first, last) times the probability of that origin, at the places of the draws.
+  const double* GroupWeights(Origin origin, const PosteriorMemory& previous, double lambda, int first, int last,
+                             SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   /// Fits the pilot's weighted draws [first, last). @return number of blocks; *ess their effective number.
   int FitPilot(const PosteriorMemory& previous, double lambda, int first, int last, SamplerWorkspace* ws,
                const ModeDraws& draws, double* ess) noexcept ARMCMC_NONBLOCKING;
@@ -242,8 +253,8 @@ class ModeSampler {
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> laplace_persisted_;  ///< One for each change in part, else one.
   int num_persisted_ = 0;
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> pilot_blocks_;
-  int laplace_fits_ = 1;  ///< That FitLaplace made.
-  int pilot_groups_ = 1;  ///< How many the pilot's draws fall into; some may have too few for a block.
+  int laplace_fits_ = 1;      ///< That FitLaplace made.
+  bool pilot_lacks_ = false;  ///< A part of the pilot's draws was too small for a block of its own.
   Gaussian fit_fresh_, fit_persisted_;
   std::array<RidgeAnchor, kRidgeAnchors> anchors_;
   std::array<DensityBlock, kRidgeAnchors> ridge_blocks_;
