@@ -57,7 +57,7 @@ int Check(const Arguments& a) {
   try {
     std::cout << '\n' << IdentifiabilityText(plant, *data);
   } catch (const PlantError& error) {
-    std::cout << "which parameters these data tell cannot be said: " << error.what() << '\n';
+    std::cout << "which parameters these data identify cannot be said: " << error.what() << '\n';
   }
   return support::kExitOk;
 }
