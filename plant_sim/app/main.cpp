@@ -29,58 +29,45 @@ using armcmc::support::InputError;
 
 constexpr const char* kDescription =
     "A simulated plant. It publishes measurement packs over LCM in real time, listens to the estimates, and scores\n"
-    "them against the parameters that it alone knows.";
+    "them against the true parameters, which only it knows.";
 
 constexpr const char* kFooter =
     "  armcmc-plant --scenario contact_rich --csv rich.csv      (no LCM, as fast as possible)\n"
     "  armcmc-plant --inject nan@30,late@60:150\n"
     "Stop with Ctrl-C: the score so far is printed.\n"
     "Faults of --inject, each KIND@PACK: nan (a NaN among the samples), size (more samples than a pack holds),\n"
-    "duplicate (sent twice), reorder (sent after the next), drop (not sent), foreign (another LCM type before it),\n"
-    "garbage (undecodable bytes before it), zero (every value 0), huge (1e300 among the samples), corrupt (damaged\n"
+    "duplicate (sent twice), reorder (sent after the next), drop (not sent), foreign (preceded by another LCM type),\n"
+    "garbage (preceded by undecodable bytes), zero (every value 0), huge (1e300 among the samples), corrupt (damaged\n"
     "bytes), late@PACK:MS (sent MS milliseconds late), clock@PACK:MS (the plant's clock jumps ahead by MS "
     "milliseconds).\n"
     "Hidden effects: --hide-effect NAME[:VARIANT][,NAME[:VARIANT]] adds one or two effects that the base equations\n"
-    "lack; \"random\" draws nothing, one, two, or one that no catalogue names; \"none\" hides nothing and says so.\n"
+    "lack; \"random\" draws none, one, two, or one that is in no catalogue; \"none\" hides nothing.\n"
     "  armcmc-plant --hide-effect random --seed 5 --sealed truth.json --csv data.csv\n"
     "  armcmc-plant --hide-effect coulomb_friction:tanh --effect-gate from:8 --sealed truth.json --csv data.csv\n"
-    "The truth goes to the sealed file alone, whose SHA-256 is printed. The CSV keeps its columns: an effect shows in "
-    "f,\n"
-    "the truth columns stay those of the base equations. A scenario hides effects by [[hidden_effect]] tables with "
-    "name,\n"
-    "variant, gate, strength, seed (of the first table) and a table of parameters that are not to be drawn.\n"
-    "Model files: --model FILE.toml, as armcmc-estimator and armcmc-replay read them, makes its parameters and "
-    "effects,\n"
-    "at their means, the truth of the plant; motion and noise stay the scenario's.\n"
+    "The truth is written only to the sealed file, whose SHA-256 is printed. The CSV keeps its columns: an effect\n"
+    "appears in f, while the truth columns remain those of the base equations. A scenario hides effects with\n"
+    "[[hidden_effect]] tables: name, variant, gate, strength, seed (in the first table) and a table of fixed\n"
+    "parameters, which are not drawn.\n"
+    "Model files: --model FILE.toml, as read by armcmc-estimator and armcmc-replay, sets the true parameters and\n"
+    "effects of the plant to their means; motion and noise remain those of the scenario.\n"
     "  armcmc-plant --scenario contact_rich --model found.toml --csv predicted.csv\n"
-    "Plant files: --model FILE, or the name of a plant that came along, simulates any plant that a file describes, by\n"
-    "equations of its own. Its scenario has schema, rate_hz, duration_s, seed, [truth] (values of parameters; a list: "
-    "one\n"
-    "a mode), [inputs] (NAME = { kind, amplitude, offset, frequency_hz, bandwidth_hz } with kind multisine, sine, "
-    "chirp "
-    "or\n"
-    "steps, or { expression }, or { state }), [start], [noise] (law, std) and [[hidden]] (slot, value): what the file "
-    "does\n"
-    "not know. Without a scenario the means of the priors are the truth, and multisines move the inputs.\n"
+    "Plant files: --model FILE, or the name of a bundled plant, simulates any plant described by a file, with an\n"
+    "independent implementation. Its scenario has schema, rate_hz, duration_s, seed, [truth] (parameter values; a\n"
+    "list has one for each mode), [inputs] (NAME = { kind, amplitude, offset, frequency_hz, bandwidth_hz } with kind\n"
+    "multisine, sine, chirp or steps, or { expression }, or { state }), [start], [noise] (law, std) and [[hidden]]\n"
+    "(slot, value): effects that the plant file lacks. Without a scenario the true parameters are the prior means,\n"
+    "and the inputs are multisines.\n"
     "  armcmc-plant --model my_axis.toml --csv axis.csv\n"
     "  armcmc-plant --model valve.toml --scenario valve_steps.toml --csv data.csv --log data.lcm\n"
-    "Scenarios contact_* move another plant in another way for every seed; experiment_* are motions made to tell "
-    "effects\n"
-    "apart. [motion] of a contact: tracking = \"prescribed\" with program (rich, sine, slow_triangle, fast_taps, "
-    "step_hold,\n"
-    "taps_of_depths, contact_chirp, free_air_chirp, free_air or strokes), depth (m), pace (2: twice as fast) and "
-    "band_hz\n"
-    "(low pass). [law] error: the rms share by which the law differs from its formula, smoothly, another way for "
-    "every\n"
-    "seed.\n"
-    "[parameters]: a number or a range { low, high, law, at_depth, times } that the seed draws from. [noise.CHANNEL]: "
-    "kind,\n"
-    "std or std_share (of the rms in contact), correlation (of a sample with the next; with correlation_to drawn from "
-    "a\n"
-    "range), growth (with the size of the signal).\n"
-    "Recordings: --recording FILE plays measured data of a plant that a file describes as packs in real time, each "
-    "run\n"
-    "as a restart of the plant; NaN and infinite values are sent as they are.\n"
+    "Scenarios contact_* draw plant and motion from the seed; experiment_* are motions that separate effects.\n"
+    "[motion] of a contact: tracking = \"prescribed\" with program (rich, sine, slow_triangle, fast_taps, step_hold,\n"
+    "taps_of_depths, contact_chirp, free_air_chirp, free_air or strokes), depth (m), pace (2: twice as fast) and\n"
+    "band_hz (low pass). [law] error: smooth relative rms deviation of the plant from its formula, drawn from the\n"
+    "seed. [parameters]: a number, or a range { low, high, law, at_depth, times } to draw from. [noise.CHANNEL]:\n"
+    "kind, std or std_share (of the rms in contact), correlation (between consecutive samples; with correlation_to\n"
+    "drawn from a range), growth (with the size of the signal).\n"
+    "Recordings: --recording FILE plays measured data of a plant file as packs in real time, each run as a restart\n"
+    "of the plant; NaN and infinite values are sent unchanged.\n"
     "  armcmc-plant --recording emps_estimation.toml --data-dir measured --speed 2\n"
     "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.";
 
@@ -178,36 +165,38 @@ int main(int argc, char** argv) {
   PlantOptions options;
   HideOptions hide;
   RecordingOptions recording;
-  app.add_option("--scenario", scenario_name, "Scenario file, or the name of one that came with the program")
-      ->capture_default_str();
+  app.add_option("--scenario", scenario_name, "Scenario file, or the name of a bundled one")->capture_default_str();
   app.add_option(
       "--model", model_path,
-      "Plant file, or name of one that came with the program, to simulate; or model file whose parameters and\n"
-      "effects, at their means, become the truth of the scenario's plant");
-  app.add_option("--recording", recording.path, "Recording file, which is played instead of simulating a plant");
-  app.add_option("--data-dir", recording.data_dir, "Where the recording's CSV is if not beside its file");
-  app.add_option("--speed", recording.speed, "Play this many times as fast as it was recorded")->capture_default_str();
+      "Plant file, or name of a bundled plant, to simulate; or a model file whose parameters and effects, at their\n"
+      "means, are the true ones of the scenario's plant");
+  app.add_option("--recording", recording.path, "Recording file to play instead of simulating a plant");
+  app.add_option("--data-dir", recording.data_dir, "Folder of the recording's CSV, if not that of the recording file");
+  app.add_option("--speed", recording.speed, "Play this many times as fast as recorded")->capture_default_str();
   app.add_option("--seed", options.seed,
-                 "Seed of the sensor noise, and of what a scenario leaves to it (motion, ranges): the same\n"
-                 "seed gives the same data")
+                 "Seed of the sensor noise, and of random motions and parameters: the same seed gives the same data")
       ->capture_default_str();
   app.add_option("--duration", duration_s, "Seconds to run, instead of the scenario's duration");
-  CLI::Option* url =
-      app.add_option("--lcm-url", options.lcm_url, "LCM bus; another port is another bus")->capture_default_str();
+  CLI::Option* url = app.add_option("--lcm-url", options.lcm_url, "LCM bus; a different port is a different bus")
+                         ->capture_default_str();
   CLI::Option* stride =
       app.add_option("--stride", options.stride,
-                     "Samples from pack to pack, a divisor of those of a pack: packs overlap. Default: the scenario's");
-  app.add_option("--prefix", options.prefix, "Goes before every channel name, so that many plants share one bus");
-  app.add_option("--log", options.log_path, "Write what is published to an LCM log");
-  app.add_option("--csv", options.csv_path, "Write the samples and the truth; without --lcm-url nothing is published");
+                     "Send a pack every so many samples, so that packs overlap; must divide the number of samples in\n"
+                     "a pack. Default: from the scenario");
+  app.add_option("--prefix", options.prefix, "Prefix of every channel name, so that several plants can share a bus");
+  app.add_option("--log", options.log_path, "Write all published messages to an LCM log");
+  app.add_option("--csv", options.csv_path,
+                 "Write the samples and the true values; without --lcm-url nothing is published");
   app.add_option("--report", options.report_path, "Write the score as JSON");
-  app.add_option("--inject", inject, "Faults to inject on purpose, comma separated");
+  app.add_option("--inject", inject, "Faults to inject, comma separated");
   app.add_option("--hide-effect", hide.effect, "Effects that the base equations lack: names, random, or none");
-  app.add_option("--effect-strength", hide.strength,
-                 "Gap ratio R of each: rms of what the refitted base parameters cannot absorb, over the noise's sd")
+  app.add_option(
+         "--effect-strength", hide.strength,
+         "Gap ratio R of each: rms of what the refitted base parameters cannot absorb, divided by the standard\n"
+         "deviation of the noise")
       ->capture_default_str();
   app.add_option("--effect-gate", hide.gate, "When they act: always, contact, free, from:S or until:S (seconds)");
-  app.add_option("--sealed", hide.sealed_path, "Write the truth about what is hidden, as JSON for the scorer");
+  app.add_option("--sealed", hide.sealed_path, "Write the hidden effects to this file, as JSON for the scorer");
 
   return armcmc::support::RunProgram(app, "armcmc-plant", argc, argv, [&] {
     if (app.count("--inject") > 0) {

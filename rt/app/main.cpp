@@ -28,13 +28,11 @@ namespace {
 
 constexpr char kName[] = "armcmc-estimator";
 constexpr char kDescription[] =
-    "Estimates the parameters of a plant in real time. Listens to packs of measurements on LCM, updates the posterior "
-    "of\n"
-    "the parameters within a deadline, and publishes the estimate, its marginals and the state of health.";
+    "Estimates the parameters of a plant in real time. Receives packs of measurements over LCM, updates the posterior\n"
+    "of the parameters before a deadline, and publishes the estimate, its marginals and a status.";
 std::string Footer() {
-  return "Channels: listens to PLANT_PACK, or PLANT_PACK_V2 for a plant that a file describes; publishes "
-         "EST_ESTIMATE,\n"
-         "EST_POSTERIOR, EST_CHANGE, EST_STATUS (all behind the prefix).\n"
+  return "Channels: receives PLANT_PACK, or PLANT_PACK_V2 for a plant described by a file; publishes EST_ESTIMATE,\n"
+         "EST_POSTERIOR, EST_CHANGE, EST_STATUS (all with the prefix).\n"
          "Ctrl-C stops within one step, prints the summary and writes the report.\n\n"
          "Example: two terminals on one computer\n"
          "  armcmc-estimator --model " +
@@ -163,35 +161,36 @@ int main(int argc, char** argv) {
   CLI::App cli{app::kDescription};
   cli.footer(app::Footer());
   cli.add_option("--config", options.config,
-                 "Configuration: a file, or the name of one that came with the product. Default: that of the model.\n"
-                 "Several plants: once for all or once for each; threads, timing and bus are those of all")
+                 "Configuration: a file, or the name of a bundled one. Default: that of the model.\n"
+                 "Several plants: once for all or once for each; they share threads, timing and bus")
       ->type_name("FILE")
       ->allow_extra_args(false);
   cli.add_option("--model", options.model,
                  "Model: " + ModelNames() +
-                     ", a plant that came along (armcmc-model list),\na plant file or a model file (.toml). Once for "
-                     "each of several plants")
+                     ", a bundled plant (armcmc-model list),\na plant file or a model file (.toml). Several plants: "
+                     "once for each")
       ->type_name("NAME")
       ->allow_extra_args(false);
   cli.add_option("--lcm-url", options.lcm_url,
-                 "LCM bus, for example udpm://239.255.76.67:7667?ttl=0. Default: the configuration's")
+                 "LCM bus, for example udpm://239.255.76.67:7667?ttl=0. Default: from the configuration")
       ->type_name("URL");
   cli.add_option("--prefix", options.prefix,
-                 "Put before every channel name. Default: the configuration's. Once for each of several plants")
+                 "Prefix of every channel name. Default: from the configuration. Several plants: once for each")
       ->type_name("P")
       ->allow_extra_args(false);
   cli.add_option("--steps", options.steps, "Stop after N steps. Default: run until stopped")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62));
-  cli.add_option("--report", options.report, "Write a JSON report of the run. Once for each of several plants")
+  cli.add_option("--report", options.report, "Write a JSON report of the run. Several plants: once for each")
       ->type_name("FILE")
       ->allow_extra_args(false);
   cli.add_option("--gap-log", options.gap_log,
-                 "Folder for the data around a suspected gap. Default: the configuration's (gap_logs)")
+                 "Folder for the data around a model gap alarm. Default: from the configuration (gap_logs)")
       ->type_name("DIR");
-  cli.add_option("--resume", options.resume,
-                 "Go on from what was learnt before, kept in this file, and keep it up to date, once per second.\nOnce "
-                 "for each of several plants")
+  cli.add_option(
+         "--resume", options.resume,
+         "Continue from the state saved in this file, and save the state to it once per second.\nSeveral plants: "
+         "once for each")
       ->type_name("FILE")
       ->allow_extra_args(false);
   cli.add_flag("--verbose", options.verbose, "Also print lost and dropped packs");

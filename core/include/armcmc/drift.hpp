@@ -18,48 +18,48 @@ namespace simd {
 struct Kernels;
 }
 
-/// How the parameters of one mode drift, learnt from the packs.
+/// Drift of the parameters of one mode, learnt from the packs.
 ///
-/// Each hypothesis h lets the standardised parameters u move with a speed w that is forgotten within tau_h:
+/// Under hypothesis h the standardised parameters u move at a velocity w with correlation time tau_h:
 ///
 ///   du/dt = w,   dw = -w / tau_h dt + s_h sqrt(2 / tau_h) dW,   w ~ N(0, s_h^2) in the long run
 ///
-/// s_h is the rate, in standard deviations of the prior per second, the same for all parameters. h = 0 is rest, s = 0.
-/// The others are kDrifts: walks, whose steps are forgotten within some packs, and trends. A walk alone does not do: of
-/// a steady drift it would have to be told anew in every pack, lags behind, and finds the explanation with the smallest
-/// steps along what the data do not tell apart, with intervals that miss it. Trends alone are late where steps are
-/// forgotten, and intervals miss those; what lies in between, a second, does neither well and takes from both.
+/// s_h is the rate, in prior standard deviations per second, the same for all parameters. h = 0 is "rest", s = 0. The
+/// others (kDrifts) are random walks, with correlation times of some packs, and trends. Walks alone are not enough:
+/// they would learn a steady drift anew in every pack, lag behind it, and prefer the smallest steps along directions
+/// that the data do not determine, with intervals that miss the truth. Trends alone react late to changes of the
+/// velocity, and their intervals miss those. A correlation time in between, 1 s, suits neither case.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
-///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, newcomers from the whole bank at a speed of
-///            their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
-///   age      some packs tell a newcomer from what was there, and the next one does not: a hypothesis has a filter for
-///            each generation, which joins the older one every kMergeAfter packs, by moments. Joined at once, newcomers
-///            that the data refute would lend their spread to those that they do not
-///   bounds   a parameter that would become wider than P_0, by c > 1 in variance, comes back to it: variance and mean
-///            divided by c. After a long time nothing but P_0 is known of what drifts
+///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from the whole bank with a
+///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
+///   age      it takes several packs to tell a new member from the old ones. So each hypothesis has one filter per
+///            generation, merged into the next older one every kMergeAfter packs by matching moments. If merged at
+///            once, new members that the data refute would widen those that the data support
+///   bounds   if the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean are divided
+///            by c: after a long time without information a drifting parameter returns to P_0
 ///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
 ///            pi_h times the evidence of that, with every filter updated by the same a, H, m
-///   sampled  what was sampled, rest or drift or the bank as a whole, is moved and stretched by the affine map that
-///            leads from what this expansion makes of the prior of the pack to the sampled posterior: where the law is
-///            linear that is none. What was not sampled stays as its own filters have it: the draws of what the data
-///            refute say nothing about it
+///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
+///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
+///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
+///            information about it
 ///
-/// Of a sampled posterior rest and drift are handed on as two densities, its draws each with the probability that they
-/// came from there; where one of them is improbable or has too few draws, the other alone, P. Before the next pack that
-/// becomes
+/// A sampled posterior is stored as two densities, rest and drift, with each draw weighted by the probability that it
+/// came from that part; if one of them is improbable or has too few draws, a single density P is stored. Before the
+/// next pack this becomes
 ///
 ///   pi_0 P_rest(u) + (1 - pi_0) P_drift(u)
 ///
-/// Both come from their own density; from P where there is one alone. P_rest is P moved and stretched by an affine map
-/// to where the bank has rest then, and to its covariance: drawable and with a density like P itself. P_drift is the
-/// mixture of the hypotheses where there is one parameter, and of several the Gaussian with its moments: a shape of P
-/// that is handed on from pack to pack, narrower than a Gaussian in its core, would have each posterior narrow the bank
-/// a little more. (With a noise scale that is sampled P_drift is P moved and stretched, too.) While drift is improbable
-/// (kNegligible) P stays as it is, to the bit.
+/// Each term is derived from its own density, or from P if there is only one. P_rest is P under the affine map to the
+/// mean and covariance that the bank has for rest; like P it can be drawn from and evaluated. P_drift is the mixture of
+/// the hypotheses for one parameter, and for several the Gaussian with the same moments: if the shape of P, narrower
+/// than a Gaussian in its core, were passed on from pack to pack, each posterior would narrow the bank a little more.
+/// (With a sampled noise scale P_drift is an affine map of P, too.) While drift is improbable (kNegligible), P is
+/// unchanged to the bit.
 ///
-/// The noise scale is no coordinate of the bank: its memory is loose as it is (ModeSampler::AppendNoiseScale).
+/// The noise scale is not a coordinate of the bank: its memory is wide enough (ModeSampler::AppendNoiseScale).
 class Drift {
  public:
   struct Law {

@@ -61,9 +61,9 @@ class Estimator {
   Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                 const DrawLimits& limits = kNoDrawLimits) noexcept ARMCMC_NONBLOCKING;
 
-  /// Adjust() in two parts, so that a result need not wait for what only the next pack needs: Draw() fills it, and
+  /// Adjust() in two parts, so that a result need not wait for work that only the next pack needs: Draw() fills it, and
   /// while another thread reads it Remember() turns its draws into the posterior that the next pack starts from. The
-  /// result has to stay as it is until then; the next Draw() makes up for a Remember() that was left out.
+  /// result must not change until then; the next Draw() makes up for a Remember() that was skipped.
   /// @return as Adjust(). @rt As Adjust().
   Status Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
               const DrawLimits& limits = kNoDrawLimits) noexcept ARMCMC_NONBLOCKING;
@@ -74,16 +74,16 @@ class Estimator {
   /// @rt No heap, no lock, no throw. O(draws).
   void Execute(const AdjustResult& result, Estimate* estimate) noexcept ARMCMC_NONBLOCKING;
 
-  /// What the posterior before a pack of a described plant says about it, for every sample n of a mode that an earlier
+  /// Prediction of a pack of a described plant by the posterior before it, for every sample n of a mode that an earlier
   /// pack has updated (NaN elsewhere, and for a compiled plant):
   ///
   ///     centre = median of F(X_n, theta_k) over a thinned chain theta_k of that posterior,
   ///     sd^2   = (half the range of its middle two thirds)^2 + noise_std^2 (S P S')_nn,
   ///
-  /// theta_k moved and stretched to what the drift that is believed in has made of mean and covariance since then,
-  /// P the covariance of the plant's states where the pack begins, S the law's answer to them (StateFilter). A power
-  /// whose exponent is not known yet has no mean that means anything, but a median.
-  /// Errors against it are those of a prediction one pack ahead, which fitted nothing to what it predicts.
+  /// theta_k mapped to the mean and covariance that the estimated drift has produced since then, P the covariance of
+  /// the plant's states at the start of the pack, S the sensitivity of the law to them (StateFilter). The median is
+  /// used because a power whose exponent is not known yet has no meaningful mean.
+  /// Residuals against it are one-pack-ahead prediction errors: nothing was fitted to the predicted data.
   /// @param result  Of Adjust() for the newest pack, before Execute() has seen it.
   /// @param forecast  Centre and sd of each sample.
   /// @rt No heap, no lock, no throw; O(samples). While neither Adjust() nor Execute() runs.

@@ -33,10 +33,10 @@ struct Mismatch {
 ///                   D_0 its expectation, I the Fisher information, v mean predictive variance / s^2
 ///   log_predictive  zeta = expected - actual mean log posterior-predictive density
 ///
-/// The paper's lambda falls with any |zeta|, so that pure noise makes it forget: a pack of 3 samples has a standard
-/// deviation of zeta of 0.4. What chance explains (three standard deviations) is therefore not counted. An estimated
-/// noise scale that is too small by chance is part of it. rms and log_predictive only count a worse fit than expected:
-/// a better one is no reason to forget.
+/// The paper's lambda falls with any |zeta|, so pure noise causes forgetting: a pack of 3 samples has a standard
+/// deviation of zeta of 0.4. Three standard deviations are therefore attributed to chance and not counted; this
+/// includes a noise scale that was estimated too small by chance. rms and log_predictive count only a worse fit than
+/// expected: a better one is no reason to forget.
 /// @rt No heap, no lock, no throw. O(samples).
 [[nodiscard]] Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& noise, double noise_scale,
                                         const ModeData& data,

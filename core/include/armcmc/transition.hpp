@@ -18,17 +18,17 @@ namespace simd {
 struct Kernels;
 }
 
-/// How the parameters of one mode may have changed since the last pack: what the posterior before a pack becomes before
-/// it meets that pack. Time has already passed in it, so that P is what Drift makes of P(u | D^{t-1}): at rest with
-/// probability pi_0, drifting with 1 - pi_0.
+/// Prior of a pack: how the parameters of one mode may have changed since the previous pack. P is the posterior
+/// P(u | D^{t-1}) of the previous pack, propagated by Drift to the time of this pack: constant parameters with
+/// probability pi_0, drifting ones with 1 - pi_0.
 ///
 ///   persisted, drifted  prior = lambda P(u) + (1 - lambda) P_0   the paper's reinforcement
 ///   changed in part     prior = P(u_others) P_0(u_j)             one coordinate j drawn anew: a parameter or the noise
 ///   changed             prior = P_0                              the paper's modification
 ///
-/// A partial change competes with P_0 after a modification, so that one parameter's jump does not lose the others. The
-/// pack that holds the jump is a mixture of two plants and teaches nothing: the one pack after it may start again from
-/// what was known before both.
+/// After a modification partial changes compete with P_0, so that a jump of one parameter does not discard the others.
+/// The pack that contains the jump is a mixture of two plants and carries no usable information: the pack after it may
+/// start again from the posterior before both.
 ///
 /// Without partial changes (ForgettingSettings::partial_change) a modification is the paper's: P_0 alone. Without drift
 /// (ForgettingSettings::drift_share = 0) P is P(u | D^{t-1}), and the rule as a whole is the paper's.

@@ -162,7 +162,7 @@ TEST_F(ModelProgram, SaysThatRichDataTellEveryParameter) {
       Write("rich.csv", AxisCsv([](double t) { return 0.2 * std::sin(2.0 * t) + 0.05 * std::sin(7.0 * t); }));
   const test::Outcome check = Run({"check", "servo_axis", "--data", csv});
   EXPECT_EQ(check.code, 0) << check.err;
-  EXPECT_THAT(check.out, HasSubstr("These data tell M, Fv and off.\n"));
+  EXPECT_THAT(check.out, HasSubstr("These data identify M, Fv and off.\n"));
   EXPECT_TRUE(std::regex_search(check.out, std::regex("M +kg +(99|100)[.0-9]* \\+- 0\\.[0-9]+ +yes"))) << check.out;
   EXPECT_THAT(check.out, HasSubstr("over these data"));
 }

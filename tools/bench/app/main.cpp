@@ -22,29 +22,30 @@ struct Arguments {
 };
 
 void Declare(CLI::App* app, Arguments* a) {
-  app->add_option("--model", a->models,
-                  "Only this plant: built in, NAME:tape for the same run as a file describes it, the name of one that "
-                  "came along, or a file. May be repeated");
+  app->add_option(
+      "--model", a->models,
+      "Only this plant: a built-in one, NAME:tape for the same as a plant file, the name of a bundled plant, "
+      "or a file. May be repeated");
   app->add_option("--instruction-set", a->instruction_set,
-                  "avx512, avx2 or sse2 (on AArch64 neon or portable) instead of the widest that this CPU runs");
-  app->add_flag("--no-quality", a->no_quality, "Leave out BM_EffectiveDraws");
+                  "avx512, avx2 or sse2 (on AArch64 neon or portable) instead of the widest that this CPU supports");
+  app->add_flag("--no-quality", a->no_quality, "Skip BM_EffectiveDraws");
   app->add_option(
       "--write-packs", a->write_packs,
-      "Measure nothing else: write the packs of BM_EffectiveDraws that start from the prior to this folder, "
-      "for other programs, with the posterior by quadrature and replicates of the estimator's own result");
+      "Run no benchmark; write the packs of BM_EffectiveDraws that start from the prior to this folder, for other "
+      "programs, with the posterior by quadrature and replicates of the estimator's result");
   app->add_option("--replicates", a->replicates, "Replicates for --write-packs (200)")->check(CLI::Range(1, 100000));
   app->allow_extras();
   app->footer(
-      "Measures the step of the estimator, part by part, on packs that armcmc-plant simulates with a fixed seed, and\n"
-      "how many independent draws its draws are worth. Every option of Google Benchmark is taken as well:\n"
+      "Times each part of the estimator's step on packs that armcmc-plant simulates with a fixed seed, and measures\n"
+      "the effective sample size of its draws. Accepts every option of Google Benchmark as well:\n"
       "--benchmark_filter=REGEX, --benchmark_format=json, --benchmark_out=FILE, --benchmark_repetitions=N,\n"
-      "--benchmark_list_tests. Times on a shared machine vary: compare figures of one run.\n\n"
+      "--benchmark_list_tests. Times on a shared machine vary: compare only figures from the same run.\n\n"
       "Benchmarks:\n"
       "  BM_AdjustStep/PLANT/DRAWS/SAMPLES   draw and remember; BM_Draw, BM_Remember and BM_Execute are the parts\n"
-      "  BM_Dimension/PARAMETERS             draw and remember with described laws of 2 to 6 parameters\n"
+      "  BM_Dimension/PARAMETERS             draw and remember for plant files with 2 to 6 parameters\n"
       "  BM_Memory/PLANT                     construction; the counter `bytes` is the heap that it takes\n"
-      "  BM_EverySample/PLANT/DRAWS/SAMPLES  BM_AdjustStep, every candidate compared with every sample\n"
-      "  BM_Noise/PLANT/LAW                  a whole step under another law of the noise\n"
+      "  BM_EverySample/PLANT/DRAWS/SAMPLES  BM_AdjustStep with every candidate scored sample by sample\n"
+      "  BM_Noise/PLANT/LAW                  a whole step with another noise law\n"
       "  BM_Effects/PLANT/COUNT              a whole step with effects added to the law\n"
       "  BM_NaiveLoop/DRAWS/SAMPLES          the likelihood alone, as a plain loop with std::pow\n"
       "  BM_EffectiveDraws/CASE              200 replicates: posterior variance over that of the estimated mean,\n"
@@ -88,7 +89,7 @@ int Run(const CLI::App& app, const Arguments& a, const std::string& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"How long the step of the estimator takes, and how good its draws are."};
+  CLI::App app{"Measures the time of the estimator's step and the quality of its draws."};
   Arguments arguments;
   Declare(&app, &arguments);
   return armcmc::support::RunProgram(app, "armcmc-bench", argc, argv, [&] { return Run(app, arguments, argv[0]); });

@@ -20,26 +20,24 @@ struct Arguments {
 
 void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--data", a->request.log, "LCM log, as lcm-logger writes it")->required();
-  app->add_option("--out", a->request.out, "Folder for the tables, one CSV a channel; with --format mcap the file")
+  app->add_option("--out", a->request.out, "Folder for the tables, one CSV per channel; with --format mcap the file")
       ->required();
-  app->add_option("--format", a->format, "csv, or mcap, one file that Foxglove and PlotJuggler open")
+  app->add_option("--format", a->format, "csv, or mcap: one file for Foxglove and PlotJuggler")
       ->check(CLI::IsMember({"csv", "mcap"}))
       ->capture_default_str();
   app->add_option("--channels", a->request.channels,
                   "Only these channels, comma separated, with or without their prefix (EST_ESTIMATE)")
       ->delimiter(',');
-  app->add_option("--prefix", a->request.prefix, "Only channels that begin with this");
+  app->add_option("--prefix", a->request.prefix, "Only channels with this prefix");
   app->add_option("--histograms", a->histograms,
-                  "Posteriors in CSV: wide, a row a message (PlotJuggler), or long, a row a bin (pandas)")
+                  "Posteriors in CSV: wide, one row per message (PlotJuggler), or long, one row per bin (pandas)")
       ->check(CLI::IsMember({"wide", "long"}))
       ->capture_default_str();
   app->footer(
-      "Turns a log into tables that PlotJuggler and pandas read. The first column is the time in seconds since the "
-      "first\n"
-      "event of the log; headers carry units: \"ar_map.K [N m^-p]\". Samples of packs have a row each.\n\n"
-      "With --format mcap the rows are JSON messages of one MCAP file, with a topic for each channel and the units in "
-      "the\n"
-      "schemas. JSON has no number for infinity or \"not a number\": there the value is null.\n\n"
+      "Converts a log to tables for PlotJuggler and pandas. The first column is the time in seconds since the first\n"
+      "event of the log; headers include units: \"ar_map.K [N m^-p]\". Each sample of a pack has its own row.\n\n"
+      "With --format mcap the rows are JSON messages in one MCAP file, with a topic for each channel and the units in\n"
+      "the schemas. JSON cannot represent infinity or NaN: such values become null.\n\n"
       "Examples:\n"
       "  armcmc-export --data run.lcm --out tables --channels EST_ESTIMATE,PLANT_PACK\n"
       "  python3 -c \"import pandas; print(pandas.read_csv('tables/EST_ESTIMATE.csv', index_col='t "
@@ -85,7 +83,7 @@ int Run(const Arguments& arguments) {
 }  // namespace armcmc::log_export
 
 int main(int argc, char** argv) {
-  CLI::App app{"Turns an LCM log into CSV tables, one a channel, or into one MCAP file."};
+  CLI::App app{"Converts an LCM log to CSV tables, one per channel, or to one MCAP file."};
   armcmc::log_export::Arguments arguments;
   armcmc::log_export::Declare(&app, &arguments);
   return armcmc::support::RunProgram(app, "armcmc-export", argc, argv,

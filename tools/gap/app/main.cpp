@@ -43,22 +43,22 @@ struct Arguments {
 
 void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--model", a->model,
-                  "Plant file, or name of one that came along; or a model file (.toml) whose effects are already known")
+                  "Plant file, or name of a bundled plant; or a model file (.toml) with effects found earlier")
       ->capture_default_str();
   auto* data =
       app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (see armcmc-model check)");
   auto* recording =
-      app->add_option("--recording", a->recording, "Recording file: which columns of which CSV are the plant's signals")
+      app->add_option("--recording", a->recording, "Recording file, which maps the columns of a CSV to the signals")
           ->excludes(data);
-  app->add_option("--data-dir", a->data_dir, "Where the recording's CSV is if not beside its file")->needs(recording);
-  app->add_option("--heldout", a->heldout, "CSV of another run to show the gap on; without it the last 30 % of --data");
-  app->add_option(
-      "--earlier", a->earlier,
-      "CSV, or recording file, of an earlier run with the same effect: names that it leaves open are judged "
-      "by both runs");
+  app->add_option("--data-dir", a->data_dir, "Folder of the recording's CSV, if not that of the recording file")
+      ->needs(recording);
+  app->add_option("--heldout", a->heldout, "Holdout: CSV of another run; default: the last 30 % of --data");
+  app->add_option("--earlier", a->earlier,
+                  "CSV, or recording file, of an earlier run with the same effect: ties that it left are decided with "
+                  "both runs");
   app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->type_name("TEXT REQUIRED");
   app->add_option("--gallery", a->gallery,
-                  "Only makes one page, index.html, that links the reports in the folders of this folder")
+                  "Only write index.html, a page that links the reports in the subfolders of this folder")
       ->excludes(data)
       ->excludes(recording);
   app->add_option("--seed", a->seed, "Seed of the bootstrap: the same seed gives the same result")
@@ -66,16 +66,16 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--steps", a->steps,
                   "Steps to run, comma separated; the last one counts: compare, find, name, add, show")
       ->capture_default_str();
-  app->add_option("--without", a->without, "Effects to leave out of the catalogue")->delimiter(',');
-  app->add_option("--period-ms", a->period_ms, "Length of a pack, for the cost of the new model in the estimator")
+  app->add_option("--without", a->without, "Effects to exclude from the catalogue")->delimiter(',');
+  app->add_option("--period-ms", a->period_ms, "Length of a pack, to measure the cost of the new model")
       ->check(CLI::Range(1.0, 10'000.0))
       ->capture_default_str();
   app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows instead of stopping");
-  app->add_flag("--no-pairs", a->no_pairs, "Look for one effect only: quicker");
+  app->add_flag("--no-pairs", a->no_pairs, "Look for single effects only, which is faster");
   app->footer(
-      "Compares a model with measured data, finds where they disagree, names the missing effect, writes a model that "
-      "has\n"
-      "it, and shows on data kept apart how much of the gap is closed. It says so when it does not know.\n\n"
+      "Compares a model with measured data, finds where they disagree, names the missing effect, writes a model with\n"
+      "that effect, and shows on held-out data how much of the gap is closed. If the data do not decide, it says "
+      "so.\n\n"
       "Example:\n"
       "  armcmc-plant --scenario contact_rich --hide-effect random --seed 5 --sealed truth.json --csv run.csv\n"
       "  armcmc-gap --model " +
@@ -87,8 +87,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-gap --model valve.toml --data valve.csv --out gap\n"
       "  armcmc-gap --recording tools/gap/recordings/emps_estimation.toml --data-dir data --out gaps/emps\n"
       "  armcmc-gap --gallery gaps\n"
-      "Where several names remain, gap/experiment.toml is the motion that separates them. Make it, and let both runs "
-      "speak:\n"
+      "If several effects remain, gap/experiment.toml is a motion that separates them. Run it, and use both runs:\n"
       "  armcmc-gap --model " +
       a->model +
       " --data experiment.csv --earlier run.csv --out gap2\n"

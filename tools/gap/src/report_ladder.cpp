@@ -56,7 +56,7 @@ void AddRemainder(const Result& result, std::ostream& out) {
 
 void AddStretches(const Result& result, std::ostream& out) {
   if (result.gap.stretches.empty()) return;
-  out << "<h3>The stretches that were kept apart</h3>\n<div class=\"scroll\"><table>\n<tr><th>from, s</th><th>until, "
+  out << "<h3>Held-out segments</h3>\n<div class=\"scroll\"><table>\n<tr><th>from, s</th><th>until, "
          "s</th><th class=\"num\">samples</th><th class=\"num\">error before</th><th class=\"num\">after</th></tr>\n";
   for (const StretchFit& s : result.gap.stretches)
     out << "<tr><td>" << NumberText(s.from_s, 4) << "</td><td>" << NumberText(s.until_s, 4) << "</td><td class=\"num\">"
@@ -72,7 +72,7 @@ void AddPublished(const Result& result, std::ostream& out) {
   for (const PublishedFigure& p : result.published)
     out << "<tr><td>" << EscapeHtml(p.what) << "</td><td class=\"num\">" << NumberText(p.value, 3) << "</td><td>"
         << EscapeHtml(p.source) << "</td></tr>\n";
-  out << "</table></div>\n<p class=\"soft\">Ours, on the rows kept apart: rms error "
+  out << "</table></div>\n<p class=\"soft\">This analysis, on the held-out rows: rms error "
       << NumberText(result.gap.before.rmse, 3) << " → " << NumberText(result.gap.after.rmse, 3) << ' '
       << EscapeHtml(result.gap.unit) << ", relative error " << PercentText(result.relative_before) << " → "
       << PercentText(result.relative_after) << ".</p>\n";

@@ -49,8 +49,8 @@ void AddOneStep(const Result& result, plots::Page* page) {
   AddScore("as it is", run.before, unit, out);
   if (run.has_after) AddScore("<b>with what was named</b>", run.after, unit, out);
   if (run.before_apart.samples > 0) {
-    AddScore("as it is, rows kept apart", run.before_apart, unit, out);
-    if (run.has_after) AddScore("<b>with what was named</b>, rows kept apart", run.after_apart, unit, out);
+    AddScore("as it is, held-out rows", run.before_apart, unit, out);
+    if (run.has_after) AddScore("<b>with what was named</b>, held-out rows", run.after_apart, unit, out);
   }
   out << "</table></div>\n<p>" << Reading((run.has_after ? run.after : run.before).coverage95) << "</p>\n";
   page->Html(out.view());

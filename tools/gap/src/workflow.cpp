@@ -109,19 +109,19 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
       return c != member && c->names() == member->names() && holds(c);
     });
     if (other == finding.tried.end() && holds_elsewhere(member)) {
-      result->notes.push_back("the data kept apart hold something else besides, in a few stretches, that " +
+      result->notes.push_back("a few segments of the held-out data show something else that " +
                               Joined(Texts(member), " and ") + " does not explain and the first part does not show");
       kept.push_back(member);
       continue;
     }
     if (other == finding.tried.end() || granted) {
       result->notes.push_back(Joined(Texts(member), " and ") +
-                              " explains the first part of the data but not the part kept apart: struck off");
+                              " explains the first part of the data but not the held-out part: rejected");
       lost += member->probability;
       member->probability = 0.0;
       continue;
     }
-    result->notes.push_back("on the data kept apart " + Joined(Texts(member), " and ") +
+    result->notes.push_back("on the held-out data " + Joined(Texts(member), " and ") +
                             " holds only with another formula: " + (*other)->added().back().form->formula);
     (*other)->probability = member->probability;
     member->probability = 0.0;

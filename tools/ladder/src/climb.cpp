@@ -132,7 +132,7 @@ void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* note
       return;
     }
     char text[120];
-    std::snprintf(text, sizeof(text), " was not named: in the data kept apart the error goes from %.4g to %.4g only",
+    std::snprintf(text, sizeof(text), " was not named: on the held-out data the error changes only from %.4g to %.4g",
                   apart.before, apart.after);
     notes->push_back(leader.candidate.entry->name + text);
     leader.earned = rung->open = false;

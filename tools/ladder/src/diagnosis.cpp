@@ -102,7 +102,7 @@ class Teller {
     before_ = RunWhole(data_, ladder_.base);
     after_ = RunWhole(data_, ladder_.final_trial);
     rows_ = HeldOutRows(data_, before_);
-    if (rows_.empty()) result_.notes.push_back("nothing was kept apart: errors are those of the fit itself");
+    if (rows_.empty()) result_.notes.push_back("no data were held out: errors are those of the fit itself");
     if (rows_.empty())
       for (std::size_t n = 0; n < data_.training.size(); ++n)
         if (data_.training[n] != 0 && before_.model->active()[n] != 0) rows_.push_back(static_cast<Index>(n));
@@ -150,9 +150,9 @@ class Teller {
     const gap::GapSummary& gap = result_.gap;
     if (!ladder_.complete || HeldOutRows(data_, before_).empty()) return false;
     if (!(gap.after.rmse > kContradicted * gap.noise_floor)) return false;
-    result_.notes.push_back("the rows kept apart lie " + Number(gap.after.rmse / gap.noise_floor) +
-                            " times the noise off a model that explains all others: they show something that those do "
-                            "not. Keep other rows apart, so that it can be named");
+    result_.notes.push_back("the error on the held-out rows is " + Number(gap.after.rmse / gap.noise_floor) +
+                            " times the noise, under a model that explains all other rows: they show something that "
+                            "the others do not. Hold out other rows, so that it can be named");
     return true;
   }
 
@@ -168,7 +168,7 @@ class Teller {
       if (!std::isfinite(told.heldout_error)) {  // that of the last model that does not run away
         told.heldout_error = result_.ladder.empty() ? result_.gap.before.rmse : result_.ladder.back().heldout_error;
         result_.notes.push_back(leader.candidate.entry->name +
-                                " alone runs away on data kept apart: named for what follows");
+                                " alone diverges on held-out data: named because of what follows");
       }
       told.closed_fraction = Closed(told.heldout_error);
       told.probability = rung.probability;
@@ -298,7 +298,7 @@ class Teller {
       rungs.push_back(Joined(titles, " or "));
     }
     return "Missing: " + Joined(rungs, ", then ") + ". With that, " + percent +
-           " % of the gap on data kept apart is closed" +
+           " % of the gap on held-out data is closed" +
            (complete_ ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf());
   }
 

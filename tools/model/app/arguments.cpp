@@ -15,30 +15,31 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-model check my_axis.toml --data run.csv\n"
       "  armcmc-model check my_axis.toml --with coulomb_friction,sensor_delay\n"
       "  armcmc-model add my_axis.toml coulomb_friction --data run.csv --out my_axis_friction.toml\n"
-      "Exit status: 0 ok, 2 the file is wrong, with one line that says where and what was expected.");
+      "Exit status: 0 ok, 2 the file is invalid; one line says where, and what was expected.");
   CLI::App* check = app->add_subcommand(
-      "check", "Says what was understood of a plant file, in tables; what it costs; which parameters data tell");
-  check->add_option("PLANT", a->plant, "Plant file, or name of a plant that came along")->required();
-  check->add_option("--with", a->with, "Effects to add first: NAME, NAME:VARIANT or NAME:x=SYMBOL, with commas between")
+      "check", "Prints a plant file as it was parsed, the time of a step, and which parameters the data identify");
+  check->add_option("PLANT", a->plant, "Plant file, or name of a bundled plant")->required();
+  check->add_option("--with", a->with, "Effects to add first, comma separated: NAME, NAME:VARIANT or NAME:x=SYMBOL")
       ->delimiter(',');
   CLI::Option* data =
       check
           ->add_option(
               "--data", a->data,
-              "Recording file, or CSV whose columns are t and the plant's signals: which parameters do they tell?")
+              "Recording file, or CSV whose columns are t and the plant's signals: which parameters do they identify?")
           ->check(CLI::ExistingFile);
-  check->add_option("--data-dir", a->data_dir, "Where the recording's CSV is if not beside its file")->needs(data);
+  check->add_option("--data-dir", a->data_dir, "Folder of the recording's CSV, if not that of the recording file")
+      ->needs(data);
   check->add_flag("--skip-bad", a->skip_bad, "Skip bad rows of a CSV instead of stopping")->needs(data);
-  check->add_flag("--effects", a->effects, "Also says which effects of the catalogue fit, and why others do not");
-  app->add_subcommand("list", "Lists the plants and the effects that came along");
-  CLI::App* add = app->add_subcommand("add", "Writes a plant file that has an effect of the catalogue in it");
-  add->add_option("PLANT", a->plant, "Plant file, or name of a plant that came along")->required();
+  check->add_flag("--effects", a->effects, "Also list which effects of the catalogue apply, and why others do not");
+  app->add_subcommand("list", "Lists the bundled plants and effects");
+  CLI::App* add = app->add_subcommand("add", "Writes a plant file with an effect of the catalogue added");
+  add->add_option("PLANT", a->plant, "Plant file, or name of a bundled plant")->required();
   add->add_option("EFFECT", a->effect, "NAME, NAME:VARIANT or NAME:x=SYMBOL")->required();
-  add->add_option("--data", a->data, "CSV whose columns are t and the plant's signals: gives the priors their size")
+  add->add_option("--data", a->data, "CSV whose columns are t and the plant's signals: sets the scale of the priors")
       ->check(CLI::ExistingFile);
   add->add_option("--out", a->out, "Plant file to write")->required();
   CLI::App* create = app->add_subcommand("new", "Writes NAME.toml, a commented plant file to start from");
-  create->add_option("NAME", a->name, "Name of the plant: small letters, digits and _")->required();
+  create->add_option("NAME", a->name, "Name of the plant: lower-case letters, digits and _")->required();
   create->add_option("--from", a->from, "Plant to start from, by name or by file")->capture_default_str();
 }
 

@@ -57,7 +57,7 @@ int Check(const Arguments& a) {
   try {
     std::cout << '\n' << IdentifiabilityText(plant, *data);
   } catch (const PlantError& error) {
-    std::cout << "which parameters these data tell cannot be said: " << error.what() << '\n';
+    std::cout << "which parameters these data identify cannot be said: " << error.what() << '\n';
   }
   return support::kExitOk;
 }
@@ -98,7 +98,7 @@ int New(const std::string& name, const std::string& from) {
 
 int main(int argc, char** argv) {
   using namespace armcmc;
-  CLI::App app{"Plants as files: what was understood of one, which ones came along, a start for a new one."};
+  CLI::App app{"Checks, lists, creates and extends plant files."};
   model::Arguments arguments;
   model::Declare(&app, &arguments);
   return support::RunProgram(app, "armcmc-model", argc, argv, [&] {

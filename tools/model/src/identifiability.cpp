@@ -114,7 +114,8 @@ std::string InWords(const identify::TrajectoryModel& model, const std::vector<To
                 (against.empty() ? "its effect is too small" : "it moves against " + Listed(against));
     }
   }
-  std::string text = told.empty() ? "These data tell no parameter for itself" : "These data tell " + Listed(told);
+  std::string text =
+      told.empty() ? "These data identify no parameter on its own" : "These data identify " + Listed(told);
   if (!not_felt.empty())
     text +=
         "; not " + Listed(not_felt) + ": hardly anything in them depends on " + (not_felt.size() > 1 ? "these" : "it");
@@ -138,7 +139,7 @@ std::string IdentifiabilityText(const std::shared_ptr<const Plant>& plant, const
   const double rows_per_error = RowsPerError(error);
   const std::vector<Told> all = Judge(trial, rows, rows_per_error);
 
-  support::TextTable table({"parameter", "unit", "these data", "told", "if the others were known"},
+  support::TextTable table({"parameter", "unit", "these data", "identified", "if the others were known"},
                            support::TextTable::Content::kWords);
   for (std::size_t d = 0; d < all.size(); ++d) {
     const ParameterDescription& p = model.parameters()[d];
@@ -150,7 +151,7 @@ std::string IdentifiabilityText(const std::shared_ptr<const Plant>& plant, const
   }
   const double rms = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
   const double size = std::sqrt((target.array() - target.mean()).square().mean());
-  std::string text = std::to_string(rows.size()) + " rows looked at; " + plant->description().name + " leaves " +
+  std::string text = std::to_string(rows.size()) + " rows used; " + plant->description().name + " leaves " +
                      Significant(rms, 3) + " (rms), " + Significant(100.0 * rms / size, 3) +
                      " % of what varies; errors are independent after " + Significant(rows_per_error, 2) + " rows\n\n";
   const identify::StepError steps = identify::StepErrorOf(*plant, *data.series, trial.fit.theta, rms);

@@ -21,5 +21,5 @@ __all__ = ["Estimate", "Estimator", "MAX_PACK_SAMPLES", "Record", "gap", "models
 
 
 def models():
-    """Names of the plants that came along, as `armcmc-model list` shows them."""
+    """Names of the bundled plants, as `armcmc-model list` shows them."""
     return _armcmc.plant_names()

@@ -48,7 +48,7 @@ def _seconds(name, value):
 class Estimator:
     """The estimator of one plant.
 
-    model   Built-in name, name of a plant that came along (armcmc.models()), or path of a plant or model file.
+    model   Built-in name, name of a bundled plant (armcmc.models()), or path of a plant or model file.
     config  Configuration of armcmc-estimator, by path or by name; None: the values that the programs start from.
     Keywords replace tables and keys of it: sampler={"draws": 5000, "seed": 3}, noise={"std": 0.1}, method="rls".
 

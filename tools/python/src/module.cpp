@@ -12,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "armcmc/plant/error.hpp"
 #include "armcmc/support/estimator_config.hpp"
@@ -115,7 +116,7 @@ void Translate(std::exception_ptr error) {
                     text.starts_with(option) ? ("model " + text.substr(option.size())).c_str() : text.c_str());
   };
   try {
-    if (error) std::rethrow_exception(error);
+    if (error) std::rethrow_exception(std::move(error));
   } catch (const support::ConfigError& e) {
     say(e);
   } catch (const support::InputError& e) {

@@ -48,10 +48,10 @@ int Check(Arguments arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App cli{
-      "Is this computer fit to keep deadlines? Looks at privileges, kernel, processors, timers, memory and network,\n"
-      "measures how late a real-time thread is woken, and names the command that fixes each finding."};
+      "Checks whether this computer can meet the deadlines. Examines privileges, kernel, processors, timers, memory\n"
+      "and network, measures how late a real-time thread is woken, and gives the command that fixes each finding."};
   cli.footer(
-      "Exit status: 0 fit, 3 not fit, 2 bad usage.\n"
+      "Exit status: 0 suitable, 3 not suitable, 2 bad usage.\n"
       "Example: armcmc-rtcheck --period-ms 10 --seconds 60");
   cli.add_option("--period-ms", arguments.demand.period_ms, "Time between packs")
       ->capture_default_str()
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   cli.add_option("--cpu", arguments.demand.cpu, "CPU of the adjust stage")
       ->capture_default_str()
       ->check(CLI::Range(0, 1023));
-  cli.add_option("--seconds", arguments.seconds, "How long wake-ups are measured; 0: not at all")
+  cli.add_option("--seconds", arguments.seconds, "How long to measure wake-ups; 0: not at all")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
   cli.add_option("--root", arguments.root, "Folder that holds proc, sys and dev")

@@ -22,12 +22,11 @@ using namespace armcmc::stress;
 
 constexpr char kName[] = "armcmc-stress";
 constexpr char kDescription[] =
-    "Runs the real plant and the real estimator under load, makes faults on purpose, and judges what becomes of them:\n"
-    "was every one detected, by what, and after how many steps was all normal again?";
+    "Runs the actual plant and estimator programs under load, injects faults, and checks for each one whether and\n"
+    "how it was detected, and after how many steps operation was normal again.";
 constexpr char kFooter[] =
-    "Loads: none, cpu, memory, io, net (messages on the same port), watchers (lcm-logger, lcm-spy). The time is "
-    "shared\n"
-    "out among them. A period and a deadline of another machine: --period-ms, --deadline-ms, --draws.\n"
+    "Loads: none, cpu, memory, io, net (messages on the same port), watchers (lcm-logger, lcm-spy); the time is\n"
+    "divided among them. Adapt --period-ms, --deadline-ms and --draws to the machine.\n"
     "Examples:\n"
     "  armcmc-stress --minutes 2 --report stress.json --html stress.html\n"
     "  armcmc-stress --minutes 480 --period-ms 10\n"
@@ -104,7 +103,7 @@ int main(int argc, char** argv) {
   StressOptions& options = arguments.options;
   CLI::App cli{kDescription};
   cli.footer(kFooter);
-  cli.add_option("--minutes", options.minutes, "How long altogether")
+  cli.add_option("--minutes", options.minutes, "Total duration")
       ->capture_default_str()
       ->check(CLI::Range(0.05, 100'000.0));
   cli.add_option("--load", arguments.loads, "Loads, comma separated")->capture_default_str()->type_name("LIST");
@@ -116,14 +115,14 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1.0, 1000.0));
   cli.add_option("--deadline-ms", options.deadline_ms, "From release to estimate. Default: the period")
       ->check(CLI::Range(0.1, 10'000.0));
-  cli.add_option("--draws", options.draws, "Draws a pack: chernoff, k_min or a number")
+  cli.add_option("--draws", options.draws, "Draws per pack: chernoff, k_min or a number")
       ->capture_default_str()
       ->check(CLI::IsMember({"chernoff", "k_min"}) | CLI::Range(100, 150'000));
-  cli.add_option("--samples", options.samples, "Samples of a pack")->capture_default_str()->check(CLI::Range(5, 256));
+  cli.add_option("--samples", options.samples, "Samples in a pack")->capture_default_str()->check(CLI::Range(5, 256));
   cli.add_option("--report", arguments.report, "Write a JSON report")->type_name("FILE");
-  cli.add_option("--html", arguments.html, "Write a page with the latencies")->type_name("FILE");
-  cli.add_option("--lcm-url", options.lcm_url, "LCM bus. Default: a port of its own")->type_name("URL");
-  cli.add_option("--prefix", options.prefix, "Put before every channel name")->capture_default_str()->type_name("P");
+  cli.add_option("--html", arguments.html, "Write an HTML page with the latencies")->type_name("FILE");
+  cli.add_option("--lcm-url", options.lcm_url, "LCM bus. Default: a separate port")->type_name("URL");
+  cli.add_option("--prefix", options.prefix, "Prefix of every channel name")->capture_default_str()->type_name("P");
   cli.add_option("--work", arguments.work, "Folder for logs. Default: a temporary one")->type_name("DIR");
   cli.add_option("--generate", arguments.generate)->group("");  // this program as a generator of load
   return armcmc::support::RunProgram(cli, kName, argc, argv, [&arguments] {

@@ -140,7 +140,8 @@ int Run(const Arguments& a) {
 }  // namespace armcmc::tables
 
 int main(int argc, char** argv) {
-  CLI::App app{"The paper's two experiments with every method on the same data: tables, tables.json, report.html."};
+  CLI::App app{
+      "Runs every method on the paper's two experiments, with the same data: tables, tables.json, report.html."};
   armcmc::tables::Arguments a;
   CLI::Option* data =
       app.add_option("--data", a.data,
@@ -151,16 +152,16 @@ int main(int argc, char** argv) {
   app.add_option("--out", a.out, "Folder for the results")->required();
   app.add_option("--seeds", a.seeds, "Noise realisations of every simulated scenario; tables show means")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--first-seed", a.first_seed, "Seed of the first realisation, the others follow")
+  app.add_option("--first-seed", a.first_seed, "Seed of the first realisation; the others follow")
       ->capture_default_str();
   CLI::Option* paper_only = app.add_flag("--paper-only", a.paper_only, "Only the paper's two experiments");
-  CLI::Option* likelihoods = app.add_flag("--likelihoods", a.likelihoods,
-                                          "Also the coverage under right and wrong noise laws (16 runs a seed)");
-  app.add_flag("--armcmc-only", a.armcmc_only, "Leave the baselines out, which take nine tenths of the time");
-  CLI::Option* drift = app.add_flag("--drift", a.drift, "Also seven more scenarios whose parameters drift");
+  CLI::Option* likelihoods = app.add_flag(
+      "--likelihoods", a.likelihoods, "Also the coverage with matching and mismatched noise laws (16 runs per seed)");
+  app.add_flag("--armcmc-only", a.armcmc_only, "Skip the baselines, which take nine tenths of the time");
+  CLI::Option* drift = app.add_flag("--drift", a.drift, "Also seven more scenarios with drifting parameters");
   app.add_flag(
          "--coverage", a.coverage,
-         "Only the coverage, of each noise law under its own likelihood: many seeds in little time (4 runs a seed)")
+         "Only the coverage of each noise law with its own likelihood: many seeds in little time (4 runs per seed)")
       ->excludes(data)
       ->excludes(paper_only)
       ->excludes(drift)

@@ -20,18 +20,18 @@ std::string DefaultUrl() {
 
 void Declare(CLI::App* app, WatchOptions* options, bool* ascii) {
   options->url = DefaultUrl();
-  app->add_option("--lcm-url", options->url, "The bus, as the estimator got it")->capture_default_str();
-  app->add_option("--prefix", options->prefix, "Prefix of the channel names, as the estimator got it");
-  app->add_option("--steps", options->steps, "Stop after so many steps")->check(CLI::PositiveNumber);
-  app->add_option("--duration", options->duration_s, "Stop after so many seconds")->check(CLI::PositiveNumber);
-  app->add_flag("--json", options->json, "One JSON object a step, also on a terminal");
-  app->add_flag("--lines", options->lines, "One line a step, also on a terminal");
+  app->add_option("--lcm-url", options->url, "LCM bus, the same as for the estimator")->capture_default_str();
+  app->add_option("--prefix", options->prefix, "Prefix of the channel names, the same as for the estimator");
+  app->add_option("--steps", options->steps, "Stop after this many steps")->check(CLI::PositiveNumber);
+  app->add_option("--duration", options->duration_s, "Stop after this many seconds")->check(CLI::PositiveNumber);
+  app->add_flag("--json", options->json, "One JSON object per step, even on a terminal");
+  app->add_flag("--lines", options->lines, "One line per step, even on a terminal");
   app->add_flag("--ascii", *ascii, "No block characters (the default where the locale is not UTF-8)");
   app->footer(
       "Shows what a running estimator publishes: estimates, stage times against the deadline, missed deadlines, "
       "faults.\n"
-      "Needs no screen but a terminal; q or Ctrl-C quits. Where standard output is no terminal: one line a step.\n"
-      "NO_COLOR switches colours off. Exit code 1: no step came in the time of --duration.\n\n"
+      "Runs in a terminal; q or Ctrl-C quits. If standard output is not a terminal, it prints one line per step.\n"
+      "NO_COLOR switches colours off. Exit code 1: no step arrived within --duration.\n\n"
       "Example:\n"
       "  armcmc-watch --lcm-url 'udpm://239.255.76.67:7667?ttl=0'\n"
       "  armcmc-watch --json --steps 100 > steps.jsonl");

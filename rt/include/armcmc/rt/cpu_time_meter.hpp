@@ -10,36 +10,37 @@
 
 namespace armcmc::rt {
 
-/// CPU time that the calling thread has had, ns. Time that a hypervisor takes from the CPU is not in it, where the
-/// hypervisor says so (steal time). @rt One system call, bounded.
+/// CPU time that the calling thread has used, ns, without the time that a hypervisor takes from the CPU, if the
+/// hypervisor reports it (steal time). @rt One system call, bounded.
 [[nodiscard]] Nanos ThreadCpuTime() noexcept ARMCMC_NONBLOCKING;
 
-/// How long the machine withheld the CPU from a stage that wanted it.
+/// How long the machine withheld the CPU from a stage that had work.
 ///
-/// A stage wants its CPU from the moment that it is told of work until that is done: it never waits in between. What it
-/// did not get,
+/// A stage needs its CPU from the moment it is given work until that work is done; it never waits in between. The time
+/// that it did not get,
 ///
-///     withheld = time - its own CPU time - that of our other threads on this CPU,
+///     withheld = time - its own CPU time - CPU time of the other threads of this process on this CPU,
 ///
-/// was taken by a hypervisor, the kernel or a thread that is not ours. A witness only samples: of stalls that come in
-/// slices it sees what is left of each at its next wake-up. This sees all of them, but only while the stage has work.
+/// was taken by a hypervisor, the kernel or another process. A witness only samples: of stalls in short slices it sees
+/// what remains of each at its next wake-up. This meter sees all of them, but only while the stage has work.
 ///
-/// Never too much. Until the work begins only a stage above can be in the way for long: all that this thread and those
-/// stages used of the CPU since the work before is taken off, and a tenth of a millisecond for an ordinary wake-up and
-/// the short turns of witness and watchdog. Of work in which the thread went to sleep by itself, once, it says nothing:
-/// then waiting was its own doing. Used by the thread of the stage; everything but SetTrusted() before that starts.
+/// It never overestimates. Before the work begins only a stage with a higher priority can delay it for long: the CPU
+/// time that this thread and those stages have used since the previous work is subtracted, and 0.1 ms for an ordinary
+/// wake-up and the short turns of witness and watchdog. If the thread once slept during its work, nothing is reported,
+/// because that wait was its own doing. Used by the thread of the stage; all but SetTrusted() before that starts.
 class CpuTimeMeter {
  public:
   static constexpr std::size_t kMaxOthers = 8;
 
-  /// Another thread of ours on the CPU of this stage. @param cpu_time_ns  See RtThread::cpu_time_ns(); outlives this.
+  /// Another thread of this process on the CPU of this stage. @param cpu_time_ns  See RtThread::cpu_time_ns(); outlives
+  /// this.
   /// @param goes_first  It is a stage of this or a higher priority.
   void AddOther(const std::atomic<Nanos>* cpu_time_ns, bool goes_first) noexcept;
   /// Whether the thread is pinned to its CPU, above everything ordinary: otherwise it merely waits for its turn, and
   /// nothing is ever withheld.
   void SetTrusted(bool trusted) noexcept { trusted_.store(trusted, std::memory_order_relaxed); }
 
-  /// The thread was told at woken_ns that there is work. 0: it was not, but looked by itself.
+  /// The thread was notified of work at woken_ns. 0: it was not, but looked by itself.
   void NoteWoken(Nanos woken_ns) noexcept ARMCMC_NONBLOCKING { woken_ns_ = woken_ns; }
   /// @return now, at which the work begins. @rt Two system calls, bounded.
   Nanos Start() noexcept ARMCMC_NONBLOCKING;

@@ -39,7 +39,7 @@ class DeadlineMonitor {
  public:
   explicit DeadlineMonitor(const RtSettings& settings) noexcept;
 
-  /// Wake-ups of the witness on the CPU of a stage; without one the machine is never blamed.
+  /// Wake-ups of the witness on the CPU of a stage; without one no miss is attributed to the machine.
   void SetWitness(Stage stage, const WakeUpRing* wake_ups) noexcept { witness_[IndexOf(stage)] = wake_ups; }
 
   /// Notes in times->adjusted_earlier what stalls and late packs cost a step that adjust has just been through, the

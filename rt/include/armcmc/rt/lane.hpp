@@ -28,8 +28,8 @@ struct LanePlant {
   bool record_packs = false;     ///< Keep copies of its packs for Lane::record().
 };
 
-/// What a pipeline keeps of one plant: the way of its packs through the stages, and what is counted on it. The threads
-/// belong to the pipeline, which takes them through its lanes.
+/// The part of a pipeline that belongs to one plant: the path of its packs through the stages, and its counters. The
+/// threads belong to the pipeline and serve all lanes.
 class Lane {
  public:
   /// @param settings   Outlives the lane.

@@ -24,7 +24,7 @@ void FillEstimate(const StepOutput& output, const StepEngine& engine, std::int64
 void FillPosterior(const StepOutput& output, const StepEngine& engine, std::int64_t utime,
                    posterior_t* message) noexcept ARMCMC_NONBLOCKING;
 
-/// Fills change_t: what is believed about change, mode by mode. Sets every field.
+/// Fills change_t: probabilities of change and drift rates of each mode. Sets every field.
 void FillChange(const StepOutput& output, const StepEngine& engine, std::int64_t utime,
                 change_t* message) noexcept ARMCMC_NONBLOCKING;
 

@@ -14,14 +14,14 @@ enum class MissCause : std::uint8_t { kNone = 0, kOwn = 1, kMachine = 2, kLateDa
 inline constexpr std::size_t kNumMissCauses = 4;
 [[nodiscard]] std::string_view ToString(MissCause cause) noexcept ARMCMC_NONBLOCKING;
 
-/// Exactly one cause per miss: what, had it not happened, would have let the step keep its deadline.
+/// Exactly one cause per miss: the one without which the step would have met its deadline.
 ///
-/// Late data, when that holds for the lateness of the packs alone; else the machine, when it holds for the stalls alone
-/// that were seen; when it takes both, whichever cost more. Else our own: the step would have been too late on
-/// a machine that never stood still and with every pack on time. What nobody saw is not guessed: in doubt it is our
-/// own.
+/// Late data, if removing the lateness of the packs alone would have been enough; otherwise the machine, if removing
+/// the observed stalls alone would have been enough; if it takes both, the larger of the two. Otherwise own: the step
+/// would have been too late on a machine without stalls and with every pack on time. Stalls without evidence are not
+/// assumed: in doubt a miss is own.
 /// @param lacked_ns  By how much the deadline was missed; <= 0: it was not.
-/// @param earlier    By how much the step would have been through earlier.
+/// @param earlier    By how much earlier the step would have finished.
 [[nodiscard]] constexpr MissCause Attribute(Nanos lacked_ns, const Earlier& earlier) noexcept {
   if (lacked_ns <= 0) return MissCause::kNone;
   if (earlier.without_lateness >= lacked_ns) return MissCause::kLateData;

@@ -32,16 +32,16 @@ struct PipelineOptions {
 };
 
 /// The real-time estimator: three stages on three pinned threads, pack t collected while t-1 is adjusted and t-2
-/// executed, a publisher below them a witness per CPU and a watchdog above them.
+/// executed; a publisher with a lower priority, a witness per CPU and a watchdog with a higher one.
 ///
 ///     LCM -> collect -> ring -> adjust -> latest result -> execute -> ring -> publish -> LCM
 ///
-/// Stages are woken by the one before, and every wait is bounded; nothing spins. The owner drains the
+/// Each stage is woken by the previous one, and every wait is bounded; nothing busy-waits. The owner drains the
 /// event logs and prints them.
 ///
-/// Several plants share the threads, the witnesses, the watchdog and the deadline; each has a Lane of its own. Adjust
-/// takes the pack whose deadline is next, those first that can still keep theirs, and where time runs short the plants
-/// that wait share it.
+/// Several plants share the threads, the witnesses, the watchdog and the deadline; each has its own Lane. Adjust takes
+/// the pack with the earliest deadline, first among those that can still meet theirs; when time is short, the waiting
+/// plants share it.
 class Pipeline {
  public:
   static constexpr std::size_t kMaxLanes = 16;

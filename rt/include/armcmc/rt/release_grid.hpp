@@ -31,10 +31,8 @@ struct Release {
 ///     clock, a plant that hesitated once and keeps the new phase);
 ///   - a pack that is late by a period or more after a pause proposes a new phase; the next one confirms it by keeping
 ///     to it, or refutes it by coming sooner: then the plant is catching up, and its packs are late on the old grid;
-///   - for kSettleNs, at least kWindow packs, it may still be refuted by one that comes half a period early: a plant
-///   that
-///     catches up may hesitate between packs as long as the machine stutters, and what it owes is late on the grid that
-///     was left.
+///   - for kSettleNs, at least kWindow packs, it may still be refuted by a pack that comes half a period early: while
+///     the machine stutters, a plant that is catching up may pause between packs, and those are late on the old grid.
 class ReleaseGrid {
  public:
   static constexpr int kWindow = 8;

@@ -47,9 +47,9 @@ class SequenceTracker {
   /// @rt O(1).
   Result OnPack(std::int64_t seq, std::int64_t run_id) noexcept ARMCMC_NONBLOCKING;
 
-  /// Notes the number of a pack that came but cannot be used, so that it is not taken for lost. Only a number shortly
-  /// ahead in the same run is believed: what else is wrong with the pack is not known.
-  /// @return Pack numbers advanced, 0 when it was not believed. @rt O(1).
+  /// Notes the number of a pack that arrived but cannot be used, so that it is not counted as lost. Only a number
+  /// shortly ahead in the same run is accepted, since the pack may be damaged elsewhere as well.
+  /// @return Pack numbers advanced, 0 if it was not accepted. @rt O(1).
   std::int64_t OnUnusable(std::int64_t seq, std::int64_t run_id) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }

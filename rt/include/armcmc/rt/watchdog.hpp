@@ -18,11 +18,11 @@ enum class Watched : std::uint8_t { kCollect = 0, kAdjust = 1, kExecute = 2, kPu
 inline constexpr std::size_t kNumWatched = 4;
 [[nodiscard]] std::string_view ToString(Watched watched) noexcept;
 
-/// Sees a thread that hangs, within one period of the time by which it should have been heard of.
+/// Detects a thread that hangs, at most one period after its next report was due.
 ///
-/// Every watched thread promises, before it waits and before it works, when it will be heard of again. A promise that
-/// is broken at two checks in a row, the second of them on time, is a hang: a process that was stopped as a whole, or
-/// a machine that stood still, delays the checks too and is none.
+/// Before it waits and before it works, every watched thread announces when it will report next. A report that is
+/// overdue at two consecutive checks, the second of them on time, is a hang. A process that was suspended as a whole,
+/// or a machine that stalled, delays the checks as well and is therefore not a hang.
 class Watchdog {
  public:
   static constexpr Nanos kShortestSlack = 5'000'000;  ///< What a machine takes now and then to wake a thread.

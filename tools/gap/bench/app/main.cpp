@@ -35,22 +35,22 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--strata", a->strata,
                   "Comma separated, of: " + known + kTies + " (default: all; recorded needs --recordings)")
       ->delimiter(',');
-  app->add_option("--logs-per-cell", a->logs_per_cell, "Recordings of each effect, strength and motion")
+  app->add_option("--logs-per-cell", a->logs_per_cell, "Recordings for each effect, strength and motion")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app->add_option("--seed", a->seed, "Of everything that is drawn: the same seed gives the same recordings")
+  app->add_option("--seed", a->seed, "Seed of everything random: the same seed gives the same recordings")
       ->capture_default_str();
-  app->add_option("--jobs", a->jobs, "Recordings at once")->check(CLI::Range(1, 256))->capture_default_str();
-  app->add_option("--out", a->out, "Folder for bench.json, report.html and the scenarios that were made")->required();
+  app->add_option("--jobs", a->jobs, "Recordings to process in parallel")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app->add_option("--out", a->out, "Folder for bench.json, report.html and the generated scenarios")->required();
   app->add_option("--plant", a->plant, "armcmc-plant (default: the one beside this program)");
   app->add_option("--recordings", a->recordings, "Folder of real recordings, for the stratum recorded");
   app->add_flag("--keep", a->keep, "Keep recordings and sealed files");
   app->footer(
-      "Measures the gap workflow blindly: armcmc-plant, a process of its own, hides an effect in a recording and "
-      "writes "
-      "the\ntruth to a sealed file; the workflow reads the recording; then the file is opened and the answer scored.\n"
-      "ties: for every ambiguous answer of the other strata the experiment that the workflow proposes is made, and "
-      "diagnosed.\n\n"
+      "A blind test of the gap workflow: armcmc-plant, a separate process, hides an effect in a recording and writes\n"
+      "the truth to a sealed file; the workflow reads the recording; then the file is opened and the answer scored.\n"
+      "Stratum ties: for every ambiguous answer in the other strata, the proposed experiment is run and diagnosed.\n\n"
       "Example:\n  armcmc-gap-bench --strata null,singles --logs-per-cell 2 --jobs 2 --out bench\n"
       "Exit status: 0 all gates passed, 3 a gate failed, 2 bad usage or input, 1 any other failure.");
 }

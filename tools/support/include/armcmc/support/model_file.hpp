@@ -25,7 +25,7 @@ namespace armcmc::support {
 // What a file leaves out keeps the value that it had; an effect starts from the catalogue's priors for forces of 1 N,
 // depths of 1 m and speeds of 1 m/s.
 
-/// The plant that `model` is, a plant file or the name of a plant that came along; null where it is a built-in model or
+/// The plant that `model` is, a plant file or the name of a bundled plant; null where it is a built-in model or
 /// a model file, which stands on one.
 /// @throws ConfigError where the plant file is wrong.
 [[nodiscard]] std::shared_ptr<const PlantProgram> DescribedPlant(const std::string& model);
