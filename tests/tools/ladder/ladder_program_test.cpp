@@ -142,7 +142,7 @@ TEST_F(LadderProgram, WhatShowsInTheRowsKeptApartAloneIsNotNothing) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(Result()["verdict"], "unnamed");
   EXPECT_EQ(Result()["complete"], false);
-  EXPECT_THAT(run.out, HasSubstr("they show something that those do not"));
+  EXPECT_THAT(run.out, HasSubstr("they show something that the others do not"));
 }
 
 TEST_F(LadderProgram, SaysWhatIsWrongWithAnOrder) {
