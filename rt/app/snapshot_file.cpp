@@ -140,7 +140,7 @@ std::string DecodeSnapshot(std::span<const std::byte> bytes, std::uint64_t ident
 std::string ReplaceFile(const std::string& path, std::span<const std::byte> bytes) {
   const std::string temporary = path + ".tmp";
   if (!WriteNew(temporary, bytes) || std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
+    std::string reason = std::strerror(errno);
     (void)::unlink(temporary.c_str());
     return reason;
   }
