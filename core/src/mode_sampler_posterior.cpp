@@ -175,7 +175,7 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
   for (int k = out->draws; k < first + RoundUpToTile(count); ++k) ws->group_weight[static_cast<std::size_t>(k)] = 0.0;
   // A group's weights are (constant + slope x share of the first block) of the draws' weights.
   const auto fit_group = [&](double mass, double constant, double slope) noexcept {
-    if (mass < kMinimumGroup) return;
+    if (mass < kMinimumGroup) return false;
     const double* share = ws->first_share.data();
     double* group_weight = ws->group_weight.data();
     if (slope == 0.0) {
@@ -194,21 +194,23 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
       for (int k = first; k < out->draws; ++k) group_weight[k] = std::sqrt(std::fmax(group_weight[k], 0.0));
       fitted = fit() >= 2.0 * kMinimumEss;
     }
-    if (!fitted) return;
+    if (!fitted) return false;
     if (space_.samples_noise_scale())
       AppendNoiseScale(first, count, group.weight, &next->tables[b][static_cast<std::size_t>(group.dim)], *out,
                        &next->block[b]);
     next->weight[b] = mass;
     ++next->num_blocks;
+    return true;
   };
   if (!use_previous) {
-    fit_group(1.0, 1.0, 0.0);
+    (void)fit_group(1.0, 1.0, 0.0);
   } else {
     for (const bool of_first : {mass_first >= 0.5, mass_first < 0.5}) {
       const double mass = of_first ? mass_first : 1.0 - mass_first;
       // Of rest and drift the lesser need not be drawn: where it is, relative to the other, Drift knows.
       if (unfinished_.split && mass < kLesserPart) continue;
-      of_first ? fit_group(mass, 0.0, 1.0) : fit_group(mass, 1.0, -1.0);
+      const bool fitted = of_first ? fit_group(mass, 0.0, 1.0) : fit_group(mass, 1.0, -1.0);
+      if (unfinished_.split && !fitted) break;  // the lesser alone would stand for the more probable
     }
   }
   if (next->num_blocks == 0) {

@@ -73,6 +73,7 @@ class ModeSampler {
   static constexpr int kMaxPilotRounds = 7;  ///< Where there are draws enough.
   static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock, at most.
   static constexpr int kMismatchDraws = 256;
+  static constexpr double kLaplaceInflation = 1.2;  ///< Standard deviations of the Laplace components.
   static constexpr double kStudentDof = 5.0;  ///< Tails of the Laplace components, and of the noise scale's memory.
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
@@ -140,7 +141,7 @@ class ModeSampler {
     int first = 0;                            ///< Draw that counts, after the pilot.
     double mass_first = 0.0, mass_new = 0.0;  ///< Of the first block of `previous`, and of what was drawn anew.
     /// What was carried on through time is rest and drift in two blocks: the more probable is handed on, and the other
-    /// where there are draws enough of it.
+    /// unless it is improbable.
     bool split = false;
     Drift::Part part = Drift::Part::kRest;
   };

@@ -91,7 +91,7 @@ struct FlowCase {
 
 inline std::vector<FlowCase> FlowCases() {
   return {{"pressure_bias", &ValveSeries::bias, -6e3, {1}},
-          {"valve_lag", &ValveSeries::tau, 0.0045, {0, 1}},
+          {"valve_lag", &ValveSeries::tau, 0.004, {0, 1}},
           {"valve_dead_band", &ValveSeries::width, 0.006, {0, 1}},
           {"supply_droop", &ValveSeries::droop, 1.5e6, {0}},
           {"leak", &ValveSeries::leak, 0.05, {0, 1}}};
