@@ -155,16 +155,7 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   // A plant whose time starts anew has waited nobody knows how long: a pack at least.
   const double since = data.time_s - time_s_;
   Predict(since > 0.0 ? since : data.duration_s);
-  double total = 0.0;
-  double drifts = 0.0;
-  for (std::size_t i = 0; i < predicted_.size(); ++i) {
-    total += predicted_[i].weight;
-    if (IsOf(Part::kDrift, i)) drifts += predicted_[i].weight;
-    rate_ += predicted_[i].weight * hypotheses_[HypothesisOf(i)].rate;
-  }
-  share_ = drifts / total;
-  rate_ /= total;
-
+  ExpectDrift();
   const Moments from{
       .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
   carried_.valid = true;

@@ -111,4 +111,32 @@ void Drift::Predict(double elapsed_s) noexcept {
       Pass(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);
 }
 
+void Drift::ExpectDrift() noexcept {
+  double total = 0.0;
+  double drifts = 0.0;
+  rate_ = 0.0;
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    total += predicted_[i].weight;
+    if (IsOf(Part::kDrift, i)) drifts += predicted_[i].weight;
+    rate_ += predicted_[i].weight * hypotheses_[HypothesisOf(i)].rate;
+  }
+  share_ = drifts / total;
+  rate_ /= total;
+}
+
+void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<double, kMaxParams>* ratio) noexcept {
+  ratio->fill(1.0);
+  const double since = time_s - time_s_;
+  if (!started_ || !last.valid || !(since > 0.0)) return;
+  Predict(since);
+  ExpectDrift();
+  if (share_ < kNegligible) return;
+  const Moments now = MomentsOf(predicted_, Part::kWhole);
+  for (int d = 0; d < dim_; ++d) {
+    const double moved = now.mean[d] - last.mean[d];
+    (*ratio)[static_cast<std::size_t>(d)] =
+        std::sqrt(std::fmax((now.covariance(d, d) + moved * moved) / last.covariance(d, d), 1.0));
+  }
+}
+
 }  // namespace armcmc

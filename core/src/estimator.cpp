@@ -139,6 +139,7 @@ Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clo
     const ModeMemory& memory = *s.memories[static_cast<std::size_t>(m)];
     draws.known = memory.slot[memory.current].valid && memory.slot[memory.current].informed;
     draws.num_samples = 0;
+    draws.widening = s.widening[static_cast<std::size_t>(m)];
   }
   const bool is_usable = new_pack.Validate() == Status::kOk && new_pack.plant == s.info.plant &&
                          s.IsOfThisPlant(new_pack) && new_pack.num_inputs >= s.info.num_inputs &&
@@ -163,6 +164,8 @@ Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clo
     s.PrepareMode(pack, result->effects, m, &s.adjust_data[i]);
     result->modes[i].num_samples = s.adjust_data[i].num_samples;
     active[i] = s.adjust_data[i].num_samples >= s.settings.forgetting.min_samples;
+    if (!s.samplers.empty()) s.Wait(i, active[i]);
+    result->modes[i].widening = s.widening[i];
     pending += active[i] ? 1 : 0;
   }
   s.ExpectStates(result);
@@ -194,6 +197,14 @@ Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clo
 }
 
 void Estimator::Remember(ClockRef clock) noexcept { impl_->Remember(clock); }
+
+void Estimator::Impl::Wait(std::size_t m, bool acts) noexcept {
+  const ModeMemory& memory = *memories[m];
+  if (acts)
+    widening[m].fill(1.0);
+  else
+    samplers[m]->drift().Widening(adjust_data[m].time_s, memory.slot[memory.current], &widening[m]);
+}
 
 Status Estimator::Impl::DrawMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
                                  AdjustResult* result) noexcept {

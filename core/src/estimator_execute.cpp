@@ -229,7 +229,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     if (draws.updated) {
       Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, s.summary.get(), &last);
     } else {
-      // Held: the parameters stay, the numbers that describe one step do not.
+      // Held: the posterior stays but for what time does to it (below), the numbers that describe one step do not.
       last.decision = Decision::kHold;
       last.zeta = 0.0;
       last.lambda = 1.0;
@@ -239,6 +239,8 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
       last.ess = last.kish_ess = last.acceptance = last.log_evidence = last.p_changed = 0.0;
     }
     e->modes[i] = last;
+    if (!draws.updated && last.known && !s.samplers.empty())
+      Widen(s.info, s.settings.constants, s.samplers[i]->space(), draws.widening, &e->modes[i]);
   }
   if (s.one_vector()) s.ShareVector(e);
   if (e->active && e->modes[static_cast<std::size_t>(e->mode)].known) s.report_mode = e->mode;

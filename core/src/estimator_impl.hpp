@@ -47,6 +47,8 @@ struct Estimator::Impl {
   /// One step of mode m with the method of the settings.
   Status DrawMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
                   AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
+  /// What time does to the posterior of mode m in a pack that says nothing about it.
+  void Wait(std::size_t m, bool acts) noexcept ARMCMC_NONBLOCKING;
   /// What the newest DrawMode() left to be done, if anything.
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
   /// Where the states of a described plant begin, and how well that is known, before a pack is drawn.
@@ -69,6 +71,8 @@ struct Estimator::Impl {
   ModeDraws* not_remembered = nullptr;  ///< Draws that no memory has been made of.
   std::size_t not_remembered_mode = 0;
   std::array<ModeData, kMaxModes> adjust_data;
+  /// By which the published posterior of a mode is widened; of the newest pack that was usable.
+  std::array<std::array<double, kMaxParams>, kMaxModes> widening{};
   AdjustResult* states_due = nullptr;  ///< Pack whose states at the end nobody has computed.
   StateFilter state_filter;
   std::array<double, kMaxParams> state_mean{}, state_sd{};  ///< Of the newest posterior of a plant with states.

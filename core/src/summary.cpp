@@ -34,24 +34,32 @@ void Reported(const ModelInfo& info, const PlantConstants& constants, const Para
   }
 }
 
+/// Slopes of the reported quantities at theta by the standardised coordinate d.
+std::array<double, kMaxReported> Slopes(const ModelInfo& info, const PlantConstants& constants,
+                                        const ParameterSpace& space, const std::array<double, kMaxParams>& theta,
+                                        int d) noexcept {
+  constexpr double kStep = 1e-4;
+  std::array<std::array<double, kMaxReported>, 2> reported{};
+  for (std::size_t side = 0; side < 2; ++side) {
+    std::array<double, kMaxParams> moved = theta;
+    moved[static_cast<std::size_t>(d)] += (side == 0 ? -kStep : kStep) * space.scale[static_cast<std::size_t>(d)];
+    info.Report(moved.data(), constants, reported[side].data());
+  }
+  std::array<double, kMaxReported> slope{};
+  for (std::size_t r = 0; r < kMaxReported; ++r) slope[r] = (reported[1][r] - reported[0][r]) / (2.0 * kStep);
+  return slope;
+}
+
 /// Expected speeds of the reported quantities where every standardised coordinate moves at the rate of the draws.
 void DriftRates(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
                 const ModeDraws& draws, std::array<double, kMaxReported>* rate) noexcept {
-  constexpr double kStep = 1e-4;
   rate->fill(0.0);
+  std::array<double, kMaxParams> theta{};
+  for (int d = 0; d < space.num_parameters; ++d)
+    theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.mode_u[static_cast<std::size_t>(d)]);
   for (int d = 0; d < space.num_parameters; ++d) {
-    std::array<std::array<double, kMaxReported>, 2> reported{};
-    for (std::size_t side = 0; side < 2; ++side) {
-      std::array<double, kMaxParams> theta{};
-      for (int j = 0; j < space.num_parameters; ++j)
-        theta[static_cast<std::size_t>(j)] = space.Theta(j, draws.mode_u[static_cast<std::size_t>(j)]);
-      theta[static_cast<std::size_t>(d)] += (side == 0 ? -kStep : kStep) * space.scale[static_cast<std::size_t>(d)];
-      info.Report(theta.data(), constants, reported[side].data());
-    }
-    for (std::size_t r = 0; r < kMaxReported; ++r) {
-      const double slope = (reported[1][r] - reported[0][r]) / (2.0 * kStep);
-      (*rate)[r] = std::hypot((*rate)[r], draws.drift_rate * slope);
-    }
+    const std::array<double, kMaxReported> slope = Slopes(info, constants, space, theta, d);
+    for (std::size_t r = 0; r < kMaxReported; ++r) (*rate)[r] = std::hypot((*rate)[r], draws.drift_rate * slope[r]);
   }
 }
 
@@ -124,6 +132,46 @@ SummaryWorkspace::SummaryWorkspace(int capacity)
       visited_value(static_cast<std::size_t>(capacity)),
       visits(static_cast<std::size_t>(capacity)),
       visited(static_cast<std::size_t>(capacity)) {}
+
+void Widen(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+           const std::array<double, kMaxParams>& ratio, ModeEstimate* estimate) noexcept {
+  std::array<double, kMaxParams> theta{};
+  bool wider = false;
+  for (int d = 0; d < space.num_parameters; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    theta[i] = info.Sampled(d, estimate->marginal[static_cast<std::size_t>(info.ReportedOf(d))].ar_ap);
+    wider = wider || ratio[i] > 1.0;
+  }
+  if (!wider) return;
+  std::array<double, kMaxReported> added{};
+  for (int d = 0; d < space.num_parameters; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const auto own = static_cast<std::size_t>(info.ReportedOf(d));
+    const std::array<double, kMaxReported> slope = Slopes(info, constants, space, theta, d);
+    if (!(std::fabs(slope[own]) > 0.0)) continue;
+    const double sd = estimate->marginal[own].sd / std::fabs(slope[own]);
+    const double variance = sd * sd * std::fmax(ratio[i] * ratio[i] - 1.0, 0.0);
+    for (std::size_t r = 0; r < kMaxReported; ++r) added[r] += slope[r] * slope[r] * variance;
+  }
+  for (int r = 0; r < info.num_reported; ++r) {
+    const auto ir = static_cast<std::size_t>(r);
+    MarginalSummary& m = estimate->marginal[ir];
+    const double by = std::sqrt(1.0 + added[ir] / (m.sd * m.sd));
+    if (!std::isfinite(by)) continue;
+    double least = -HUGE_VAL;
+    double most = HUGE_VAL;
+    if (info.IsReportedAsSampled(r)) {
+      least = space.Theta(r, space.lower[ir]);
+      most = space.Theta(r, space.upper[ir]);
+    }
+    const double centre = m.q50;
+    for (double* value : {&m.q025, &m.q25, &m.q75, &m.q975, &m.histogram_lo, &m.histogram_hi})
+      *value = std::clamp(centre + by * (*value - centre), least, most);
+    m.sd *= by;
+    m.is_sd *= by;
+    for (double& density : m.density) density /= by;
+  }
+}
 
 double ChainEss(const ModeDraws& draws) noexcept {
   const int first = draws.burn_in;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -168,6 +169,62 @@ TEST(Drift, AContactThatReturnsLaterMeetsAWiderPrior) {
   EXPECT_EQ(drifted.decision, Decision::kReinforcement);
   EXPECT_GT(drifted.p_drifted, 0.9);
   EXPECT_LT(std::fabs(drifted.marginal[0].ar_ap - 4.3), 4.0 * drifted.marginal[0].sd);
+}
+
+TEST(Drift, FreeMotionWidensWhatIsPublished) {
+  Contact drifts(kDrift), rests;
+  Rig rig(Quick()), at_rest(Quick());
+  for (std::int64_t seq = 1; seq <= 40; ++seq) {
+    rig.Step(drifts.Pack(seq));
+    at_rest.Step(rests.Pack(seq));
+  }
+  const ModeEstimate last = rig.estimate().modes[0], last_at_rest = at_rest.estimate().modes[0];
+  ASSERT_GT(last.p_drifted, 0.5);
+  const auto air = [](std::int64_t seq) {
+    return test::FillContactPack(
+        seq,
+        [](double) {
+          return test::Place{-1.0, 0.0};
+        },
+        [](double, const test::Place&) { return 0.0; });
+  };
+  ModeEstimate before = last;
+  for (std::int64_t seq = 41; seq <= 60; ++seq) {
+    const ModeEstimate held = rig.Step(air(seq)).modes[0];
+    ASSERT_FALSE(held.updated);
+    for (std::size_t d = 0; d < 3; ++d) {
+      const MarginalSummary &was = before.marginal[d], &m = held.marginal[d];
+      EXPECT_GT(m.sd, was.sd) << "parameter " << d << ", pack " << seq;
+      EXPECT_LT(m.q025, was.q025);
+      EXPECT_GT(m.q975, was.q975);
+      EXPECT_EQ(m.ar_ap, last.marginal[d].ar_ap);
+      EXPECT_EQ(m.q50, last.marginal[d].q50);
+    }
+    before = held;
+  }
+  // Two seconds at the speed that was learnt.
+  const double gone = before.drift_rate[0] * 20 * kPackDuration;
+  const double widened = std::sqrt(std::pow(before.marginal[0].sd, 2) - std::pow(last.marginal[0].sd, 2));
+  EXPECT_GT(widened, 0.5 * gone);
+  EXPECT_LT(widened, 2.0 * gone);
+  // A pack that is no good says nothing of the time; an hour makes the prior of it, not more.
+  DataPack bad = air(61);
+  bad.num_samples = -1;
+  rig.Step(bad);
+  EXPECT_TRUE(test::SameBits(rig.estimate().modes[0].marginal[0].sd, before.marginal[0].sd));
+  DataPack late = air(62);
+  late.t_last_s += 3600.0;
+  const ModeEstimate& forgotten = rig.Step(late).modes[0];
+  const EstimatorSettings settings = Quick();
+  for (std::size_t d = 0; d < 3; ++d) {
+    EXPECT_GT(forgotten.marginal[d].sd, before.marginal[d].sd);
+    EXPECT_GE(forgotten.marginal[d].q025, settings.parameters[d].lower);
+    EXPECT_LE(forgotten.marginal[d].q975, settings.parameters[d].upper);
+  }
+  at_rest.Step(air(41));
+  for (std::size_t d = 0; d < 3; ++d)
+    EXPECT_EQ(std::memcmp(&at_rest.estimate().modes[0].marginal[d], &last_at_rest.marginal[d], sizeof(MarginalSummary)),
+              0);
 }
 
 TEST(Drift, ARestartGoesOnToTheBitAndAnOlderSnapshotIsTaken) {

@@ -77,6 +77,23 @@ TEST(Estimator, FreeMotionHoldsWhatIsKnownAndReportsItInactive) {
   EXPECT_EQ(e.modes[0].decision, Decision::kHold);
   EXPECT_EQ(e.modes[0].num_samples, 0);
   EXPECT_EQ(e.y_pred, 0.0);
+  for (std::size_t d = 0; d < 3; ++d) {
+    EXPECT_EQ(e.modes[0].marginal[d].ar_map, before.marginal[d].ar_map);
+    EXPECT_EQ(e.modes[0].marginal[d].ar_ap, before.marginal[d].ar_ap);
+    EXPECT_EQ(e.modes[0].marginal[d].q50, before.marginal[d].q50);
+    EXPECT_GE(e.modes[0].marginal[d].sd, before.marginal[d].sd) << "it may have drifted";
+    EXPECT_LT(e.modes[0].marginal[d].sd, 1.1 * before.marginal[d].sd) << "which is improbable";
+  }
+}
+
+TEST(Estimator, FreeMotionHoldsThePosteriorToTheBitWhereNothingDrifts) {
+  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  settings.forgetting.drift_share = 0.0;
+  Rig rig(settings);
+  rig.Step(Contact{}.Pack(10));
+  const ModeEstimate before = rig.estimate().modes[0];
+  const Estimate& e = rig.Step(Contact{}.Pack(test::kFreePack));
+  EXPECT_EQ(e.modes[0].decision, Decision::kHold);
   EXPECT_EQ(std::memcmp(&e.modes[0].marginal, &before.marginal, sizeof before.marginal), 0);
 }
 

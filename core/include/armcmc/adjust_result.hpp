@@ -26,7 +26,10 @@ struct ModeDraws {
   double acceptance = 0.0, kish_ess = 0.0, log_evidence = 0.0, p_changed = 0.0;
   double p_drifted = 0.0;   ///< Posterior probability that the parameters drift; 1 - p_changed - p_drifted: they stay.
   double drift_rate = 0.0;  ///< Expected before the pack, prior standard deviations per s.
-  int mode_index = 0;       ///< Candidate with the highest posterior density.
+  /// Of a mode that this pack says nothing about: how many times wider each parameter's posterior has become since it
+  /// was last updated, at least 1 (Drift::Widening).
+  std::array<double, kMaxParams> widening{};
+  int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
   bool point_is_mode = false;               ///< mode_u is the point estimate whatever the decision (least squares).
   int dim = 0;

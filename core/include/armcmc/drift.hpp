@@ -95,6 +95,14 @@ class Drift {
   /// @param share  Prior probability that the plant drifts, in [0, 1). 0: it rests, and Carry() changes nothing.
   Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise, double share);
 
+  /// How many times wider the posterior after the last pack has become by a time at which nothing new is known: the
+  /// root mean square distance of each parameter in the bank from the mean that it had then, over its standard
+  /// deviation then. 1 where it is narrower, and for all of them while drift is improbable (kNegligible).
+  /// @param time_s  Plant time, s.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^2).
+  void Widening(double time_s, const PosteriorMemory& last,
+                std::array<double, kMaxParams>* ratio) noexcept ARMCMC_NONBLOCKING;
+
   /// What the posterior after the last pack has become by the time of this one.
   /// @return `last`, or a memory of this object, valid until the next call.
   /// @rt No heap, no lock, no throw. O(hypotheses dim^2 + dim^3).
@@ -153,6 +161,8 @@ class Drift {
   /// u and w of one filter after a time without data.
   void Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  /// Probability of drift in `predicted_`, and its expected rate.
+  void ExpectDrift() noexcept ARMCMC_NONBLOCKING;
   void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
   /// A sampled density of a part of the bank.
   struct Sampled {

@@ -37,6 +37,16 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
                const ModeDraws& draws, SummaryWorkspace* workspace, ModeEstimate* estimate) noexcept ARMCMC_NONBLOCKING;
 inline constexpr int kQuantileBins = 4096;
 
+/// Widens the published marginals of a mode that no pack has updated for some time: standard deviation, quantiles and
+/// histogram, about the median and within the bounds of the parameter. Point estimates stay.
+///
+/// A reported quantity r(theta) becomes wider by sum_d (dr/dtheta_d)^2 sd_d^2 (ratio_d^2 - 1) in variance.
+/// @param ratio  Standard deviation of every sampled parameter over what it was at the update, at least 1; 0: unknown,
+///               and nothing changes.
+/// @rt No heap, no lock, no throw. O(dim reported).
+void Widen(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+           const std::array<double, kMaxParams>& ratio, ModeEstimate* estimate) noexcept ARMCMC_NONBLOCKING;
+
 /// Effective sample size of the chain after burn-in by non-overlapping batch means, the smallest over the coordinates.
 [[nodiscard]] double ChainEss(const ModeDraws& draws) noexcept ARMCMC_NONBLOCKING;
 
