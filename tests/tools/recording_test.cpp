@@ -94,6 +94,21 @@ TEST_F(RecordingFile, ScalesColumnsAndMakesDerivativesWithoutDelay) {
   EXPECT_EQ(r.held_out[700], 1) << "the last 30 % where nothing is said";
 }
 
+TEST_F(RecordingFile, DerivativesHoldToTheEndsOfARun) {
+  // Both ends in the middle of a turn, where the acceleration is large.
+  constexpr int kStart = 40;
+  WriteCsv(960, [](int n) { return 1.0 * (n + kStart); });
+  const double w = 2.0 * M_PI * 5.0;
+  for (const char* bandwidth : {"", "[derivatives]\nbandwidth_hz = 40\n"}) {
+    const Recording r = Read(bandwidth);
+    for (std::size_t n = 0; n < r.num_rows(); ++n) {
+      const double t = kDt * static_cast<double>(n + kStart);
+      EXPECT_NEAR(r.signals[1].value[n], 0.1 * w * std::cos(w * t), 0.01 * 0.1 * w) << n << ' ' << bandwidth;
+      EXPECT_NEAR(r.signals[2].value[n], -0.1 * w * w * std::sin(w * t), 0.05 * 0.1 * w * w) << n << ' ' << bandwidth;
+    }
+  }
+}
+
 TEST_F(RecordingFile, AFilteredOutputKnowsTheNoiseThatTheFilterLetThrough) {
   const auto force = [](int n) { return 20.0 * std::sin(2.0 * M_PI * 1.5e-3 * n); };
   std::mt19937_64 random(3);

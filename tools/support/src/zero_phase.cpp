@@ -1,5 +1,6 @@
 #include "zero_phase.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,18 +35,52 @@ class Butterworth {
   double b0_, a1_, a2_;
 };
 
+/// `count` samples beyond the end of a series: those of the polynomial that fits its last `window` samples by least
+/// squares for as long as that window, then on along its tangent.
+std::vector<double> Continued(const std::vector<double>& x, std::size_t window, std::size_t count) {
+  constexpr Eigen::Index kDegree = 4;
+  constexpr Eigen::Index kSpare = 4;  // samples beyond the number of coefficients, at least
+  const auto rows = static_cast<Eigen::Index>(std::min(x.size(), std::max<std::size_t>(window, kDegree + kSpare)));
+  const Eigen::Index degree = std::clamp<Eigen::Index>(rows - kSpare, 1, kDegree);
+  const auto length = static_cast<double>(rows - 1);
+  Eigen::MatrixXd powers(rows, degree + 1);
+  Eigen::VectorXd last(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double from_end = (static_cast<double>(i) - length) / length;
+    last[i] = x[x.size() - static_cast<std::size_t>(rows - i)];
+    double power = 1.0;
+    for (Eigen::Index d = 0; d <= degree; ++d, power *= from_end) powers(i, d) = power;
+  }
+  const Eigen::VectorXd c = powers.householderQr().solve(last);
+  std::vector<double> beyond(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double to = static_cast<double>(k + 1) / length;
+    const double at = std::min(to, 1.0);
+    double value = 0.0;
+    double slope = 0.0;
+    for (Eigen::Index d = degree; d >= 0; --d) {
+      slope = slope * at + value;
+      value = value * at + c[d];
+    }
+    beyond[k] = value + slope * (to - at);
+  }
+  return beyond;
+}
+
 }  // namespace
 
 std::vector<double> ZeroPhase(const std::vector<double>& x, double dt, double bandwidth_hz) {
   // Two passes of -1.5 dB each at the bandwidth.
   const double cutoff = bandwidth_hz / std::pow(std::numbers::sqrt2 - 1.0, 0.25);
   if (x.size() < 4 || cutoff * dt >= 0.5) return x;
-  const auto pad = std::min(x.size() - 1, static_cast<std::size_t>(std::ceil(3.0 / (bandwidth_hz * dt))));
-  std::vector<double> all;
-  all.reserve(x.size() + 2 * pad);
-  for (std::size_t i = pad; i > 0; --i) all.push_back(2.0 * x.front() - x[i]);
+  const double period = 1.0 / (bandwidth_hz * dt);
+  const auto window = static_cast<std::size_t>(std::ceil(period)) + 1;
+  const auto pad = std::min(x.size() - 1, static_cast<std::size_t>(std::ceil(3.0 * period)));
+  std::vector<double> all = Continued({x.rbegin(), x.rend()}, window, pad);
+  std::reverse(all.begin(), all.end());
   all.insert(all.end(), x.begin(), x.end());
-  for (std::size_t i = 1; i <= pad; ++i) all.push_back(2.0 * x.back() - x[x.size() - 1 - i]);
+  const std::vector<double> after = Continued(x, window, pad);
+  all.insert(all.end(), after.begin(), after.end());
   const Butterworth filter(dt, cutoff);
   for (int pass = 0; pass < 2; ++pass) {
     filter.Run(&all);

@@ -6,7 +6,9 @@
 namespace armcmc::support {
 
 /// Low pass without delay: a Butterworth filter of order 2 forward and backward, so order 4 in magnitude and -3 dB at
-/// the bandwidth. The ends are continued by their point reflection.
+/// the bandwidth. Beyond its ends a series goes on as the polynomial of degree 4 that fits its last period of the
+/// bandwidth: a reflection would have no curvature there, so that second derivatives near the ends would be wrong by
+/// their whole size.
 /// @param bandwidth_hz  Above 0; at half the sample rate and above nothing is changed.
 [[nodiscard]] std::vector<double> ZeroPhase(const std::vector<double>& x, double dt, double bandwidth_hz);
 
