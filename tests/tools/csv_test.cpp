@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "armcmc/support/program.hpp"
@@ -110,6 +111,31 @@ TEST_F(Csv, DerivesAMissingColumnByCentralDifferencesAndSaysSo) {
   const CsvSamples s = Read("t,x\n0,0\n1,1\n2,4\n4,16\n");  // x = t^2
   EXPECT_THAT(s.columns[2], ElementsAre(1.0, 2.0, 5.0, 6.0));
   EXPECT_THAT(s.notes, ElementsAre(HasSubstr("column v is missing: derived from x")));
+}
+
+TEST_F(Csv, DerivesFromANoisyColumnByAFilterWithoutDelayUpToTheEndsAndOverGaps) {
+  std::ofstream file(dir_ / "noisy.csv");
+  file.precision(15);
+  file << "t,x\n";
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> noise(0.0, 1e-4);
+  const auto place = [](double t) { return 0.1 * std::sin(6.0 * t + 0.4); };
+  for (int n = 0; n < 2000; ++n) {
+    if (n >= 700 && n < 800) continue;
+    const double t = 1e-3 * n;
+    file << t << ',' << place(t) + noise(generator) << '\n';
+  }
+  file.close();
+  CsvRequest request;
+  request.columns = {"t", "x", "v"};
+  request.derived = {{"v", "x"}};
+  const CsvSamples s = ReadCsv(dir_ / "noisy.csv", request);
+  EXPECT_THAT(s.notes, ElementsAre(testing::ContainsRegex("column v is missing: derived from x, .* Hz, chosen by the "
+                                                          "noise")));
+  ASSERT_EQ(s.num_rows(), 1900u);
+  // Differences of neighbours would be off by 0.07.
+  for (std::size_t n = 0; n < s.num_rows(); ++n)
+    EXPECT_NEAR(s.columns[2][n], 0.6 * std::cos(6.0 * s.columns[0][n] + 0.4), 0.03) << n;
 }
 
 TEST_F(Csv, DerivingNeedsTwoRows) { EXPECT_THAT(ErrorOf("t,x\n0,0\n"), HasSubstr("one row is too few to derive v")); }

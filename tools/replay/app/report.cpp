@@ -10,6 +10,21 @@
 #include "armcmc/support/text_table.hpp"
 
 namespace armcmc::replay {
+namespace {
+
+/// Of a plant that seems to change all the time; else empty.
+std::string UnsettledText(const ReplaySummary& summary) {
+  constexpr std::int64_t kLeast = 10;  // packs with a modification
+  constexpr std::int64_t kOneIn = 5;   // of those that say something
+  const std::int64_t updated = summary.packs - summary.held;
+  if (summary.modifications < kLeast || kOneIn * summary.modifications < updated) return {};
+  return "note: " + std::to_string(summary.modifications) + " of " + std::to_string(updated) +
+         " packs look as if the parameters had just changed: the law may be missing something (armcmc-gap), or the "
+         "noise "
+         "may be larger than assumed (--calibrate)\n";
+}
+
+}  // namespace
 
 std::string SummaryText(const Estimator& estimator, const PackSource& source, const ReplaySummary& summary) {
   using support::Significant;
@@ -20,6 +35,7 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
       << ", duplicate " << counts.duplicate << ", reordered " << counts.reordered << ", rejected "
       << counts.rejected + summary.refused << ", unused " << counts.unused << '\n';
   for (const std::string& note : source.notes()) out << "note: " << note << '\n';
+  out << UnsettledText(summary);
 
   support::TextTable table({"mode", "quantity", "estimate", "sd", "95 % from", "to", "unit"});
   bool any_known = false;
@@ -40,6 +56,8 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
                           : std::string("gap between model and plant: none suspected"))
         << "; log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
         << '\n';
+  } else if (!gap.watched) {
+    out << "gap between model and plant: not watched; armcmc-gap judges a recording\n";
   }
   out << (any_known ? table.ToString() : std::string("nothing is known: no pack said anything about a parameter\n"));
   if (summary.packs > 0 && summary.compute_s > 0.0)

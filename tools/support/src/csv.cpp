@@ -10,10 +10,13 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "armcmc/support/program.hpp"
+#include "armcmc/support/text_table.hpp"
 #include "csv_text.hpp"
 #include "nearest.hpp"
+#include "rate_of.hpp"
 
 namespace armcmc::support {
 namespace {
@@ -143,14 +146,12 @@ class Reader {
       const std::vector<double>& x = result_.columns[static_cast<std::size_t>(from - request_.columns.begin())];
       if (x.empty()) continue;
       if (t.size() < 2) throw InputError(path_.string() + ": one row is too few to derive " + rule->name);
-      std::vector<double>& v = result_.columns[i];
-      v.resize(t.size());
-      for (std::size_t n = 0; n < t.size(); ++n) {
-        const std::size_t before = n == 0 ? 0 : n - 1, after = std::min(n + 1, t.size() - 1);
-        v[n] = (x[after] - x[before]) / (t[after] - t[before]);
-      }
+      Rate rate = RateOf(t, x);
+      result_.columns[i] = std::move(rate.value);
       result_.notes.push_back("column " + rule->name + " is missing: derived from " + rule->from +
-                              " by central differences");
+                              (rate.bandwidth_hz > 0.0
+                                   ? ", " + Significant(rate.bandwidth_hz, 3) + " Hz, chosen by the noise"
+                                   : " by central differences"));
     }
   }
 

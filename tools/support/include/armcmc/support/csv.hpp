@@ -46,8 +46,9 @@ struct CsvSamples {
 /// Times since 1970, from 1e8 s on, count from the first one, with a note: their differences are exact.
 ///
 /// Numbers are read to the nearest double, whatever the locale. Other columns are ignored. The last line must
-/// end with a line end: a cut number looks like a number. A missing derived column becomes the central
-/// difference over its neighbours (one-sided at the ends). Memory: 8 bytes a wanted value.
+/// end with a line end: a cut number looks like a number. A missing derived column becomes the rate
+/// of the one that it is derived from: filtered without delay, with the bandwidth that its noise suggests, if the rows
+/// are evenly spaced between gaps, else by central differences. Memory: 8 bytes a wanted value.
 /// @throws InputError naming file, line and what was expected.
 [[nodiscard]] CsvSamples ReadCsv(const std::filesystem::path& path, const CsvRequest& request);
 
