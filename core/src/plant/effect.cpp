@@ -313,6 +313,16 @@ std::string AddedName(const PlantDescription& plant, const EffectEntry& entry, s
   return PrefixOf(AsWritten(plant), entry) + std::string(name);
 }
 
+int NumFormulaParameters(const EffectForm& form) {
+  const auto in_formula = [&](const EffectParameter& parameter) {
+    const auto says = [&](const std::string& text) { return Mentions(text, parameter.name); };
+    return std::any_of(form.terms.begin(), form.terms.end(), [&](const EffectTerm& t) { return says(t.formula); }) ||
+           std::any_of(form.lets.begin(), form.lets.end(), [&](const LetDescription& l) { return says(l.text); }) ||
+           std::any_of(form.states.begin(), form.states.end(), [&](const StateDescription& s) { return says(s.rate); });
+  };
+  return static_cast<int>(std::count_if(form.parameters.begin(), form.parameters.end(), in_formula));
+}
+
 std::map<std::string, double> NoEffect(const PlantDescription& plant, const EffectEntry& entry,
                                        const EffectBinding& binding, const DataScales& scales) {
   std::map<std::string, double> none;

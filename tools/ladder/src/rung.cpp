@@ -33,7 +33,7 @@ constexpr double kLoses = 1.1;         // squared error in regions that says: it
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
 
-std::size_t NumParameters(const Contender& c) { return c.candidate.form().parameters.size(); }
+int NumParameters(const Contender& c) { return NumFormulaParameters(c.candidate.form()); }
 
 /// Whether a frequency would be lower than the data can show it to be one.
 bool TooSlow(const Contender& c) {
@@ -258,7 +258,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
   for (const Contender& c : all)
     if (may(c)) best = std::max(best, 1.0 - c.alone.folds);
   std::vector<std::size_t> good;
-  std::size_t fewest = SIZE_MAX;
+  int fewest = std::numeric_limits<int>::max();
   for (std::size_t i = 0; i < all.size(); ++i)
     if (may(all[i]) && 1.0 - all[i].alone.folds >= kAsGood * best) {
       good.push_back(i);

@@ -119,6 +119,10 @@ void CheckEffect(const EffectEntry& entry);
 /// Name that a parameter of the effect gets in AddEffect.
 [[nodiscard]] std::string AddedName(const PlantDescription& plant, const EffectEntry& entry, std::string_view name);
 
+/// How many parameters the formulas of a form have: those that say only where a state begins are of the recording, and
+/// do not count.
+[[nodiscard]] int NumFormulaParameters(const EffectForm& form);
+
 /// Value of `none` of the form's parameters in that plant; those without one are left out.
 [[nodiscard]] std::map<std::string, double> NoEffect(const PlantDescription& plant, const EffectEntry& entry,
                                                      const EffectBinding& binding, const DataScales& scales);
