@@ -50,7 +50,11 @@ Rule RuleOf(const std::string& part) {
   if (part == "rt/app") return {{"core", "rt", "lcm_types", "support"}, foreign_of_programs};
   if (part == "plant_sim") return {{"plant_sim", "lcm_types"}, {"std", "posix", "lcm", "Eigen"}};
   if (part == "plant_sim/app") return {{"plant_sim", "lcm_types", "support"}, foreign_of_programs};
-  if (part == "tools/support") return {{"core", "lcm_types", "support"}, foreign_of_programs};
+  if (part == "tools/support") {
+    Names foreign = foreign_of_programs;
+    foreign.insert("Eigen");
+    return {{"core", "lcm_types", "support"}, foreign};
+  }
   Names all = foreign_of_programs;
   // The module stands on what is no program: core, and what reads files.
   if (part == "tools/python") return {{"core", "support"}, {"std", "pybind11"}};

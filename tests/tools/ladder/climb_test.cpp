@@ -283,6 +283,29 @@ TEST(Climb, NoiseOfADerivedSignalIsNoFlexibleMode) {
   }
 }
 
+/// A spring and a damper in series, in parallel to an axis that has a spring.
+TEST(Climb, ABranchThatRelaxesIsNamedThoughItIsStretchedAtTheStart) {
+  constexpr double kTau = 0.6;  // s
+  for (const double stretch : {0.0, 0.05}) {
+    double z = stretch;
+    double last = 0.0;
+    const Dataset data = test::AxisData([&](const AxisSample& s) {
+      if (s.t > 0.0) z = z * std::exp(-0.01 / kTau) + (s.q - last);
+      last = s.q;
+      return 1500.0 * s.q + 2500.0 * z;
+    });
+    PlantDescription plant = test::AxisPlant();
+    plant.law = "M*a + Fv*v + kq*q + off";
+    plant.parameters.push_back({"kq", "N/m", "normal", 1000.0, 1000.0, 0.0, 20000.0});
+    const Ladder ladder = ClimbWith(
+        {"stress_relaxation", "presliding_friction", "hysteresis", "output_drift", "output_bias"}, data, plant);
+    ASSERT_EQ(ladder.rungs.size(), 2u) << stretch;
+    EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("stress_relaxation")) << stretch;
+    EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty()) << stretch;
+    EXPECT_TRUE(ladder.complete) << stretch;
+  }
+}
+
 TEST(Climb, FrictionIsNotOfAPressureThatStandsStill) {
   Dataset data = test::AxisData([](const AxisSample& s) { return 12.0 * Sign(s.v); });
   auto series = std::make_shared<identify::Series>(*data.series);
