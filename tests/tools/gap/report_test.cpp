@@ -81,6 +81,14 @@ TEST(Report, KeepsTheListOfExplanationsShort) {
   EXPECT_TRUE(Holds(html, "<i>Nothing is missing</i>"));
 }
 
+TEST(Report, ParametersOfAnEffectKeepTheirNames) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  result.effects.front().parameters = {{"cm", "N s/m", 1.0, 0.1}, {"Fm", "N", 1.0, 0.1}};
+  const std::string html = ReportHtml(result);
+  EXPECT_TRUE(Holds(html, "<dt>cm</dt>"));
+  EXPECT_TRUE(Holds(html, "<dt>Fm</dt>"));
+}
+
 TEST(Report, ComposesASentenceWhereThereIsNone) {
   Result result = test::ExampleResult(Verdict::kNamed);
   result.sentence.clear();

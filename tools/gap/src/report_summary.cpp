@@ -156,7 +156,7 @@ void AddEffect(const EffectFinding& effect, std::ostream& out) {
   if (!words.meaning.empty()) out << "<p class=\"soft\">" << words.meaning << "</p>\n";
   out << "<dl class=\"facts\">\n";
   for (const ParameterEstimate& p : effect.parameters)
-    out << "<dt>" << EscapeHtml(EffectTitle(p.name)) << "</dt><dd><b>" << MeanText(p) << "</b> <span class=\"soft\">("
+    out << "<dt>" << EscapeHtml(p.name) << "</dt><dd><b>" << MeanText(p) << "</b> <span class=\"soft\">("
         << (p.sd > 0.0 ? "95 %: " : "") << IntervalText(p) << ")</span></dd>\n";
   out << "<dt>Acts</dt><dd>" << WhenText(effect.when) << "</dd>\n";
   if (!effect.family.empty()) out << "<dt>Family</dt><dd>" << EscapeHtml(effect.family) << "</dd>\n";
