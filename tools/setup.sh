@@ -1,4 +1,4 @@
-# Sourced by tools/demo and tools/test: what both need to set up. Expects `root`, the top of the tree.
+# Sourced by tools/demo and tools/test: their common set-up. Expects `root`, the top of the tree.
 
 say() { echo "$program: $*"; }
 fail() {
@@ -28,12 +28,12 @@ setup_multicast() {
   return 1
 }
 
-# build PRESET [TARGET...]: configures and builds; all the output is seen only when it fails.
+# build PRESET [TARGET...]: configures and builds; shows the output only if it fails.
 build() {
   local preset=$1 log code=0
   shift
   log=$(mktemp)
-  say "building (preset $preset); a first build takes some minutes"
+  say "building (preset $preset); the first build takes some minutes"
   { cmake --preset "$preset" && cmake --build --preset "$preset" ${1:+--target "$@"}; } >"$log" 2>&1 || code=$?
   if [ "$code" -ne 0 ]; then
     grep -nE 'error|FAILED|CMake Error' "$log" | head -40 >&2

@@ -31,10 +31,10 @@ void FitPolynomials(const simd::Kernels& kernels, const WeightedDraws& draws, do
   }
 }
 
-/// What is left of each coordinate i >= 2 on the straightened ones before it: linear terms, e_1 c and e_1^2. `e` holds
-/// the coordinates without these terms; rows `extra` are scratch.
+/// Regresses each coordinate i >= 2 on the straightened ones before it: linear terms, e_1 c and e_1^2. `e` receives the
+/// residuals; rows `extra` are scratch.
 ///
-/// One pass over the draws: once row i of their covariance is straightened, the regression of row i + 1 is algebra.
+/// One pass over the draws: once row i of their covariance is straight, the regression of row i + 1 is algebraic.
 void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, double* const* e, double* const* extra,
                      DensityBlock* block) noexcept {
   const int straight = block->dim - 1;  // rows of the covariance: e_1 .. e_straight, e_1 c, e_1^2
@@ -63,7 +63,7 @@ void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, d
   for (int a = 0; a < count; ++a)
     for (int b = 0; b <= a; ++b) covariance(a, b) = covariance(b, a) = sums[t++];
   for (int i = 2; i < block->dim; ++i) {
-    const int row = i - 1;  // of coordinate i
+    const int row = i - 1;  // row of coordinate i
     const int n = i + 1;    // regressors: e_1 .. e_{i-1}, e_1 c, e_1^2
     const auto regressor = [&](int a) noexcept { return a < row ? a : straight + a - row; };
     // Equilibrate: the rows differ by powers of a ridge's thickness.
@@ -93,7 +93,7 @@ void FitInteractions(const simd::Kernels& kernels, const WeightedDraws& draws, d
   }
 }
 
-/// Variances of the coordinates i >= 1 that the rows hold, of the draws themselves.
+/// Sample variances of the coordinates i >= 1 that the rows hold.
 std::array<double, kMaxParams> Variances(const simd::Kernels& kernels, const WeightedDraws& draws,
                                          const double* const* rows) noexcept {
   std::array<double, 2 + kMaxParams> sums{};
@@ -108,8 +108,8 @@ std::array<double, kMaxParams> Variances(const simd::Kernels& kernels, const Wei
   return variances;
 }
 
-/// True when straightening took more variance out of some coordinate than its coefficients would take out of noise.
-/// Both variances are of the same draws: those of a few thousand vary among each other by more than a bend takes out.
+/// True if straightening removed more variance from some coordinate than its coefficients would remove from noise. Both
+/// variances are of the same draws: between different sets of a few thousand they vary by more than a bend removes.
 bool BendPays(const std::array<double, kMaxParams>& before, const std::array<double, kMaxParams>& after, int dim,
               double ess) noexcept {
   for (int i = 1; i < dim; ++i) {
@@ -121,18 +121,18 @@ bool BendPays(const std::array<double, kMaxParams>& before, const std::array<dou
   return false;
 }
 
-/// Takes over a parabola of the log of the thickness that `draws` effective draws gave, where it is worth having.
+/// Stores a parabola for the log of the thickness, fitted to `draws` effective draws, if it is significant.
 void SetThickness(const Eigen::Vector3d& fit, double explained, double draws, int i, DensityBlock* block) noexcept {
   // The log of a standard deviation from n draws has variance 1 / 2n, so that without any taper twice the explained sum
   // of squares is a chi-square of two degrees of freedom, which exceeds this once in a thousand fits.
   constexpr double kSignificant = 13.8;
   if (2.0 * draws * explained < kSignificant) return;
-  // A thickness that would change by more than e^2 within the reach is held to that.
+  // The change of the thickness within the reach is limited to a factor of e^2.
   constexpr double kMost = 2.0;
   const double reach = DensityBlock::kBendReach;
   const double change = std::fabs(fit[1]) * reach + std::fabs(fit[2]) * reach * reach;
   const double keep = change > kMost ? kMost / change : 1.0;
-  // A change of less than a tenth within two standard deviations is not worth an exponential for every draw.
+  // A change of less than a tenth within two standard deviations does not justify an exponential per draw.
   constexpr double kLeast = 0.1;
   if (2.0 * std::fabs(fit[1]) + 4.0 * std::fabs(fit[2]) < kLeast) return;
   block->thickness[static_cast<std::size_t>(i)] = {fit[1] * keep, fit[2] * keep};

@@ -9,8 +9,8 @@
 namespace armcmc {
 namespace {
 
-constexpr double kLeastShare = 0.25;       // of the draws that must be effective under g
-constexpr int kLeastDrawsPerControl = 20;  // fewer, and lambda is fitted to the noise
+constexpr double kLeastShare = 0.25;       // minimum share of the draws that is effective under g
+constexpr int kLeastDrawsPerControl = 20;  // with fewer, lambda would be fitted to noise
 
 constexpr int kMaxControls = kMaxParams + 1;
 using ControlVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxControls, 1>;

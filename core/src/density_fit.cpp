@@ -13,7 +13,7 @@ namespace {
 constexpr int kNodes = 97;  // [-6, 6] at 8 nodes per standard deviation
 constexpr double kReach = 6.0;
 constexpr int kProbeDraws = 4096;
-constexpr double kBendMinimumEss = 50.0;  // below, the bends would be noise
+constexpr double kBendMinimumEss = 50.0;  // below this, fitted bends would be noise
 
 struct Moments {
   double sum = 0.0, square = 0.0;
@@ -33,7 +33,7 @@ Moments WeightedMoments(const simd::Kernels& kernels, const WeightedDraws& draws
   if (!(m.sum > 0.0)) return m;
   for (int d = 0; d < dim; ++d) m.mean[d] = sums[static_cast<std::size_t>(2 + d)] / m.sum;
   // About the mean, in a second pass: the covariance of a posterior far from the origin would cancel otherwise.
-  // Unbiased for weighted draws: a recursion that lost 1 / ESS of its variance in every pack would contract by itself.
+  // Unbiased for weighted draws: a recursion that lost 1 / ESS of its variance in every pack would contract.
   const double unbiased = 1.0 / std::fmax(1.0 - m.square / (m.sum * m.sum), 0.5);
   kernels.second_moments(dim, draws.u.data(), draws.weight, m.mean.data(), draws.size, sums.data());
   std::size_t t = 0;
@@ -71,8 +71,8 @@ void PrincipalAxes(const ParamMatrix& covariance, ParamMatrix* whiten, ParamMatr
   }
 }
 
-/// exp(-n^2 h^2 / 2) for n = 0 .. size - 1: neighbours differ by factors that are a geometric sequence themselves, so
-/// that two exponentials do for all.
+/// exp(-n^2 h^2 / 2) for n = 0 .. size - 1: the ratios of neighbours are a geometric sequence, so that two
+/// exponentials suffice for all.
 void TabulateBell(double h, int size, double* bell) noexcept {
   double value = 1.0;
   double factor = std::exp(-0.5 * h * h);
@@ -84,7 +84,7 @@ void TabulateBell(double h, int size, double* bell) noexcept {
   }
 }
 
-/// Masses that a normal law has at the nodes.
+/// Masses of a normal law at the nodes.
 std::array<double, kNodes> NormalMasses(double sd) noexcept {
   constexpr std::size_t kCentre = kNodes / 2;
   std::array<double, kCentre + 1> bell;
@@ -116,13 +116,13 @@ void Smooth(double h, std::array<double, kNodes>* values) noexcept {
   *values = out;
 }
 
-/// Share of a histogram's own shape, the rest being a normal law: 0 where its skewness and kurtosis are no more than
-/// draws of a normal law have by chance, near 1 where they are well beyond. What is beyond chance, of what there is:
+/// Weight of a histogram in a mixture with a normal law: 0 if its skewness and kurtosis are within the sampling error
+/// of a normal law, near 1 if they are well beyond it. The significant share of both:
 ///
-///   max(0, 1 - 2 / chi^2),   chi^2 = ESS (skewness^2 / 6 + excess^2 / 24), which chance makes 2 in the mean
+///   max(0, 1 - 2 / chi^2),   chi^2 = ESS (skewness^2 / 6 + excess^2 / 24), with mean 2 under a normal law
 ///
-/// A posterior that is handed on holds the roughness of its histogram against the next pack's likelihood, pack after
-/// pack, which costs the recursion more than the shape that is lost.
+/// The roughness of a histogram would enter every later posterior as prior, which harms the recursion more than the
+/// loss of shape.
 double ShareOfOwnShape(const std::array<double, kNodes>& mass, double total, double ess) noexcept {
   double skewness = 0.0;
   double kurtosis = 0.0;
@@ -213,7 +213,7 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
   StoreAxes(whiten, unwhiten, block);
   bool straight = false;  // the scratch holds the straightened coordinates
   if (dim > 1 && ess > kBendMinimumEss) {
-    // Most posteriors are Gaussian but for noise: a part of the draws tells whether bends pay.
+    // Most posteriors are Gaussian up to noise: a part of the draws shows whether bends are needed.
     WeightedDraws probe = draws;
     probe.size = std::min(draws.size, kProbeDraws);
     straight = FitBends(kernels, probe, scratch, block) &&

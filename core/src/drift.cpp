@@ -15,14 +15,14 @@ namespace {
 constexpr double kMixedReach = 6.0;     // standard deviations
 constexpr double kMixedTail = 1e-3;     // of a normal law in a mixture
 constexpr std::int64_t kBothParts = 4;  // in a snapshot, added to the part of the first block
-constexpr double kLeftOut = 1e-5;       // share below which a filter is no part of it
+constexpr double kLeftOut = 1e-5;       // share below which a filter is left out of the mixture
 
 void MakeSymmetric(ParamMatrix* m) noexcept {
   for (Eigen::Index i = 0; i < m->rows(); ++i)
     for (Eigen::Index j = 0; j < i; ++j) (*m)(i, j) = (*m)(j, i) = 0.5 * ((*m)(i, j) + (*m)(j, i));
 }
 
-/// A with A C A' = R. @return false where C or R is no covariance.
+/// A with A C A' = R. @return false if C or R is not a covariance.
 bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noexcept {
   ParamMatrix root;
   if (!c.allFinite() || !r.allFinite() || !CholeskyFactor(c, &root)) return false;
@@ -102,13 +102,13 @@ bool Drift::Move(const PosteriorMemory& last, Part part, const Moments& from, in
   }
   DensityBlock& moved = carried_.block[static_cast<std::size_t>(to)];
   if (part == Part::kDrift && source.dim == dim_) {
-    // Not the shape of the draws: what a heavy-tailed one makes of a pack is narrower than the bank has it.
+    // Without the shape of the draws: under a heavy-tailed one the posterior would be narrower than that of the bank.
     SetElliptic(target.mean, target.covariance, 1.0, &normal_table_, &moved);
     return true;
   }
   moved = source;
   moved.axis_aligned = false;
-  // W' = W A^-1, and A W^-1 for its inverse; the noise scale stays where it is.
+  // W' = W A^-1, and A W^-1 for its inverse; the noise scale is unchanged.
   for (int i = 0; i < dim_; ++i) {
     const auto ii = static_cast<std::size_t>(i);
     moved.mean[ii] = target.mean[i];
@@ -152,7 +152,7 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   share_ = rate_ = 0.0;
   if (!last.valid) started_ = false;
   if (!started_) return last;
-  // A plant whose time starts anew has waited nobody knows how long: a pack at least.
+  // If the plant's time restarts, the elapsed time is unknown: at least one pack.
   const double since = data.time_s - time_s_;
   Predict(since > 0.0 ? since : data.duration_s);
   ExpectDrift();
@@ -196,7 +196,7 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
     carried_.covariance = CovarianceOf(carried_.block[0]);
     return carried_;
   }
-  // Two posteriors, of parameters that stayed and of some that changed, stay two.
+  // Two posteriors, one with constant parameters and one with some changed, remain separate.
   const Part part = CarriedPart();
   for (int b = 0; b < last.num_blocks; ++b)
     if (!Move(last, part, from, b, b)) return last;
@@ -246,7 +246,7 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
     Filter& f = bank_[i];
     f = predicted_[i];
     if (!(f.weight > 0.0)) continue;
-    // P = C (1 + H C)^-1, and what u learns w learns through their covariance.
+    // P = C (1 + H C)^-1, and w is updated through its covariance with u.
     ParamMatrix spread = Product(local.information, f.uu);
     spread += identity;
     const ParamMatrix t = Inverse(spread);
@@ -282,7 +282,7 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
 
 bool Drift::Recentre(const Sampled& sampled) noexcept {
   const LocalLikelihood& local = sampled.local;
-  // What the sampler's prior becomes where the likelihood is as expanded: the bank itself, or a Gaussian with its
+  // The posterior of the sampler's prior under the expanded likelihood: the bank itself, or a Gaussian with its
   // moments.
   const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
   Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, sampled.part);
@@ -319,7 +319,7 @@ void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, 
   if (known && !renewed) {
     const Sampled first = SampledBlock(data, next, 0, part, scratch);
     if (both) {
-      // The linearised law of each holds where it lies; how probable they are was sampled.
+      // The linearised law of each is valid near its own mean; their probabilities were sampled.
       const Part other = part == Part::kRest ? Part::kDrift : Part::kRest;
       const Sampled second = SampledBlock(data, next, 1, other, scratch);
       both_ = Update(first, part, next.weight[0]) && Update(second, other, next.weight[1]) && Recentre(first) &&

@@ -48,7 +48,7 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
 }
 
 void Drift::GrowOlder() noexcept {
-  // From the oldest on: nothing moves by two generations at once.
+  // From the oldest on, so that none moves by two generations.
   for (std::size_t g = kMergeAfter.size(); g-- > 0;) {
     if (packs_ % kMergeAfter[g] != 0) continue;
     for (std::size_t h = 0; h < kHypotheses; ++h)
@@ -59,7 +59,7 @@ void Drift::GrowOlder() noexcept {
 void Drift::AddNewcomers(double share) noexcept {
   const Moments all = MomentsOf(predicted_, Part::kWhole);
   for (Filter& f : predicted_) f.weight *= 1.0 - share;
-  // Anywhere in the bank, at a speed of the hypothesis' own law.
+  // Starts anywhere in the bank, with a rate from the law of the hypothesis.
   for (std::size_t h = 0; h < kHypotheses; ++h) {
     Filter fresh{.weight = share * hypotheses_[h].prior * all.weight,
                  .u = all.mean,

@@ -6,7 +6,7 @@
 
 namespace armcmc {
 
-// A MarginalSummary is nothing but numbers.
+// A MarginalSummary consists of numbers only.
 using MarginalNumbers = std::array<double, sizeof(MarginalSummary) / sizeof(double)>;
 
 void ModeEstimate::Save(int num_reported, SnapshotWriter* out) const noexcept {

@@ -18,13 +18,13 @@ int ModelIndex(const EstimatorSettings& settings) {
   return FindModel(settings.model);
 }
 
-/// Recursive least squares needs a law that is linear in its parameters: a plant's own is, that of the rate is not.
+/// Recursive least squares needs a law that is linear in its parameters: a plant's own law is, that of the rate is not.
 EstimatorSettings Regressed(EstimatorSettings settings) {
   settings.regress_rate = settings.regress_rate && settings.method != Method::kRls;
   return settings;
 }
 
-/// Of each watch: where a plant has two, they share the rate that is asked for.
+/// False alarm rate of each watch: two watches share the configured rate.
 double FalseAlarmRate(const EstimatorSettings& settings, const ModelInfo& info) {
   return settings.gap_watch.false_alarm_rate / (info.compiled != nullptr ? info.compiled->num_equations() : 1);
 }
@@ -174,14 +174,14 @@ Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clo
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
     if (!active[i]) continue;
-    // Modes that share a pack share the time that is left.
+    // Modes in the same pack share the remaining time.
     const Nanos now = clock.Now();
     const Nanos mode_deadline = clock.read != nullptr ? now + (deadline_ns - now) / std::max(pending, 1)
                                                       : std::numeric_limits<Nanos>::max() / 2;
     --pending;
     const Status mode_status =
         s.DrawMode(i, static_cast<std::uint64_t>(pack.seq), mode_deadline, clock, limits[i], result);
-    // The next mode needs the workspace; and whether anything is known is part of the result.
+    // The next mode needs the workspace, and the result contains whether anything is known.
     if (pending > 0 || !result->modes[i].known) s.Remember(clock);
     if (mode_status == Status::kNonFinite) {
       status = Status::kNonFinite;
@@ -190,7 +190,7 @@ Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clo
     if (status == Status::kHeld || status == Status::kOk) status = mode_status;
   }
   for (std::size_t m = 0; m < kMaxModes; ++m)
-    // Valves that are shut for a while change no mode; a lost contact does.
+    // Closed valves do not change the mode; a lost contact does.
     if (pending_modes > 0 || s.info.num_modes == 1) s.acted[m] = active[m];
   result->status = status;
   return status;
@@ -241,8 +241,8 @@ void Estimator::Impl::ExpectStates(AdjustResult* result) noexcept {
   state_filter.Predict(kernels, state_mean, state_noise, data);
   if (data->num_samples == 0) return;
   const ModeMemory& memory = *memories[0];
-  // Far from the prior's mean a start that is off has another effect: about where the parameters are, then.
-  constexpr int kRounds = 2, kRoundsWithout = 8;  // of a start that is known, and of one that is not
+  // Far from the prior's mean a wrong start has a different effect, so it is fitted near the current parameters.
+  constexpr int kRounds = 2, kRoundsWithout = 8;  // for a known start, and for an unknown one
   std::array<double, kMaxParams> mean = state_mean;
   const auto find = [&](int rounds) {
     for (int round = 0; round < rounds && !memory.slot[memory.current].valid; ++round) {
@@ -267,7 +267,7 @@ void Estimator::Impl::CarryStates() noexcept {
   const ModeDraws& draws = states_due->modes[0];  // states make the modes one
   const ParameterSpace& space = samplers[0]->space();
   if (draws.updated) {
-    // Whole vectors by the kernels, and the few draws that are left.
+    // Whole vectors by the kernels, then the remaining draws.
     const int whole = draws.draws / 8 * 8;
     std::array<double, 2 + kMaxParams> first{};
     std::array<double, kMaxParams> mean{};

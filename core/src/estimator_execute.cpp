@@ -1,4 +1,4 @@
-// The execute stage: estimates, predicted output with its band, the watch for a gap.
+// The execute stage: estimates, predicted output with its band, the gap watch.
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ void Estimator::Impl::PredictOutput(const AdjustResult& result, Estimate* e) noe
   e->y_pred = e->y_lo = e->y_hi = 0.0;
   e->y_rmse = 0.0;
 
-  // Fit of the posterior after the pack to the pack itself, over the modes that it knows; unit of the target.
+  // Fit of the posterior after the pack to the pack itself, over its known modes; unit of the target.
   double square = 0.0;
   int count = 0;
   for (int m = 0; m < info.num_modes; ++m) {
@@ -137,7 +137,7 @@ void Estimator::Impl::PredictSimulated(const DataPack& pack, Estimate* e) noexce
   }
   e->y_free_run = e->y_shown_free_run[last];
   SetBand(band_prediction.value[last], e);
-  // One draw that diverges leaves no mean.
+  // With one diverging draw the mean does not exist.
   if (!std::isfinite(e->y_lo) || !std::isfinite(e->y_hi)) e->y_pred = e->y_lo = e->y_hi = kUnknown;
 }
 
@@ -229,7 +229,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     if (draws.updated) {
       Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, s.summary.get(), &last);
     } else {
-      // Held: the posterior stays but for what time does to it (below), the numbers that describe one step do not.
+      // Hold: the posterior is kept, apart from the effect of time (below); the numbers that describe one step are not.
       last.decision = Decision::kHold;
       last.zeta = 0.0;
       last.lambda = 1.0;
@@ -258,8 +258,8 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     const auto i = static_cast<std::size_t>(m);
     const ModeEstimate& mode = e->modes[i];
     s.known_draws[i] = s.known_draws[i] || mode.updated;
-    // A force can be predicted before its parameters are known: from their mean. The mode of a posterior that knows
-    // nothing is an accident. (Gains of valves cannot: their prior mean is zero flow.)
+    // Before its parameters are known, a force is predicted from their prior mean; the mode of a flat posterior is
+    // arbitrary. (The flow of valves is not predicted then: their prior mean is zero flow.)
     const bool from_prior = s.predicts_from_prior();
     s.shown[0].known[i] = mode.known || (from_prior && s.known_draws[i]) || (from_prior && s.shown[1].known[i]);
     if (!mode.known && !(from_prior && s.known_draws[i])) continue;

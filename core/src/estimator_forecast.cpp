@@ -1,4 +1,4 @@
-// What is expected of a pack before it was seen.
+// Prediction of a pack before it is processed.
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@ namespace armcmc {
 namespace {
 
 constexpr double kNothingToExpect = std::numeric_limits<double>::quiet_NaN();
-/// Of the sorted draws the one that lies a standard deviation above the median; of 32 normal ones the 27th is expected
-/// 0.937 deviations above it.
+/// Index of the sorted draw one standard deviation above the median: the 27th of 32 normal draws is expected 0.937
+/// standard deviations above it.
 constexpr std::size_t kUpper = 26;
 constexpr double kUpperDeviation = 0.937;
 
@@ -28,7 +28,7 @@ double StartVariance(const StartFit* start, std::size_t k) noexcept {
 }
 
 /// Draws of the posterior after the last pack, moved and stretched to the mean and covariance of the prior of this one:
-/// u <- m' + L' L^-1 (u - m), C = L L'. What leaves the bounds stays at them.
+/// u <- m' + L' L^-1 (u - m), C = L L'. Draws are clamped to the bounds.
 void MoveWithDrift(const ModeSampler::Drifted& drifted, const ParameterSpace& space, ThetaTile* theta) noexcept {
   ParamMatrix last, now;
   const Eigen::Index dim = space.num_parameters;

@@ -27,12 +27,12 @@ struct ModeMemory {
 };
 
 /// State of the estimator, by the stage that owns it. Adjust is in estimator.cpp, execute in estimator_execute.cpp,
-/// what a restart needs in estimator_snapshot.cpp.
+/// snapshots in estimator_snapshot.cpp.
 struct Estimator::Impl {
-  /// @param lender  Of the scratch; null: of its own. @throws std::invalid_argument from settings.Validate().
+  /// @param lender  Lends its scratch; null: own scratch. @throws std::invalid_argument from settings.Validate().
   Impl(const EstimatorSettings& s, const Impl* lender);
 
-  /// What is on display before the first pack: where that predicts the output the prior's mean, else nothing.
+  /// The estimates shown before the first pack: the prior's mean if it predicts the output, else none.
   void ShowPrior() noexcept ARMCMC_NONBLOCKING;
   void PrepareMode(const DataPack& pack, const EffectPack& effects, int mode,
                    ModeData* data) const noexcept ARMCMC_NONBLOCKING;
@@ -47,40 +47,40 @@ struct Estimator::Impl {
   /// One step of mode m with the method of the settings.
   Status DrawMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
                   AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
-  /// What time does to the posterior of mode m in a pack that says nothing about it.
+  /// Propagates the posterior of mode m over a pack without information about it.
   void Wait(std::size_t m, bool acts) noexcept ARMCMC_NONBLOCKING;
-  /// What the newest DrawMode() left to be done, if anything.
+  /// The work that the newest DrawMode() deferred, if any.
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
-  /// Where the states of a described plant begin, and how well that is known, before a pack is drawn.
+  /// Estimates the initial states of a described plant, with their uncertainty, before a pack is drawn.
   void ExpectStates(AdjustResult* result) noexcept ARMCMC_NONBLOCKING;
   /// Integrates the states of a described plant to the end of the pack, for the mean of the posterior after it.
   void CarryStates() noexcept ARMCMC_NONBLOCKING;
   void ForgetStates() noexcept ARMCMC_NONBLOCKING;
-  /// A baseline with one vector of parameters shows it for every mode.
+  /// A baseline with a single parameter vector reports it for every mode.
   void ShareVector(Estimate* e) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool one_vector() const noexcept {
     return settings.method != Method::kArmcmc && !settings.baseline.recall && info.num_modes > 1;
   }
 
   // Adjust stage.
-  std::vector<std::unique_ptr<PackFilter>> filters;  ///< Of a baseline, else empty.
-  std::array<bool, kMaxModes> acted{};               ///< In the pack before.
+  std::vector<std::unique_ptr<PackFilter>> filters;  ///< Empty unless a baseline.
+  std::array<bool, kMaxModes> acted{};               ///< Active in the previous pack.
   std::vector<std::unique_ptr<ModeSampler>> samplers;
   std::vector<std::unique_ptr<ModeMemory>> memories;
   std::shared_ptr<SamplerWorkspace> workspace;
-  ModeDraws* not_remembered = nullptr;  ///< Draws that no memory has been made of.
+  ModeDraws* not_remembered = nullptr;  ///< Draws for which Remember() is pending.
   std::size_t not_remembered_mode = 0;
   std::array<ModeData, kMaxModes> adjust_data;
-  /// By which the published posterior of a mode is widened; of the newest pack that was usable.
+  /// Widening of the published posterior of each mode, as of the newest usable pack.
   std::array<std::array<double, kMaxParams>, kMaxModes> widening{};
-  AdjustResult* states_due = nullptr;  ///< Pack whose states at the end nobody has computed.
+  AdjustResult* states_due = nullptr;  ///< Pack whose final states are not yet computed.
   StateFilter state_filter;
   std::array<double, kMaxParams> state_mean{}, state_sd{};  ///< Of the newest posterior of a plant with states.
   double state_noise = 1.0;                                 ///< Standard deviation of its noise.
 
   // Execute stage.
-  std::unique_ptr<OutputPredictor> predictor;  ///< Null of a described plant.
-  OutputTrajectory trajectory;  ///< Of a described plant that predicts something else than its laws explain.
+  std::unique_ptr<OutputPredictor> predictor;  ///< Null for a described plant.
+  OutputTrajectory trajectory;  ///< For a described plant whose prediction differs from the output of its laws.
   std::shared_ptr<SummaryWorkspace> summary;
   ModeData execute_data;
   std::array<ThetaTile, kMaxModes> band_theta;  ///< Thinned chain of the last update of each mode.
@@ -90,13 +90,13 @@ struct Estimator::Impl {
   std::array<ShownEstimates, 2> shown;        ///< After the previous pack, and after the one before it.
   std::array<bool, kMaxModes> known_draws{};  ///< Some pack has updated the mode.
   int report_mode = 0;
-  std::unique_ptr<GapWatch> gap_watch;        ///< Null where an estimator with a lender watches nothing.
-  std::unique_ptr<OutputWatch> output_watch;  ///< Of a plant that has a second equation.
+  std::unique_ptr<GapWatch> gap_watch;        ///< Null for an estimator with a lender that has no watch.
+  std::unique_ptr<OutputWatch> output_watch;  ///< For a plant with a second equation.
 
   [[nodiscard]] bool IsOfThisPlant(const DataPack& pack) const noexcept {
     return info.described == nullptr || pack.fingerprint == info.described->plant().fingerprint();
   }
-  /// The law is the output, so that the prior's mean predicts it. (That of valves is no flow at all.)
+  /// The law predicts the output, so that the prior's mean is a prediction. (For valves it would be zero flow.)
   [[nodiscard]] bool predicts_from_prior() const noexcept {
     return info.described != nullptr ? trajectory.empty() : info.compiled->law_is_output;
   }
@@ -105,21 +105,21 @@ struct Estimator::Impl {
     return info.compiled != nullptr && !info.compiled->law_is_output;
   }
   void WatchGap(const DataPack& pack, Estimate* e) noexcept;
-  /// What is published: the watch that has an alarm, or the one that is closer to it.
+  /// The published watch: the one with an alarm, or the one closer to it.
   [[nodiscard]] const GapState& Gap() const noexcept;
-  /// Output at every sample of the pack with the estimates on display, where effects act on it.
+  /// Output at every sample of the pack with the shown estimates, if effects act on it.
   void PredictShown(const AdjustResult& result, Estimate* e) noexcept;
-  /// The same of a described plant, mode by mode.
+  /// The same for a described plant, mode by mode.
   void PredictDescribed(const AdjustResult& result, Estimate* e) noexcept;
-  /// The same of a described plant whose output is simulated beside its laws.
+  /// The same for a described plant whose output is simulated in addition to its laws.
   void PredictSimulated(const DataPack& pack, Estimate* e) noexcept;
-  /// Parameters of the simulated output: those on display, lane 0 as shown before, the others as drawn by now.
+  /// Parameters of the simulated output: lane 0 the estimates shown before, the other lanes the current draws.
   void FillSimulated(ThetaTile* theta) const noexcept;
   void PredictOutput(const AdjustResult& result, Estimate* e) noexcept;
   void StoreBandDraws(int mode, const ModeDraws& draws) noexcept;
   /// Output at the last sample and its band; `band_prediction` holds the predictions of `mode`.
   void PredictLastSample(const DataPack& pack, int mode, Estimate* e) noexcept;
-  /// Mean and band of one output a lane.
+  /// Mean and band of outputs, one per lane.
   static void SetBand(const std::array<double, kTileLanes>& outputs, Estimate* e) noexcept;
   static constexpr int kBandDraws = kTileLanes;  ///< Draws behind the predicted output and its band, one tile.
   [[nodiscard]] int BandDraw(const ModeDraws& draws, int lane) const noexcept {

@@ -1,4 +1,4 @@
-// What an estimator goes on from after a restart.
+// The state from which an estimator continues after a restart.
 
 #include "armcmc/snapshot.hpp"
 
@@ -29,7 +29,7 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
   for (std::size_t m = 0; m < static_cast<std::size_t>(s.info.num_modes); ++m) {
     out.PutFlag(s.known_draws[m]);
     s.last_estimates[m].Save(s.info.num_reported, &out);
-    // The band is drawn with the first update, and read once something is known.
+    // The band is drawn at the first update, and read once something is known.
     for (std::size_t d = 0; s.last_estimates[m].known && d < static_cast<std::size_t>(s.info.num_parameters); ++d)
       out.PutRow(s.band_theta[m].value[d].data(), kTileLanes);
     for (const ShownEstimates& shown : s.shown) {
@@ -47,21 +47,21 @@ std::size_t Estimator::SaveExecuted(std::span<std::byte> bytes) const noexcept {
 bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std::byte> executed) noexcept {
   Impl& s = *impl_;
   Reset();
-  if (!s.filters.empty()) return false;  // a baseline keeps no snapshot
+  if (!s.filters.empty()) return false;  // baselines have no snapshot
   SnapshotReader posterior(adjusted);
   for (std::size_t m = 0; m < s.memories.size(); ++m) {
     s.memories[m]->current = 0;
     s.memories[m]->slot[0].Restore(s.samplers[m]->space().dim, s.samplers[m]->shared_table(), &posterior);
     s.samplers[m]->transition().Restore(&posterior);
   }
-  // Snapshots that are older end here: states are then linearised about the prior's mean once more.
+  // Older snapshots end here: states are then linearised about the prior's mean again.
   if (!s.state_filter.empty() && !posterior.finished()) {
     posterior.Row(s.state_mean.data(), s.state_mean.size());
     posterior.Row(s.state_sd.data(), s.state_sd.size());
     s.state_noise = posterior.Number();
     posterior.Require(s.state_noise > 0.0);
   }
-  // Older ones end here, too: how the parameters drift is then learnt anew.
+  // Older ones end here: the drift of the parameters is then estimated anew.
   if (!posterior.finished())
     for (const auto& sampler : s.samplers) sampler->drift().Restore(&posterior);
   SnapshotReader display(executed);
@@ -76,10 +76,10 @@ bool Estimator::Restore(std::span<const std::byte> adjusted, std::span<const std
       display.Row(shown.theta[m].data(), static_cast<std::size_t>(s.info.num_parameters));
     }
   }
-  // Snapshots of described plants end here that were written when those were not watched.
+  // Older snapshots of described plants without a watch end here.
   if (s.gap_watch && (s.info.described == nullptr || !display.finished())) s.gap_watch->Restore(&display);
   if (s.output_watch) s.output_watch->Restore(&display);
-  // Older ones say nothing of drift.
+  // Older ones contain no drift.
   for (std::size_t m = 0; !display.finished() && m < s.memories.size(); ++m)
     s.last_estimates[m].RestoreDrift(s.info.num_reported, &display);
   if (posterior.finished() && display.finished()) return true;

@@ -6,7 +6,7 @@
 namespace armcmc {
 namespace {
 
-constexpr double kAllowance = 3.0;  // standard deviations of zeta that chance explains
+constexpr double kAllowance = 3.0;  // standard deviations of zeta that are attributed to chance
 
 }  // namespace
 
@@ -32,7 +32,7 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
   deviance /= n;
   variance *= noise.information() / n;
 
-  // Of every law, d E[deviance] / d log s = -2 and d E[log density] / d log s = -1 where s is right.
+  // For every law, d E[deviance] / d log s = -2 and d E[log density] / d log s = -1 at the true s.
   const double log_noise_variance = predictive.log_noise_sd * predictive.log_noise_sd;
   Mismatch m;
   double excess = 0.0;
@@ -45,7 +45,7 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
     case MismatchIndex::kRms: {
       const double expected = std::sqrt(noise.deviance_mean() + variance);
       m.zeta = std::sqrt(deviance) - expected;
-      // Delta method; the predictive error is one draw shared by all samples, hence no 1/n on its part.
+      // Delta method; the predictive error is one draw shared by all samples, hence its term has no factor 1/n.
       m.allowance = kAllowance *
                     std::sqrt(noise.deviance_sd() * noise.deviance_sd() / n + 2.0 * variance * variance +
                               4.0 * log_noise_variance) /
@@ -61,10 +61,10 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
       excess = m.zeta - settings.mu;
       break;
   }
-  // The end of a contact, a dozen samples of a pack, weighs what it is: it may not undo what whole packs have taught.
+  // A few samples at the end of a contact count in proportion: they must not discard the information of whole packs.
   const double weight = std::sqrt(data.pack_share);
   m.threshold = settings.threshold / weight + m.allowance;
-  if (!(excess < m.threshold)) {  // also when a NaN got here
+  if (!(excess < m.threshold)) {  // also true for a NaN
     m.decision = Decision::kModification;
     m.lambda = 0.0;
     return m;

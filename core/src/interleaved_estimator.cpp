@@ -13,14 +13,14 @@ InterleavedEstimator::InterleavedEstimator(const EstimatorSettings& settings) {
 
 Estimator& InterleavedEstimator::Of(std::int64_t seq) noexcept {
   const auto count = static_cast<std::int64_t>(estimators_.size());
-  // A number below 1 is no pack's: whoever gets it refuses it.
+  // A number below 1 is invalid for a pack, and is rejected by the recursion that receives it.
   return *estimators_[static_cast<std::size_t>(seq > 0 ? seq % count : 0)];
 }
 
 Status InterleavedEstimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                                   const DrawLimits& limits) noexcept {
   Estimator& estimator = Of(pack.seq);
-  if (drawn_ != &estimator) drawn_->Remember(clock);  // the scratch that it has its draws in is shared
+  if (drawn_ != &estimator) drawn_->Remember(clock);  // its draws are in the shared scratch
   drawn_ = &estimator;
   return estimator.Draw(pack, deadline_ns, clock, result, limits);
 }

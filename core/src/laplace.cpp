@@ -9,12 +9,12 @@ namespace armcmc {
 namespace {
 
 constexpr std::array<double, 4> kDampings{0.0, 1e-2, 1.0, 100.0};
-/// A step that is tried: which of the dampings, and by how much it is shortened or drawn out.
+/// A trial step: index of the damping, and factor of the step length.
 struct Trial {
   std::size_t damping;
   double length;
 };
-/// Beside Newton's own step, in lanes that its linearisation leaves: as many as there are.
+/// In addition to the Newton step, as many as fit into the lanes that its linearisation does not use.
 constexpr std::array<Trial, 15> kBeside{{{0, 1.5},
                                          {2, 1.5},
                                          {0, 0.5},
@@ -30,10 +30,10 @@ constexpr std::array<Trial, 15> kBeside{{{0, 1.5},
                                          {1, 1.5},
                                          {0, 0.03},
                                          {3, 0.03}}};
-/// With every damping, where none of those is uphill.
+/// All dampings, if none of the above improves the posterior.
 constexpr std::array<double, 8> kLengths{0.7, 0.35, 0.15, 0.06, 0.03, 0.01, 0.003, 0.001};
 constexpr double kDifference = 1e-4;  // in prior standard deviations; error of central differences about 1e-8
-constexpr double kGoodEnough = 0.8;   // of the best gain: what is linearised already is taken
+constexpr double kGoodEnough = 0.8;   // share of the best gain above which the step that is already linearised is taken
 
 /// Writes one candidate into a lane of the batch.
 void SetLane(const ParameterSpace& space, const ParamVector& u, int lane, ThetaTile* theta,
@@ -54,7 +54,7 @@ bool IsPressed(const ParameterSpace& space, const ParamVector& u, const ParamVec
   return (u[d] <= space.lower[i] && gradient[d] > 0.0) || (u[d] >= space.upper[i] && gradient[d] < 0.0);
 }
 
-/// The others move as if those that are pressed against their bounds stay there (projected Newton steps).
+/// The other coordinates move as if those pressed against their bounds were fixed (projected Newton steps).
 void HoldPressed(const ParameterSpace& space, const ParamVector& u, ParamVector* gradient,
                  ParamMatrix* hessian) noexcept {
   for (int d = 0; d < space.dim; ++d) {
@@ -66,7 +66,7 @@ void HoldPressed(const ParameterSpace& space, const ParamVector& u, ParamVector*
   }
 }
 
-/// -(H + mu diag H)^-1 g, or none where that is not finite.
+/// -(H + mu diag H)^-1 g, or zero if that is not finite.
 ParamVector DampedStep(const ParamMatrix& hessian, const ParamVector& gradient, double damping) noexcept {
   ParamMatrix damped = hessian;
   damped.diagonal() *= 1.0 + damping;
@@ -75,7 +75,7 @@ ParamVector DampedStep(const ParamMatrix& hessian, const ParamVector& gradient, 
   return step;
 }
 
-/// Of every candidate of a batch: a product of matrix and vector for each by itself would cost as much as the batch.
+/// For all candidates of a batch: separate matrix-vector products would cost as much as the whole batch.
 double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
   const auto dim = u.size();
   double sum = 0.0;
@@ -88,7 +88,7 @@ double LogPrior(const Gaussian& prior, const ParamVector& u) noexcept {
   return -sum;
 }
 
-/// u in every lane, but a little to either side of it in each parameter d in lanes 1 + 2 d and 2 + 2 d.
+/// u in every lane, shifted to either side in parameter d in lanes 1 + 2 d and 2 + 2 d.
 void SetAround(const ParameterSpace& space, const ParamVector& u, ThetaTile* theta) noexcept {
   for (std::size_t d = 0; d < static_cast<std::size_t>(space.num_parameters); ++d) {
     const auto value = [&](double shift) noexcept {
@@ -100,7 +100,7 @@ void SetAround(const ParameterSpace& space, const ParamVector& u, ThetaTile* the
   }
 }
 
-/// Lanes that are predicted, of which the first 1 + 2 num_parameters are those of SetAround().
+/// Number of predicted lanes, of which the first 1 + 2 num_parameters are those of SetAround().
 int LanesAround(const ParameterSpace& space) noexcept {
   return 1 + 2 * space.num_parameters <= kTileLanes / 2 ? kTileLanes / 2 : kTileLanes;
 }
@@ -240,7 +240,7 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
       chosen = lane;
     };
 
-    // Newton's step with all that a linearisation there needs, and others beside it.
+    // The Newton step with everything that a linearisation there needs, and other trial steps.
     trial[0] = u + newton;
     Clamp(space, &trial[0]);
     SetAround(space, trial[0], &scratch->theta);

@@ -35,8 +35,8 @@ SymmetricEigen EigenOfSymmetric(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKIN
   if (eigen.converged) {
     eigen.values = solver.eigenvalues();
     eigen.vectors = solver.eigenvectors();
-    // The solver leaves the signs to the number of its iterations, which the last bit of the matrix may change.
-    constexpr double kGolden = 0.6180339887498949;  // no two components that are equal but for their sign cancel
+    // The signs depend on the number of iterations of the solver, which the last bit of the matrix may change.
+    constexpr double kGolden = 0.6180339887498949;  // components of equal magnitude and opposite sign do not cancel
     for (Eigen::Index j = 0; j < eigen.vectors.cols(); ++j) {
       double sum = 0.0;
       for (Eigen::Index i = eigen.vectors.rows(); i-- > 0;) sum = kGolden * sum + eigen.vectors(i, j);

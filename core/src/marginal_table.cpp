@@ -61,7 +61,7 @@ void MarginalTable::Index(const double* cdf) noexcept {
     const auto k = static_cast<std::size_t>(i);
     intervals_[k] = {cdf[k], i < last ? cdf[k + 1] : HUGE_VAL, pdf_[k], pdf_[k + 1]};
   }
-  int from = 0;  // first entry that is not written
+  int from = 0;  // first entry not yet written
   for (int i = 0; i <= last; ++i) {
     const double end = i < last ? cdf[i + 1] * kGuideSize : kGuideSize;
     const int to = static_cast<int>(std::fmin(std::fmax(std::ceil(end), from), kGuideSize));

@@ -10,8 +10,8 @@
 namespace armcmc {
 namespace {
 
-constexpr double kChanges = 0.01;    // share of P_0 in the prior from which on its posterior is drawn for sure
-constexpr double kRefitShare = 0.4;  // effective share of the draws below which the proposal is fitted once more
+constexpr double kChanges = 0.01;    // share of P_0 in the prior above which its posterior is always drawn
+constexpr double kRefitShare = 0.4;  // effective share of the draws below which the proposal is refitted
 
 enum Purpose : std::uint64_t {
   kMismatchStream = 0,
@@ -104,7 +104,7 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
       mean_sum += m;
       mean_square += m * m;
     }
-    // Second sweep of the tile: running first and second moments about the reference in p.mean.
+    // Second pass over the tile: running first and second moments about the reference in p.mean.
     for (int n = 0; n < data.num_samples; ++n) {
       const auto in = static_cast<std::size_t>(n);
       double s1 = 0.0;
@@ -164,18 +164,18 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const bool use_previous = lambda > 0.0;
   const int wanted = DrawTarget(mismatch, out);
   int target = std::clamp(limit, SamplerSettings::kMinDraws, wanted);
-  // A change in part leaves one coordinate as wide as P_0: its density is a poor guide to the posterior.
+  // After a partial change one coordinate is as wide as P_0: the density is a poor proposal for the posterior.
   const double lambda_q = transition_.Offers(previous)
                               ? sampler_.lambda_q_min
                               : std::clamp(lambda, sampler_.lambda_q_min, sampler_.lambda_q_max);
 
   may_have_changed_ = lambda < 1.0 - kChanges;
-  const bool informed = last.valid && last.informed;  // else the result has to wait for Remember()
+  const bool informed = last.valid && last.informed;  // otherwise the result is complete only after Remember()
   const Nanos fit_start = clock.Now();
   FitLaplace(data, previous, use_previous, stream_of(kStartStream), ws);
   quadratic_.Prepare(data, use_previous ? fit_persisted_ : fit_fresh_, &ws->quadratic);
   const Nanos anchor_ns =
-      (clock.Now() - fit_start) / laplace_fits_;  // more than they take: they start next to each other
+      (clock.Now() - fit_start) / laplace_fits_;  // an upper bound, since they start close to each other
   Proposal proposal;
   pilot_lacks_ = false;
   BuildProposal(previous, lambda_q, use_previous, 0, &proposal);
@@ -186,7 +186,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
                        {deadline_ns, clock, limit, anchor_ns, informed}, stream, ws, &proposal, out, &in_haste);
   if (in_haste) target = pilot + DrawsInHaste(pilot, wanted);
 
-  // Nothing above or below depends on `limit` but where the loop ends, so that a truncated run repeats to the bit.
+  // Only the end of the loop depends on `limit`, so that a truncated run is bit-identical up to there.
   int made = pilot;
   bool refitted = false;
   double worst_draw_ns = 0.0;
@@ -194,7 +194,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   int timed = 0;
   double slowness = 1.0;
   while (made < target || made == pilot) {  // at most max(8, max_draws / kChunkDraws) + 2 turns
-    // A replay tells from what came after the pilot how many rounds that had: no less than a pack in haste draws.
+    // A replay infers the number of pilot rounds from the draws after the pilot: at least those of a hurried pack.
     const int several = made == pilot ? std::max(DrawsInHaste(pilot, wanted), ChunkDraws(wanted)) : ChunkDraws(wanted);
     const int chunk = std::min(several, (made < target ? target : wanted) - made);
     const Nanos before = clock.Now();
@@ -207,9 +207,9 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
     draw_ns += spent;
     worst_draw_ns = std::max(worst_draw_ns, static_cast<double>(spent) / chunk);
     slowness = draw_pace_.Slowness(draw_ns, timed);
-    // One late correction, still inside the half of the chain that is thrown away: what was drawn so far is a better
-    // guide than the pilot where that was a poor match. Who is done, in haste or at a limit, draws no further chunk for
-    // it.
+    // One late correction, within the discarded half of the chain: if the pilot was a poor match, the draws so far give
+    // a better proposal. It is skipped if drawing is finished, short of time or at a limit, since it would need
+    // another chunk.
     if (!refitted && made < target && wanted > 2 * kChunkDraws && made >= wanted / 4 && made + kChunkDraws <= wanted) {
       refitted = true;
       double ess = 0.0;
@@ -229,7 +229,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   out->truncated = made < wanted;
 
   const int memory_components = use_previous ? previous.num_blocks : 0;
-  // They are the proposal's first components.
+  // The first components of the proposal.
   std::fill_n(&ws->component[static_cast<std::size_t>(made)], kTileLanes, std::int8_t{Proposal::kMaxComponents});
   const simd::Kernels::Chosen memory =
       kernels_.count_chosen(ws->component.data(), memory_components, ws->initial_prior.data(), RoundUpToTile(made));
@@ -237,7 +237,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const double reference = Weigh(previous, lambda, 0, made, ws);
   if (std::isnan(reference)) return Status::kNonFinite;
 
-  // The pilot's draws belong to the chain, which forgets them, and not to the importance estimate.
+  // The pilot's draws are part of the chain, which discards them, and not of the importance estimate.
   std::array<double, 2> sums{};
   kernels_.first_moments(0, nullptr, &ws->weight[static_cast<std::size_t>(pilot)], made - pilot, sums.data());
   const double sum = sums[0];
@@ -264,7 +264,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   ShareAmongPriors(ws, out);
   out->known = informed;
   out->updated = true;
-  // Each at the usual pace: a pack that was slow throughout does not make the next one look so.
+  // Each at its usual speed: a pack that was slow throughout does not affect the estimate for the next.
   finish_time_.Add(static_cast<Nanos>(static_cast<double>(clock.Now() - finish_start) / slowness), made);
   draw_pace_.Add(draw_ns, timed);
   return out->truncated ? Status::kTruncated : Status::kOk;
@@ -284,7 +284,7 @@ void ModeSampler::Remember(ClockRef clock, SamplerWorkspace* ws, PosteriorMemory
   transition_.Accept(*next, out->decision);
   drift_.Learn(*unfinished_.data, *next, unfinished_.part, unfinished_.split && next->num_blocks == 2,
                out->p_changed > 0.5, &ws->laplace);
-  if (!out->known) out->known = next->informed;  // once it is, the result may be read by another thread
+  if (!out->known) out->known = next->informed;  // if it is already, another thread may be reading the result
   remember_time_.Add(clock.Now() - start, out->draws);
 }
 

@@ -11,11 +11,11 @@
 namespace armcmc {
 namespace {
 
-constexpr double kBetterMode = 0.1;  // nats by which another mode has to be better: the same one, found again, is not
-constexpr int kScattered = 256;      // draws from P_0 that look for where a fit should start
-constexpr int kScatteredStarts = 3;  // fits from the best of them
+constexpr double kBetterMode = 0.1;  // nats by which another mode must be better, to exclude the same mode found again
+constexpr int kScattered = 256;      // draws from P_0 in the search for starting points
+constexpr int kScatteredStarts = 3;  // fits started from the best of them
 constexpr double kScatteredApart = 0.25;  // squared distance of two starts, standard deviations of the prior
-constexpr double kNoiseSurprise = 4.0;    // squared distance of the noise scale from what it was, in its variance
+constexpr double kNoiseSurprise = 4.0;    // squared distance of the noise scale from before, relative to its variance
 static_assert(kScattered <= ModeSampler::kMismatchDraws);  // whose rows they use
 
 }  // namespace
@@ -55,7 +55,7 @@ void ModeSampler::FitFromScattered(const ModeData& data, const RandomStream& str
       leading = other_quality;
       *fit = other;
     }
-    // The next from elsewhere.
+    // The next from a different point.
     for (int k = 0; k < kScattered; ++k) {
       double apart = 0.0;
       for (int d = 0; d < dim; ++d) {
@@ -114,7 +114,7 @@ void ModeSampler::FitUnder(const ParamVector& mean, const ParamMatrix& covarianc
   ++laplace_fits_;
   (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, mean, kModeTolerance, &ws->laplace, fit);
   if (!space_.samples_noise_scale()) return;
-  // Of the noise scale the memory has the tails of a t law, which let go of what is far away.
+  // For the noise scale the memory has the tails of a t law, which do not constrain distant values.
   const Eigen::Index last = space_.dim - 1;
   const double away = (fit->mean[last] - mean[last]) * (fit->mean[last] - mean[last]) / covariance(last, last);
   if (!(away > kNoiseSurprise)) return;

@@ -1,4 +1,4 @@
-// The posterior of ModeSampler: weights, chain, and what is handed on to the next pack.
+// The posterior of ModeSampler: weights, chain, and the prior of the next pack.
 
 #include "armcmc/mode_sampler.hpp"
 
@@ -16,10 +16,10 @@ namespace armcmc {
 namespace {
 
 constexpr double kMinimumGroup = 2e-3;  // posterior probability below which a group of draws gets no block
-constexpr double kLesserPart = 0.2;     // posterior probability from which on a group is not left out
-constexpr int kMostRoots = 8;           // of the weights of a group that has too few effective draws
-constexpr double kNoiseMemory = 0.1;    // standard deviation of log s that a posterior hands on at least
-constexpr double kInformedSd = 0.9;  // of the prior's: a posterior narrower than that in any parameter says something
+constexpr double kLesserPart = 0.2;     // posterior probability above which a group is always kept
+constexpr int kMostRoots = 8;           // largest root of the weights for a group with too few effective draws
+constexpr double kNoiseMemory = 0.1;    // minimum standard deviation of log s in the prior of the next pack
+constexpr double kInformedSd = 0.9;     // relative to the prior: a posterior narrower in any parameter is informed
 constexpr FitOptions kMemoryFit{
     .bandwidth_factor = 0.7, .tail_weight = 0.02, .tail_sd = 1.25, .shrink_to_normal = true};
 
@@ -83,13 +83,13 @@ void ModeSampler::ReduceSamplingError(int first, int last, bool use_previous, Sa
 void ModeSampler::RunChain(const RandomStream& stream, int first, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
   const int draws = out->draws;
   std::fill(out->visits, out->visits + draws, 0);
-  // gamma <= w / w_state, that is w_state <= w / gamma. A state of weight zero accepts everything, and nothing else
-  // accepts a weight of zero. Numbers that are not negative have the order of their bits, which takes less time.
+  // gamma <= w / w_state, that is w_state <= w / gamma. A state of weight zero accepts everything, and no other
+  // accepts a weight of zero. Non-negative numbers are ordered as their bits, whose comparison is faster.
   double* const bound = ws->group_weight.data();  // free between the fits
   const double* const weight = ws->weight.data();
   kernels_.uniforms(stream.origin(), 0, 1, RoundUpToTile(draws), bound);
   kernels_.ratio(weight, bound, RoundUpToTile(draws), bound);
-  // A lucky draw of the pilot, whose proposal was a poor match, would hold the chain for ever.
+  // A pilot draw with a very large weight, from a poorly matched proposal, would trap the chain.
   for (int k = 0; k < first; ++k) out->chain[k] = k;
   int state = first;
   auto state_weight = std::bit_cast<std::int64_t>(weight[first]);
@@ -123,7 +123,7 @@ void ModeSampler::AppendNoiseScale(int first, int count, const double* weight, M
 }
 
 void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept {
-  // The first block of the memory, the second, or drawn anew.
+  // The first block of the memory, the second, or a new draw from P_0.
   Unfinished& u = unfinished_;
   const bool split = drift_.Splits(*u.previous);
   double mass_first = 0.0;
@@ -141,7 +141,7 @@ void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcep
     u.mass_first = mass_first = masses[0];
     u.mass_new = masses[1];
     if (split && u.mass_new >= kMinimumGroup) {
-      // Three parts, of which two can be handed on: what was drawn anew, and the rest as one.
+      // Three parts, of which two can be stored: the new draws from P_0, and the rest as one.
       std::swap(prior.initial, prior.memory[0]);
       std::swap(prior.initial_share, prior.memory_share[0]);
       u.mass_first = share(prior)[0];
@@ -164,8 +164,8 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
   const int first = unfinished_.first;
   const int count = out->draws - first;
   const auto offset = static_cast<std::size_t>(first);
-  // The level of the noise is carried on loosely. Held as tightly as thousands of samples allow, a quieter or louder
-  // stretch could only be explained by everything having changed, and the parameters would be forgotten with it.
+  // The noise level is passed on with an inflated variance. With the precision of thousands of samples, a change of the
+  // noise could only be explained by a change of all parameters, which would then be forgotten.
   WeightedDraws group{.dim = space_.num_parameters, .size = count, .u = {}, .weight = ws->group_weight.data() + offset};
   for (int d = 0; d < group.dim; ++d)
     group.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
@@ -188,8 +188,8 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
       return FitBlock(kernels_, group, kMemoryFit, ws->StraightRows().data(), next->tables[b].data(), &next->block[b]);
     };
     bool fitted = fit() >= kMinimumEss;
-    // Too few effective draws of a group that may not be left out: its posterior to a power below one, times the
-    // proposal, is broad enough to be fitted by them. Less is learnt than the pack tells, and nothing else.
+    // Too few effective draws of a group that must be kept: its posterior to a power below one, times the
+    // proposal, is broad enough to be fitted by them. It has part of the information of the pack, and no other.
     for (int root = 0; root < kMostRoots && !fitted && mass >= kLesserPart; ++root) {
       for (int k = first; k < out->draws; ++k) group_weight[k] = std::sqrt(std::fmax(group_weight[k], 0.0));
       fitted = fit() >= 2.0 * kMinimumEss;
@@ -207,14 +207,14 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
   } else {
     for (const bool of_first : {mass_first >= 0.5, mass_first < 0.5}) {
       const double mass = of_first ? mass_first : 1.0 - mass_first;
-      // Of rest and drift the lesser need not be drawn: where it is, relative to the other, Drift knows.
+      // The less probable of rest and drift need not be drawn: Drift knows its position relative to the other.
       if (unfinished_.split && mass < kLesserPart) continue;
       const bool fitted = of_first ? fit_group(mass, 0.0, 1.0) : fit_group(mass, 1.0, -1.0);
-      if (unfinished_.split && !fitted) break;  // the lesser alone would stand for the more probable
+      if (unfinished_.split && !fitted) break;  // the less probable one alone would replace the more probable
     }
   }
   if (next->num_blocks == 0) {
-    // Too few effective draws for moments: the Laplace fit, widened, is the safer summary.
+    // Too few effective draws for moments: the Laplace fit, widened, is the more robust summary.
     const Gaussian& fit = use_previous ? fit_persisted_ : fit_fresh_;
     SetElliptic(fit.mean, Inverse(fit.precision), 1.5, &normal_table_, &next->block[0]);
     next->num_blocks = 1;

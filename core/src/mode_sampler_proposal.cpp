@@ -1,4 +1,4 @@
-// The proposal of ModeSampler: pilot, ridge, and the scoring of what is drawn.
+// The proposal of ModeSampler: pilot, ridge, and the scoring of the draws.
 
 #include "armcmc/mode_sampler.hpp"
 
@@ -11,12 +11,12 @@
 namespace armcmc {
 namespace {
 
-constexpr double kPilotEss = 250.0;      // effective draws of the pilot that suffice, or
-constexpr double kPilotEssShare = 0.24;  // of a round's draws, when there are few
-constexpr double kInitialShare = 0.10;   // of P_0 in the data-driven part of q
-constexpr double kLaplaceShare = 0.15;   // of the Laplace fits there, once the pilot's fit exists
-constexpr double kLackingShare = 0.5;    // the same where a part of the posterior has no block of the pilot
-constexpr int kDrawsPerAnchor = 16;      // of a round: finer steps than its draws can tell apart only cost time
+constexpr double kPilotEss = 250.0;      // sufficient effective draws of the pilot, or
+constexpr double kPilotEssShare = 0.24;  // share of the draws of a round, if there are few
+constexpr double kInitialShare = 0.10;   // share of P_0 in the data-driven part of q
+constexpr double kLaplaceShare = 0.15;   // share of the Laplace fits there, once the pilot's fit exists
+constexpr double kLackingShare = 0.5;    // the same if a part of the posterior has no block of the pilot
+constexpr int kDrawsPerAnchor = 16;      // in a round: with fewer per anchor, more anchors do not help
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
 constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
 
@@ -35,20 +35,20 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
       proposal->Add(&previous.block[static_cast<std::size_t>(b)],
                     lambda_q * std::fmax(previous.weight[static_cast<std::size_t>(b)], 0.05));
   const double rest = use_previous ? 1.0 - lambda_q : 1.0;
-  // A part of the posterior whose draws in the pilot were too few for a block has the Laplace fits alone.
+  // A part of the posterior with too few pilot draws for a block is covered by the Laplace fits alone.
   const bool lacking = num_pilot_blocks == 0 || pilot_lacks_;
   const double laplace = num_pilot_blocks == 0 ? 1.0 - kInitialShare : (lacking ? kLackingShare : kLaplaceShare);
   for (int b = 0; b < num_pilot_blocks; ++b)
     proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)],
                   rest * (1.0 - kInitialShare - laplace) / num_pilot_blocks);
-  // The pilot's blocks stand in for the Laplace fit of what they were drawn for; after a modification, with P_0 alone
-  // in the target, it stays, against a late surprise in the tails.
-  // The same holds for changes in part, which are several in one pilot's block.
+  // The pilot's blocks replace the Laplace fit of their part; after a modification, with P_0 alone in the target, it
+  // is kept for the tails.
+  // The same holds for partial changes, several of which share one block of the pilot.
   if (use_previous && (lacking || transition_.Offers(previous))) {
     AddPersisted(0.6 * rest * laplace, proposal);
     proposal->Add(&laplace_fresh_, 0.4 * rest * laplace);
   } else if (!use_previous || may_have_changed_) {
-    // Where both may be: one draw of P_0's posterior, far from where the others are drawn, would hold all the weight.
+    // If both are possible: a single draw of the posterior of P_0, far from the others, would have all the weight.
     proposal->Add(&laplace_fresh_, rest * laplace);
   }
   proposal->Add(&initial_block_, rest * kInitialShare);
@@ -59,7 +59,7 @@ bool ModeSampler::BuildRidgeProposal(const ModeData& data, const PosteriorMemory
                                      double lambda_q, int anchors, SamplerWorkspace* ws, Proposal* proposal) noexcept {
   const int dim = space_.dim;
   const Gaussian initial{ParamVector::Zero(dim), ParamMatrix::Identity(dim, dim)};
-  // With one coordinate drawn anew the others hold the posterior together: the ridge is that of everything anew.
+  // With one coordinate drawn anew the others constrain the posterior: the ridge is that of P_0.
   const bool partial = use_previous && transition_.Offers(previous);
   const bool follow_previous = use_previous && !partial;
   const Gaussian prior = follow_previous ? Gaussian{previous.mean, Inverse(previous.covariance)} : initial;
@@ -120,8 +120,8 @@ int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int fi
   pilot_lacks_ = false;
   weighted.weight = GroupWeights(Origin::kAny, previous, lambda, first, last, ws) + offset;
   if (lambda > 0.0) {
-    // Persisted and changed parameters get a block each where both have a say, else those that rest and those that
-    // drift. What is too little for a block is left out: far away, it would make that of the others too wide.
+    // Constant and changed parameters get a block each if both are probable, else those at rest and those that
+    // drift. A group too small for a block is left out: if far away, it would make the other block too wide.
     const auto mass_of = [&](Origin origin) noexcept ARMCMC_NONBLOCKING {
       const double* const group = GroupWeights(origin, previous, lambda, first, last, ws);
       double mass = 0.0;
@@ -159,8 +159,8 @@ int ModeSampler::FitPilot(const PosteriorMemory& previous, double lambda, int fi
   }
   *ess = fit(weighted, 0);
   if (*ess >= kMinimumEss) return 1;
-  // A few candidates hold all the weight. The posterior to a power below one is broad enough to be fitted by them, and
-  // lies where the posterior does: the next round draws from there.
+  // A few candidates have all the weight. The posterior to a power below one is broad enough to be fitted from them,
+  // and has the same location: the next round draws from it.
   double top = 0.0;
   for (int k = first; k < last; ++k) top = std::fmax(top, ws->weight[static_cast<std::size_t>(k)]);
   if (!(top > 0.0)) return 0;
@@ -182,7 +182,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
   const double enough = std::fmin(kPilotEss, kPilotEssShare * size);
   const int anchors = size / kDrawsPerAnchor;
   int made = 0;
-  int pooled = 0;  // first draw of those that share the proposal of this round
+  int pooled = 0;  // first draw of those with the proposal of this round
   int blocks = 0;
   bool on_ridge = false;
   Nanos worst_round_ns = 0;
@@ -211,7 +211,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
     }
     if (round == 0 && drift_.Splits(previous)) FitApart(data, previous, ws);
     const bool thin_but_right = on_ridge && (round > 1 || ess >= kMinimumEss);
-    if (!thin_but_right) {  // else more of the same
+    if (!thin_but_right) {  // otherwise more draws from the same proposal
       pooled = made;
       const Nanos ridge_start = time.clock.Now();
       on_ridge = round == 0 && BuildRidgeProposal(data, previous, use_previous, lambda_q, anchors, ws, proposal);

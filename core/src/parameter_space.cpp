@@ -36,7 +36,7 @@ ParameterSpace::ParameterSpace(const EstimatorSettings& settings, const NoiseSet
                             ? (NormalCdf(upper[i]) - NormalCdf(lower[i])) * std::sqrt(2.0 * std::numbers::pi)
                             : upper[i] - lower[i];
     norm /= mass;
-    // Moments of the truncated law by the midpoint rule: set-up time, any bounds.
+    // Moments of the truncated law by the midpoint rule: at set-up, for any bounds.
     constexpr int kNodes = 2000;
     const double from = std::fmax(lower[i], normal[i] > 0.0 ? -8.0 : lower[i]);
     const double to = std::fmin(upper[i], normal[i] > 0.0 ? 8.0 : upper[i]);

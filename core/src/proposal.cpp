@@ -12,7 +12,7 @@ class Groups {
  public:
   /// @pre 0 <= choice[i] < kMaxComponents, count <= kMaxBatch.
   void Sort(const std::int8_t* choice, int count) noexcept {
-    // Every quarter counts for itself: the sums of one batch would wait for each other.
+    // Each quarter has its own counters, to avoid dependencies between the sums of one batch.
     const int quarter = (count + kParts - 1) / kParts;
     Counts size{};
     ForAll(choice, count, quarter, [&](std::size_t part, std::size_t c, int) { ++size[part][c]; });
@@ -31,7 +31,7 @@ class Groups {
     });
     std::fill_n(&member_[static_cast<std::size_t>(count)], kPadding, std::int16_t{0});
   }
-  /// Size(c) of them, then numbers of other candidates up to a multiple of 8.
+  /// Size(c) candidates, padded with other candidates to a multiple of 8.
   [[nodiscard]] const std::int16_t* Members(int c) const noexcept {
     return &member_[static_cast<std::size_t>(start_[static_cast<std::size_t>(c)])];
   }
@@ -81,7 +81,7 @@ void Proposal::Draw(const simd::Kernels& kernels, const RandomStream& stream, in
   kernels.uniforms(stream.origin(), origin, kNumbersPerDraw, padded, pick.data());
   kernels.choose(pick.data(), cumulative.data(), size_ - 1, padded, choice.data());
   std::copy_n(choice.data(), count, component_of);
-  // Candidates of one component together: its axes and tables stay where they are needed.
+  // Candidates of one component together, so that its axes and tables stay in the cache.
   Groups groups;
   groups.Sort(choice.data(), count);
   for (int c = 0; c < size_; ++c) {

@@ -8,7 +8,7 @@
 namespace armcmc {
 namespace {
 
-/// Nats: candidates at a distance are held to the bound of those within a standard deviation of the prior no further.
+/// Nats: the bound applies within a standard deviation of the prior, not to distant candidates.
 constexpr double kConfirmed = 1e-4;
 
 }  // namespace
@@ -91,7 +91,7 @@ int QuadraticScore::Degree(double variance) const noexcept {
 
 bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
                                  QuadraticScratch* scratch) const noexcept {
-  constexpr int kNear = kTileLanes / 2 - 1;  // odd: the place itself is one of them
+  constexpr int kNear = kTileLanes / 2 - 1;  // odd, so that the centre is one of them
   constexpr double kReach = 4.0;             // standard deviations
   alignas(64) std::array<std::array<double, kTileLanes>, kMaxParams> rows;
   std::array<const double*, kMaxParams> u{};
@@ -103,7 +103,7 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
       double x = form_.about[i] + side * sd[d];
       if (d == part_.curved && l < kNear) {
         x = form_.about[i] + sd[d] * kReach * (2.0 * l / (kNear - 1) - 1.0);
-      } else if (d == part_.curved) {  // between the points, in places that have nothing to do with them
+      } else if (d == part_.curved) {  // between the points, at unrelated places
         const double part = (l - kNear + 0.61803398874989485) / (kTileLanes - kNear);
         x = space_.lower[i] + part * (space_.upper[i] - space_.lower[i]);
       }

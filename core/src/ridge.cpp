@@ -9,7 +9,7 @@ namespace {
 constexpr int kFewestAnchors = 6;
 constexpr double kRidgeReach = 4.5;   // standard deviations of the worst known coordinate
 constexpr double kPinned = 1e12;      // precision that holds a coordinate
-constexpr double kEvenShare = 0.2;    // of the proposal, spread evenly over the anchors that matter
+constexpr double kEvenShare = 0.2;    // share of the proposal that is spread evenly over the relevant anchors
 constexpr double kNegligible = 14.0;  // nats below the best anchor
 
 int WorstKnown(const ParameterSpace& space, const ParamMatrix& covariance) noexcept {
@@ -50,7 +50,7 @@ bool FitAnchor(const simd::Kernels& kernels, int model, const ModeData& data, co
   const double determinant = factor.Diagonal().prod();
   const ParamVector offset = fit.mean - prior.mean;
   const ParamVector pinned_offset = fit.mean - pinned.mean;
-  // Height of the unpinned posterior: swap the pinned quadratic form for the prior's.
+  // Height of the unpinned posterior: replace the pinned quadratic form by the prior's.
   anchor->share = height + 0.5 * pinned_offset.dot(Multiply(pinned.precision, pinned_offset)) -
                   0.5 * offset.dot(Multiply(prior.precision, offset)) - 0.5 * std::log(std::fmax(determinant, 1e-300));
   return anchor->mean.allFinite() && anchor->covariance.allFinite() && std::isfinite(anchor->share);
@@ -70,8 +70,8 @@ int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, c
   if (!(to > from)) return 0;
   count = std::clamp(count, kFewestAnchors, kRidgeAnchors);
   const double step = (to - from) / count;
-  // Outward from the mode in both directions, each fit starting where its two neighbours point to. Of an even number of
-  // anchors two are as near to the mode: rounding must not choose.
+  // Outward from the mode in both directions, each fit starting at the extrapolation of its two neighbours. For an even
+  // number of anchors two are equally near to the mode: the choice must not depend on rounding.
   constexpr double kNearer = 1e-6;
   const int middle = std::clamp(static_cast<int>((fit.mean[j] - from) / step + kNearer), 0, count - 1);
   int written = 0;

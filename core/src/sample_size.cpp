@@ -11,7 +11,7 @@ double ChernoffBound(double epsilon, double delta) noexcept {
 
 double MinimumDraws(double lambda, double epsilon, double delta) noexcept ARMCMC_NONBLOCKING {
   const double chernoff = ChernoffBound(epsilon, delta);
-  // Below this the root sinks under rounding of the degenerate relation at lambda = 0.
+  // Below this the root is lost in the rounding error of the degenerate relation at lambda = 0.
   constexpr double kDegenerate = 1e-9;
   if (!(lambda > kDegenerate)) return chernoff;
   if (lambda >= 1.0) return chernoff;

@@ -7,7 +7,7 @@
 namespace armcmc {
 namespace {
 
-/// Changed whenever Save() writes something else, or the settings are told apart by something else.
+/// Changed whenever the data that Save() writes, or the settings that identify a model, change.
 constexpr std::int64_t kLayout = 3;
 
 /// FNV-1a, 64 bits.

@@ -9,8 +9,8 @@
 namespace armcmc {
 namespace {
 
-/// Reported quantity r of every candidate; 0 of one that counts nowhere: outside its bounds the quantity may have no
-/// value, which no weight of 0 would take out of a sum.
+/// Reported quantity r of every candidate; 0 for a candidate without weight: outside its bounds the quantity may be
+/// NaN, which a weight of 0 would not remove from a sum.
 void Reported(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
               const ModeDraws& draws, int r, double* value) noexcept {
   const auto ir = static_cast<std::size_t>(r);
@@ -34,7 +34,7 @@ void Reported(const ModelInfo& info, const PlantConstants& constants, const Para
   }
 }
 
-/// Slopes of the reported quantities at theta by the standardised coordinate d.
+/// Derivatives of the reported quantities at theta with respect to the standardised coordinate d.
 std::array<double, kMaxReported> Slopes(const ModelInfo& info, const PlantConstants& constants,
                                         const ParameterSpace& space, const std::array<double, kMaxParams>& theta,
                                         int d) noexcept {
@@ -50,7 +50,7 @@ std::array<double, kMaxReported> Slopes(const ModelInfo& info, const PlantConsta
   return slope;
 }
 
-/// Expected speeds of the reported quantities where every standardised coordinate moves at the rate of the draws.
+/// Expected rates of the reported quantities if every standardised coordinate moves at the rate of the draws.
 void DriftRates(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
                 const ModeDraws& draws, std::array<double, kMaxReported>* rate) noexcept {
   rate->fill(0.0);
@@ -67,7 +67,7 @@ struct MeanAndSd {
   double mean, sd;
 };
 
-/// Of values with weights that sum to `total`.
+/// For values with weights that sum to `total`.
 MeanAndSd Moments(const simd::Kernels& kernels, const double* value, const double* weight, int count,
                   double total) noexcept {
   const int whole = count / 8 * 8;  // the kernels take whole vectors
@@ -102,7 +102,7 @@ void Distribution(const double* value, const double* visits, int count, double t
   double inside = 0.0;
   for (int k = 0; k < count; ++k) {
     const double v = value[k];
-    // Where a reported quantity is not a number for some draw it counts among the lowest.
+    // A draw whose reported quantity is NaN counts among the lowest.
     fine[static_cast<std::size_t>(std::min(std::max(0.0, (v - lo) * per_unit), kQuantileBins - 1.0))] += visits[k];
     if (coarse_width > 0.0 && v >= m->histogram_lo && v <= m->histogram_hi) {
       m->density[static_cast<std::size_t>(
@@ -231,7 +231,7 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
   std::array<double, kMaxReported> mode{};
   static_assert(kMaxReported == kMaxParams);
   info.Report(mode_theta.data(), constants, mode.data());
-  // The chain stays at some candidates and never comes to others: what describes the chain looks at the visited ones.
+  // The chain visits some candidates repeatedly and others never: its statistics are computed from the visited ones.
   int visited = 0;
   for (int k = 0; k < draws.draws; ++k) {
     workspace->visited[static_cast<std::size_t>(visited)] = k;

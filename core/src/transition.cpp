@@ -11,7 +11,7 @@
 namespace armcmc {
 namespace {
 
-constexpr double kChangeShare = 0.5;  // of "one parameter changed" in the prior after a modification
+constexpr double kChangeShare = 0.5;  // weight of "one parameter changed" in the prior after a modification
 
 double LogDeterminant(const ParamMatrix& m) noexcept ARMCMC_NONBLOCKING {
   const ParamVector diagonal = SymmetricFactor(m).Diagonal();
@@ -63,7 +63,7 @@ void Transition::SetMemory(const PosteriorMemory& previous, const Hypothesis* hy
 
 bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previous, bool reinforcement,
                               LaplaceScratch* scratch) noexcept {
-  // After a modification the posterior that it made is no base: it may be of a pack that holds the jump.
+  // The posterior after a modification is not used as a base: its pack may contain the jump.
   const bool from_stable = just_modified_ && stable_;
   ParamVector base = previous.mean;
   ParamMatrix covariance = previous.covariance;
@@ -82,7 +82,7 @@ bool Transition::OfferChanges(const ModeData& data, const PosteriorMemory& previ
       best[1] = h;
     }
   };
-  // The last coordinate may be the noise scale: a gross outlier is a louder noise before it is another plant.
+  // The last coordinate may be the noise scale: a gross outlier indicates larger noise rather than a changed plant.
   for (int j = 0; j < space_.dim; ++j) {
     ParamVector mean = base;
     ParamMatrix c = covariance;
@@ -128,7 +128,7 @@ const PosteriorMemory& Transition::Choose(const ModeData& data, const PosteriorM
 }
 
 void Transition::Accept(const PosteriorMemory& next, Decision decision) noexcept {
-  // A pack that started again is the first of the new plant alone; another such start would lose what it taught.
+  // A restart already used this pack as the first of the new plant; another restart would lose its information.
   just_modified_ = decision == Decision::kModification && !restarted_;
   if (just_modified_) {
     if (stable_) {

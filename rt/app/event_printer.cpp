@@ -65,7 +65,7 @@ std::string EventText(const rt::Event& event, const GapCheckNames& gap_check) {
       return "pack " + a + ": " + std::string(ToString(static_cast<Status>(event.detail))) + ", what was known is kept";
     case EventKind::kPublishFailed: return "publishing failed, " + a + " times so far";
     case EventKind::kGapSuspected:
-      return "GAP SUSPECTED: the model misses something since pack " + a +
+      return "GAP SUSPECTED: the model is missing something since pack " + a +
              (gap_check ? ", seen in " + gap_check(event.detail) : "");
     case EventKind::kClockJumped: return "the plant's clock jumped by " + Millis(event.b) + " at pack " + a;
     case EventKind::kBusFlooded: return "the bus is flooded: " + Count(event.a, "message") + " of other channels";

@@ -31,7 +31,7 @@ std::string StageTimes(const rt::Pipeline& pipeline, const rt::Lane& lane) {
     AddTimes("last sample to published", lane.latency().from_sample(), &table);
   rt::LogHistogram witness;
   for (const auto& w : pipeline.witnesses()) witness.Merge(w->delays());
-  AddTimes("the machine's wake-ups", witness, &table);
+  AddTimes("wake-up latency", witness, &table);
   return table.ToString();
 }
 
@@ -50,7 +50,7 @@ std::string Parameters(const rt::Lane& lane, const Estimator& estimator) {
       any = true;
     }
   }
-  return any ? table.ToString() : "no parameter was learnt: no pack with information came\n";
+  return any ? table.ToString() : "no parameter was estimated: no pack with information was received\n";
 }
 
 /// @param model  As the user may call it, or its plant file.
@@ -62,11 +62,11 @@ std::string Gap(const GapState& gap, const std::string& window, const std::strin
         << ", threshold " << Significant(gap.log_threshold, 3) << ")\n";
     return out.str();
   }
-  out << "GAP SUSPECTED since pack " << gap.since_seq << ": the model misses something, seen in " << gap.where.view()
-      << " (log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
-      << ")\n";
+  out << "GAP SUSPECTED since pack " << gap.since_seq << ": the model is missing something, seen in "
+      << gap.where.view() << " (log evidence " << Significant(gap.log_evidence, 3) << ", threshold "
+      << Significant(gap.log_threshold, 3) << ")\n";
   if (!window.empty())
-    out << "data: " << window << "; what is missing: armcmc-gap --model " << model << " --data " << window
+    out << "data: " << window << "; to find what is missing: armcmc-gap --model " << model << " --data " << window
         << " --out FOLDER\n";
   return out.str();
 }
@@ -87,8 +87,8 @@ std::string SummaryText(const rt::Pipeline& pipeline, const rt::Lane& lane, cons
       << c.Dropped() << '\n';
   const rt::LogHistogram& draws = lane.execute().draws();
   if (draws.count() > 0) {
-    out << "draws a posterior: median " << draws.Quantile(0.5) << ", least " << draws.min() << "; effective: median "
-        << lane.execute().ess().Quantile(0.5) << '\n';
+    out << "draws per posterior: median " << draws.Quantile(0.5) << ", minimum " << draws.min()
+        << "; effective: median " << lane.execute().ess().Quantile(0.5) << '\n';
   }
   const EstimatorSettings& settings = estimator.settings();
   out << Gap(lane.last_estimate().gap, gap_window,

@@ -107,13 +107,14 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
   for (const char* path :
        {"./usr/bin/armcmc-estimator", "./usr/bin/armcmc-plant", "./usr/bin/armcmc-stress", "./usr/bin/armcmc-rtcheck",
         "./usr/share/man/man1/armcmc-estimator.1", "./usr/share/man/man1/armcmc-watch.1",
-        "./usr/share/bash-completion/completions/armcmc-gap", "./usr/lib/systemd/system/armcmc-estimator.service",
-        "./usr/lib/sysctl.d/60-armcmc.conf", "./usr/share/armcmc/deploy/60-armcmc.rules",
-        "./usr/share/armcmc/config/hunt_crossley.toml", "./usr/share/armcmc/scenarios/hunt_crossley_paper.toml",
-        "./usr/share/armcmc/lcm_types/armcmc_data_pack_t.lcm", "./usr/share/doc/armcmc/tuning.md",
-        "./usr/include/armcmc/estimator.hpp"}) {
+        "./usr/share/man/man1/armcmc-spy.1", "./usr/share/bash-completion/completions/armcmc-gap",
+        "./usr/lib/systemd/system/armcmc-estimator.service", "./usr/lib/sysctl.d/60-armcmc.conf",
+        "./usr/share/armcmc/deploy/60-armcmc.rules", "./usr/share/armcmc/config/hunt_crossley.toml",
+        "./usr/share/armcmc/scenarios/hunt_crossley_paper.toml", "./usr/share/armcmc/lcm_types/armcmc_data_pack_t.lcm",
+        "./usr/share/doc/armcmc/tuning.md", "./usr/include/armcmc/estimator.hpp"}) {
     EXPECT_NE(contents.out.find(path), std::string::npos) << path << " is missing in\n" << contents.out;
   }
+  EXPECT_EQ(contents.out.find("lcm_types/spy"), std::string::npos) << "folders without a file\n" << contents.out;
   EXPECT_NE(Shell("dpkg-deb -f " + deb + " Depends").out.find("liblcm1"), std::string::npos);
   const std::string control = dir / "control";
   ASSERT_EQ(Shell("dpkg-deb -e " + deb + " " + control).code, 0);
@@ -127,6 +128,12 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
   const Outcome plant = RunProgram(fs::path(root) / "usr/bin/armcmc-plant",
                                    {"--scenario", "hunt_crossley_paper", "--duration", "1", "--csv", dir / "x.csv"});
   EXPECT_EQ(plant.code, 0) << "it finds its scenarios where it lies: " << plant.err;
+  const Outcome replay = RunProgram(fs::path(root) / "usr/bin/armcmc-replay",
+                                    {"--config", "hunt_crossley", "--data", dir / "x.csv", "--out", dir / "y.csv"});
+  EXPECT_EQ(replay.code, 0) << "and its configurations: " << replay.err;
+  const Outcome list = RunProgram(fs::path(root) / "usr/bin/armcmc-model", {"list"});
+  EXPECT_EQ(list.code, 0) << list.err;
+  EXPECT_NE(list.out.find("servo_axis"), std::string::npos) << "and the bundled plants: " << list.out;
   const Outcome man = Shell("man --warnings -l " + root + "/usr/share/man/man1/armcmc-plant.1 2>&1 >/dev/null");
   if (man.code == 0) {
     EXPECT_EQ(man.out, "") << "the manual page is good roff";

@@ -52,6 +52,26 @@ TEST(Pages, ResultsAreMadeByTheCommandsThatTheyShow) {
   EXPECT_EQ(usage.code, 2);
 }
 
+// Who has run the first command of the README can go on with the page, and with the tutorial.
+TEST(Pages, TheDemoBuildsTheProgramsThatReadmeAndTutorialCall) {
+  const auto text_of = [](const std::filesystem::path& path) {
+    std::ifstream file(path);
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+  };
+  const std::string demo = text_of(SourceDir() / "tools/demo");
+  const std::size_t begin = demo.find("\ntargets=(");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string targets = demo.substr(begin, demo.find(')', begin) + 1 - begin);
+  const std::regex call(R"((\nbuild/bin/|\n)(armcmc-[a-z]+) )");
+  int calls = 0;
+  for (const char* page : {"README.md", "core/plants/README.md"}) {
+    const std::string text = text_of(SourceDir() / page);
+    for (std::sregex_iterator it(text.begin(), text.end(), call), end; it != end; ++it, ++calls)
+      EXPECT_TRUE(std::regex_search(targets, std::regex("[( ]" + (*it)[2].str() + "[ )]"))) << page << ": " << (*it)[2];
+  }
+  EXPECT_GT(calls, 8);
+}
+
 // A link to a file that is not there, or a page that has grown.
 TEST(Pages, LinksLeadToFilesAndPagesAreShort) {
   const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");

@@ -57,9 +57,9 @@ TEST(EventText, SaysWhichPackByHowMuchAndWhy) {
 
 TEST(EventText, SaysWhereAGapIsSeen) {
   const rt::Event gap{0, rt::EventKind::kGapSuspected, 3, 21, 0};
-  EXPECT_EQ(EventText(gap), "GAP SUSPECTED: the model misses something since pack 21");
+  EXPECT_EQ(EventText(gap), "GAP SUSPECTED: the model is missing something since pack 21");
   EXPECT_EQ(EventText(gap, [](int check) { return check == 3 ? std::string("direction_of_v") : std::string(); }),
-            "GAP SUSPECTED: the model misses something since pack 21, seen in direction_of_v");
+            "GAP SUSPECTED: the model is missing something since pack 21, seen in direction_of_v");
 }
 
 }  // namespace

@@ -76,12 +76,12 @@ TEST_F(SummaryTest, HasCountsTimesAndParameters) {
   const std::string text = AfterPacks(3);
   EXPECT_THAT(text, HasSubstr("steps 3, deadline 500 ms, missed: own "));
   EXPECT_THAT(text, HasSubstr(", lost 0, rejected 0, duplicate "));
-  EXPECT_THAT(text, HasSubstr("draws a posterior: median 1000, least 1000; effective: median 500\n"));
+  EXPECT_THAT(text, HasSubstr("draws per posterior: median 1000, minimum 1000; effective: median 500\n"));
   EXPECT_THAT(text, HasSubstr("degraded: "));
   EXPECT_THAT(text, HasSubstr("no_mlock"));
   EXPECT_THAT(text, HasSubstr("time, ms"));
-  for (const char* row : {"collect  ", "adjust  ", "execute  ", "release to estimate ", "arrival to published ",
-                          "the machine's wake-ups "})
+  for (const char* row :
+       {"collect  ", "adjust  ", "execute  ", "release to estimate ", "arrival to published ", "wake-up latency "})
     EXPECT_THAT(text, HasSubstr(row));
   EXPECT_THAT(text, testing::ContainsRegex("K +4 +0.125 +N/m"));
   EXPECT_THAT(text, testing::ContainsRegex("B +2.25 +0.0625 +N"));
@@ -91,14 +91,14 @@ TEST_F(SummaryTest, HasCountsTimesAndParameters) {
 
 TEST_F(SummaryTest, SaysThatNothingWasLearnt) {
   engine_.learnt = false;
-  EXPECT_THAT(AfterPacks(1), HasSubstr("no parameter was learnt: no pack with information came\n"));
+  EXPECT_THAT(AfterPacks(1), HasSubstr("no parameter was estimated: no pack with information was received\n"));
 }
 
 TEST_F(SummaryTest, OfARunWithoutPacksHasNoTimes) {
   const std::string text = AfterPacks(0);
   EXPECT_THAT(text, HasSubstr("steps 0, "));
   EXPECT_THAT(text, Not(HasSubstr("time, ms")));
-  EXPECT_THAT(text, Not(HasSubstr("draws a posterior")));
+  EXPECT_THAT(text, Not(HasSubstr("draws per posterior")));
 }
 
 TEST_F(SummaryTest, SaysThatNoGapIsSuspected) {
@@ -118,10 +118,11 @@ TEST_F(SummaryTest, NamesTheProgramThatFindsWhatIsMissing) {
   engine_.gap.log_evidence = 9.5;
   engine_.gap.log_threshold = 4.5;
   const std::string text = AfterPacks(1, "window.csv");
-  EXPECT_THAT(text, HasSubstr("GAP SUSPECTED since pack 42: the model misses something, seen in the sign of the "
+  EXPECT_THAT(text, HasSubstr("GAP SUSPECTED since pack 42: the model is missing something, seen in the sign of the "
                               "velocity (log evidence 9.5, threshold 4.5)\n"));
-  EXPECT_THAT(text, HasSubstr("data: window.csv; what is missing: armcmc-gap --model hunt_crossley --data window.csv "
-                              "--out FOLDER\n"));
+  EXPECT_THAT(text,
+              HasSubstr("data: window.csv; to find what is missing: armcmc-gap --model hunt_crossley --data window.csv "
+                        "--out FOLDER\n"));
 }
 
 }  // namespace

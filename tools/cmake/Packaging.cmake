@@ -6,7 +6,7 @@ set(armcmc_libraries armcmc_warnings armcmc_core armcmc_lcm_types)
 install(DIRECTORY "${PROJECT_BINARY_DIR}/lcm_types/gen/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/lcm_types/" DESTINATION "${CMAKE_INSTALL_DATADIR}/armcmc/lcm_types"
-  FILES_MATCHING PATTERN "*.lcm")
+  FILES_MATCHING PATTERN "*.lcm" PATTERN spy EXCLUDE)
 if(TARGET armcmc_rt)
   list(APPEND armcmc_libraries armcmc_rt)
 endif()
@@ -19,10 +19,16 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/armcmcConfigVersion.cmak
 install(FILES "${PROJECT_BINARY_DIR}/armcmcConfig.cmake" "${PROJECT_BINARY_DIR}/armcmcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/FindLCM.cmake" DESTINATION "${armcmc_cmake_dir}")
 
-# What a program says about itself with --help is its manual page, and what a shell completes behind it.
+# The manual page of a program and its shell completion are made from its --help.
 foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-export armcmc-gap armcmc-gap-bench armcmc-model armcmc-plant
-    armcmc-replay armcmc-rtcheck armcmc-stress armcmc-tables armcmc-watch)
-  if(TARGET ${program} AND NOT CMAKE_CROSSCOMPILING)  # they have to run
+    armcmc-replay armcmc-rtcheck armcmc-spy armcmc-stress armcmc-tables armcmc-watch)
+  set(executable "$<TARGET_FILE:${program}>")
+  set(made_by "${program}")
+  if(program STREQUAL "armcmc-spy")  # a script, written when CMake runs
+    set(executable "${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/armcmc-spy")
+    set(made_by "${executable}")
+  endif()
+  if((TARGET ${program} OR program STREQUAL "armcmc-spy") AND NOT CMAKE_CROSSCOMPILING)  # they have to run
     set(page "${PROJECT_BINARY_DIR}/man/${program}.1")
     set(completion "${PROJECT_BINARY_DIR}/completions/${program}")
     foreach(made IN ITEMS page completion)
@@ -30,8 +36,8 @@ foreach(program IN ITEMS armcmc-bench armcmc-estimator armcmc-export armcmc-gap 
       if(made STREQUAL "completion")
         set(maker "${PROJECT_SOURCE_DIR}/tools/cmake/bash-completion")
       endif()
-      add_custom_command(OUTPUT "${${made}}" COMMAND "${maker}" "$<TARGET_FILE:${program}>" "${${made}}"
-        DEPENDS ${program} "${maker}" VERBATIM)
+      add_custom_command(OUTPUT "${${made}}" COMMAND "${maker}" "${executable}" "${${made}}"
+        DEPENDS "${made_by}" "${maker}" VERBATIM)
     endforeach()
     list(APPEND armcmc_man_pages "${page}")
     list(APPEND armcmc_completions "${completion}")
@@ -80,6 +86,7 @@ if(TARGET armcmc_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-armcmc)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/tools/python/debian/prerm")
   math(EXPR armcmc_next_python "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "armcmc (= ${PROJECT_VERSION}), python3-numpy, \
 python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${armcmc_next_python})")

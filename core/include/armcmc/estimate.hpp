@@ -73,7 +73,7 @@ struct Estimate {
   /// is NaN until then.
   std::array<double, kMaxPackSamples> y_shown{};
   std::array<double, kMaxPackSamples> y_shown_free_run{};  ///< The same from the inputs alone since the start.
-  GapState gap;                                            ///< Whether the model misses something.
+  GapState gap;                                            ///< Whether the model is missing something.
 };
 
 /// What was expected of a pack before it was seen: what the law explains, from the posterior after the pack before.

@@ -9,8 +9,8 @@
 
 namespace armcmc {
 
-// Not the product but what it is compared with: Eigen's products and factorisations stand here as the text books have
-// them. All types are bounded; the tests that count allocations and RealtimeSanitizer run every one of them.
+// A baseline for comparison, not part of the product: Eigen's products and factorisations are used as in text books.
+// All types are bounded; the allocation tests and RealtimeSanitizer cover all of it.
 ARMCMC_TRUST_NONBLOCKING_BEGIN
 
 MetropolisFilter::MetropolisFilter(const FilterParts& parts) : parts_(parts), normal_table_(MarginalTable::Normal()) {}

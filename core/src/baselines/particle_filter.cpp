@@ -9,8 +9,8 @@
 
 namespace armcmc {
 
-// Not the product but what it is compared with: Eigen's products and factorisations stand here as the text books have
-// them. All types are bounded; the tests that count allocations and RealtimeSanitizer run every one of them.
+// A baseline for comparison, not part of the product: Eigen's products and factorisations are used as in text books.
+// All types are bounded; the allocation tests and RealtimeSanitizer cover all of it.
 ARMCMC_TRUST_NONBLOCKING_BEGIN
 
 class ParticleFilter::Numbers {
@@ -46,7 +46,7 @@ void ParticleFilter::Start(Numbers* numbers) noexcept {
     for (int k = 0; k < count_; ++k) {
       const double reach = s.upper[i] - s.lower[i];
       const double draw = s.normal[i] > 0.0 ? numbers->Normal() : s.lower[i] + reach * numbers->Uniform();
-      // A draw outside the bounds goes back to a uniform place inside: bounded, and rare.
+      // A draw outside the bounds, which is rare, is replaced by a uniform one inside.
       const bool inside = draw > s.lower[i] && draw < s.upper[i];
       u_[i][static_cast<std::size_t>(k)] = inside ? draw : s.lower[i] + reach * numbers->Uniform();
     }

@@ -10,8 +10,8 @@
 
 namespace armcmc {
 
-// Not the product but what it is compared with: Eigen's products and factorisations stand here as the text books have
-// them. All types are bounded; the tests that count allocations and RealtimeSanitizer run every one of them.
+// A baseline for comparison, not part of the product: Eigen's products and factorisations are used as in text books.
+// All types are bounded; the allocation tests and RealtimeSanitizer cover all of it.
 ARMCMC_TRUST_NONBLOCKING_BEGIN
 
 RlsFilter::RlsFilter(const FilterParts& parts)
@@ -47,7 +47,7 @@ void RlsFilter::Resume() noexcept {
 void RlsFilter::Update(const ParamVector& phi, double y, double r) noexcept {
   p_ /= parts_.settings.baseline.rls_forgetting;
   for (int d = 0; d < dim_; ++d) {
-    // Without excitation the covariance would grow for ever.
+    // Without excitation the covariance would grow without bound.
     const double excess = std::sqrt(prior_(d, d) / p_(d, d));
     if (excess >= 1.0) continue;
     p_.row(d) *= excess;
@@ -64,7 +64,7 @@ void RlsFilter::Update(const ParamVector& phi, double y, double r) noexcept {
 double RlsFilter::SquareGain(const ModeData& data, std::size_t sample, const ParamVector& z,
                              const ParamMatrix& p) const noexcept {
   const double rate = data.feature[0][sample];
-  if (rate == 0.0) return 1.0;  // the sample says nothing
+  if (rate == 0.0) return 1.0;  // the sample carries no information
   ParamVector phi(dim_);
   double gain = 0.0;
   for (int d = 0; d < dim_; ++d) {
@@ -95,7 +95,7 @@ void RlsFilter::ToDraw(const ParamVector& z, double* u) const noexcept {
     const double value = form_ != nullptr ? (theta[i] - s.offset[i]) / s.scale[i] : z[d];
     u[d] = std::clamp(value, s.lower[i], s.upper[i]);
   }
-  for (int d = dim_; d < s.dim; ++d) u[d] = 0.0;  // the noise scale as it is believed to be
+  for (int d = dim_; d < s.dim; ++d) u[d] = 0.0;  // the noise scale at its prior mean
 }
 
 void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept {
@@ -126,7 +126,7 @@ void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const Para
 }
 
 ParamVector RlsFilter::Linearise(const ModeData& data, const ParamVector& z, const ParamMatrix& p) noexcept {
-  constexpr double kSmallest = 1e-5;  // prior standard deviations: what rounding leaves of a difference
+  constexpr double kSmallest = 1e-5;  // in prior standard deviations: the rounding error of a difference
   const ParameterSpace& s = parts_.space;
   ParamVector apart(dim_);
   for (int d = 0; d < dim_; ++d) {
@@ -175,8 +175,8 @@ Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mo
   const ParameterSpace& s = parts_.space;
   const ParamVector old_z = z_;
   const ParamMatrix old_p = p_;
-  // Of a rate once more, with the weights that the pack's own gains give: before the first pack nothing is
-  // known of them.
+  // For a rate, repeated with the weights from the gains of this pack: before the first pack the gains
+  // are unknown.
   const int passes = prediction_ != nullptr ? kLinearisations : parts_.settings.regress_rate ? 2 : 1;
   for (int pass = 0; pass < passes && z_.allFinite() && p_.allFinite(); ++pass) Again(data, old_z, old_p);
   if (!z_.allFinite() || !p_.allFinite()) {

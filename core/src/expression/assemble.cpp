@@ -22,7 +22,7 @@ bool Commutes(TapeOp op) noexcept {
   }
 }
 
-/// Gives values that are alive at the same time registers of their own, and writes the code down.
+/// Allocates registers, different ones for values that are alive at the same time, and emits the code.
 class Assembler {
  public:
   Assembler(const VirtualCode& code, const TapeLayout& layout, Tape* tape)
@@ -39,7 +39,7 @@ class Assembler {
     last_read_ = last_use_;
     for (const int result : results_) last_use_[At(result)] = never;
     for (int value = 0; value < code.num_values(); ++value)
-      // What is computed once, or handed in, is there for every sample.
+      // Values that are computed once, or given, are valid for every sample.
       if (value < fixed_ || (code.once[At(value)] && last_use_[At(value)] >= num_once_)) last_use_[At(value)] = never;
     place_.assign(static_cast<std::size_t>(code.num_values()), -1);
     for (int value = 0; value < fixed_; ++value) place_[At(value)] = value;
@@ -48,7 +48,7 @@ class Assembler {
 
   void Write() {
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      if (static_cast<int>(i) == num_once_) previous_ = -1;  // nothing stays from sample to sample
+      if (static_cast<int>(i) == num_once_) previous_ = -1;  // no value is kept between samples
       One(static_cast<int>(i));
       if (order_[i].once) tape_.once = Size();
     }
@@ -64,7 +64,7 @@ class Assembler {
   [[nodiscard]] int Place(int value) const { return place_[At(value)]; }
   [[nodiscard]] int Size() const { return static_cast<int>(tape_.code.size()); }
 
-  /// Whether v takes the value up where the instruction before has left it.
+  /// Whether v reads the result of the previous instruction from the accumulator.
   [[nodiscard]] static bool TakesUp(const Virtual& v, int value) {
     const auto from = std::find(v.registers.begin(), v.registers.end(), value);
     if (from == v.registers.end() || v.op == TapeOp::kLinear) return false;
@@ -73,8 +73,8 @@ class Assembler {
            (Commutes(v.op) && at == 1);
   }
 
-  /// Brings an instruction behind the one whose result it takes up, where it is not far away and all that it reads is
-  /// there: each time saves the way through memory.
+  /// Moves an instruction directly after the one whose result it reads, if it is not far away and its other operands
+  /// are available: each move saves a store and a load.
   void Chain() {
     constexpr std::ptrdiff_t kFar = 8;
     for (auto at = order_.begin(); at != order_.end() && at + 1 != order_.end(); ++at) {
@@ -83,7 +83,7 @@ class Assembler {
         const bool ready = std::none_of(at + 1, next, [&](const Virtual& between) {
           return std::find(next->registers.begin(), next->registers.end(), between.to) != next->registers.end();
         });
-        // A state a step later, written down before its last reader, would have to be moved there.
+        // The next value of a state, written before the last reader of the state, would have to be copied.
         const bool result = std::find(results_.begin(), results_.end(), next->to) != results_.end();
         if (!ready || result || !TakesUp(*next, at->to)) continue;
         std::rotate(at + 1, next, next + 1);
@@ -92,7 +92,7 @@ class Assembler {
     }
   }
 
-  /// Register a first: what the instruction before has left, where arithmetic allows it.
+  /// Register a first: the result of the previous instruction, if the arithmetic allows it.
   void PutFirst(Virtual* v) const {
     const auto from = std::find(v->registers.begin(), v->registers.end(), previous_);
     if (previous_ < 0 || from == v->registers.end() || from == v->registers.begin()) return;
@@ -105,7 +105,7 @@ class Assembler {
     }
   }
 
-  /// A sum that has the value before among its terms begins with that one.
+  /// A sum with the previous result among its terms begins with that term.
   [[nodiscard]] bool BeginsWithTerm(const Virtual& v) const {
     return v.op == TapeOp::kAddLinear && previous_ >= 0 && v.registers[0] != previous_ &&
            std::find(v.registers.begin(), v.registers.end(), previous_) != v.registers.end();
@@ -210,7 +210,7 @@ class Assembler {
     }
   }
 
-  /// Of a state a step later the register of that state, once nobody reads it any more.
+  /// For the next value of a state, the register of that state after its last reader.
   int PlaceFor(int value, int at) {
     if (layout_.advances)
       for (std::size_t s = 0; s < results_.size(); ++s) {
@@ -259,12 +259,12 @@ class Assembler {
   int fixed_;  ///< Parameters and states.
   int num_once_ = 0;
   std::vector<Virtual> order_;
-  std::vector<int> last_use_;   ///< Of a value: the instruction after which its register is free.
-  std::vector<int> last_read_;  ///< Of a value: the instruction that reads it last.
-  std::vector<int> place_;      ///< Of a value: its register.
+  std::vector<int> last_use_;   ///< For each value: the instruction after which its register is free.
+  std::vector<int> last_read_;  ///< For each value: the last instruction that reads it.
+  std::vector<int> place_;      ///< For each value: its register.
   std::vector<int> free_;
   int used_ = 0;
-  int previous_ = -1;  ///< The value that the instruction before has left; -1: none.
+  int previous_ = -1;  ///< The result of the previous instruction; -1: none.
   int previous_at_ = 0;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// A unit as far as it is known, or a bare number that was written down: it fits into any sum.
+/// A unit as far as it is known, or a literal number, which fits into any sum.
 struct UnitState {
   std::optional<Unit> unit;
   bool number = false;
@@ -95,7 +95,7 @@ class Checker {
     return known;
   }
 
-  /// Takes over what holds where the condition does.
+  /// Assumes the bounds that follow from the condition.
   void Assume(const Syntax& condition, int node) {  // NOLINT(misc-no-recursion)
     const SyntaxNode& at = condition.at(node);
     if (at.op == Op::kAnd) {
@@ -240,7 +240,7 @@ class Checker {
     switch (at.op) {
       case Op::kAdd: return {x.lower + y.lower, x.upper + y.upper};
       case Op::kSubtract:
-        // x - x and the like are left to algebra.
+        // x - x and the like are simplified elsewhere.
         return {x.lower - y.upper, x.upper - y.lower};
       case Op::kMultiply: return SameText(at.argument[0], at.argument[1]) ? Raise(x, {2.0, 2.0}) : Multiply(x, y);
       case Op::kDivide: return Divide(x, y);

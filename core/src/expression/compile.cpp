@@ -19,14 +19,14 @@ struct Term {
   int other = -1;
 };
 
-/// constant + sum of the terms: a value that is not computed yet.
+/// constant + sum of the terms: a value that is not yet computed.
 struct Linear {
   int constant = -1;  ///< Node.
   std::vector<Term> terms;
 };
 
 constexpr int kMaxTermsToScale = 4;
-constexpr int kMaxWholeExponent = 255;  // what an instruction holds
+constexpr int kMaxWholeExponent = 255;  // that fits into an instruction
 
 TapeOp TapeOpOf(Op op) {
   switch (op) {
@@ -60,7 +60,7 @@ TapeOp TapeOpOf(Op op) {
   }
 }
 
-/// From values to instructions on as many registers as there are values.
+/// Translates values to instructions with one register per value.
 class Builder {
  public:
   Builder(Graph* graph, const TapeLayout& layout, std::vector<int> scalars)
@@ -72,7 +72,7 @@ class Builder {
     for (int r = 0; r < layout.num_parameters + layout.num_states; ++r) once_.push_back(r < num_parameters_);
   }
 
-  /// How often each value is asked for: what is asked for twice is computed into a register.
+  /// Number of uses of each value: a value used twice is computed into a register.
   void CountUses(const std::vector<int>& results) {
     std::vector<int> open = results;
     for (const int result : results) ++uses_[result];
@@ -89,7 +89,7 @@ class Builder {
   }
 
   int Register(int node) { return Materialise(Value(node)); }
-  /// All that the node needs.
+  /// All operands of the node.
   void Prepare(int node) { (void)Value(node); }
   [[nodiscard]] VirtualCode Code(std::vector<int> results) const { return {code_, once_, std::move(results)}; }
   [[nodiscard]] const std::vector<int>& scalars() const noexcept { return scalars_; }
@@ -104,7 +104,7 @@ class Builder {
     return at->second;
   }
 
-  /// What is there already is not computed again.
+  /// Values are computed only once.
   int Emit(Virtual v) {
     const auto [at, is_new] = emitted_.try_emplace({v.op, v.number, v.registers, v.scalars}, num_values());
     if (!is_new) return at->second;
@@ -163,7 +163,7 @@ class Builder {
     return {graph_.Number(0.0), {{graph_.Number(1.0), std::min(x, y), std::max(x, y)}}};
   }
   Linear ScaledRegister(const Linear& value, int factor) { return Scaled(OfRegister(Materialise(value)), factor); }
-  /// Of a step: a sum that no sample changes; it is computed once, and scaled as a whole.
+  /// In a step: a sum that is the same for every sample; it is computed once, and scaled as a whole.
   [[nodiscard]] bool IsCoefficient(const Linear& value) const {
     return advances_ && value.terms.size() > 1 && !graph_.at(value.constant).varies &&
            std::all_of(value.terms.begin(), value.terms.end(), [this](const Term& t) {
@@ -211,7 +211,7 @@ class Builder {
         if (above.terms.empty())
           return Scaled(OfRegister(Emit(TapeOp::kReciprocal, {Materialise(below)})), above.constant);
         const int divisor = Materialise(below);
-        // What no sample changes is inverted once: a division takes as long as ten products.
+        // A divisor that is the same for every sample is inverted once: a division takes as long as ten products.
         if (once(divisor)) return Product(above, OfRegister(Emit(TapeOp::kReciprocal, {divisor})));
         return OfRegister(Emit(TapeOp::kDivide, {Materialise(above), divisor}));
       }
@@ -232,7 +232,7 @@ class Builder {
     }
   }
 
-  /// min or max; of a number nobody has to ask whether it is one.
+  /// min or max; a literal bound needs no check for NaN.
   int Bounded(Op op, int reg, int bound) {  // NOLINT(misc-no-recursion)
     const bool smaller = op == Op::kMin;
     if (graph_.IsNumber(bound) && !std::isnan(graph_.at(bound).value))
@@ -257,7 +257,7 @@ class Builder {
       }
     }
     if (!graph_.at(base).sampled) {
-      // Of 0 a number that is below every other, and finite: 0^p is 0, and 0^0 is 1.
+      // For 0 a finite number below every other logarithm: 0^p is 0, and 0^0 is 1.
       const int log2 = graph_.Make(Op::kMax, graph_.Make(Op::kLog2, base), graph_.Number(-1e300));
       const Linear p = Value(exponent);
       if (IsLone(p))
@@ -277,9 +277,9 @@ class Builder {
     for (const Term& term : value.terms) (term.other < 0 ? plain : taken(term) ? last : products).push_back(term);
     if (products.empty() && last.empty() && plain.size() == 1 && no_constant && graph_.IsNumber(plain[0].factor, 1.0))
       return plain[0].reg;
-    // What is taken off comes where there is something to take it from.
+    // Negative terms follow a positive one.
     products.insert(products.end(), last.begin(), last.end());
-    // Factors before the sum that takes them up, so that nothing stands between its parts.
+    // Factors before the sum that uses them, so that its parts are consecutive.
     for (Term& term : products)
       if (!graph_.IsNumber(term.factor, 1.0) && !(taken(term) && (!plain.empty() || &term != products.data()))) {
         term.reg = LinearOf(graph_.Number(0.0), {{term.factor, term.reg, -1}});
@@ -299,14 +299,14 @@ class Builder {
     return sum;
   }
 
-  /// What needs no sample is added up apart, once.
+  /// Terms that are the same for every sample are summed separately, once.
   int LinearOf(int constant, const std::vector<Term>& terms) {
     std::vector<Term> fixed;
     std::vector<Term> moving;
     for (const Term& term : terms) (once(term.reg) && !graph_.at(term.factor).varies ? fixed : moving).push_back(term);
     const bool constant_moves = graph_.at(constant).varies;
     const bool lone = fixed.size() == 1 && graph_.IsNumber(fixed[0].factor, 1.0);
-    // A lone parameter is best added where it is.
+    // A single parameter is added directly.
     if (moving.empty() || fixed.empty() || (constant_moves && lone)) return Added(constant, terms);
     if (lone && graph_.IsNumber(constant, 0.0))
       return LinearInstruction(TapeOp::kAddLinear, {fixed[0].reg}, {}, moving);

@@ -14,7 +14,7 @@ namespace {
 double Lowpass(FeatureMemory::Slot* slot, double e, double tau, double dt, bool held) noexcept ARMCMC_NONBLOCKING {
   const double ratio = tau > 0.0 ? dt / tau : std::numeric_limits<double>::infinity();
   const double decay = std::exp(-ratio);
-  // (1 - e^-r) / r, which is 1 where nothing decays.
+  // (1 - e^-r) / r, which is 1 at r = 0.
   const double mean = ratio > 0.0 ? -std::expm1(-ratio) / ratio : 1.0;
   slot->state = held ? slot->state * decay + slot->before * (1.0 - decay)
                      : slot->state * decay + slot->before * (mean - decay) + e * (1.0 - mean);
@@ -28,7 +28,7 @@ double Delayed(const std::array<double, kMaxDelaySamples>& line, int samples, do
   const int kept = std::min(samples, kMaxDelaySamples);
   const double asked = tau / dt;
   if (asked > kept - 1 && samples >= kMaxDelaySamples) return std::numeric_limits<double>::quiet_NaN();
-  constexpr double kRounding = 1e-6;  // a whole number of samples that was computed is one
+  constexpr double kRounding = 1e-6;  // tolerance for a computed whole number of samples
   const double whole_back = held ? std::ceil(asked - kRounding) : asked;
   const double back = std::clamp(whole_back, 0.0, static_cast<double>(kept - 1));
   const int whole = std::min(static_cast<int>(back), kept - 1);
@@ -126,7 +126,7 @@ void FeatureProgram::Evaluate(const FeatureInput& input, FeatureMemory* memory,
   for (std::size_t o = 0; o < outputs_.size(); ++o) out[o] = value[static_cast<std::size_t>(outputs_[o])];
   if (!has_memory()) return;
   memory->empty = false;
-  // Keeps counting without running over, and the place in the line what it is.
+  // Keeps counting without overflow and without changing the position in the line.
   memory->samples = memory->samples + 1 < 2 * kMaxDelaySamples ? memory->samples + 1 : kMaxDelaySamples;
 }
 

@@ -68,7 +68,7 @@ int Graph::Make(Op op, int a, int b, int c) {
 int Graph::Simplified(Op op, int a, int b, int c) {
   const OpInfo& info = InfoOf(op);
   if (info.memory) {
-    // Of what does not change nothing is remembered.
+    // Constants have no memory.
     const bool constant = a >= 0 && !at(a).varies;
     if (constant && op != Op::kIntegral) return a;
     if (op == Op::kLowpass || op == Op::kDelay) return IsNumber(b, 0.0) ? a : -1;
@@ -176,7 +176,7 @@ int Graph::Differentiate(int node, int by) {
 int Graph::Derivative(int node, int by, std::map<int, int>* known) {  // NOLINT(misc-no-recursion)
   if (node == by) return Number(1.0);
   if (const auto at = known->find(node); at != known->end()) return at->second;
-  // A copy: making nodes moves those that are there.
+  // A copy, since adding nodes may move the existing ones.
   const GraphNode n = this->at(node);
   if (IsLeaf(n.op) || !DependsOn(node, by)) return Number(0.0);
   const int a = n.argument[0];
@@ -247,7 +247,7 @@ int Graph::Derivative(int node, int by, std::map<int, int>* known) {  // NOLINT(
 }
 
 int Graph::Substitute(int node, const std::map<int, int>& by) {
-  // Arguments stand before what uses them: one pass upwards over what the node needs.
+  // Arguments precede their users, so that one pass suffices.
   std::vector<int> made(static_cast<std::size_t>(node) + 1);
   for (int n = 0; n <= node; ++n) {
     const auto k = static_cast<std::size_t>(n);

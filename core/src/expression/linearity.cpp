@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kCurved = 2;
 
-/// Degree of nodes as polynomials in some symbols; kCurved stands for all that is not linear.
+/// Degree of nodes as polynomials in some symbols; kCurved is any that is not linear.
 class Degrees {
  public:
   Degrees(const Graph& graph, const std::vector<int>& symbols) : graph_(graph), symbols_(symbols) {}

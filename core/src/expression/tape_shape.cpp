@@ -14,7 +14,7 @@ TapeSum Parameter(int parameter) {
   return sum;
 }
 
-/// The sum that an instruction computes of what the tape is handed; none where it is something else.
+/// The sum of given values that an instruction computes; none if it is another instruction.
 std::optional<TapeSum> SumOf(const Virtual& v, int num_given) {
   if (v.op == TapeOp::kScale && v.registers[0] < num_given) {
     TapeSum sum = Parameter(v.registers[0]);

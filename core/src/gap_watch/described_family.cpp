@@ -12,11 +12,11 @@ namespace {
 
 using expression::SymbolKind;
 
-constexpr double kSlowest = 0.1;    // of the largest magnitude
-constexpr double kEnd = 0.75;       // of the range: from here on it counts as its end
+constexpr double kSlowest = 0.1;    // share of the largest magnitude
+constexpr double kEnd = 0.75;       // share of the range above which a value counts as its end
 constexpr int kAfterReversal = 25;  // samples
 
-/// Signals that are part of what a mode explains, beside the output as it is measured.
+/// Signals that are part of the target of a mode, in addition to the measured output.
 std::vector<bool> ExplainedSignals(const Plant& plant) {
   std::vector<bool> explained(plant.description().signals.size(), false);
   const int output = plant.NodeOf(SymbolKind::kSignal, plant.output());
@@ -37,7 +37,7 @@ bool LawsAvoid(const Plant& plant, const std::vector<bool>& signals) {
   return true;
 }
 
-/// Some passive mode says what is measured in it.
+/// Some passive mode has a law for the measured output.
 bool APassiveModePredicts(const PlantProgram& program) {
   for (int m = 0; m < program.info().num_modes; ++m)
     if (!program.LawIsOutput(m)) return false;
@@ -63,7 +63,7 @@ DescribedFamily::DescribedFamily(const PlantProgram& program) {
   const int num_modes = info.num_modes + (judges_passive_ ? 1 : 0);
   for (int m = 1; m < num_modes; ++m) Add(Kind::kInMode, m, "in_" + std::string(info.modes[At(m)]));
   const bool has_acceleration = !plant.SignalsWithRole("acceleration").empty();
-  // Motion first: most of what is missing in machines goes with it.
+  // Motion first: most missing effects of machines depend on it.
   for (const bool motion : {true, false}) {
     int input = 0;
     for (std::size_t s = 0; s < description.signals.size(); ++s) {

@@ -8,10 +8,10 @@
 namespace armcmc {
 namespace {
 
-constexpr double kDependent = 1e-9;    // pivot over diagonal below which a direction is held to be a combination
-constexpr double kFewestPacks = 4.0;   // effective number behind a score
+constexpr double kDependent = 1e-9;    // pivot over diagonal below which a direction counts as linearly dependent
+constexpr double kFewestPacks = 4.0;   // minimum effective number of packs for a score
 constexpr double kCarryOver = 2.5;     // correlation of neighbouring means, times their samples
-constexpr double kMostLeverage = 0.9;  // of a pack: what is left of its error says nothing
+constexpr double kMostLeverage = 0.9;  // of a pack, above which its residual carries no information
 
 double Dot(const double* a, const double* b, int n) noexcept {
   double sum = 0.0;
@@ -70,7 +70,7 @@ void GapBlock::AddRegions(int k, const GapRows& rows, double tau, bool changed, 
     for (int i = 0; i < n; ++i) sums.count += phi[i] != 0.0 ? 1 : 0;
     for (int a = 0; a < columns_; ++a) sums.slope[At(a)] = Dot(phi, rows.slope[At(a)].data(), n);
   }
-  // Turns: the slot of this pack, of the last one, and of the one before.
+  // Cyclic: the slots of this pack, the previous one, and the one before.
   if (!continues) detrended_count_[At((k + 2) % 3)] = detrended_count_[At((k + 1) % 3)] = 0;
   auto& own = detrended_[At(k % 3)];
   Detrend(rows, &own);
@@ -219,7 +219,7 @@ CheckScore GapBlock::ScoreRegion(int region, double tolerance, double* explained
   }
   CheckScore result;
   *explained = 0.0;
-  // A region that the parameters imitate almost perfectly is left to rounding.
+  // A region that the parameters absorb almost completely would be dominated by rounding.
   if (!(norm > 1e-6 * full_norm) || norm * norm < kFewestPacks * norm_square || !(variance > 0.0)) return result;
   variance *= 1.0 + 2.0 * CarryOver();
   result.z = score / std::sqrt(variance);
@@ -278,7 +278,7 @@ CheckScore GapBlock::ScoreWander(int lag, double tolerance, double* explained) c
   *explained = 0.0;
   if (!(square > 0.0) || square * square < kFewestPacks * fourth) return result;
   result.z = sum / std::sqrt(square);
-  // Fitting makes the errors of neighbours a little opposite.
+  // Fitting makes the errors of neighbours slightly anticorrelated.
   const auto fitted = std::count(kept_.begin(), kept_.begin() + columns_ * directions_, true);
   const double correlation = CarryOver() + static_cast<double>(fitted) / pairs;
   result.margin = (tolerance * tolerance * count + correlation * variance) / std::sqrt(square);
@@ -314,7 +314,7 @@ CheckScore GapBlock::Score(int check, double tolerance) noexcept {
     case 3: score = ScoreWander(2, tolerance, explained); break;
     default: score = ScoreRegion(check, tolerance, explained); break;
   }
-  // Data without any noise: what is left is rounding, and its squares may underflow.
+  // Data without noise: the residual is rounding error, and its squares may underflow.
   if (!std::isfinite(score.z) || !std::isfinite(score.margin)) score = CheckScore{};
   if (!std::isfinite(*explained)) *explained = 0.0;
   return score;

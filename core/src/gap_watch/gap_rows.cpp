@@ -97,7 +97,7 @@ bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapR
 void GapLineariser::FillPassive(const DataPack& pack, double noise_std, const std::array<int, kMaxPackSamples>& modes,
                                 GapRows* rows) const noexcept {
   const bool described = info().described != nullptr;
-  if (!described && !composition_.empty()) return;  // with effects every sample is one of the law's
+  if (!described && !composition_.empty()) return;  // with effects every sample belongs to the law
   for (std::size_t i = 0; i < At(rows->num_samples); ++i) {
     if (modes[i] != info().num_modes || (described && !effects_.described.passive_given[i])) continue;
     rows->used[i] = true;

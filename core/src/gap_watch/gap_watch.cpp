@@ -9,8 +9,8 @@
 namespace armcmc {
 namespace {
 
-constexpr int kFirstChange = 3;    // an earlier one just shortens the block
-constexpr int kPacksOfChange = 3;  // that the estimator may need to settle
+constexpr int kFirstChange = 3;    // an earlier change only shortens the block
+constexpr int kPacksOfChange = 3;  // in which the estimator settles
 
 bool CanWatch(const EstimatorSettings& settings, int num_columns) {
   return num_columns <= kGapColumns && (settings.plant == nullptr || settings.plant->states().size() == 0);
@@ -56,7 +56,7 @@ void GapWatch::Step(const DataPack& pack, const GapReference& estimate, bool cha
 }
 
 void GapWatch::Analyse(int num_samples) noexcept {
-  // In proportion to the estimator's own pack, of which one of the block may hold many.
+  // In proportion to the estimator's own pack; a pack of the block may contain many of them.
   const int stretch = std::max(1, analysed_->packs.front().num_samples);
   const int pieces = std::clamp(kPiecesPerPack * num_samples / stretch, 1, kPiecesPerPack);
   for (int i = 0; i < pieces && analysed_ != nullptr; ++i) AnalysePiece();
@@ -85,12 +85,12 @@ bool GapWatch::Record(const DataPack& pack, bool changed, bool drifts) noexcept 
   Recording& block = recordings_[At(recording_)];
   const DataPack* last = joining_ ? &block.packs[At(block.count)] : nullptr;
   const bool follows = last_seq_ > 0 && pack.seq == last_seq_ + pack.seq_step && pack.run_id == last_run_;
-  // A block knows one run of one plant, in order.
+  // A block covers one run of one plant, in order.
   if (pack.run_id != last_run_ || pack.seq <= last_seq_) block.count = 0;
   last_seq_ = pack.seq;
   last_run_ = pack.run_id;
   if (last != nullptr && (!follows || last->dt != pack.dt || last->num_samples + pack.num_samples > kMaxPackSamples))
-    joining_ = false;  // the start that was kept is lost
+    joining_ = false;  // the stored start is lost
   if (!follows) ++number_;
   if (block.count == 0 && !joining_) {
     first_seq_ = pack.seq;

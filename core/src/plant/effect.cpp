@@ -17,7 +17,7 @@ using NameMap = std::map<std::string, std::string>;
 
 const std::string kRateOf = "rate_of_";  // and the state: of the let that holds a rate which an effect wraps
 
-/// To as many digits as a prior deserves.
+/// With the number of digits that is sensible for a prior.
 double ShortPrior(double value) {
   if (value == 0.0) return value;
   std::array<char, 32> text{};
@@ -35,7 +35,7 @@ bool IsTaken(const PlantDescription& plant, const std::string& prefix) {
          begins(plant.states) || begins(plant.reports);
 }
 
-/// "coulomb_friction_", or "coulomb_friction_2_" where the plant has names that begin so.
+/// "coulomb_friction_", or "coulomb_friction_2_" if the plant has names with that prefix.
 std::string PrefixOf(const PlantDescription& plant, const EffectEntry& entry) {
   std::string prefix = entry.name + '_';
   for (int n = 2; IsTaken(plant, prefix); ++n) prefix = entry.name + '_' + std::to_string(n) + '_';
@@ -52,7 +52,7 @@ std::string UnitOfSymbol(const PlantDescription& plant, const std::string& name)
   return "1";
 }
 
-/// Each behind those that it speaks of, else as they come.
+/// Sorted so that each follows those that it uses, otherwise in the given order.
 std::vector<LetDescription> InOrder(std::vector<LetDescription> lets) {
   std::vector<LetDescription> ordered;
   while (!lets.empty()) {
@@ -61,7 +61,7 @@ std::vector<LetDescription> InOrder(std::vector<LetDescription> lets) {
                           [&](const LetDescription& other) { return Mentions(let.text, other.name); });
     };
     auto next = std::find_if(lets.begin(), lets.end(), stands_alone);
-    if (next == lets.end()) next = lets.begin();  // a circle: what reads the plant says so
+    if (next == lets.end()) next = lets.begin();  // a cycle, which is reported when the plant is read
     ordered.push_back(std::move(*next));
     lets.erase(next);
   }
@@ -141,7 +141,7 @@ class Composer {
     }
   }
 
-  /// Texts that decide what the plant does: laws, rates, lets, and conditions where they may move.
+  /// Texts that determine the behaviour of the plant: laws, rates, lets, and conditions that may vary.
   template <class Change>
   void ForEachText(const Change& change) {
     for (std::string* text : {&plant_.law, &plant_.predicts}) change(text);
@@ -165,7 +165,7 @@ class Composer {
     plant_.modes.clear();
   }
 
-  /// What explains the output gets a name where other texts, or one text more than once, speak of it.
+  /// The explanation of the output gets a name if other texts use it, or one text more than once.
   void MakeLawVisible() {
     std::size_t mentions = 0;
     for (const EffectTerm& term : form_.terms)
@@ -186,8 +186,8 @@ class Composer {
     names_["law"] = *law;
   }
 
-  /// A rate that the effect wraps gets a name: what other effects add to it later, it wraps as well. A rim holds back
-  /// all that flows in, whichever of the two is named first.
+  /// A rate that the effect wraps gets a name: what other effects add to it later, it wraps as well. A rim limits
+  /// the total inflow, whichever of the two is named first.
   void MakeRatesVisible() {
     for (const EffectTerm& term : form_.terms) {
       if (term.slot != "rate" || !Mentions(term.formula, "rate")) continue;
@@ -199,7 +199,7 @@ class Composer {
     }
   }
 
-  /// Where the rate of a state stands that the first effect has wrapped; the end where none has.
+  /// Position of the rate of a state that an earlier effect has wrapped; the end if none has.
   [[nodiscard]] auto WrappedRate(const std::string& state) {
     return std::find_if(plant_.lets.begin(), plant_.lets.end(),
                         [&](const LetDescription& let) { return let.name.ends_with('_' + (kRateOf + state)); });

@@ -34,7 +34,7 @@ const SignalDescription* OutputSignal(const PlantDescription& plant) {
   return nullptr;
 }
 
-/// unit = output / x^n with some n > 0. Where n is a parameter the texts decide: "N/m^p".
+/// unit = output / x^n with some n > 0. If n is a parameter, texts are compared: "N/m^p".
 bool IsPerPower(const std::string& unit, const std::string& output, const std::string& x) {
   const std::optional<Unit> whole = KnownUnit(unit), above = KnownUnit(output), below = KnownUnit(x);
   if (!above || !below) return false;
@@ -114,7 +114,7 @@ class FormBinder {
     return "";
   }
 
-  /// What it says of other needs is looked at when all are bound.
+  /// Conditions on other needs are checked when all are bound.
   [[nodiscard]] bool Fits(const EffectNeed& need, const EffectCandidate& candidate) const {
     if (!need.roles.empty() && std::find(need.roles.begin(), need.roles.end(), candidate.role) == need.roles.end())
       return false;

@@ -8,7 +8,7 @@
 
 namespace armcmc {
 
-/// As a file says it: a law, or modes, never both. Plant() fills the only mode in.
+/// As in a file: a law, or modes, never both. Plant() adds the single mode.
 [[nodiscard]] PlantDescription AsWritten(PlantDescription plant);
 
 /// The law, or all modes or `predicts`, explain the output itself.
@@ -20,13 +20,13 @@ namespace armcmc {
 /// if(when, law, if(.., .., ..)): the law of the mode that acts, 0 where none does.
 [[nodiscard]] std::string MergedLaw(const PlantDescription& plant);
 
-/// A law that is not passive, or `predicts`, depends on the name: itself, through lets, or through states.
+/// A law that is not passive, or `predicts`, depends on the name: directly, through lets, or through states.
 [[nodiscard]] bool LawReads(const PlantDescription& plant, const std::string& name);
 
-/// The rate of a state says the name, itself or through lets.
+/// The rate of a state contains the name, directly or through lets.
 [[nodiscard]] bool RateReads(const PlantDescription& plant, const std::string& state, const std::string& name);
 
-/// The form's texts say `law` where one law must stand for all modes.
+/// The texts of the form contain `law` where one law must replace all modes.
 [[nodiscard]] bool NeedsOneLaw(const EffectForm& form);
 
 /// Path of a form in a file: "", "form[0]." or "variant[2].".

@@ -39,7 +39,7 @@ QuantityScale MeasuredScale(const std::string& name, const std::vector<double>& 
   for (const double value : column)
     scale.rms += (value - scale.mean) * (value - scale.mean) / static_cast<double>(column.size());
   scale.rms = std::sqrt(scale.rms);
-  // What stands still has the size of its value.
+  // A constant signal has the size of its value.
   if (!(scale.rms > 1e-9 * std::fabs(scale.mean))) scale.rms = scale.mean != 0.0 ? std::fabs(scale.mean) : 1.0;
   return scale;
 }
@@ -62,7 +62,7 @@ std::size_t OutputIndex(const PlantDescription& plant) {
   throw PlantError("output", 0, "no signal is called \"" + plant.output + '"');
 }
 
-/// Signals that nothing measures follow from what they are the rate of, or from their rate.
+/// Signals without data are derived from the signal of which they are the rate, or from their own rate.
 void FillRates(const PlantDescription& plant, DataScales* scales) {
   for (std::size_t round = 0; round < plant.signals.size(); ++round)
     for (const SignalDescription& signal : plant.signals) {

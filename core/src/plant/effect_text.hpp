@@ -7,7 +7,7 @@
 
 namespace armcmc {
 
-/// Names that a text says, functions and words of the language among them, in order, repetitions included.
+/// Names in a text, including functions and keywords, in order, with repetitions.
 [[nodiscard]] std::vector<std::string> NamesIn(std::string_view text);
 
 [[nodiscard]] bool Mentions(std::string_view text, std::string_view name);
@@ -15,13 +15,13 @@ namespace armcmc {
 /// The text with names replaced, all at once. Numbers such as 1e-3 have no names in them.
 [[nodiscard]] std::string WithNames(std::string_view text, const std::map<std::string, std::string>& by);
 
-/// The text with expressions put in for names, in parentheses where they need some.
+/// The text with names replaced by expressions, in parentheses where necessary.
 [[nodiscard]] std::string Inserted(std::string_view text, const std::map<std::string, std::string>& by);
 
 /// The text in parentheses, unless it is one number, name or call.
 [[nodiscard]] std::string Bracketed(const std::string& text);
 
-/// first + second, as a person would write it: a sum with a negative term is a difference.
+/// first + second in the usual notation: a sum with a negative term is a difference.
 [[nodiscard]] std::string SumText(const std::string& first, const std::string& second);
 
 }  // namespace armcmc

@@ -1,4 +1,4 @@
-// What a plant's modes, states and reports say, in terms of the names that it has.
+// The modes, states and reports of a plant, in terms of its names.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ using expression::Unit;
 
 void Plant::AddModes() {
   auto& modes = description_.modes;
-  // As a plant that was understood before describes itself.
+  // The same as in the description of a plant that was read before.
   if (modes.size() == 1 && modes[0].name == "always" && modes[0].law == description_.law) modes.clear();
   if (modes.empty()) {
     if (description_.law.empty()) throw PlantError("law", 0, "expected a law, or modes that have one");
@@ -133,9 +133,9 @@ void Plant::CheckParametersAreFelt() const {
     std::vector<int> felt;
     for (const PlantMode& mode : modes_)
       if (!mode.passive) felt.push_back(mode.law);
-    // What is predicted is compared with the output, too.
+    // The prediction is compared with the output as well.
     if (predicts_ >= 0) felt.push_back(predicts_);
-    // Through the states that a law reads, and what those read.
+    // Through the states that a law reads, and their dependencies.
     for (std::size_t round = 0; round <= states_.size(); ++round)
       for (std::size_t s = 0; s < states_.size(); ++s) {
         const int state = NodeOf(SymbolKind::kState, static_cast<int>(s));

@@ -38,7 +38,7 @@ PlantProgram::PlantProgram(std::shared_ptr<const Plant> plant, Part part)
 bool PlantProgram::LawsNeedStates() const {
   for (const std::size_t m : active_)
     if (Remembered::MakesStates(graph_, plant_->modes()[m].law)) return true;
-  // Where nothing else predicts the output, the laws do.
+  // Without another prediction of the output, the laws predict it.
   if (plant_->predicts() < 0) return !plant_->states().empty();
   for (std::size_t s = 0; s < plant_->states().size(); ++s) {
     const int state = plant_->NodeOf(SymbolKind::kState, static_cast<int>(s));
@@ -98,7 +98,7 @@ int PlantProgram::InMode(int node, std::size_t active) {
 void PlantProgram::CompileLaw(int law, int target, const std::string& key, std::vector<int>* scalars) {
   try {
     SampledMode& mode = modes_.back();
-    // law - target: squares do not mind the sign, and a product is added to minus the target in one instruction.
+    // law - target: the sign is irrelevant for squares, and a product is added to minus the target in one instruction.
     for (const bool error : {false, true}) {
       std::vector<expression::Tape>& tapes = error ? mode.errors : mode.laws;
       const int node = error ? graph_.Make(Op::kSubtract, law, target) : law;
@@ -194,7 +194,7 @@ void PlantProgram::CompileFeatures(const std::vector<int>& scalars, const Rememb
     }
     outputs_.push_back(out);
   }
-  // What is shown is shown at every sample, whatever mode acts.
+  // Predictions are computed at every sample, in every mode.
   if (part_ == Part::kPrediction)
     outputs_.push_back({.target = feature(plant_->NodeOf(SymbolKind::kSignal, plant_->output())), .sampled = 0});
   first_remembered_ = static_cast<int>(features.size());
@@ -341,7 +341,7 @@ bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memo
       memory->kept.line[static_cast<std::size_t>(l)]
                        [static_cast<std::size_t>((memory->kept.samples + n) % expression::kMaxDelaySamples)] =
           out->past.value[static_cast<std::size_t>(expression::PastLines::Place(l, n))];
-  // Keeps counting without running over, and the place in the lines what it is.
+  // Keeps counting without overflow and without changing the position in the lines.
   if (num_lines_ > 0) {
     memory->kept.samples += pack.num_samples;
     while (memory->kept.samples >= 2 * expression::kMaxDelaySamples)

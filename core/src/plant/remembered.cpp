@@ -12,7 +12,7 @@ using expression::kMaxArguments;
 using expression::Op;
 using expression::SymbolKind;
 
-/// Place of a node in a list that it joins where it is new.
+/// Index of a node in a list, to which it is added if new.
 int PlaceIn(std::vector<int>* list, int node, int most, const char* what) {
   const auto found = std::find(list->begin(), list->end(), node);
   const int place = static_cast<int>(found - list->begin());
@@ -62,9 +62,9 @@ int Remembered::Visit(int node, bool in_rate) {  // NOLINT(misc-no-recursion): a
   return known_[{node, in_rate}] = made;
 }
 
-/// The node some time ago: what it is made of some time ago.
+/// The delayed node, computed from its delayed arguments.
 int Remembered::Shifted(int node, Op op, int tau, bool in_rate) {  // NOLINT(misc-no-recursion): see Visit
-  // A chain in which every link is used twice has more paths than anybody can wait for.
+  // A chain in which every link is used twice has an exponential number of paths.
   const std::tuple<int, Op, int, bool> key{node, op, tau, in_rate};
   if (const auto known = shifted_.find(key); known != shifted_.end()) return known->second;
   const int made = ShiftedAnew(node, op, tau, in_rate);
@@ -128,7 +128,7 @@ int Remembered::LateState(int state, int tau) {  // NOLINT(misc-no-recursion): a
   const std::size_t place = states_.size() - 1;
   late_.emplace(std::pair(state, tau), states_[place].state);
   open_.push_back(state);
-  // It stands still until its first sample is tau ago; the interval in which it begins to move counts with its share.
+  // It is constant until its first sample is tau ago; the interval in which it starts to change counts in part.
   const int interval = graph_.Symbol(SymbolKind::kInterval, 0);
   const int end = Input(graph_.Make(Op::kAdd, graph_.Make(Op::kElapsed), interval), true);
   const int share = graph_.Make(Op::kDivide, graph_.Make(Op::kSubtract, end, tau), interval);

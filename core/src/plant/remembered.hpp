@@ -12,7 +12,7 @@
 
 namespace armcmc {
 
-/// Functions with memory of a plant's laws and rates, brought into forms that a tape can run.
+/// Functions with memory in the laws and rates of a plant, rewritten so that a tape can compute them.
 ///
 /// - `lowpass(e, tau)`, `integral(e)` of what a parameter or a state changes: a further state, exact between samples.
 /// - `delay(e, tau)`, `previous(e)` of such an e: e of delayed signals, f(delay(u, tau), theta); of a state: a further
@@ -24,14 +24,14 @@ class Remembered {
   /// A state of the plant; those that are added come behind them.
   struct State {
     int rate = -1, start = -1;  ///< Nodes.
-    bool measured = false;      ///< Each pack begins with a signal.
+    bool measured = false;      ///< Each pack starts from a signal.
   };
-  /// @param held  [signal] Those that are, between samples.
+  /// @param held  [signal] Whether it is held between samples.
   Remembered(expression::Graph* graph, std::vector<State> states, std::vector<bool> held)
       : graph_(*graph), of_plant_(std::move(states)), held_(graph, std::move(held)) {}
 
   /// The law, or the rate, without functions with memory that a tape cannot run.
-  /// @throws std::invalid_argument, std::length_error saying what is not possible.
+  /// @throws std::invalid_argument, std::length_error with the reason.
   [[nodiscard]] int InLaw(int node) { return Visit(node, false); }
   [[nodiscard]] int InRate(int node) { return Visit(node, true); }
 
@@ -51,7 +51,7 @@ class Remembered {
   /// What is kept to be looked up: the newest sample of line i stands at the signal PlantPoint::kFirstPosition + i.
   [[nodiscard]] const std::vector<int>& lines() const noexcept { return lines_; }
 
-  /// True where the node makes states of functions with memory.
+  /// True if the node creates states for functions with memory.
   [[nodiscard]] static bool MakesStates(const expression::Graph& graph, int node);
 
  private:

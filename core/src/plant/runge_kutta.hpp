@@ -15,15 +15,15 @@ namespace armcmc {
 /// The length is the constant 0, and what is given i at point p is the given number 1 + p inputs().size() + i.
 class RungeKutta {
  public:
-  /// @param rates  A node a state.
+  /// @param rates  One node per state.
   RungeKutta(expression::Graph* graph, std::vector<int> rates);
 
-  /// What the rates need that neither parameter nor state changes, the largest parts of it.
+  /// The largest subexpressions of the rates that depend on neither parameters nor states.
   [[nodiscard]] const std::vector<int>& inputs() const noexcept { return inputs_; }
 
   /// Stage after stage.
   [[nodiscard]] std::vector<int> Staged();
-  /// Nodes of Staged() in an order in which what is slow for one state overlaps with what the others do.
+  /// Nodes of Staged() in an order in which slow operations of one state overlap with those of the others.
   [[nodiscard]] const std::vector<int>& stages() const noexcept { return stages_; }
 
   /// Of rates that are linear in states and inputs: all stages in one, whose coefficients no sample changes. Empty
@@ -49,7 +49,7 @@ class RungeKutta {
   [[nodiscard]] std::vector<int> Rates(const std::vector<int>& states, int point);
   [[nodiscard]] std::vector<int> Moved(const std::vector<int>& rates, int h);
 
-  /// Nothing where it is not linear. Each node once: what many use is not made for each of them.
+  /// Empty if it is not linear. Each node is treated once, however many use it.
   [[nodiscard]] std::optional<Form> FormOf(int node);
   [[nodiscard]] std::optional<Form> MakeForm(int node);
   [[nodiscard]] Form Plus(Form a, const Form& b);

@@ -10,14 +10,14 @@ namespace armcmc {
 namespace {
 
 /// Variance of a start that comes from the output, in that of its noise. That sample is among the data, too, which
-/// alone shall say where the start is: a prior of five standard deviations about it counts it 1.04 times.
+/// alone should determine the start: with a prior of five standard deviations about it, it counts 1.04 times.
 constexpr double kFromOutput = 25.0;
 constexpr double kReach = 4.0;           ///< Standard deviations of a parameter over which a start follows it.
-constexpr double kTrial = 0.1;           ///< Of a state's size, to see what its start does.
-constexpr double kRidge = 1e-9;          ///< Two starts may do the same.
-constexpr double kContradiction = 12.0;  ///< Twice the logarithm of the odds against what a file says.
-constexpr double kUnknown = 100.0;       ///< Variance of a start, in that which would explain all errors.
-constexpr double kNothing = 1e-9;        ///< Of the noise's variance: a direction that the data do not feel.
+constexpr double kTrial = 0.1;           ///< Step of a start, relative to the size of the state.
+constexpr double kRidge = 1e-9;          ///< Against two starts with the same effect.
+constexpr double kContradiction = 12.0;  ///< Twice the log odds against the start in a file.
+constexpr double kUnknown = 100.0;  ///< Variance of an unknown start, relative to that which would explain all errors.
+constexpr double kNothing = 1e-9;   ///< Relative to the noise variance: a direction without effect on the data.
 
 static_assert(kMaxStates <= kMaxParams && 1 + kMaxStates + 2 * kMaxParams <= kTileLanes);
 
@@ -110,7 +110,7 @@ void StateFilter::Predict(const simd::Kernels& kernels, const std::array<double,
   }
   if (!gram.allFinite()) return;
   if (opened) {
-    // So that what remains is small where the answer to it changes with the parameters.
+    // So that the remainder is small if its effect depends on the parameters.
     ParamMatrix information = gram;
     for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1.0;
     const ParamVector moved = Multiply(factor_, SymmetricFactor(information).Solve(right));
@@ -228,7 +228,7 @@ void StateFilter::Update(const simd::Kernels& kernels, const std::array<double, 
   const SymmetricFactor factor(information);
   const ParamVector solved_right = factor.Solve(right);
   const ParamVector moved = Multiply(factor_, solved_right);
-  // What the pack leaves beyond its noise is the model's, and no state is known better than that.
+  // The residual of the pack beyond its noise is model error, which limits the precision of the states.
   const double left = (squares - right.dot(solved_right)) / (noise_std * noise_std * data.num_samples);
   const double doubt = kForget * std::fmax(1.0, left);
   ParamMatrix spread(n, n);  // F L
@@ -260,7 +260,7 @@ void StateFilter::Update(const simd::Kernels& kernels, const std::array<double, 
     for (Eigen::Index j = 0; j < n; ++j) {
       double sum = 0.0;
       for (Eigen::Index k = 0; k < n; ++k) sum += spread(j, k) * solved[k];
-      // By how much the parameters bend what is linear here.
+      // Effect of the parameters on the linearisation.
       double bent = 0.0;
       for (std::size_t d = 0; d < parameters; ++d) bent += bend(i, d) * bend(j, d);
       end_covariance_(i, j) = doubt * sum + bent / (noise_std * noise_std);

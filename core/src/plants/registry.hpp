@@ -14,7 +14,7 @@ struct ModelList {
   static constexpr std::array<const ModelInfo*, sizeof...(Models)> kInfos{&Models::kInfo...};
 };
 
-/// The plants that are compiled in, for loops that are made for each of them: the one place that lists them, with
+/// The compiled plants, for loops that are instantiated for each of them: the only list of them, apart from
 /// kernels.inl. The order is that of CompiledModels().
 using AllModels = ModelList<HuntCrossley, SoftActuator>;
 

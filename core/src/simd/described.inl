@@ -7,7 +7,7 @@
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-/// Of several laws the one that acts at sample n.
+/// The active one of several laws at sample n.
 [[gnu::always_inline]] inline const Tape& TapeAt(const Tape* tapes, const ModeData& data, std::size_t n) noexcept {
   return data.law == nullptr ? *tapes : tapes[data.law[data.sample[n]]];
 }
@@ -26,7 +26,7 @@ template <int kGroup>
   }
 }
 
-/// Runs the laws, or what they leave, at the samples of `data`, in their order; place(n) is where lane 0 of the result
+/// Runs the laws, or their errors, at the samples of `data`, in order; place(n) is where lane 0 of the result
 /// of sample n goes, the others behind it.
 /// @tparam kSize       Candidates: the first half of a tile, or one, or two.
 /// @param offset, end  Of the states of a plant that has some, and one tile: added to their starts, and them at the end

@@ -5,7 +5,7 @@ namespace {
 
 template <class F>
 void ForVectors(std::size_t count, const double* a, double* out, F f) noexcept ARMCMC_NONBLOCKING {
-  constexpr std::size_t kPair = 2;  // side by side: what one has to wait for is the time of the other
+  constexpr std::size_t kPair = 2;  // side by side, so that their latencies overlap
   for (std::size_t i = 0; i < count; i += kPair * Simd::kLanes) {
     V x[kPair];
     for (std::size_t v = 0; v < kPair; ++v) x[v] = Simd::Load(a + i + v * Simd::kLanes);

@@ -8,7 +8,7 @@
 
 namespace armcmc::simd {
 namespace {
-// What the compiler makes of it where nothing else is asked for.
+// Compiled without options for an instruction set.
 #if defined(__SSE2__)
 constexpr const char* kName = "sse2";
 #else

@@ -40,7 +40,7 @@ void QuadraticSums(const ModeData& data, double noise_mean, int num_linear, cons
   }
 }
 
-/// Several vectors side by side: one would keep the arithmetic units waiting.
+/// Several vectors side by side: with one, the arithmetic units would wait.
 constexpr int kQuadraticGroup = 4;
 struct QuadraticVectors {
   V at[static_cast<unsigned>(kQuadraticGroup)];

@@ -44,7 +44,7 @@ inline double Past(const double* lines, double place, double back) noexcept {
 }
 
 /// One sample of a tape for a group of the candidates: as many vectors side by side as leave hardware registers for
-/// what is computed, so that what one of them waits for is the time of the others. The result of one instruction stays
+/// intermediate results, so that their latencies overlap. The result of one instruction stays
 /// there for the next.
 template <std::size_t kSize>
 class TapeGroup {
@@ -53,7 +53,7 @@ class TapeGroup {
   static constexpr std::size_t kVectors = kSize < 8 * Simd::kLanes ? kSize / Simd::kLanes : 8;
   static constexpr std::size_t kLanes = kVectors * Simd::kLanes;
 
-  /// Flat: a vector that is handed to a function lives in memory.
+  /// Inlined, since a vector that is passed to a function is stored in memory.
   [[gnu::flatten]] static void Run(const TapeInstruction* first, const TapeInstruction* last, double* registers,
                                    const double* scalars, const double* past) noexcept {
     const TapeGroup group(registers, scalars, past);
@@ -77,7 +77,7 @@ class TapeGroup {
   [[nodiscard]] Vec Scalar(std::uint8_t s) const noexcept { return Simd::Set(scalars_[s]); }
   static Vec At(const double* r, std::size_t v) noexcept { return Simd::Load(r + v * Simd::kLanes); }
 
-  /// Loops that are unrolled whatever the compiler thinks of it: an array of vectors that is indexed by a variable
+  /// Loops that must be unrolled: an array of vectors that is indexed by a variable
   /// would live in memory.
   template <class F>
   [[gnu::always_inline]] static void Each(F f) noexcept {
@@ -88,7 +88,7 @@ class TapeGroup {
   [[gnu::always_inline]] static void Unary(Vec* a, F f) noexcept {
     Each([a, f](std::size_t v) { a[v] = f(a[v]); });
   }
-  /// Of functions that are worth the way through memory, and too long to be written down for every vector.
+  /// For functions that justify a store and a load, and are too long to be inlined for every vector.
   template <class F>
   [[gnu::always_inline]] static void Long(Vec* a, F f) noexcept {
     Vec value[kVectors];
@@ -97,7 +97,7 @@ class TapeGroup {
     for (Vec& v : value) v = f(v);  // in order
     Each([&value, a](std::size_t v) { a[v] = value[v]; });
   }
-  /// Of functions of several vectors side by side.
+  /// For functions of several vectors side by side.
   template <class F>
   [[gnu::always_inline]] static void Fours(Vec* a, F f) noexcept {
     constexpr std::size_t kFour = kVectors < 4 ? kVectors : 4;
@@ -205,7 +205,7 @@ class TapeGroup {
       case TapeOp::kTanh: Fours(x, [](auto& a) { Math::Tanh(a); }); break;
       case TapeOp::kMin: Binary(x, i, [](Vec a, Vec b) { return Math::Min(a, b); }); break;
       case TapeOp::kMax: Binary(x, i, [](Vec a, Vec b) { return Math::Max(a, b); }); break;
-      // Nothing to look at: the hardware's give their second argument where one is not a number.
+      // No check needed: the hardware's return their second argument if one is NaN.
       case TapeOp::kMinS: Unary(x, [s = Scalar(i.b)](Vec a) { return Simd::Min(s, a); }); break;
       case TapeOp::kMaxS: Unary(x, [s = Scalar(i.b)](Vec a) { return Simd::Max(s, a); }); break;
       case TapeOp::kStep: Unary(x, [](Vec a) { return Math::Step(a); }); break;

@@ -11,6 +11,7 @@ namespace armcmc::test::armcmc_spy_test {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -55,7 +56,8 @@ class ArmcmcSpy : public ::testing::Test {
 };
 
 TEST_F(ArmcmcSpy, ExplainsItself) {
-  EXPECT_THAT(Run({"--help"}).out, StartsWith("Usage: armcmc-spy"));
+  EXPECT_THAT(Run({"--help"}).out,
+              AllOf(StartsWith("Shows the messages on the bus"), HasSubstr("\nUsage: armcmc-spy [OPTIONS]\n")));
   EXPECT_EQ(Run({"--help"}).code, 0);
   EXPECT_THAT(Run({"--version"}).out, StartsWith("armcmc-spy 0."));
   for (const std::vector<std::string>& bad :

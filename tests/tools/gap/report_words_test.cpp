@@ -36,9 +36,9 @@ TEST(MeanText, HasTheDigitsThatTheSdJustifies) {
 }
 
 TEST(Readings, FollowTheNumbers) {
-  EXPECT_NE(CoverageReading(0.95).find("honest"), std::string::npos);
-  EXPECT_NE(CoverageReading(0.43).find("57.0 % fall outside"), std::string::npos);
-  EXPECT_NE(CoverageReading(0.999).find("too cautious"), std::string::npos);
+  EXPECT_NE(CoverageReading(0.95).find("correct"), std::string::npos);
+  EXPECT_NE(CoverageReading(0.43).find("57.0 % of the samples are outside"), std::string::npos);
+  EXPECT_NE(CoverageReading(0.999).find("too wide"), std::string::npos);
   EXPECT_NE(WhitenessReading(1.1).find("white: "), std::string::npos);
   EXPECT_NE(WhitenessReading(212.0).find("not white"), std::string::npos);
   EXPECT_EQ(WhitenessReading(std::nan("")), "not known");

@@ -177,7 +177,7 @@ TEST_F(LadderProgram, AGalleryLinksTheReportsOfAFolder) {
   std::ofstream(dir_ / "out" / "result.json") << "{}";
   const Outcome broken = RunProgram(Program("armcmc-gap"), {"--gallery", dir_.path()});
   EXPECT_EQ(broken.code, 2);
-  EXPECT_THAT(broken.err, HasSubstr("out/result.json: is no result of armcmc-gap"));
+  EXPECT_THAT(broken.err, HasSubstr("out/result.json: is not a result of armcmc-gap"));
 }
 
 }  // namespace

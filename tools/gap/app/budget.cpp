@@ -27,7 +27,7 @@ std::vector<DataPack> ReadPacks(const Estimator& estimator, const std::shared_pt
   return packs;
 }
 
-/// Drives one estimator and remembers how long each step took.
+/// Runs one estimator and records the time of each step.
 class Timed {
  public:
   explicit Timed(const EstimatorSettings& settings) : estimator_(settings), result_(estimator_.MakeResult()) {}
@@ -58,7 +58,7 @@ Budget MeasureBudget(const EstimatorSettings& base, const EstimatorSettings& aug
   Timed before(base), after(augmented);
   Budget budget;
   budget.deadline_ms = 1e3 * packs.period;
-  // In turn, so that both see the same machine.
+  // In turn, so that both run under the same conditions.
   for (const DataPack& pack : ReadPacks(Estimator(base), base.plant, packs)) {
     before.Step(pack);
     after.Step(pack);

@@ -6,10 +6,10 @@
 
 namespace armcmc::gap {
 
-/// What the estimator pays for the effects: the median time of its adjust computation over the packs of a recording,
-/// with the base model and with the augmented one, side by side on this machine.
-/// @param packs  Where they come from, and their length, which is the deadline, too; the plant is filled in.
-/// @throws support::InputError when the recording holds no whole pack.
+/// Cost of the effects for the estimator: the median time of the adjust stage over the packs of a recording, with the
+/// base model and with the extended one, in turn on this machine.
+/// @param packs  Source and length of the packs; the length is also the deadline. The plant is filled in.
+/// @throws support::InputError if the recording contains no complete pack.
 [[nodiscard]] Budget MeasureBudget(const EstimatorSettings& base, const EstimatorSettings& augmented,
                                    const replay::SourceRequest& packs);
 

@@ -11,7 +11,7 @@ namespace {
 
 using support::Significant;
 
-constexpr int kFewestBlocks = 4;     // of the gap watch: what is small takes it that long
+constexpr int kFewestBlocks = 4;     // of the gap watch: small gaps take that long to detect
 constexpr double kMostOfThem = 0.5;  // of the packs with data
 
 }  // namespace
@@ -55,15 +55,15 @@ FollowedDrift FollowDrift(const EstimatorSettings& base, const replay::SourceReq
 void TakeAsDrift(const FollowedDrift& drift, Result* result) {
   if (!drift.followed || result->verdict != Verdict::kUnnamed) return;
   result->verdict = Verdict::kNone;
-  result->sentence = "The parameters drift, which the estimator follows; beyond that it sees nothing missing.";
+  result->sentence = "The parameters drift, and the estimator tracks the drift; nothing else is missing.";
   result->probability_none += result->probability_unnamed;
   result->probability_unnamed = 0.0;
   result->sparse.clear();
   result->notes.push_back(
-      "with parameters that stay no effect of the catalogue explains these data; the estimator "
-      "believes in a drift in " +
+      "with constant parameters no effect of the catalogue explains these data; the estimator gives drift a "
+      "probability above one half in " +
       Significant(100.0 * drift.share, 2) + " % of the packs (" + drift.rates +
-      "), and its watch for gaps sees nothing else");
+      "), and its gap watch detects nothing else");
 }
 
 }  // namespace armcmc::gap

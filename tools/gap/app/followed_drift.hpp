@@ -8,19 +8,19 @@
 
 namespace armcmc::gap {
 
-/// What the estimator makes of a recording as it goes by, with the model that offline lacks something.
+/// The estimator run over a recording for which the offline diagnosis finds a gap.
 struct FollowedDrift {
-  /// It believes in drift in most packs, and its gap watch, which has judged long enough, sees nothing beyond it.
+  /// Drift is probable in most packs, and the gap watch has run long enough and detects nothing else.
   bool followed = false;
-  double share = 0.0;  ///< Of the packs with data: drift is more probable than not.
-  std::string rates;   ///< Means over those packs: "K 0.06 N/m^p per s, ...".
+  double share = 0.0;  ///< Share of the packs with data in which drift is more probable than not.
+  std::string rates;   ///< Mean rates over those packs: "K 0.06 N/m^p per s, ...".
 };
 
-/// @param packs  Where they come from, and their length; the plant is filled in.
-/// @throws support::InputError when the recording holds no whole pack.
+/// @param packs  Source and length of the packs; the plant is filled in.
+/// @throws support::InputError if the recording contains no complete pack.
 [[nodiscard]] FollowedDrift FollowDrift(const EstimatorSettings& base, const replay::SourceRequest& packs);
 
-/// A drift that the estimator follows is no missing effect: of an unnamed gap that is all there is nothing is left.
+/// Changes the verdict `unnamed` to `none` if the gap is a drift that the estimator tracks.
 void TakeAsDrift(const FollowedDrift& drift, Result* result);
 
 }  // namespace armcmc::gap

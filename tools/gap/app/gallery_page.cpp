@@ -12,7 +12,7 @@ namespace armcmc::gap {
 
 std::filesystem::path WriteGallery(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder))
-    throw support::InputError("--gallery " + folder.string() + ": is no folder");
+    throw support::InputError("--gallery " + folder.string() + ": is not a folder");
   std::vector<std::filesystem::path> results;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (std::filesystem::exists(entry.path() / "result.json") && std::filesystem::exists(entry.path() / "report.html"))
@@ -34,9 +34,9 @@ std::filesystem::path WriteGallery(const std::filesystem::path& folder) {
         throw support::InputError(path.string() + ": schema = " + parsed.back().at("schema").dump() +
                                   ": expected 1; the file is of a newer version of the program");
       entries.push_back({path.parent_path().filename().string(), &parsed.back()});
-      (void)GalleryHtml({entries.back()});  // says which of them lacks something
+      (void)GalleryHtml({entries.back()});  // reports which of them is incomplete
     } catch (const nlohmann::json::exception& error) {
-      throw support::InputError(path.string() + ": is no result of armcmc-gap: " + error.what());
+      throw support::InputError(path.string() + ": is not a result of armcmc-gap: " + error.what());
     }
   }
   std::ofstream file(page, std::ios::binary);

@@ -105,13 +105,13 @@ Step LastStep(const std::string& steps) {
   for (std::string word; std::getline(words, word, ',');) {
     const auto it = std::find_if(known.begin(), known.end(), [&](const auto& step) { return step.first == word; });
     if (it == known.end())
-      throw support::InputError("--steps: '" + word + "' is no step; steps are compare, find, name, add, show");
+      throw support::InputError("--steps: '" + word + "' is not a step; steps are compare, find, name, add, show");
     last = std::max(last, it->second);
   }
   return last;
 }
 
-/// Makes the folder for the results. Those of an older run must not be taken for this one's, whatever becomes of it.
+/// Creates the folder for the results, and removes those of an older run, so that they cannot be mistaken for new ones.
 void Claim(const std::filesystem::path& out) {
   std::error_code error;
   std::filesystem::create_directories(out, error);
@@ -169,7 +169,7 @@ std::string LadderText(const Result& result) {
   char line[240];
   std::snprintf(line, sizeof(line), "%-44s %12s %9s %12s\n", "", "error", "closed", "probability");
   out << line;
-  std::snprintf(line, sizeof(line), "%-44s %12.4g\n", "model as it is", result.gap.before.rmse);
+  std::snprintf(line, sizeof(line), "%-44s %12.4g\n", "base model", result.gap.before.rmse);
   out << line;
   for (const LadderRung& rung : result.ladder) {
     std::string names;
@@ -181,7 +181,7 @@ std::string LadderText(const Result& result) {
   return out.str();
 }
 
-/// The effects of a model file, which are not to be found again.
+/// The effects of a model file, which the search must not find again.
 std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& settings) {
   std::vector<std::pair<std::string, When>> known;
   for (int e = 0; e < settings.num_effects; ++e) {
@@ -199,7 +199,7 @@ std::vector<std::pair<std::string, When>> KnownEffects(const EstimatorSettings& 
   return known;
 }
 
-/// A name that no effect has would leave out nothing, silently.
+/// Rejects unknown names, which would otherwise have no effect.
 void CheckWithout(const std::string& model, const std::vector<std::string>& without) {
   const int base = FindModel(BuiltinSettings(model).model);
   const ModelInfo& plant = *CompiledModels()[static_cast<std::size_t>(base)];
@@ -216,7 +216,7 @@ void CheckWithout(const std::string& model, const std::vector<std::string>& with
   }
 }
 
-/// Step time of the estimator as it came and with what was named.
+/// Step time of the estimator with the base model and with the named effects.
 Budget DescribedBudget(const support::Recording& recording, const ladder::Diagnosis& diagnosis,
                        std::vector<std::string>* notes) {
   if (diagnosis.before.program == nullptr || diagnosis.after.program == nullptr) return {};
@@ -227,13 +227,13 @@ Budget DescribedBudget(const support::Recording& recording, const ladder::Diagno
     return MeasureBudget(DescribedSettings(diagnosis.before.program), DescribedSettings(diagnosis.after.program),
                          packs);
   } catch (const std::exception& error) {
-    // The diagnosis stands, whether or not this recording makes packs.
+    // The diagnosis is valid even if this recording contains no complete pack.
     notes->push_back(std::string("step time of the estimator not measured: ") + error.what());
     return {};
   }
 }
 
-/// Writes what the ladder found, and says it.
+/// Writes and prints the result of the ladder.
 int Present(const Arguments& a, const support::Recording& recording, ladder::Diagnosis* diagnosis) {
   const std::filesystem::path out = a.out;
   Result& result = diagnosis->result;
@@ -253,7 +253,7 @@ int Present(const Arguments& a, const support::Recording& recording, ladder::Dia
   return support::kExitOk;
 }
 
-/// A plant that came with code of its own.
+/// A plant with compiled code.
 int RunBuiltIn(const Arguments& a) {
   WorkflowRequest request;
   request.until = LastStep(a.steps);
@@ -284,7 +284,7 @@ int RunBuiltIn(const Arguments& a) {
     try {
       TakeAsDrift(FollowDrift(support::ReadModel(a.model), packs), &result);
     } catch (const support::InputError& error) {
-      result.notes.push_back(std::string("not tried whether it is a drift (--period-ms): ") + error.what());
+      result.notes.push_back(std::string("not tested whether it is a drift (--period-ms): ") + error.what());
     }
   }
   if (result.verdict == Verdict::kUnnamed) {
@@ -300,7 +300,7 @@ int RunBuiltIn(const Arguments& a) {
     try {
       result.budget = MeasureBudget(support::ReadModel(a.model), *outcome.augmented, packs);
     } catch (const support::InputError& error) {
-      // The diagnosis stands, whether or not these samples make packs.
+      // The diagnosis is valid even if these samples contain no complete pack.
       result.notes.push_back(std::string("step time of the estimator not measured (--period-ms): ") + error.what());
     }
   }
@@ -315,7 +315,7 @@ int RunBuiltIn(const Arguments& a) {
   return support::kExitOk;
 }
 
-/// Refuses what only built-in plants have.
+/// Rejects options that apply to built-in plants only.
 void CheckDescribed(const Arguments& a) {
   const auto refuse = [](bool given, const char* option) {
     if (given) throw support::InputError(std::string(option) + ": not for plants that a file describes; leave it out");
@@ -325,7 +325,7 @@ void CheckDescribed(const Arguments& a) {
   refuse(LastStep(a.steps) != Step::kShow, "--steps");
 }
 
-/// A plant that a file describes.
+/// A plant described by a file.
 int RunDescribed(const Arguments& a) {
   CheckDescribed(a);
   ladder::DiagnosisRequest request;

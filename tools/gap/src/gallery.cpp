@@ -16,7 +16,7 @@ using plots::EscapeHtml;
 using plots::NumberText;
 using plots::PercentText;
 
-/// Names that share a rung, with "or" in between.
+/// The names on a rung, joined by "or".
 std::string RungText(const json& names) {
   std::string text;
   for (const json& name : names)
@@ -24,7 +24,7 @@ std::string RungText(const json& names) {
   return text;
 }
 
-/// What was named, a line a rung; of a result without a ladder its effects, or the set that is left.
+/// The named effects, one rung per line; without a ladder, the effects of the result or its verdict in words.
 std::string NamedText(const json& result) {
   std::string text;
   for (const json& rung : result.value("ladder", json::array()))
@@ -36,8 +36,8 @@ std::string NamedText(const json& result) {
       text += (text.empty() ? "" : "<br>") + EscapeHtml(EffectTitle(effect.at("name").get<std::string>()));
     return text;
   }
-  if (verdict == "ambiguous") return "several effects explain it alike";
-  return verdict == "none" ? "nothing is missing" : "something is missing, no effect explains it";
+  if (verdict == "ambiguous") return "several effects explain it equally well";
+  return verdict == "none" ? "nothing is missing" : "something is missing that no effect explains";
 }
 
 double Number(const json& value) { return value.is_number() ? value.get<double>() : std::nan(""); }
@@ -65,13 +65,12 @@ void AddRow(const GalleryEntry& entry, std::ostream& out) {
 std::string GalleryHtml(const std::vector<GalleryEntry>& entries) {
   plots::Page page("Gap reports");
   std::ostringstream out;
-  out << "<main>\n<section class=\"card\">\n<h1>What the models miss</h1>\n<p class=\"soft\">" << entries.size()
+  out << "<main>\n<section class=\"card\">\n<h1>Gap reports</h1>\n<p class=\"soft\">" << entries.size()
       << (entries.size() == 1 ? " recording" : " recordings")
-      << ". Errors are root mean squares on data that had no part in the diagnosis. Effects were added from top to "
-         "bottom.</p>\n<div class=\"scroll\"><table>\n<tr><th>recording</th><th>missing</th><th class=\"num\">error of "
-         "the "
-         "model as it is</th><th class=\"num\">with what was named</th><th class=\"num\">gap "
-         "closed</th><th>left</th></tr>\n";
+      << ". Errors are root mean squares on held-out data. Effects are listed in the order in which they were "
+         "added.</p>\n<div class=\"scroll\"><table>\n<tr><th>recording</th><th>missing</th><th class=\"num\">error of "
+         "the base model</th><th class=\"num\">with the named effects</th><th class=\"num\">gap "
+         "closed</th><th>remainder</th></tr>\n";
   for (const GalleryEntry& entry : entries) AddRow(entry, out);
   out << "</table></div>\n</section>\n</main>\n";
   page.Html(out.view());

@@ -1,4 +1,4 @@
-// What speaks for the verdict: where the error is, which explanations were weighed.
+// The evidence for the verdict: where the error occurs, and the candidate explanations.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -55,7 +55,7 @@ std::vector<Explanation> Explanations(const Result& result) {
   return out;
 }
 
-/// Keeps the best, and always the two that are no effects.
+/// Keeps the most probable rows, and always the two that are not effects.
 void Shorten(std::vector<Explanation>* rows, std::size_t* left_out, double* left_out_probability) {
   std::vector<Explanation> kept;
   for (const Explanation& row : *rows) {
@@ -86,11 +86,11 @@ void AddCandidates(const Result& result, plots::Page* page) {
   double left_out_probability = 0.0;
   Shorten(&rows, &left_out, &left_out_probability);
   std::ostringstream out;
-  out << "<section class=\"card\" id=\"candidates\">\n<h2>Which explanations were weighed</h2>\n<p class=\"soft\">The "
-         "longer the "
-         "bar, the more probable the explanation. "
-      << (result.ambiguous_set.empty() ? "" : "Amber: the data cannot tell these apart. ")
-      << "The score is earned on blocks of data left out of each fit; 3 nats are odds of 20 to 1.</p>\n"
+  out << "<section class=\"card\" id=\"candidates\">\n<h2>Candidate explanations</h2>\n<p class=\"soft\">The length of "
+         "a bar is the probability of the explanation. "
+      << (result.ambiguous_set.empty() ? "" : "Amber: the data cannot distinguish these. ")
+      << "The score is the log predictive density of blocks left out of each fit, relative to the base model; 3 nats "
+         "are odds of 20 to 1.</p>\n"
          "<div class=\"scroll\"><table>\n<tr><th>explanation</th><th></th><th class=\"num\">probability</th>"
          "<th class=\"num\">gap closed</th><th class=\"num\">score, nats</th><th class=\"num\">log evidence, "
          "nats</th></tr>\n";
@@ -102,8 +102,8 @@ void AddCandidates(const Result& result, plots::Page* page) {
   }
   out << "</table></div>\n";
   if (left_out > 0)
-    out << "<p class=\"soft\">" << left_out << " more were tried; together they have "
-        << PercentText(left_out_probability) << ". All stand in result.json.</p>\n";
+    out << "<p class=\"soft\">" << left_out << " further candidates were tested; their total probability is "
+        << PercentText(left_out_probability) << ". result.json lists all of them.</p>\n";
   out << "</section>\n";
   page->Html(out.view());
 }
@@ -114,24 +114,21 @@ void AddWhere(const Result& result, plots::Page* page) {
   if (!map.value.empty())
     page->Chart(
         plots::HeatMap{map.x_title, map.y_title, map.value_title, map.x_edges, map.y_edges, map.value},
-        "Excess error of the model as it was: the darker a cell, the more the model is wrong there; hatched cells hold "
-        "no data.");
+        "Excess error of the base model: the darker a cell, the larger the error; hatched cells contain no data.");
   std::ostringstream out;
   if (result.where.empty()) {
-    out << "<p>No quantity predicts the error better than chance.</p>\n";
+    out << "<p>No quantity predicts the error significantly.</p>\n";
   } else {
-    out << "<div class=\"scroll\"><table>\n<tr><th>the error depends on</th><th>mostly</th><th class=\"num\">share of "
-           "the excess "
-           "error there</th><th class=\"num\">effect size, share of the noise variance</th><th "
+    out << "<div class=\"scroll\"><table>\n<tr><th>the error depends on</th><th>region</th><th class=\"num\">share of "
+           "the excess error there</th><th class=\"num\">effect size, share of the noise variance</th><th "
            "class=\"num\">p-value</th></tr>\n";
     for (const Where& w : result.where)
       out << "<tr><td>" << EscapeHtml(w.feature) << "</td><td>"
           << (w.region.empty() ? "everywhere" : EscapeHtml(w.region)) << "</td><td class=\"num\">"
           << PercentText(w.share_of_excess) << "</td><td class=\"num\">" << NumberText(w.effect_size, 2)
           << "</td><td class=\"num\">" << (w.p_value < 1e-4 ? "< 0.0001" : NumberText(w.p_value, 2)) << "</td></tr>\n";
-    out << "</table></div>\n<p class=\"soft\">Effect size: how much of the noise variance becomes predictable from "
-           "that quantity "
-           "on blocks left out. A p-value under 0.01 is hard to get by chance.</p>\n";
+    out << "</table></div>\n<p class=\"soft\">Effect size: the predictable part of the error on blocks left out, "
+           "relative to the noise variance.</p>\n";
   }
   out << "</section>\n";
   page->Html(out.view());

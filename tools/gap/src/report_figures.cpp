@@ -1,4 +1,4 @@
-// The curves and the map of the report.
+// The curves of the report.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -43,19 +43,18 @@ void AddTimeFigures(const Result& result, plots::Page* page) {
   const Figures& f = result.figures;
   page->Html("<section class=\"card\" id=\"time\">\n<h2>Over time</h2>\n");
   const bool held_out_here = std::isfinite(f.diagnosis_end_s);
-  const std::string held_out = held_out_here ? " The tinted part had no part in the diagnosis."
-                                             : " All of it was recorded apart from the data of the diagnosis.";
+  const std::string held_out = held_out_here ? " The shaded part is held out from the diagnosis."
+                                             : " All of it is from a separate held-out recording.";
 
   XyChart residual;
   residual.x_title = "time, s";
   residual.y_title = ResidualTitle(f.output_title);
   residual.sync = "time";
-  AddCurve(f.residual_before, Role::kBefore, HasAfter(result) ? "before" : "model as it is", &residual);
+  AddCurve(f.residual_before, Role::kBefore, HasAfter(result) ? "before" : "base model", &residual);
   if (HasAfter(result)) AddCurve(f.residual_after, Role::kAfter, "after", &residual);
   ShadeHeldOut(f, &residual);
-  page->Chart(residual,
-              "Measured minus predicted: a model that lacks nothing leaves a band of even noise around zero." +
-                  held_out + " Drag to zoom, double-click to go back.");
+  page->Chart(residual, "Measured minus predicted: a complete model leaves stationary noise around zero." + held_out +
+                            " Drag to zoom, double-click to reset.");
 
   XyChart output;
   output.x_title = "time, s";
@@ -65,9 +64,7 @@ void AddTimeFigures(const Result& result, plots::Page* page) {
   AddCurve(f.predicted_before, Role::kBefore, HasAfter(result) ? "predicted before" : "predicted", &output);
   if (HasAfter(result)) AddCurve(f.predicted_after, Role::kAfter, "predicted after", &output);
   ShadeHeldOut(f, &output);
-  page->Chart(output,
-              "What was measured and what the model predicts, on the same time axis: where the curves part, the "
-              "model is wrong.");
+  page->Chart(output, "Measured and predicted output on the same time axis.");
   page->Html("</section>\n");
 }
 
@@ -76,25 +73,24 @@ void AddFeatureFigures(const Result& result, plots::Page* page) {
   if (f.features.empty()) return;
   page->Html(
       "<section class=\"card\" id=\"features\">\n<h2>What the error depends on</h2>\n<p class=\"soft\">Mean residual "
-      "for "
-      "each value of a quantity, with 95 % bands. A slope, a step or a bend is structure that the model lacks; a flat "
-      "line at zero is none.</p>\n<div class=\"grid\">\n");
+      "as a function of each quantity, with 95 % bands. A slope, a step or a bend is structure that the model "
+      "lacks.</p>\n<div class=\"grid\">\n");
   for (const FeatureFigure& figure : f.features) {
     XyChart chart;
     chart.x_title = figure.feature;
     chart.y_title = "mean residual" + (result.gap.unit.empty() ? "" : ", " + result.gap.unit);
     chart.height = 230;
-    AddCurve(figure.before, Role::kBefore, HasAfter(result) ? "before" : "model as it is", &chart);
+    AddCurve(figure.before, Role::kBefore, HasAfter(result) ? "before" : "base model", &chart);
     if (HasAfter(result)) {
       AddCurve(figure.after, Role::kAfter, "after", &chart);
       AddCurve(figure.effect, Role::kEffect, "added effect", &chart);
     }
     page->Chart(chart, HasAfter(result) && !figure.effect.x.empty()
                            ? "Against <b>" + EscapeHtml(figure.feature) +
-                                 "</b>: the added effect (dashed) should follow the error before; what is left after "
-                                 "should lie on zero."
+                                 "</b>: the added effect (dashed) should follow the residual before; the residual "
+                                 "after should be zero."
                            : "Against <b>" + EscapeHtml(figure.feature) +
-                                 "</b>: where the band does not hold zero, the model is wrong on average.");
+                                 "</b>: where the band excludes zero, the model has a systematic error.");
   }
   page->Html("</div>\n</section>\n");
 }
@@ -104,15 +100,13 @@ void AddSpectrum(const Result& result, plots::Page* page) {
   if (f.spectrum_before.x.empty()) return;
   XyChart chart;
   chart.x_title = "frequency, Hz";
-  chart.y_title = "power over that of white noise";
+  chart.y_title = "power relative to white noise";
   chart.log_x = chart.log_y = true;
   chart.rules.push_back({1.0, "white noise"});
-  AddCurve(f.spectrum_before, Role::kBefore, HasAfter(result) ? "before" : "model as it is", &chart);
+  AddCurve(f.spectrum_before, Role::kBefore, HasAfter(result) ? "before" : "base model", &chart);
   if (HasAfter(result)) AddCurve(f.spectrum_after, Role::kAfter, "after", &chart);
-  page->Html("<section class=\"card\" id=\"spectrum\">\n<h2>At which frequencies</h2>\n");
-  page->Chart(chart,
-              "Spectrum of the residual after whitening: what rises above the line at 1 is not noise, and its "
-              "frequency says how fast the missing physics is.");
+  page->Html("<section class=\"card\" id=\"spectrum\">\n<h2>Spectrum</h2>\n");
+  page->Chart(chart, "Spectrum of the whitened residual: power above 1 is not explained by the noise model.");
   page->Html("</section>\n");
 }
 

@@ -1,4 +1,4 @@
-// The ladder: what was named, in which order, what it takes off the error, and what is left.
+// The ladder: the named effects in order, the error after each, and the remainder.
 #include <cmath>
 #include <sstream>
 
@@ -33,25 +33,24 @@ void AddRung(const LadderRung& rung, const std::string& unit, std::ostream& out)
 
 void AddRemainder(const Result& result, std::ostream& out) {
   if (result.complete) {
-    out << "<p>Nothing is left: a flexible function of all quantities finds no more, and neighbouring samples differ "
-           "by "
-           "as much as the model errs.</p>\n";
+    out << "<p>No misfit remains: a flexible function of all quantities explains nothing further, and the error of the "
+           "model equals the difference between neighbouring samples.</p>\n";
     return;
   }
   out << "<p><b>" << PercentText(result.remainder.share)
-      << "</b> of the squared error beyond the noise is still unexplained, and no effect that fits this plant earns a "
-         "name for it.";
+      << "</b> of the squared error beyond the noise remains unexplained, and no applicable effect of the catalogue "
+         "explains it.";
   if (!result.remainder.where.empty()) {
     const Where& w = result.remainder.where.front();
-    out << " Most of it is where: " << EscapeHtml(w.region) << " (" << PercentText(w.share_of_excess) << ").";
+    out << " The largest part (" << PercentText(w.share_of_excess) << ") is where: " << EscapeHtml(w.region) << ".";
   }
   out << "</p>\n";
   if (result.remainder.sparse.empty()) return;
-  out << "<p class=\"soft\">As a sum of simple terms:";
+  out << "<p class=\"soft\">Approximated by a sum of simple terms:";
   for (const SparseTerm& term : result.remainder.sparse)
     out << " <span class=\"mono\">" << (term.coefficient < 0.0 ? "− " : "+ ")
         << NumberText(std::fabs(term.coefficient), 3) << "·" << EscapeHtml(term.expression) << "</span>";
-  out << "; a description, not physics.</p>\n";
+  out << ". This describes the remainder; it does not identify its cause.</p>\n";
 }
 
 void AddStretches(const Result& result, std::ostream& out) {
@@ -67,7 +66,7 @@ void AddStretches(const Result& result, std::ostream& out) {
 
 void AddPublished(const Result& result, std::ostream& out) {
   if (result.published.empty()) return;
-  out << "<h3>What others report of these data</h3>\n<div class=\"scroll\"><table>\n<tr><th>what</th><th "
+  out << "<h3>Published results on these data</h3>\n<div class=\"scroll\"><table>\n<tr><th>what</th><th "
          "class=\"num\">value</th><th>source</th></tr>\n";
   for (const PublishedFigure& p : result.published)
     out << "<tr><td>" << EscapeHtml(p.what) << "</td><td class=\"num\">" << NumberText(p.value, 3) << "</td><td>"
@@ -83,11 +82,11 @@ void AddPublished(const Result& result, std::ostream& out) {
 void AddLadder(const Result& result, plots::Page* page) {
   if (result.ladder.empty() && result.published.empty()) return;
   std::ostringstream out;
-  out << "<section class=\"card\" id=\"ladder\">\n<h2>What was named, step by step</h2>\n<p class=\"soft\">Each effect "
-         "was added to the model, everything was fitted again, and what was left was looked at anew. Errors are those "
-         "on data that had no part in the diagnosis.</p>\n<div class=\"scroll\"><table>\n<tr><th>model</th><th "
-         "class=\"num\">error (rms)</th><th class=\"num\">gap closed</th><th class=\"num\">error of the fit over the "
-         "noise</th><th class=\"num\">probability</th></tr>\n<tr><td>as it is</td><td class=\"num\">"
+  out << "<section class=\"card\" id=\"ladder\">\n<h2>Named effects, step by step</h2>\n<p class=\"soft\">After each "
+         "effect, the extended model is refitted and the residual is examined again. Errors are on held-out "
+         "data.</p>\n<div class=\"scroll\"><table>\n<tr><th>model</th><th "
+         "class=\"num\">error (rms)</th><th class=\"num\">gap closed</th><th class=\"num\">error of the fit relative "
+         "to the noise</th><th class=\"num\">probability</th></tr>\n<tr><td>base model</td><td class=\"num\">"
       << NumberText(result.gap.before.rmse, 3) << ' ' << EscapeHtml(result.gap.unit)
       << "</td><td class=\"num\"></td><td class=\"num\">" << NumberText(result.gap.gap_ratio, 3)
       << "</td><td></td></tr>\n";

@@ -3,26 +3,26 @@
 #include "armcmc/gap/result.hpp"
 #include "armcmc/plots/page.hpp"
 
-// The parts of the report, in the order of the page. Each appends to it, or nothing when there is nothing to say.
+// The sections of the report, in the order of the page. A section without content appends nothing.
 namespace armcmc::gap {
 
 /// Whether the result describes a model with effects added, so that there is an "after".
 [[nodiscard]] bool HasAfter(const Result& result);
 
-/// Tints what had no part in the diagnosis, when it is the end of the same recording.
+/// Shades the held-out part, if it is the end of the same recording.
 void ShadeHeldOut(const Figures& figures, plots::XyChart* chart);
 
-/// Verdict, probability, what follows from it.
+/// Verdict, probability, consequence.
 void AddHeadline(const Result& result, plots::Page* page);
-/// What was named, rung by rung, and what is left.
+/// The named effects, rung by rung, and the remainder.
 void AddLadder(const Result& result, plots::Page* page);
-/// Gap before and after beside what was added.
+/// Gap before and after, and the added effects.
 void AddGapAndEffects(const Result& result, plots::Page* page);
-/// What is ambiguous, and the experiment that would separate it.
+/// The tied effects, and the experiment that would separate them.
 void AddOpenQuestions(const Result& result, plots::Page* page);
 /// Curves against time.
 void AddTimeFigures(const Result& result, plots::Page* page);
-/// What the estimator made of the recording as it went by: one-step prediction, drift of the parameters.
+/// The estimator run over the recording: one-step prediction, drift of the parameters.
 void AddRunAlong(const Result& result, plots::Page* page);
 /// Residual against each feature.
 void AddFeatureFigures(const Result& result, plots::Page* page);
@@ -30,7 +30,7 @@ void AddFeatureFigures(const Result& result, plots::Page* page);
 void AddWhere(const Result& result, plots::Page* page);
 /// Spectrum of the residual.
 void AddSpectrum(const Result& result, plots::Page* page);
-/// Every explanation that was weighed.
+/// The candidate explanations.
 void AddCandidates(const Result& result, plots::Page* page);
 /// Parameters of the base model before and after.
 void AddParameters(const Result& result, plots::Page* page);
@@ -38,7 +38,7 @@ void AddParameters(const Result& result, plots::Page* page);
 void AddQuality(const Result& result, plots::Page* page);
 /// Step time, limits, notes.
 void AddLimits(const Result& result, plots::Page* page);
-/// What the result was made from.
+/// The data and the program behind the result.
 void AddProvenance(const Result& result, plots::Page* page);
 
 }  // namespace armcmc::gap

@@ -1,4 +1,4 @@
-// What a reader sees first: the verdict, the gap, what was added, what is open.
+// The top of the page: the verdict, the gap, the added effects, the open questions.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -25,19 +25,18 @@ struct VerdictWords {
 VerdictWords VerdictWordsOf(Verdict verdict) {
   switch (verdict) {
     case Verdict::kNamed:
-      return {"named", "Named", "All other effects of the catalogue were tried and rejected against it."};
+      return {"named", "Named", "All other applicable effects of the catalogue were tested and rejected."};
     case Verdict::kAmbiguous:
       return {"doubt", "Ambiguous",
-              "I do not know which: these data fit more than one explanation equally well. The experiment below would "
-              "tell them apart."};
+              "Several explanations fit these data equally well. The experiment below would distinguish them."};
     case Verdict::kUnnamed:
       return {"unknown", "Cause unknown",
-              "I do not know what it is: something is missing, but no effect of the catalogue explains it. Nothing was "
-              "added to the model; this page shows where it acts and what it looks like."};
+              "The model is missing an effect that is not in the catalogue. Nothing was added to the model; this page "
+              "shows where the misfit occurs and describes its form."};
     case Verdict::kNone: break;
   }
   return {"good", "Nothing missing",
-          "No effect predicts data it has not seen better than the model does without it. Nothing was added."};
+          "No effect improves the prediction of data to which it was not fitted. Nothing was added."};
 }
 
 std::string SentenceOf(const Result& result) {
@@ -45,16 +44,16 @@ std::string SentenceOf(const Result& result) {
   std::vector<std::string> names;
   for (const EffectFinding& e : result.effects) names.push_back(e.name);
   switch (result.verdict) {
-    case Verdict::kNamed: return "The model lacks " + EscapeHtml(EffectTitles(names)) + ".";
+    case Verdict::kNamed: return "The model is missing " + EscapeHtml(EffectTitles(names)) + ".";
     case Verdict::kAmbiguous:
-      return std::to_string(result.ambiguous_set.size()) + " explanations fit what the model lacks equally well.";
-    case Verdict::kUnnamed: return "The model lacks something that is not in the catalogue.";
+      return std::to_string(result.ambiguous_set.size()) + " explanations fit the misfit equally well.";
+    case Verdict::kUnnamed: return "The model is missing an effect that is not in the catalogue.";
     case Verdict::kNone: break;
   }
   return "The model explains the data down to the noise.";
 }
 
-/// The probability of the verdict, as the reader should say it.
+/// The probability of the verdict, in words.
 std::string ProbabilityOf(const Result& result) {
   switch (result.verdict) {
     case Verdict::kNone: return "Probability that nothing is missing: " + PercentText(result.probability_none);
@@ -106,28 +105,27 @@ void AddBars(const Result& result, std::ostream& out) {
   out << "</div>\n";
 }
 
-/// Where most of the error is, in one line.
+/// The quantity on which the error depends most, in one line.
 void AddPlace(const Result& result, std::ostream& out) {
   if (result.where.empty() || result.verdict == Verdict::kNone) return;
   const Where& w = result.where.front();
   out << "<p>The error depends most on <b>" << EscapeHtml(w.feature) << "</b>";
   if (!w.region.empty())
-    out << "; " << PercentText(w.share_of_excess) << " of the excess lies where: " << EscapeHtml(w.region);
+    out << "; " << PercentText(w.share_of_excess) << " of the excess error occurs where: " << EscapeHtml(w.region);
   out << ".</p>\n";
 }
 
 void AddGap(const Result& result, std::ostream& out) {
   const GapSummary& gap = result.gap;
-  out << "<section class=\"card\" id=\"gap\">\n<h2>The gap</h2>\n<p class=\"soft\">Typical error (root mean square) of "
-         "the "
-         "prediction on data that had no part in the diagnosis.</p>\n<div class=\"tiles\">\n"
-      << Tile("before", gap.before.rmse, gap.unit, HasAfter(result) ? "before" : "model as it is");
+  out << "<section class=\"card\" id=\"gap\">\n<h2>The gap</h2>\n<p class=\"soft\">Prediction error (root mean square) "
+         "on held-out data.</p>\n<div class=\"tiles\">\n"
+      << Tile("before", gap.before.rmse, gap.unit, HasAfter(result) ? "before" : "base model");
   if (HasAfter(result)) out << Tile("after", gap.after.rmse, gap.unit, "after");
   out << Tile("floor", gap.noise_floor, gap.unit, "noise floor") << "</div>\n";
   AddBars(result, out);
-  out << "<p class=\"soft\">Dashed line: the noise floor, which no model can get below.</p>\n";
+  out << "<p class=\"soft\">Dashed line: the noise floor, the lower limit for any model.</p>\n";
   if (HasAfter(result)) {
-    out << "<p><b>" << PercentText(gap.closed_fraction) << "</b> of the explainable squared error is gone";
+    out << "<p><b>" << PercentText(gap.closed_fraction) << "</b> of the explainable squared error is removed";
     if (std::isfinite(gap.closed_low) && std::isfinite(gap.closed_high) && gap.closed_high > gap.closed_low)
       out << " (95 % interval " << FixedText(100.0 * gap.closed_low, 1) << " to "
           << FixedText(100.0 * gap.closed_high, 1) << " %)";
@@ -136,13 +134,13 @@ void AddGap(const Result& result, std::ostream& out) {
       const std::string other = EscapeHtml(InSentence(gap.control_effects));
       out << (result.verdict == Verdict::kAmbiguous
                   ? " The alternative (" + other + ") closes "
-                  : " As a check, the runner-up (" + other + ") was added instead: it closes ")
+                  : " For comparison, the second-best candidate (" + other + ") closes ")
           << PercentText(gap.control_closed_fraction) << ".";
     }
     out << "</p>\n";
   } else if (std::isfinite(gap.gap_ratio)) {
-    out << "<p>What the model leaves unexplained is <b>" << NumberText(gap.gap_ratio, 2)
-        << " times</b> the noise (root mean square), its own parameters fitted as well as they can be.</p>\n";
+    out << "<p>The misfit of the model, with its parameters refitted, is <b>" << NumberText(gap.gap_ratio, 2)
+        << " times</b> the noise (root mean square).</p>\n";
   }
   AddPlace(result, out);
   out << "</section>\n";
@@ -158,26 +156,27 @@ void AddEffect(const EffectFinding& effect, std::ostream& out) {
   if (!words.meaning.empty()) out << "<p class=\"soft\">" << words.meaning << "</p>\n";
   out << "<dl class=\"facts\">\n";
   for (const ParameterEstimate& p : effect.parameters)
-    out << "<dt>" << EscapeHtml(EffectTitle(p.name)) << "</dt><dd><b>" << MeanText(p) << "</b> <span class=\"soft\">("
+    out << "<dt>" << EscapeHtml(p.name) << "</dt><dd><b>" << MeanText(p) << "</b> <span class=\"soft\">("
         << (p.sd > 0.0 ? "95 %: " : "") << IntervalText(p) << ")</span></dd>\n";
   out << "<dt>Acts</dt><dd>" << WhenText(effect.when) << "</dd>\n";
   if (!effect.family.empty()) out << "<dt>Family</dt><dd>" << EscapeHtml(effect.family) << "</dd>\n";
   out << "<dt>Probability</dt><dd>" << PercentText(effect.probability) << "</dd>\n</dl>\n";
   if (effect.approximate)
-    out << "<p class=\"soft\">The family is right, the formula is not exact: a free shape in the same variables fits "
-           "better.</p>\n";
+    out << "<p class=\"soft\">The family is identified, but the formula is approximate: a flexible function of the "
+           "same variables fits better.</p>\n";
   if (effect.provisional)
-    out << "<p class=\"soft\">Provisional: seen in too few separate events to be checked on others.</p>\n";
+    out << "<p class=\"soft\">Provisional: the effect acts in too few separate events to be validated on data left "
+           "out.</p>\n";
 }
 
-/// The best of what was tried and not added.
+/// The most probable candidates that were not added.
 void AddNearest(const Result& result, std::ostream& out) {
   std::vector<const CandidateScore*> nearest;
   for (const CandidateScore& c : result.candidates)
     if (!c.effects.empty()) nearest.push_back(&c);
   if (nearest.empty()) return;
   nearest.resize(std::min<std::size_t>(nearest.size(), 3));
-  out << "<p class=\"soft\">The nearest of what was tried:</p>\n<ul class=\"plain\">\n";
+  out << "<p class=\"soft\">The closest candidates:</p>\n<ul class=\"plain\">\n";
   for (const CandidateScore* c : nearest)
     out << "<li>" << EscapeHtml(EffectTitles(c->effects)) << ": closes " << PercentText(c->closed_fraction)
         << " of the gap, probability " << PercentText(c->probability) << "</li>\n";
@@ -186,8 +185,8 @@ void AddNearest(const Result& result, std::ostream& out) {
 
 void AddSparse(const Result& result, std::ostream& out) {
   if (result.sparse.empty()) return;
-  out << "<h3>What it looks like</h3>\n<p class=\"soft\">The shortest sum of simple terms that describes what is "
-         "missing: a description, not physics. Shares are those of the gap on data left out.</p>\n"
+  out << "<h3>Description of the misfit</h3>\n<p class=\"soft\">The shortest sum of simple terms that predicts the "
+         "misfit; it does not identify the cause. Shares of the gap are on data left out of the fit.</p>\n"
          "<div class=\"scroll\"><table>\n<tr><th>term</th><th class=\"num\">coefficient (SI)</th>"
          "<th class=\"num\">share of the gap</th></tr>\n";
   for (const SparseTerm& term : result.sparse)
@@ -197,10 +196,10 @@ void AddSparse(const Result& result, std::ostream& out) {
 }
 
 void AddNothing(const Result& result, std::ostream& out) {
-  out << "<p>Nothing: the model stays as it is. "
+  out << "<p>Nothing; the model is unchanged. "
       << (result.verdict == Verdict::kUnnamed
-              ? "A wrong name would do more harm than none: it would bend the parameters and hide the cause."
-              : "Every effect of the catalogue was tried; none earns its place.")
+              ? "A wrong effect would distort the parameters and hide the cause."
+              : "Every applicable effect of the catalogue was tested; none improves the prediction enough.")
       << "</p>\n";
   AddNearest(result, out);
 }
@@ -209,12 +208,13 @@ void AddEffects(const Result& result, std::ostream& out) {
   out << "<section class=\"card\" id=\"added\">\n<h2>What was added</h2>\n";
   if (!HasAfter(result)) AddNothing(result, out);
   if (result.verdict == Verdict::kAmbiguous && HasAfter(result))
-    out << "<p class=\"soft\">The most probable of the alternatives, so that the model predicts; not an answer.</p>\n";
+    out << "<p class=\"soft\">The most probable of the alternatives, so that the model predicts well; the data do not "
+           "confirm it.</p>\n";
   for (const EffectFinding& effect : result.effects) AddEffect(effect, out);
   AddSparse(result, out);
   if (!result.model_file.empty())
-    out << "<p class=\"soft\">The model with it stands in <code>" << EscapeHtml(result.model_file)
-        << "</code>, for the estimator, the replay and the plant.</p>\n";
+    out << "<p class=\"soft\">The extended model is in <code>" << EscapeHtml(result.model_file)
+        << "</code>, for the estimator, the replay and the simulated plant.</p>\n";
   out << "</section>\n";
 }
 
@@ -228,7 +228,7 @@ void AddHeadline(const Result& result, plots::Page* page) {
       << EscapeHtml(std::filesystem::path(result.data_file).filename().string()) << "</span></div>\n<h1>"
       << SentenceOf(result) << "</h1>\n<p class=\"lead\"><b>" << ProbabilityOf(result) << ".</b> " << words.consequence
       << "</p>\n<nav aria-label=\"Contents\"><a href=\"#gap\">Gap</a><a href=\"#time\">Over time</a>"
-         "<a href=\"#where\">Where</a><a href=\"#candidates\">Explanations</a><a href=\"#parameters\">Parameters</a>"
+         "<a href=\"#where\">Where</a><a href=\"#candidates\">Candidates</a><a href=\"#parameters\">Parameters</a>"
          "<a href=\"#quality\">Quality</a><a href=\"#limits\">Limits</a><a href=\"#provenance\">Provenance</a></nav>\n"
          "</header>\n";
   page->Html(out.view());
@@ -245,19 +245,19 @@ void AddGapAndEffects(const Result& result, plots::Page* page) {
 
 void AddOpenQuestions(const Result& result, plots::Page* page) {
   std::vector<std::vector<std::string>> open = result.ambiguous_set;
-  // Behind a name that is sure.
+  // A tie on a lower rung, below effects that were named alone.
   for (std::size_t r = 0; r < result.ladder.size() && result.ambiguous_set.empty(); ++r)
     if (result.ladder[r].effects.size() > 1)
       for (const std::string& effect : result.ladder[r].effects) open.push_back({effect});
   if (open.empty()) return;
   const Experiment& experiment = result.separate_by;
   std::ostringstream out;
-  out << "<section class=\"card\" id=\"separate\">\n<h2>What these data cannot tell apart</h2>\n<ul "
+  out << "<section class=\"card\" id=\"separate\">\n<h2>Effects that these data cannot distinguish</h2>\n<ul "
          "class=\"plain\">\n";
   for (const auto& effects : open) out << "<li>" << EscapeHtml(EffectTitles(effects)) << "</li>\n";
   out << "</ul>\n";
   if (!experiment.words.empty() || !experiment.scenario_file.empty()) {
-    out << "<h3>The experiment that would</h3>\n<p>" << EscapeHtml(experiment.words) << "</p>\n";
+    out << "<h3>Proposed experiment</h3>\n<p>" << EscapeHtml(experiment.words) << "</p>\n";
     if (std::isfinite(experiment.nats) && experiment.nats > 0.0)
       out << "<p class=\"soft\">Expected evidence between the closest pair: " << NumberText(experiment.nats, 2)
           << " nats (3 nats are odds of 20 to 1).</p>\n";

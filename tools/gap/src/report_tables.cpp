@@ -1,4 +1,4 @@
-// Numbers for the careful reader: parameters, quality, limits, provenance.
+// Tables: parameters, quality, limits, provenance.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ using plots::FixedText;
 using plots::NumberText;
 using plots::PercentText;
 
-/// Places numbers on the width of a row, in percent.
+/// Maps numbers to the width of a row, in percent.
 struct Scale {
   double low, high;
   [[nodiscard]] std::string At(double value) const {
@@ -68,9 +68,8 @@ void AddModes(const Result& result, bool has_after, std::ostream& out) {
   if (result.gap.modes.empty()) return;
   const std::string unit = result.gap.unit.empty() ? "" : ", " + EscapeHtml(result.gap.unit);
   out << "<h3>By regime</h3>\n<div class=\"scroll\"><table class=\"narrow\">\n<tr><th>regime</th><th "
-         "class=\"num\">samples</th><th "
-         "class=\"num\">"
-      << (has_after ? "typical error before" : "typical error") << unit << "</th>"
+         "class=\"num\">samples</th><th class=\"num\">"
+      << (has_after ? "rms error before" : "rms error") << unit << "</th>"
       << (has_after ? "<th class=\"num\">after" + unit + "</th>" : "") << "</tr>\n";
   for (const ModeFit& m : result.gap.modes)
     out << "<tr><td>" << EscapeHtml(m.mode) << "</td><td class=\"num\">" << m.samples << "</td><td class=\"num\">"
@@ -92,17 +91,16 @@ void AddParameters(const Result& result, plots::Page* page) {
   if (result.parameters.empty()) return;
   const bool has_after = HasAfter(result);
   std::ostringstream out;
-  out << "<section class=\"card\" id=\"parameters\">\n<h2>The model's own parameters</h2>\n<p class=\"soft\">"
-      << (has_after ? "A missing effect bends the parameters of a model that lacks it; here they are with and without. "
-                      "Dots are "
-                      "estimates, lines 95 % intervals, each row on a scale of its own."
+  out << "<section class=\"card\" id=\"parameters\">\n<h2>Parameters of the base model</h2>\n<p class=\"soft\">"
+      << (has_after ? "Without and with the added effects: a missing effect biases the parameters. Dots are estimates, "
+                      "lines 95 % intervals; each row has its own scale."
                     : "Estimates with 95 % intervals.")
       << "</p>\n<div class=\"scroll\"><table>\n<tr><th>parameter</th><th class=\"num\">"
       << (has_after ? "before" : "estimate") << "</th>" << (has_after ? "<th class=\"num\">after</th>" : "")
-      << "<th></th>" << (has_after ? "<th class=\"num\">moved by</th>" : "") << "</tr>\n";
+      << "<th></th>" << (has_after ? "<th class=\"num\">change</th>" : "") << "</tr>\n";
   for (const ParameterChange& change : result.parameters) out << ParameterRow(change, has_after);
   out << "</table></div>\n"
-      << (has_after ? "<p class=\"soft\">Orange: before. Blue: after. Moved by: in standard deviations of the estimate "
+      << (has_after ? "<p class=\"soft\">Orange: before. Blue: after. Change: in standard deviations of the estimate "
                       "before.</p>\n"
                     : "")
       << "</section>\n";
@@ -114,18 +112,16 @@ void AddQuality(const Result& result, plots::Page* page) {
   const Fit &b = result.gap.before, &a = result.gap.after, &last = has_after ? a : b;
   const std::string& unit = result.gap.unit;
   std::ostringstream out;
-  out << "<section class=\"card\" id=\"quality\">\n<h2>How good the prediction is</h2>\n<p class=\"soft\">On data that "
-         "had no part "
-         "in the diagnosis.</p>\n<div class=\"scroll\"><table>\n<tr><th></th><th class=\"num\">"
-      << (has_after ? "before" : "model as it is") << "</th>" << (has_after ? "<th class=\"num\">after</th>" : "")
-      << "<th>in words</th></tr>\n";
+  out << "<section class=\"card\" id=\"quality\">\n<h2>Quality of the prediction</h2>\n<p class=\"soft\">On held-out "
+         "data.</p>\n<div class=\"scroll\"><table>\n<tr><th></th><th class=\"num\">"
+      << (has_after ? "before" : "base model") << "</th>" << (has_after ? "<th class=\"num\">after</th>" : "")
+      << "<th>interpretation</th></tr>\n";
   const double ratio = last.rmse / result.gap.noise_floor;
-  QualityRow("typical error (root mean square)", WithUnit(b.rmse, 3, unit), WithUnit(a.rmse, 3, unit),
+  QualityRow("root mean square error", WithUnit(b.rmse, 3, unit), WithUnit(a.rmse, 3, unit),
              std::isfinite(ratio) ? FixedText(ratio, 2) + " times the noise floor" : "", has_after, out);
-  QualityRow("mean absolute error", WithUnit(b.mae, 3, unit), WithUnit(a.mae, 3, unit), "how far off on average",
-             has_after, out);
-  QualityRow("worst 1 %", WithUnit(b.worst_1_percent, 3, unit), WithUnit(a.worst_1_percent, 3, unit),
-             "one sample in a hundred is off by more", has_after, out);
+  QualityRow("mean absolute error", WithUnit(b.mae, 3, unit), WithUnit(a.mae, 3, unit), "", has_after, out);
+  QualityRow("99 % quantile of the absolute error", WithUnit(b.worst_1_percent, 3, unit),
+             WithUnit(a.worst_1_percent, 3, unit), "exceeded by one sample in a hundred", has_after, out);
   QualityRow("inside the 95 % band", PercentText(b.coverage95), PercentText(a.coverage95),
              CoverageReading(last.coverage95), has_after, out);
   QualityRow("whiteness (Ljung–Box over degrees of freedom; 1 is white)", NumberText(b.whiteness, 3),
@@ -139,9 +135,9 @@ void AddQuality(const Result& result, plots::Page* page) {
 void AddLimits(const Result& result, plots::Page* page) {
   std::ostringstream out;
   out << "<section class=\"card\" id=\"limits\">\n<h2>Limits</h2>\n";
-  AddList("What these inputs cannot show, whatever the data", result.aliases, out);
+  AddList("What these inputs cannot reveal", result.aliases, out);
   AddList("Notes", result.notes, out);
-  out << "<h3>Time of a step of the estimator</h3>\n";
+  out << "<h3>Step time of the estimator</h3>\n";
   const Budget& budget = result.budget;
   if (!budget.measured) {
     out << "<p>Not measured in this run.</p>\n";
@@ -150,7 +146,7 @@ void AddLimits(const Result& result, plots::Page* page) {
     if (HasAfter(result))
       out << " before, <b>" << NumberText(budget.adjust_ms_after, 3) << " ms</b> with the added effects";
     out << "; the deadline is " << NumberText(budget.deadline_ms, 3)
-        << " ms: " << (budget.meets_deadline ? "met." : "<b>missed. Do not run this model in real time.</b>")
+        << " ms: " << (budget.meets_deadline ? "met." : "<b>missed; do not run this model in real time.</b>")
         << "</p>\n";
   }
   out << "</section>\n";
@@ -168,16 +164,16 @@ void AddProvenance(const Result& result, plots::Page* page) {
   out << "</dd>\n<dt>Base model</dt><dd><code>" << EscapeHtml(result.model) << "</code></dd>\n<dt>Seed</dt><dd>"
       << result.seed << "</dd>\n<dt>Program</dt><dd>armcmc-gap " << EscapeHtml(result.version) << "</dd>\n";
   if (!result.seconds.empty()) {
-    out << "<dt>Time taken</dt><dd>";
+    out << "<dt>Run time</dt><dd>";
     double sum = 0.0;
     for (const auto& [step, seconds] : result.seconds) {
       out << EscapeHtml(step) << " " << NumberText(seconds, 2) << " s, ";
       sum += seconds;
     }
-    out << "together " << NumberText(sum, 2) << " s</dd>\n";
+    out << "total " << NumberText(sum, 2) << " s</dd>\n";
   }
-  out << "</dl>\n</section>\n<footer>Every number of this page but the curves also stands in result.json. The "
-         "plots were drawn with uPlot (MIT licence, in the source of this page).</footer>\n";
+  out << "</dl>\n</section>\n<footer>result.json holds every number on this page except the curves. Plots: uPlot (MIT "
+         "licence, in the source of this page).</footer>\n";
   page->Html(out.view());
 }
 

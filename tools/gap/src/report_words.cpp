@@ -14,56 +14,61 @@ using plots::EscapeHtml;
 using plots::FixedText;
 using plots::NumberText;
 
-// <i> marks quantities. Names that several plants share say what holds for all of them.
+// <i> marks quantities. A name that several plants share has a text that applies to all of them.
 constexpr std::array<std::pair<std::string_view, EffectWords>, 35> kWords{{
-    {"force_bias", {"<i>f</i> + bias", "The zero of the force sensor is off by a constant, out of contact too."}},
-    {"force_drift", {"<i>f</i> + rate · <i>t</i>", "The zero of the force sensor wanders with time."}},
+    {"force_bias", {"<i>f</i> + bias", "The zero of the force sensor has a constant offset, in free motion as well."}},
+    {"force_drift", {"<i>f</i> + rate · <i>t</i>", "The zero of the force sensor drifts with time."}},
     {"coulomb_friction",
      {"<i>f</i> + <i>F</i><sub>c</sub> sign(<i>v</i>)", "Dry friction: a constant force against the motion."}},
     {"presliding_friction",
      {"<i>f</i> + <i>F</i> <i>z</i>, &ensp;d<i>z</i>/d<i>x</i> = (1 − <i>z</i> sign <i>v</i>) / <i>d</i>",
       "Dry friction that builds up over a short distance after each reversal."}},
-    {"viscous_friction", {"<i>f</i> + <i>c</i> <i>v</i>", "Drag in proportion to the speed, out of contact too."}},
+    {"viscous_friction", {"<i>f</i> + <i>c</i> <i>v</i>", "Drag proportional to the speed, in free motion as well."}},
     {"inertia", {"<i>f</i> + <i>m</i> d<i>v</i>/d<i>t</i>", "A mass between the sensor and the contact."}},
-    {"sensor_delay", {"<i>f</i>(<i>t</i> − <i>T</i>)", "The sensor reports everything late by the same time."}},
+    {"sensor_delay", {"<i>f</i>(<i>t</i> − <i>T</i>)", "The sensor signal arrives late by a constant time."}},
     {"sensor_lag",
-     {"<i>T</i> d<i>g</i>/d<i>t</i> + <i>g</i> = <i>f</i>", "The sensor smooths: a first-order low pass."}},
+     {"<i>T</i> d<i>g</i>/d<i>t</i> + <i>g</i> = <i>f</i>", "The sensor acts as a first-order low pass."}},
     {"stress_relaxation",
      {"<i>f</i> + <i>k</i> (<i>x</i> − <i>y</i>), &ensp;<i>T</i> d<i>y</i>/d<i>t</i> + <i>y</i> = <i>x</i>",
-      "The material gives way while it is held: the force decays in a hold."}},
+      "The material relaxes: the force decays while the deformation is held."}},
     {"adhesion",
-     {"<i>f</i> − <i>F</i> exp(−<i>x</i> / <i>d</i>) while retracting", "The surfaces stick while they separate."}},
-    {"contact_offset", {"<i>x</i> − <i>d</i> for <i>x</i>", "The surface is not where the model has it."}},
+     {"<i>f</i> − <i>F</i> exp(−<i>x</i> / <i>d</i>) while retracting",
+      "The surfaces attract each other while they separate."}},
+    {"contact_offset", {"<i>x</i> − <i>d</i> for <i>x</i>", "The surface is not where the model assumes it."}},
     {"sensor_saturation", {"min(<i>f</i>, limit)", "The sensor clips above a limit."}},
     {"periodic_disturbance",
      {"<i>f</i> + <i>a</i> cos(2π<i>ν</i><i>t</i>) + <i>b</i> sin(2π<i>ν</i><i>t</i>)",
       "A disturbance at one frequency, such as hum or an unbalanced motor."}},
-    {"stiffness_drift", {"<i>K</i> (1 + rate · <i>t</i>)", "The stiffness changes slowly, by heat or fatigue."}},
+    {"stiffness_drift", {"<i>K</i> (1 + rate · <i>t</i>)", "The stiffness changes slowly, through heat or fatigue."}},
     {"leak",
-     {"flow − <i>c</i> (<i>p</i> − <i>p</i><sub>atm</sub>)", "Gas or liquid escapes in proportion to the pressure."}},
+     {"flow − <i>c</i> (<i>p</i> − <i>p</i><sub>atm</sub>)",
+      "Gas or liquid escapes at a rate proportional to the pressure."}},
     {"valve_dead_band",
-     {"sign(<i>u</i>) max(|<i>u</i>| − <i>u</i><sub>d</sub>, 0)", "The valve does not move for small commands."}},
-    {"valve_lag", {"<i>T</i> d<i>s</i>/d<i>t</i> + <i>s</i> = <i>u</i>", "The valve follows its command with a lag."}},
-    {"supply_droop", {"<i>p</i><sub>s</sub> − <i>r</i> · flow", "The supply pressure falls while much flows."}},
-    {"pressure_bias", {"<i>p</i> + bias", "The zero of the pressure sensor is off by a constant."}},
-    {"angle_bias", {"<i>α</i> + bias", "The zero of the angle sensor is off by a constant."}},
-    {"joint_friction", {"− <i>F</i> sign(d<i>α</i>/d<i>t</i>)", "Dry friction in the bending."}},
+     {"sign(<i>u</i>) max(|<i>u</i>| − <i>u</i><sub>d</sub>, 0)", "The valve does not respond to small commands."}},
+    {"valve_lag",
+     {"<i>T</i> d<i>s</i>/d<i>t</i> + <i>s</i> = <i>u</i>", "The valve follows its command with a first-order lag."}},
+    {"supply_droop", {"<i>p</i><sub>s</sub> − <i>r</i> · flow", "The supply pressure falls with the flow."}},
+    {"pressure_bias", {"<i>p</i> + bias", "The zero of the pressure sensor has a constant offset."}},
+    {"angle_bias", {"<i>α</i> + bias", "The zero of the angle sensor has a constant offset."}},
+    {"joint_friction", {"− <i>F</i> sign(d<i>α</i>/d<i>t</i>)", "Dry friction that opposes the bending."}},
     {"cubic_stiffness", {"+ <i>k</i><sub>3</sub> <i>q</i>³", "The spring stiffens at large deflections."}},
     {"quadratic_stiffness", {"+ <i>k</i><sub>2</sub> <i>q</i>|<i>q</i>|", "The spring stiffens with the deflection."}},
-    {"hysteresis", {"Bouc–Wen", "The force depends on the way the state was reached."}},
-    {"gravity_load", {"+ <i>G</i> sin <i>α</i>", "Weight that the model does not carry."}},
-    {"payload_step", {"load from a time on", "A load was picked up or put down."}},
+    {"hysteresis", {"Bouc–Wen", "The force depends on the history of the motion."}},
+    {"gravity_load", {"+ <i>G</i> sin <i>α</i>", "A weight that the model does not include."}},
+    {"payload_step", {"load from some time on", "A load was picked up or put down."}},
     {"asymmetric_friction",
      {"<i>F</i><sub>+</sub> for <i>v</i> > 0, <i>F</i><sub>−</sub> for <i>v</i> < 0",
       "Dry friction that differs with the direction."}},
-    {"stribeck_friction", {"<i>F</i>(|<i>v</i>|) sign <i>v</i>", "Dry friction that falls as the motion gets going."}},
-    {"overflow", {"level ≤ limit", "The tank runs over."}},
-    {"absolute_value_sensor", {"|<i>y</i>|", "The sensor loses the sign."}},
-    {"sensor_dead_zone", {"<i>y</i> beyond ±<i>w</i>, less <i>w</i>", "The sensor reads nothing below a threshold."}},
-    {"backlash", {"play of a width", "Lost motion at every reversal."}},
-    {"pressure_dependent_friction", {"− <i>c</i> <i>p</i> sign <i>v</i>", "Seals that rub more under pressure."}},
-    {"baseline_tilt", {"+ slope · <i>x</i>", "The zero of the sensor tilts along the stroke."}},
-    {"flexible_mode", {"a lightly damped resonance", "A compliant part between drive and sensor."}},
+    {"stribeck_friction",
+     {"<i>F</i>(|<i>v</i>|) sign <i>v</i>", "Dry friction that decreases as the speed increases."}},
+    {"overflow", {"level ≤ limit", "The tank overflows."}},
+    {"absolute_value_sensor", {"|<i>y</i>|", "The sensor reads the absolute value."}},
+    {"sensor_dead_zone", {"<i>y</i> beyond ±<i>w</i>, less <i>w</i>", "The sensor reads zero below a threshold."}},
+    {"backlash", {"play of width <i>b</i>", "Lost motion at every reversal."}},
+    {"pressure_dependent_friction",
+     {"− <i>c</i> <i>p</i> sign <i>v</i>", "The friction of a seal grows with the pressure."}},
+    {"baseline_tilt", {"+ slope · <i>x</i>", "The zero of the sensor depends linearly on the position."}},
+    {"flexible_mode", {"a lightly damped resonance", "A flexible part between drive and sensor."}},
 }};
 
 int DecimalsFor(double sd) {
@@ -76,7 +81,7 @@ std::string AsPrecise(double value, double sd) {
   return FixedText(value, DecimalsFor(sd));
 }
 
-/// Not the names of people.
+/// Except names of people.
 std::string LowerFirst(std::string title) {
   if (!title.starts_with("Coulomb") && !title.starts_with("Stribeck") && !title.empty() && title[0] >= 'A' &&
       title[0] <= 'Z')
@@ -146,17 +151,17 @@ std::string WithUnit(double value, int digits, std::string_view unit) {
 std::string CoverageReading(double coverage) {
   if (!std::isfinite(coverage)) return "not known";
   if (coverage < 0.93)
-    return "too sure of itself: " + FixedText(100.0 * (1.0 - coverage), 1) + " % fall outside a band meant for 5 %";
-  if (coverage > 0.97) return "too cautious: the band is wider than the errors";
-  return "honest: about 5 % fall outside, as they should";
+    return "too narrow: " + FixedText(100.0 * (1.0 - coverage), 1) + " % of the samples are outside the 95 % band";
+  if (coverage > 0.97) return "too wide: fewer than 5 % of the samples are outside the band";
+  return "correct: about 5 % of the samples are outside the band";
 }
 
 std::string WhitenessReading(double whiteness) {
   if (!std::isfinite(whiteness)) return "not known";
   // The statistic has 25 degrees of freedom: white noise exceeds 1.6 in 3 of 100 recordings.
-  if (whiteness <= 1.6) return "white: the past of the error says nothing about its future";
-  if (whiteness <= 3.0) return "nearly white: a little structure is left";
-  return "not white: the error can be predicted, so something is missing";
+  if (whiteness <= 1.6) return "white: the error cannot be predicted from its past";
+  if (whiteness <= 3.0) return "nearly white: little structure remains";
+  return "not white: the error can be predicted from its past";
 }
 
 }  // namespace armcmc::gap

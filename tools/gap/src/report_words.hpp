@@ -6,7 +6,7 @@
 
 #include "armcmc/gap/result.hpp"
 
-// Words of the report. Everything returned is HTML unless it says plain text.
+// Texts of the report. Return values are HTML unless marked plain text.
 namespace armcmc::gap {
 
 /// "coulomb_friction from 4.25 s" -> "Coulomb friction from 4.25 s". Plain text.
@@ -19,8 +19,7 @@ namespace armcmc::gap {
 /// a sentence. Plain text.
 [[nodiscard]] std::string InSentence(std::string_view names);
 
-/// What an effect of the catalogue does to the equations, and one sentence about what that is. Empty when it is not
-/// known here.
+/// How an effect of the catalogue changes the equations, and one sentence that explains it. Empty for unknown effects.
 struct EffectWords {
   std::string_view formula;
   std::string_view meaning;
@@ -38,9 +37,9 @@ struct EffectWords {
 /// Number and unit, escaped.
 [[nodiscard]] std::string WithUnit(double value, int digits, std::string_view unit);
 
-/// How to read a share of samples inside the 95 % band.
+/// Interpretation of the share of samples inside the 95 % band.
 [[nodiscard]] std::string CoverageReading(double coverage);
-/// How to read a Ljung-Box statistic over its degrees of freedom.
+/// Interpretation of a Ljung-Box statistic divided by its degrees of freedom.
 [[nodiscard]] std::string WhitenessReading(double whiteness);
 
 }  // namespace armcmc::gap

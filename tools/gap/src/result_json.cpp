@@ -127,7 +127,7 @@ json PublishedJson(const PublishedFigure& p) {
 }
 
 json BudgetJson(const Budget& b) {
-  // A time that nobody measured is not zero.
+  // null, not zero, if it was not measured.
   return {{"measured", b.measured},
           {"adjust_ms_before", b.measured ? Number(b.adjust_ms_before) : json()},
           {"adjust_ms_after", b.measured ? Number(b.adjust_ms_after) : json()},

@@ -4,8 +4,8 @@
     estimate = estimator.step(u, y, dt)            # u: (samples, inputs), y: (samples,)
     samples, weights = estimator.draws()
 
-The same code as the programs armcmc-replay and armcmc-estimator: equal packs and equal settings give results that are
-equal to the bit. Not for real time: for that there is armcmc-estimator.
+The same code as the programs armcmc-replay and armcmc-estimator: the same packs and settings give bit-identical
+results. Not for real time, for which there is armcmc-estimator.
 """
 
 from . import _armcmc

@@ -6,7 +6,7 @@ from . import _armcmc, _toml
 
 
 class Record(dict):
-    """A dict whose keys are attributes, too."""
+    """A dict whose keys are also attributes."""
 
     def __getattr__(self, name):
         try:
@@ -16,7 +16,7 @@ class Record(dict):
 
 
 class Estimate(Record):
-    """What one step published: see the table in the README. `estimate["K"]` is quantity K of the reported mode."""
+    """The result of one step: see the table in the README. `estimate["K"]` is quantity K of the reported mode."""
 
     def __missing__(self, name):
         return self["modes"][self["report_mode"]]["quantities"][name]
@@ -49,8 +49,8 @@ class Estimator:
     """The estimator of one plant.
 
     model   Built-in name, name of a bundled plant (armcmc.models()), or path of a plant or model file.
-    config  Configuration of armcmc-estimator, by path or by name; None: the values that the programs start from.
-    Keywords replace tables and keys of it: sampler={"draws": 5000, "seed": 3}, noise={"std": 0.1}, method="rls".
+    config  Configuration of armcmc-estimator, by path or by name; None: the defaults of the programs.
+    Keywords override tables and keys of it: sampler={"draws": 5000, "seed": 3}, noise={"std": 0.1}, method="rls".
 
     Raises ValueError with the key, its value and what was expected.
     """
@@ -72,15 +72,15 @@ class Estimator:
         self._own = _armcmc.Estimator.from_text(model, _toml.text(_toml.merged(table, overrides)), name)
 
     def step(self, u, y, dt, t_last=None):
-        """One pack: draws, summary, and the posterior that the next pack starts from. Other threads run meanwhile.
+        """One pack: draws, summary, and the prior of the next pack. Releases the interpreter lock while it computes.
 
         u       (samples, inputs), columns as in `inputs`, in their units; at most 256 samples.
         y       (samples,), the output.
         dt      Sample interval, s.
-        t_last  Time of the last sample, s; None: the pack follows the one before. Whole packs that are missing before
-                it leave out their numbers.
+        t_last  Time of the last sample, s; None: the pack directly follows the previous one. The numbers of packs that
+                are missing before it are skipped.
 
-        Returns an Estimate. Raises ValueError, and is as before, where something is wrong with the pack.
+        Returns an Estimate. Raises ValueError if the pack is invalid, and leaves the estimator unchanged.
         """
         own_t_last = None if t_last is None else _seconds("t_last", t_last)
         return Estimate(_records(self._own.step(_numbers("u", u), _numbers("y", y), _seconds("dt", dt), own_t_last)))
@@ -88,22 +88,22 @@ class Estimator:
     def draws(self, mode=0):
         """(samples, weights) of the newest step: (n, dim) in the units of the columns, and (n,) with sum 1.
 
-        The candidates that have a weight, each once; what the columns are is in draw_names(mode).
-        Raises ValueError where the step said nothing about that mode.
+        The candidates with nonzero weight, each once; draw_names(mode) has the names of the columns.
+        Raises ValueError if the step carried no information about that mode.
         """
         return self._own.draws(mode)
 
     def draw_names(self, mode=0):
-        """The parameters' names, then "noise_std" where the scale of the noise is estimated."""
+        """The names of the parameters, then "noise_std" if the scale of the noise is estimated."""
         return self._own.draw_columns(mode)
 
     def reset(self):
-        """Forgets everything learnt; the next pack is the first, and begins at time 0."""
+        """Discards everything learnt; the next pack is the first, and starts at time 0."""
         self._own.reset()
 
     @property
     def parameters(self):
-        """Name, unit and prior of each parameter that is sampled; mean, sd and bounds as it is sampled."""
+        """Name, unit and prior of each sampled parameter; mean, sd and bounds on the scale on which it is sampled."""
         return _records(self._own.parameters())
 
     @property

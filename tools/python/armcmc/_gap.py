@@ -8,18 +8,18 @@ from ._prefix import PREFIX
 
 
 def gap(model, data, out=None):
-    """What a model misses of measured data, by name: the verdict of armcmc-gap as a dict, its result.json.
+    """Runs armcmc-gap on measured data and returns its result.json as a dict.
 
-    model  As of Estimator; None where `data` is a recording, which names its plant.
-    data   CSV with t and the plant's signals, or a description of a recording (.toml).
-    out    Folder for result.json, report.html and model.toml; None: they are not kept.
+    model  As for Estimator; None if `data` is a recording file, which names the plant.
+    data   CSV with t and the plant's signals, or a recording file (.toml).
+    out    Folder for result.json, report.html and model.toml; None: the files are not kept.
 
-    Runs the program armcmc-gap of the same installation or build in a process of its own, which takes seconds to
-    minutes. Raises ValueError with the program's line where an input is wrong, RuntimeError where it fails otherwise.
+    Runs the program of the same installation or build as a separate process, which takes seconds to minutes. Raises
+    ValueError with the message of the program if an input is wrong, RuntimeError if it fails otherwise.
     """
     program = PREFIX / "bin" / "armcmc-gap"
     if not program.is_file():
-        raise RuntimeError(f"{program} is missing: build or install the programs beside this package")
+        raise RuntimeError(f"{program} is missing: build or install the programs together with this package")
     data = os.fspath(data)
     command = [str(program), "--recording" if data.endswith(".toml") else "--data", data]
     if model is not None:

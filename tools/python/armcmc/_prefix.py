@@ -1,4 +1,4 @@
-"""Where the product is installed, or built: bin/ and share/armcmc/ are there."""
+"""The prefix of the installation or build, which contains bin/ and share/armcmc/."""
 
 from pathlib import Path
 

@@ -33,7 +33,7 @@ def _key(key):
 
 
 def _string(value):
-    # What JSON escapes TOML escapes likewise, but for DEL.
+    # TOML has the same escapes as JSON, except for DEL.
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 

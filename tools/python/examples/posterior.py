@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The posterior of a contact's stiffness K and damping B after 20 packs: a picture, or a table without matplotlib."""
+"""The posterior of a contact's stiffness K and damping B after 20 packs: a plot, or a table without matplotlib."""
 import sys
 
 import armcmc

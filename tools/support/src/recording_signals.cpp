@@ -150,7 +150,7 @@ void Resample(const RecordingRows& rows, Recording* recording) {
                                " runs: interpolated to one sample every " + ExactNumber(dt) + " s");
   if (recording->runs.size() > 1)
     recording->notes.push_back(std::to_string(recording->runs.size()) +
-                               " runs: no memory and no derivative goes from one to the next");
+                               " runs: neither states nor derivatives are carried from one to the next");
 }
 
 namespace {
@@ -242,7 +242,7 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
         recording->smoothed_noise = Roughness(*recording, value) / recording->noise_told *
                                     std::sqrt(std::min(1.0, 2.0 * file.bandwidth_hz * recording->dt));
       value = Filtered(*recording, value, file.bandwidth_hz);
-      recording->notes.push_back(signal + ": low pass without delay, " + ExactNumber(file.bandwidth_hz) + " Hz");
+      recording->notes.push_back(signal + ": zero-phase low pass, " + ExactNumber(file.bandwidth_hz) + " Hz");
     }
   // One may be derived from another that is derived itself.
   for (std::size_t round = 0; round < plant.signals.size(); ++round)
@@ -260,7 +260,7 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
         value = rate;
         recording->notes.push_back(plant.signals[s].name + " is derived from " + plant.signals[s].derivative_of + ", " +
                                    Significant(bandwidth, 3) + " Hz" +
-                                   (file.bandwidth_hz > 0.0 ? "" : ", chosen by the noise"));
+                                   (file.bandwidth_hz > 0.0 ? "" : ", chosen from the noise level"));
         continue;
       }
       const Agreement agreement = Compare(value, rate);

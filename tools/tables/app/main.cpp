@@ -55,7 +55,7 @@ const std::vector<Plan> kPlans = {
     {kContact.key("_heavy_tailed"), "Contact: Student-t noise of three degrees of freedom",
      kContact.key("_heavy_tailed"), ""},
     {kContact.key("_impulsive"), "Contact: impulsive noise, one sample in twenty", kContact.key("_impulsive"), ""},
-    {kContact.key("_chatter"), "Contact that chatters", kContact.key("_chatter"), ""}};
+    {kContact.key("_chatter"), "Contact with chatter", kContact.key("_chatter"), ""}};
 
 /// What else may drift, and how.
 const std::vector<Plan> kDriftPlans = {

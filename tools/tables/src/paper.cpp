@@ -46,29 +46,25 @@ const std::vector<PaperRow>& StoredActuator() {
 }
 
 const char* ContactNote() {
-  return "The column printed as \"MAE of F_e in mN\" holds L2 norms in newtons of the error against the noisy force, "
-         "of "
-         "which a perfect estimator scores 14.25, and the printed parameter errors do not follow from the stored "
-         "estimates. Stored and ours are scored alike, but for MCMC, whose stored errors count an estimate as zero "
-         "until "
-         "there is one.";
+  return "The column printed as \"MAE of F_e in mN\" contains L2 norms in newtons of the error relative to the "
+         "noisy force, for which a perfect estimator has 14.25. The printed parameter errors do not follow "
+         "from the stored estimates. Stored results and ours are scored in the same way, except for MCMC, "
+         "whose stored errors count an estimate as zero before the first one.";
 }
 
 const char* ActuatorNote() {
-  return "The printed errors of AR-MAP need the stored estimates divided by 4 (theta1) and by 2 (theta2), and the "
-         "printed "
-         "angle errors have the columns of RLS and AR-MAP exchanged. No data of the particle filter are stored, and on "
-         "the "
-         "stored data the published method loses every row to RLS.";
+  return "The printed errors of AR-MAP follow from the stored estimates only if these are divided by 4 "
+         "(theta1) and by 2 (theta2), and the printed angle errors of RLS and AR-MAP are interchanged. No data "
+         "of the particle filter are stored; on the stored data the published method is worse than RLS in "
+         "every row.";
 }
 
 const char* LostRowsNote() {
-  return "The valve equation is linear in its parameters and the open valve is known: RLS with one vector for each "
-         "valve "
-         "is Bayes' rule there, too, without sampling error, as long as it never forgets and the pressure rate, its "
-         "regressor, has no noise. In the paper's actuator scenario theta1 and theta2 apart "
-         "cannot be identified, the pressure stays within 4 Pa of the atmosphere's: their errors compare starting "
-         "points.";
+  return "The valve equation is linear in its parameters and the open valve is known: RLS with one parameter "
+         "vector per valve is then Bayes' rule without sampling error, as long as it never forgets and the "
+         "pressure rate, its regressor, is free of noise. In the paper's actuator scenario theta1 and theta2 "
+         "cannot be identified separately, because the pressure stays within 4 Pa of atmospheric: their errors "
+         "compare starting points.";
 }
 
 const Experiment* Result::Find(const std::string& key) const {

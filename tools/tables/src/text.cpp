@@ -32,7 +32,7 @@ void ContactDriftTable(const Experiment& e, std::ostringstream* out) {
     for (const double rate : s.drift.rate) cells.push_back(learns ? Significant(rate, 3) : "-");
     table.AddRow(cells);
   }
-  Put(out, e.title + ": share of the packs in contact whose interval holds the truth, %; learnt drift, mean over them",
+  Put(out, e.title + ": coverage of the intervals over the packs in contact, %; estimated drift, mean over these packs",
       table);
 }
 
@@ -49,7 +49,7 @@ void ActuatorDriftTable(const Experiment& e, std::ostringstream* out) {
                     learns ? Percent(s.drift[m].share) : "-", learns ? Significant(s.drift[m].rate[0], 3) : "-",
                     learns ? Significant(s.drift[m].rate[1], 3) : "-"});
   }
-  Put(out, e.title + ": share of the packs whose interval holds the truth, %; learnt drift, mean over them", table);
+  Put(out, e.title + ": coverage of the intervals over the packs, %; estimated drift, mean over these packs", table);
 }
 
 void ContactTable(const Experiment& e, std::ostringstream* out) {
@@ -121,12 +121,12 @@ std::string ToText(const Result& result) {
     if (e.key == kContact.key()) {
       PaperTable(std::string(kContact.title) + ", printed in the paper", {"printed", "K", "B", "p", "\"F_e mN\""},
                  PublishedContact(), &out);
-      PaperTable(std::string(kContact.title) + ", what the authors' stored results are",
+      PaperTable(std::string(kContact.title) + ", from the authors' stored results",
                  {"stored", "K", "B", "p", "force mN, contact", "overall", "noisy L2 N"}, StoredContact(), &out);
     } else if (e.key == kActuator.key()) {
       PaperTable(std::string(kActuator.title) + ", printed in the paper",
                  {"printed", "theta1 L2", "theta2 L2 1e-6", "angle L2"}, PublishedActuator(), &out);
-      PaperTable(std::string(kActuator.title) + ", what the authors' stored results are",
+      PaperTable(std::string(kActuator.title) + ", from the authors' stored results",
                  {"stored", "theta1 L2", "theta2 L2 1e-6", "angle L2", "flow, rel"}, StoredActuator(), &out);
     }
     if (kContact.Is(e.plant))

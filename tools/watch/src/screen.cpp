@@ -51,8 +51,8 @@ void AddAlarms(const WatchState& state, const View& view, double now_s, std::vec
   }
   if (s.degraded_flags != 0) Alarm("DEGRADED: " + Joined(DegradedWords(s.degraded_flags)), view, lines);
   if (s.gap_suspected != 0) {
-    Alarm("MODEL GAP: the model misses something: " + GapPlace(s) + ", since pack " + std::to_string(s.gap_since_seq) +
-              "; armcmc-gap finds out what",
+    Alarm("MODEL GAP: the model is missing something: " + GapPlace(s) + ", since pack " +
+              std::to_string(s.gap_since_seq) + "; armcmc-gap finds out what",
           view, lines);
   }
   if (state.held_faults != 0) Warning("faults: " + Joined(FaultWords(state.held_faults)), view, lines);

@@ -30,7 +30,7 @@ class GapCheckText {
 /// What the gap watch has found so far.
 struct GapState {
   bool watched = false;         ///< The watch is on.
-  bool suspected = false;       ///< The alarm: the model misses something. Stays until Estimator::Reset().
+  bool suspected = false;       ///< The alarm: the model is missing something. Stays until Estimator::Reset().
   int check = -1;               ///< The check with the most evidence, an index into GapFamily::checks; -1: none yet.
   GapCheckText where;           ///< Its name.
   double log_evidence = 0.0;    ///< ln e-value against "no gap", nats; at most 0 on average when there is none.

@@ -8,18 +8,19 @@
 
 namespace armcmc::gap {
 
-/// What the inputs of a recording cannot show, whatever its output says.
+/// The effects that the inputs of a recording cannot reveal, independent of its output.
 ///
 /// For the whitened signature g of an effect (the change of the prediction by a small amplitude of it) and the slopes J
-/// of the base law, P the projector on their span, three things are said:
-///   - |P g|^2 / |g|^2 > 0.999: the parameters of the law absorb the effect. It cannot be seen, and looks like
-///     (J'J)^-1 J' g of them.
+/// of the base law, with P the projector on the span of J, there are three cases:
+///   - |P g|^2 / |g|^2 > 0.999: the parameters of the law absorb the effect, which then shifts them by
+///     (J'J)^-1 J' g.
 ///   - g = 0: the effect never acts in this motion.
-///   - |cos(g - P g, h - P h)| > 0.98 for the signature h of another effect: the two look alike.
-/// An effect with shapes has a signature for each of them: it is absorbed when all are, and looks like another one when
-/// any of them does. A wrong gain of the sensor, whose signature is the prediction itself, is judged in the same way.
+///   - |cos(g - P g, h - P h)| > 0.98 for the signature h of another effect: the two are indistinguishable.
+/// An effect with shape parameters has one signature per shape: it is absorbed if all of them are, and
+/// indistinguishable from another effect if any of them is. A gain error of the sensor, whose signature is the
+/// prediction, is treated alike.
 ///
-/// @param look  Of a search: its base fit and its catalogue.
+/// @param look  Provides the base fit and the catalogue.
 [[nodiscard]] std::vector<std::string> Aliases(const Equation& equation, const Look& look);
 
 }  // namespace armcmc::gap

@@ -14,14 +14,14 @@ inline constexpr int kNumBlocks = 40;  ///< Contiguous in time; each is left out
 [[nodiscard]] Vector BlockSquares(const Vector& series);
 
 /// Bayesian bootstrap over blocks (Rubin 1981): shares of total weight kNumBlocks, Dirichlet(1, ..., 1) distributed.
-/// What few blocks decide shows as a wide distribution, without a normal approximation.
+/// A result that depends on few blocks has a wide distribution; no normal approximation is made.
 class BlockBootstrap {
  public:
   explicit BlockBootstrap(unsigned long long seed);
   /// Share of the draws in which the weighted sum of `per_block` exceeds `threshold`.
   [[nodiscard]] double ProbabilityAbove(const Vector& per_block, double threshold) const;
-  /// For candidates by column of per-block scores: mean over the draws of exp(score / temperature), normalised over the
-  /// candidates (pseudo-BMA+, Yao et al. 2018).
+  /// For per-block scores with one column per candidate: mean over the draws of exp(score / temperature), normalised
+  /// over the candidates (pseudo-BMA+, Yao et al. 2018).
   [[nodiscard]] Vector SoftShare(const Matrix& per_block, double temperature) const;
   /// Quantile of the weighted ratio sum(a) / sum(b).
   [[nodiscard]] double RatioQuantile(const Vector& a, const Vector& b, double quantile) const;
@@ -30,11 +30,11 @@ class BlockBootstrap {
   Matrix weights_;  ///< [draw][block]
 };
 
-/// Sums over blocks that leave-block-out least squares needs: no row is touched again.
+/// The sums over blocks from which leave-block-out least squares is computed without another pass over the rows.
 ///
 /// For whitened columns X and residual r with ridge L, the coefficients without block b are
 ///   c_b = (H - X_b'X_b + L)^-1 (g - X_b'r_b),   H = X'X, g = X'r,
-/// and the squared error that they make in b is r_b'r_b - 2 c_b'X_b'r_b + c_b'X_b'X_b c_b.
+/// and their squared error in b is r_b'r_b - 2 c_b'X_b'r_b + c_b'X_b'X_b c_b.
 struct BlockGrams {
   std::vector<Matrix> gram;   ///< X_b'X_b
   std::vector<Vector> cross;  ///< X_b'r_b
@@ -45,7 +45,7 @@ struct BlockGrams {
 };
 [[nodiscard]] BlockGrams MakeGrams(const Matrix& columns, const Vector& residual);
 
-/// Squared error in each block of the fit to all the others.
+/// Squared error in each block of the fit to all other blocks.
 [[nodiscard]] Vector LeaveBlockOut(const BlockGrams& grams, const Vector& ridge);
 
 }  // namespace armcmc::gap

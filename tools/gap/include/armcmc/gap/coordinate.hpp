@@ -5,7 +5,7 @@
 
 namespace armcmc::gap {
 
-/// One parameter as the fit moves it: free of units, of order one.
+/// One parameter in the coordinates of the fit: dimensionless and of order one.
 ///
 ///   value = unit_size c           or, for scale-like parameters, value = unit_size exp(c)
 ///
@@ -17,11 +17,11 @@ struct Coordinate {
   double prior_mean = 0.0, prior_sd = 1.0;
   double unit_size = 1.0;
   bool logarithmic = false;
-  bool event = false;  ///< A time at which something happens, or a state at the start: only the samples around it know
-                       ///< it, and leaving them out would say nothing on the effect. Scores take it as known; another
-                       ///< recording has its own.
-  bool nuisance = false;  ///< Of physics that is granted, not claimed. Scores take it as known.
-  /// Resting on that bound, the effect has become another one (a very slow relaxation is a drift): it is not adequate.
+  bool event = false;  ///< The time of an event, or an initial state: only the samples around it determine it,
+                       ///< so leaving them out would not test the effect. Scores treat it as known; another recording
+                       ///< has its own value.
+  bool nuisance = false;  ///< Belongs to a flexible correction, not to a named effect. Scores treat it as known.
+  /// At that bound the effect is equivalent to another one (a very slow relaxation is a drift) and not adequate.
   bool other_below = false, other_above = false;
 
   [[nodiscard]] double Value(double c) const { return unit_size * (logarithmic ? std::exp(c) : c); }

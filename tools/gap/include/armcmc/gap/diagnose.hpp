@@ -13,15 +13,15 @@
 namespace armcmc::gap {
 
 struct DiagnoseOptions {
-  unsigned long long seed = 1;       ///< Of the bootstrap.
-  bool pairs = true;                 ///< Whether two effects at once are tried.
+  unsigned long long seed = 1;       ///< Seed of the bootstrap.
+  bool pairs = true;                 ///< Whether pairs of effects are tested.
   std::vector<std::string> without;  ///< Effects to leave out of the catalogue.
-  /// Effects that the model has already.
+  /// Effects that the model already contains.
   std::vector<std::pair<std::string, When>> known;
   Thresholds thresholds;
 };
 
-/// One look at a recording with one smoother: what was found, and all that it refers to.
+/// The analysis of a recording with one smoother: the finding, and everything that it refers to.
 struct Look {
   Signals signals;
   std::vector<EffectForm> catalogue;
@@ -30,25 +30,24 @@ struct Look {
   Finding finding;
 };
 
-/// What the data say, whichever smoother looks.
+/// The diagnosis of a recording, independent of the smoother.
 struct Diagnosis {
   std::unique_ptr<BlockBootstrap> bootstrap;
   std::unique_ptr<Look> look;    ///< With the wider smoother.
-  std::unique_ptr<Look> narrow;  ///< With the narrower one; null when there was nothing to vote on. Candidates of
-                                 ///< `finding` may refer to it.
-  Finding finding;               ///< Of that look, with the vote of the other applied.
+  std::unique_ptr<Look> narrow;  ///< With the narrower one; null if it was not needed. Candidates of `finding`
+                                 ///< may refer to it.
+  Finding finding;               ///< The finding of `look`, checked against that of `narrow`.
   std::vector<std::string> notes;
 };
 
-/// Fits, judges and names: steps one to three of the workflow, without where.
+/// Fits, tests for adequacy and names: steps one to three of the workflow, without the localisation.
 ///
-/// Deterministic for a seed. The verdict must not hang on the smoother of the inputs: a second look with a narrower one
-/// votes, and where the two name different effects both are reported.
+/// Deterministic for a seed. The verdict must not depend on the smoother of the inputs: the analysis is repeated with a
+/// narrower one, and if the two name different effects, both are reported.
 [[nodiscard]] Diagnosis Diagnose(const Equation& equation, const Recording& recording,
                                  const DiagnoseOptions& options = {});
 
-/// Fits the base model and says nothing: for a recording on which the equation's Check allows no name. There is no
-/// search in its look.
+/// Fits the base model only: for a recording that the equation's Check finds unsuitable. Its `look` contains no search.
 [[nodiscard]] Diagnosis CompareOnly(const Equation& equation, const Recording& recording,
                                     const DiagnoseOptions& options = {});
 

@@ -14,7 +14,7 @@ namespace armcmc::gap {
 
 /// Where an effect acts; also the order of evaluation, the same as in the estimator.
 enum class Slot : std::uint8_t {
-  kInputMap,   ///< Shifts the position that the law is given.
+  kInputMap,   ///< Shifts the position before the law is evaluated.
   kParameter,  ///< Scales the law's first parameter.
   kDrive,      ///< Adds to the input that drives the plant.
   kForce,      ///< Adds an acceleration that depends on the state which the law simulates.
@@ -37,36 +37,36 @@ inline constexpr int kForceMemory = 2;
 
 /// One formula of one effect of the catalogue, scaled to a recording.
 ///
-/// An effect has the catalogue's formula and may have variants: other formulas that nature uses for the same physics.
-/// A variant that wins names the effect, and says that the formula is approximate.
+/// An effect has the catalogue's formula and may have variants: other formulas for the same physics. If a variant fits
+/// best, the effect is named with the formula marked as approximate.
 struct EffectForm {
   std::string effect;   ///< Name in the catalogue.
   std::string variant;  ///< Empty: the catalogue's own formula.
   std::string family;
   std::string formula;
-  bool listed = true;    ///< Of the catalogue. An unlisted effect is never named: it competes, so that no name is given
-                         ///< to what it explains better, and describes what is found.
-  bool regular = false;  ///< Many small amplitudes, which are fitted with what is known of them beforehand.
+  bool listed = true;    ///< Whether it belongs to the catalogue. An unlisted effect is never named: it competes with
+                         ///< the others, so that nothing is named that it explains better.
+  bool regular = false;  ///< Many small amplitudes, fitted with their prior (ridge regression).
   Slot slot = Slot::kAdditive;
   std::vector<Coordinate> coordinates;      ///< Amplitudes first, then shapes.
   int num_amplitudes = 1;                   ///< Coordinates that multiply features.
   bool linear = true;                       ///< The prediction is linear in the amplitudes, given the shapes.
-  bool from_surface = false;                ///< Features read the position as the law does: input maps move it.
+  bool from_surface = false;                ///< Features use the position as the law does, after input maps.
   bool gates_by_mode = false;               ///< May act in contact or in free motion only.
   bool gates_by_time = true;                ///< May start or end during the recording.
   std::vector<std::vector<double>> starts;  ///< Coordinates to start fits from.
-  std::vector<std::string> own_groups;      ///< Feature groups in which a formula of its own may live.
+  std::vector<std::string> own_groups;      ///< Feature groups in which a different formula of the effect may act.
 
-  /// Further starts that depend on what is left to explain; may be null.
+  /// Further starts, which depend on the residual; may be null.
   std::function<std::vector<std::vector<double>>(const Signals&, const Vector& whitened_residual)> find_starts;
-  /// kAdditive, kInputMap, kParameter, kDrive: what the amplitudes multiply, [row][amplitude], from the shapes. Without
-  /// amplitudes: the one column that is added.
+  /// kAdditive, kInputMap, kParameter, kDrive: the columns that the amplitudes multiply, [row][amplitude], from the
+  /// shapes. Without amplitudes: the single column that is added.
   std::function<Matrix(const Signals&, const double* shape)> features;
   /// kForce: acceleration in a state, from the values of all coordinates.
   std::function<double(const Motion&, const double* values, const double* memory)> force;
-  /// kForce: moves the memory on, once a sample and before `force` is asked; may be null.
+  /// kForce: updates the memory, once per sample and before `force` is evaluated; may be null.
   std::function<void(const Motion&, const double* values, double* memory)> remember;
-  /// kMemory: filters a series by the shapes; one filter an amplitude.
+  /// kMemory: filters a series by the shapes; one filter per amplitude.
   std::function<Vector(const Signals&, const Vector& series, int amplitude, const double* shape)> filter;
   /// kDelay, kLag, kStatics: acts on a prediction; own columns from `first` on.
   std::function<void(const Signals&, const double* coordinates, int first, Prediction*)> sense;

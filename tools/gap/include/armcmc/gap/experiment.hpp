@@ -10,11 +10,11 @@ namespace armcmc::gap {
 
 /// The experiment of the library that would separate the candidates best.
 ///
-/// For each motion and each pair of candidates, one is simulated at its estimate and the other refitted to it; what
-/// stays is the evidence that the motion would bring:  D = min_theta |f_i - f_j(theta)|^2 / (2 s2), whitened. The
-/// motion wins that decides most pairs, D / (D + 10 nats) each, weighted by the probabilities of both: a pair that no
-/// motion separates does not keep the others from being separated.
-/// @return words and nats; `scenario_file` is left to the caller.
+/// For each motion and each pair of candidates, one is simulated at its estimate and the other refitted to it; the
+/// expected evidence of the motion is  D = min_theta |f_i - f_j(theta)|^2 / (2 s2), whitened. The motion with the
+/// largest sum of D / (D + 10 nats), weighted by the probabilities of both candidates, is chosen: a pair that no motion
+/// separates does not affect the choice for the others.
+/// @return words and nats; the caller sets `scenario_file`.
 [[nodiscard]] Experiment SeparatingExperiment(const Equation& equation, const Look& look,
                                               const std::vector<CandidatePtr>& candidates);
 

@@ -19,7 +19,7 @@ namespace armcmc::gap {
 /// Bristle deflection of dry friction over a distance, from speed:  z' = v / distance (1 - z sign v),  in [-1, 1].
 [[nodiscard]] Vector Bristle(const Vector& velocity, double distance, double dt);
 
-/// A spectral line: the frequency whose power stands out most from its surroundings.
+/// A spectral line: the frequency with the largest power relative to its neighbourhood.
 struct Line {
   double frequency = 0.0;   ///< Hz
   double prominence = 0.0;  ///< Power over the median of the neighbouring frequencies.

@@ -11,7 +11,7 @@
 
 namespace armcmc::gap {
 
-/// Orthonormal basis of the columns, for projecting them out. As many columns as the rank.
+/// Orthonormal basis of the columns, with as many columns as the rank.
 [[nodiscard]] Matrix OrthonormalBasis(const Matrix& columns);
 
 /// A hypothesis fitted to a recording.
@@ -22,27 +22,27 @@ struct Fitted {
   Vector predicted;            ///< [row]
   Vector whitened_residual;    ///< [row]
   Matrix whitened_jacobian;    ///< [row][coordinate], raw units.
-  std::vector<bool> at_bound;  ///< Coordinates that rest on a bound, and times of events: their columns are not
-                               ///< validated.
+  std::vector<bool> at_bound;  ///< Coordinates at a bound, and times of events: their columns are not validated.
   double squares = 0.0;        ///< Sum of the squared whitened residual.
-  Vector heldout;              ///< Log score of each block with the fit to all others, nats.
+  Vector heldout;              ///< Log score of each block under the fit to all other blocks, nats.
   double log_evidence = 0.0;   ///< Laplace, with the catalogue's priors, nats.
 
   [[nodiscard]] double score() const { return heldout.sum(); }
-  /// Whether the data push a coordinate against a bound beyond which the effect would be another.
+  /// Whether a coordinate is at a bound beyond which the effect would be a different one.
   [[nodiscard]] bool on_edge() const;
-  /// Nats that a coordinate's way to its prior mean would cost, the others following it; of the linearised fit.
+  /// Loss of log likelihood, in nats, if a coordinate is set to its prior mean and the others are refitted
+  /// (linearised).
   [[nodiscard]] double CostOfLeaving(Eigen::Index coordinate) const;
-  /// Orthonormal basis of whitened_jacobian. Made once: what extends a fit projects it out again and again.
+  /// Orthonormal basis of whitened_jacobian; computed once, since every extension of the fit projects it out.
   [[nodiscard]] const Matrix& basis() const;
-  /// s2 H^-1 of the whitened fit, zero for coordinates at a bound. Events count: they are fitted, too.
+  /// s2 H^-1 of the whitened fit, zero for coordinates at a bound. Events are included.
   [[nodiscard]] Matrix Covariance(double s2) const;
 
  private:
   mutable std::shared_ptr<const Matrix> basis_;
 };
 
-/// What another recording says of the coordinates: Gaussian, log p = -(theta - mean)' precision (theta - mean) / 2.
+/// Prior of the coordinates from another recording: Gaussian, log p = -(theta - mean)' precision (theta - mean) / 2.
 struct CoordinatePrior {
   Vector mean;
   Matrix precision;
@@ -60,26 +60,26 @@ class Fitter {
   [[nodiscard]] const Whitener& whitener() const { return whitener_; }
 
   [[nodiscard]] Prediction Predict(const Hypothesis& hypothesis, const Vector& theta, Slopes wanted = {}) const;
-  /// Bounded Levenberg-Marquardt from `start`, then scores.
-  /// @param prior  Of every coordinate; may be null.
+  /// Bounded Levenberg-Marquardt from `start`, then Score.
+  /// @param prior  Prior of all coordinates; may be null.
   [[nodiscard]] Fitted Fit(const Hypothesis& hypothesis, const Vector& start, int max_steps = kMaxSteps,
                            const CoordinatePrior* prior = nullptr) const;
   /// The best fit of `parent` with one more term: grid over the term's starts by projected score, then Fit.
   [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
-  /// Of the squares of `parent` what Add would take at the best of its starts: a bound from below of what it is worth,
-  /// for a fraction of the time.
+  /// Decrease of the sum of squares of `parent` at the best of the starts of Add: a lower bound of the decrease by Add,
+  /// at a fraction of its cost.
   [[nodiscard]] double Promise(const Fitted& parent, const Term& term) const;
 
  private:
   struct Descent;
-  /// @param rival  A fit of the same hypothesis from elsewhere; may be null. The descent is given up where it comes to
-  ///               the same minimum, or where it cannot get below.
+  /// @param rival  A fit of the same hypothesis from elsewhere; may be null. The descent stops if it reaches the
+  ///               same minimum, or cannot improve on it.
   [[nodiscard]] Descent Descend(const Hypothesis& hypothesis, const Vector& start, int max_steps,
                                 const CoordinatePrior* prior, const Fitted* rival) const;
   [[nodiscard]] Fitted Finish(const Hypothesis& hypothesis, Descent at) const;
-  /// Squares and coordinates at each of the term's starts, amplitudes fitted; the least squares first.
+  /// Sum of squares and coordinates at each of the term's starts, amplitudes fitted, in increasing order of squares.
   [[nodiscard]] std::vector<std::pair<double, Vector>> Starts(const Fitted& parent, const Term& term) const;
-  /// Halves amplitudes [first, first + count) until the plant that they make does not run away.
+  /// Halves amplitudes [first, first + count) until the simulation of the plant does not diverge.
   void Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const;
   /// Fills at_bound, heldout and log_evidence.
   void Score(Fitted* fitted) const;

@@ -8,13 +8,13 @@ namespace armcmc::gap {
 
 /// One result in a gallery.
 struct GalleryEntry {
-  std::string folder;            ///< That holds report.html, relative to the page.
-  const nlohmann::json* result;  ///< What result.json says.
+  std::string folder;            ///< Folder with report.html, relative to the page.
+  const nlohmann::json* result;  ///< Content of result.json.
 };
 
-/// One page that links the reports of several recordings: what was named of each, what it takes off the error, what is
-/// left. Text of the results is escaped.
-/// @throws nlohmann::json::exception where a result lacks a key.
+/// One page that links the reports of several recordings, with the named effects, the errors before and after, and the
+/// remainder of each. Text of the results is escaped.
+/// @throws nlohmann::json::exception if a result lacks a key.
 [[nodiscard]] std::string GalleryHtml(const std::vector<GalleryEntry>& entries);
 
 }  // namespace armcmc::gap

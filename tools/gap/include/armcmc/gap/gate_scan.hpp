@@ -6,7 +6,7 @@
 
 namespace armcmc::gap {
 
-/// A term that starts, ends, or acts in one mode only, and what it would gain over the parent.
+/// A term that starts, ends, or acts in one mode only, with its gain over the parent.
 struct GateCandidate {
   Term term;
   double gain = 0.0;         ///< Decrease of the squared whitened residual.
@@ -16,7 +16,7 @@ struct GateCandidate {
 /// Scans every onset and every end of an effect at once.
 ///
 /// With template c (the effect at unit amplitude, whitened) and Q an orthonormal basis of the parent's columns, the
-/// gain of c cut at t is  (c_t'r)^2 / (|c_t|^2 - |Q'c_t|^2),  and all the sums are running sums: O(rows) for all t
+/// gain of c from time t on is  (c_t'r)^2 / (|c_t|^2 - |Q'c_t|^2),  computed from running sums: O(rows) for all t
 /// together.
 /// @return the best gate of each kind, best first; only those that leave enough blocks active.
 [[nodiscard]] std::vector<GateCandidate> ScanGates(const Fitter& fitter, const Fitted& parent, const EffectForm& form,

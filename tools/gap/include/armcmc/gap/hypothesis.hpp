@@ -19,23 +19,24 @@ struct Hypothesis {
   std::vector<Term> terms;
 };
 
-/// 1 where the gate is open, 0 where it is shut.
+/// 1 where the gate is open, 0 where it is closed.
 [[nodiscard]] Vector GateOf(const When& when, const Signals& signals);
 /// "coulomb_friction", "force_bias from 4.25 s".
 [[nodiscard]] std::string TermText(const Term& term);
 [[nodiscard]] std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& signals,
                                                     const Hypothesis& hypothesis);
 
-/// What the law by itself said last. A grid over an effect asks it again and again for one set of its coordinates.
+/// The last prediction of the law alone, kept because a grid over an effect evaluates it repeatedly at the same
+/// coordinates.
 struct LawMemo {
-  Vector theta;              ///< Of the law alone. Empty: nothing is known.
-  bool with_slopes = false;  ///< Whether its derivatives were asked for.
+  Vector theta;              ///< Coordinates of the law. Empty: no prediction is stored.
+  bool with_slopes = false;  ///< Whether its derivatives are stored.
   Prediction law;
 };
 
-/// Prediction and exact derivatives: law and effects pass the columns of the slots before them on.
-/// @param wanted  Derivatives that are asked for; every one of the others may be left out.
-/// @param memo    Of this equation and these signals; may be null.
+/// Prediction and exact derivatives; law and effects propagate the columns of earlier slots.
+/// @param wanted  Requested derivatives; the others may be left out.
+/// @param memo    For this equation and these signals only; may be null.
 [[nodiscard]] Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis,
                                   const Vector& theta, Slopes wanted = {}, LawMemo* memo = nullptr);
 

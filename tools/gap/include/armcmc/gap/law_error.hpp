@@ -4,21 +4,21 @@
 
 namespace armcmc::gap {
 
-/// What a law depends on, with the range over which its error may change.
+/// A variable on which a law depends, with the range over which its error may vary.
 struct LawVariable {
   Role role;
   double low, high;
-  bool saturates = false;  ///< By tanh(value / high): where most of the data lie near zero, there it may change most.
+  bool saturates = false;  ///< Transformed by tanh(value / high): finest near zero, where most of the data are.
 };
 
-/// What a law may differ from its formula by: a smooth factor of what the law depends on, a sum of wide bumps of some
-/// ten percent. It is never named, and scores take it as known: a block that holds the deepest press, left out, would
-/// only say that bumps do not extrapolate.
+/// Model error of a law: a smooth factor that depends on the variables of the law, a sum of wide basis functions of
+/// about ten percent. It is never named, and scores treat it as known: leaving out the block with the deepest press
+/// would only show that the basis functions do not extrapolate.
 ///
 /// Kennedy and O'Hagan (2001) give the discrepancy of a model the same variables as the model; Brynjarsdottir and
-/// O'Hagan (2014) show that parameters are wrong without it. Effects are told from it by what it cannot do: act out of
-/// contact, remember, jump, or change with time. A law whose effects are smooth functions of the same variables (the
-/// valve flow's) has none: it would take their names.
+/// O'Hagan (2014) show that parameters are wrong without it. Effects are distinguished from it by what it cannot
+/// represent: forces out of contact, memory, jumps, and changes with time. A law whose effects are smooth functions of
+/// the same variables (the valve flow) has no such term, because it would absorb them.
 [[nodiscard]] EffectForm LawErrorForm(const LawVariable& a, const LawVariable& b);
 
 }  // namespace armcmc::gap

@@ -7,10 +7,10 @@
 
 namespace armcmc::gap {
 
-/// Step four: the settings of an estimator that knows the effects of a fitted hypothesis.
+/// Step four: the settings of an estimator that includes the effects of a fitted hypothesis.
 ///
-/// Priors are the posteriors of the fit, widened so that the estimator can correct them; shapes are frozen where the
-/// fit found them; the noise is what the fit left over.
+/// Priors are the posteriors of the fit, widened so that the estimator can correct them; shapes are constant at their
+/// fitted values; the noise is the residual of the fit.
 /// @param model    Built-in name of the base.
 /// @param noise_sd  Unit of the output.
 /// @throws std::invalid_argument when a term is not of the estimator's catalogue, or too many are.

@@ -11,31 +11,32 @@
 
 namespace armcmc::gap {
 
-/// One equation of a plant with what the data say on it.
+/// One equation of a plant with its diagnosis.
 struct EquationDiagnosis {
   std::unique_ptr<Equation> equation;
   Suitability suitability;
   Diagnosis diagnosis;
 };
 
-/// What the data say on every equation of a plant: a missing term is sought in each by itself, and belongs to the one
+/// The diagnosis of every equation of a plant: each is searched separately, and a missing term is attributed to the one
 /// that carries the gap.
 struct PlantDiagnosis {
   std::vector<EquationDiagnosis> equations;
   std::size_t carrier = 0;         ///< The equation that carries the gap; without a gap, one that can be judged.
-  std::vector<std::string> notes;  ///< Equations on which nothing can be said; what one decided for another.
+  std::vector<std::string> notes;  ///< Equations that cannot be judged; decisions of one equation for another.
 
   [[nodiscard]] const EquationDiagnosis& carrying() const { return equations[carrier]; }
   [[nodiscard]] EquationDiagnosis& carrying() { return equations[carrier]; }
-  /// Equations beside the carrier that have a gap of their own.
+  /// Other equations with a gap of their own.
   [[nodiscard]] std::vector<const EquationDiagnosis*> Others() const;
 };
 
 /// Diagnoses each equation of a model on one recording.
 ///
-/// A sensor that several equations read shows in all of them: where one leaves an effect in doubt that another has in
-/// its catalogue, too, the other is asked at the value that the first estimates, and strikes it or confirms it.
-/// @throws std::invalid_argument when the model is unknown or the recording cannot be used; says why.
+/// An effect of a sensor that several equations use appears in all of them: if it is ambiguous in one equation and also
+/// in the catalogue of another, the other equation tests it at the value estimated by the first, and rejects or
+/// confirms it.
+/// @throws std::invalid_argument, with the reason, if the model is unknown or the recording cannot be used.
 [[nodiscard]] PlantDiagnosis DiagnosePlant(const std::string& model, const Recording& recording,
                                            const DiagnoseOptions& options = {});
 

@@ -7,7 +7,7 @@
 
 namespace armcmc::gap {
 
-/// Coordinates whose derivatives are asked for.
+/// Coordinates whose derivatives are requested.
 struct Slopes {
   int first = 0;
   int end = std::numeric_limits<int>::max();
@@ -16,29 +16,29 @@ struct Slopes {
   [[nodiscard]] bool Has(int coordinate) const { return coordinate >= first && coordinate < end; }
 };
 
-/// Predicted output and its derivative by the coordinates of a hypothesis.
+/// Predicted output and its derivatives with respect to the coordinates of a hypothesis.
 struct Prediction {
   Vector y;         ///< [row]
-  Slopes wanted;    ///< Of the columns below; others may be left at zero where they cost something.
+  Slopes wanted;    ///< Valid columns of the jacobian; others may be zero.
   Matrix jacobian;  ///< [row][coordinate]
-  /// The part of the law that does not depend on rates (the elastic force of a contact), for effects that remember it.
+  /// The part of the law that does not depend on rates (the elastic force of a contact), for effects with memory of it.
   Vector elastic;
-  Matrix elastic_jacobian;  ///< Of no columns where no effect remembers.
+  Matrix elastic_jacobian;  ///< Without columns if no effect has memory.
 };
 
 struct EffectForm;
 
-/// What effects change before the law is evaluated.
+/// The changes that effects make before the law is evaluated.
 struct LawInput {
-  Vector shift;  ///< Subtracted from what the law acts on: position, pressure. Empty: nothing.
+  Vector shift;  ///< Subtracted from the variable of the law: position, pressure. Empty: zero.
   Vector gain;   ///< Factor of the law's first parameter. Empty: one.
-  /// Derivatives of the two: which coordinate, and by how much each row moves.
+  /// Derivatives of the two: the coordinate, and the derivative of each row.
   struct Slope {
     int coordinate;
     Vector rows;
   };
   std::vector<Slope> shift_slopes, gain_slopes;
-  Vector drive;  ///< Added to the input that drives the plant (the opening of a valve). Empty: nothing.
+  Vector drive;  ///< Added to the input that drives the plant (the opening of a valve). Empty: zero.
   std::vector<Slope> drive_slopes;
 
   /// An effect that acts on the state of the law's own simulation; the law fills its columns.

@@ -18,16 +18,16 @@ struct Recording {
 
   [[nodiscard]] Eigen::Index rows() const { return t.size(); }
   /// Column of that name.
-  /// @throws std::invalid_argument naming the columns that there are.
+  /// @throws std::invalid_argument listing the available columns.
   [[nodiscard]] const Vector& Column(const std::string& name) const;
   /// Rows [first, first + count).
   [[nodiscard]] Recording Slice(Eigen::Index first, Eigen::Index count) const;
 };
 
-/// Reads the columns that an equation asks for and puts them on an even grid.
+/// Reads the columns that an equation needs and puts them on an even grid.
 ///
-/// A velocity column that is missing is derived from its position. Sampling that jitters is resampled, a recording that
-/// has more than one hole is an error.
+/// A missing velocity column is derived from its position. Jittered sampling is resampled; a recording with more than
+/// one hole is an error.
 /// @throws support::InputError naming file, line and what was expected.
 [[nodiscard]] Recording ReadRecording(const std::string& path, const std::vector<std::string>& columns, bool skip_bad);
 

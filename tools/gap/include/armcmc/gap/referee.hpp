@@ -8,19 +8,19 @@
 
 namespace armcmc::gap {
 
-/// What a flexible, anonymous model can still predict after a hypothesis took what it could.
+/// The part of the residual of a hypothesis that a flexible model predicts.
 struct Remainder {
-  Vector gain;                  ///< Log score of each block above that of the hypothesis, nats.
+  Vector gain;                  ///< Log score of each block relative to the hypothesis, nats.
   Vector unexplained;           ///< Whitened residual of hypothesis and flexible model together.
   double line_frequency = 0.0;  ///< Hz, of the spectral line among the columns; 0: none.
   [[nodiscard]] double total() const { return gain.sum(); }
 };
 
-/// The adequacy referee: ridge regression of the residual on hats over every variable, memory, reversals, and a
-/// spectral line. It names nothing; what it can predict on blocks left out is there to be explained.
+/// Adequacy test: ridge regression of the residual on piecewise linear functions of every variable, memory, reversals,
+/// and a spectral line. What it predicts on blocks left out is structure that the hypothesis lacks.
 class Referee {
  public:
-  /// @param predicted  Of the base model: features of the force are built from it.
+  /// @param predicted  Prediction of the base model, from which features of the force are computed.
   Referee(const Fitter& fitter, const Vector& predicted);
 
   [[nodiscard]] Remainder Judge(const Fitted& fitted) const;
@@ -32,7 +32,7 @@ class Referee {
 
  private:
   [[nodiscard]] Vector Gain(const Fitted& fitted, const Matrix& whitened, Vector* unexplained) const;
-  /// As Gain with all columns, whose products are known.
+  /// As Gain with all columns, using the stored products.
   [[nodiscard]] Vector GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* unexplained) const;
 
   const Fitter* fitter_;

@@ -6,9 +6,9 @@
 
 namespace armcmc::gap {
 
-/// The result as one HTML page that opens offline, for readers who were not there. Text of the result (names of files
+/// The result as one self-contained HTML page. Text of the result (names of files
 /// and columns, notes) is escaped.
-/// @throws std::invalid_argument when the arrays of a figure do not fit together, naming the curve.
+/// @throws std::invalid_argument, naming the curve, if the arrays of a figure differ in length.
 [[nodiscard]] std::string ReportHtml(const Result& result);
 
 }  // namespace armcmc::gap

@@ -9,10 +9,10 @@
 
 namespace armcmc::gap {
 
-/// What the data say about a missing effect.
+/// Verdict of the diagnosis.
 enum class Verdict {
   kNone,       ///< Nothing beyond the noise.
-  kNamed,      ///< One set of effects explains the gap, all others are rejected.
+  kNamed,      ///< One set of effects explains the gap; all others are rejected.
   kAmbiguous,  ///< More than one set explains it equally well: `ambiguous_set`.
   kUnnamed,    ///< Something is missing that no effect of the catalogue explains.
 };
@@ -32,15 +32,15 @@ struct ParameterEstimate {
   double sd = 0.0;
 };
 
-/// An effect that the verdict holds. In an ambiguous verdict: the most probable set.
+/// An effect of the verdict. In an ambiguous verdict: of the most probable set.
 struct EffectFinding {
   std::string name;    ///< In the catalogue.
   std::string family;  ///< "dry friction"
   double probability = 0.0;
   std::vector<ParameterEstimate> parameters;
   When when;
-  bool approximate = false;    ///< The family is right, the formula is not: a shape of its own fits better.
-  bool provisional = false;    ///< Seen in too few separate events to be validated on others.
+  bool approximate = false;    ///< The family is identified, but a flexible function fits better than the formula.
+  bool provisional = false;    ///< Acts in too few separate events to be validated on data left out.
   std::string formula_text{};  ///< "f + force tanh(v / speed)"
 };
 
@@ -48,7 +48,7 @@ struct EffectFinding {
 struct CandidateScore {
   std::vector<std::string> effects;  ///< "coulomb_friction", "force_bias from 4.25 s"
   double log_evidence = 0.0;         ///< Laplace, nats.
-  double heldout_score = 0.0;        ///< Leave-block-out log score above that of the base model, nats.
+  double heldout_score = 0.0;        ///< Leave-block-out log score relative to the base model, nats.
   double probability = 0.0;
   double closed_fraction = 0.0;  ///< Share of the explainable gap that it closes, [0, 1].
 };
@@ -56,13 +56,13 @@ struct CandidateScore {
 /// Where the base model and the data disagree.
 struct Where {
   std::string feature;           ///< "v", "time", "memory of the past"
-  std::string region;            ///< "in contact, v < 0": as a person would say it. Empty: everywhere.
+  std::string region;            ///< In plain words: "in contact, v < 0". Empty: everywhere.
   double share_of_excess = 0.0;  ///< Of the squared error beyond the noise, [0, 1].
   double effect_size = 0.0;      ///< Share of the noise variance that the feature predicts on blocks left out.
   double p_value = 1.0;
 };
 
-/// How well a model predicts data that had no part in the diagnosis.
+/// Quality of the prediction of held-out data.
 struct Fit {
   double rmse = 0.0;             ///< Unit of the output.
   double mae = 0.0;              ///< Unit of the output.
@@ -78,7 +78,7 @@ struct ModeFit {
   double rmse_before = 0.0, rmse_after = 0.0;
 };
 
-/// Fit of one stretch of the data that were kept apart, where there are several.
+/// Fit of one held-out segment, if there are several.
 struct StretchFit {
   double from_s = 0.0, until_s = 0.0;
   long long samples = 0;
@@ -89,29 +89,29 @@ struct StretchFit {
 struct GapSummary {
   std::string unit;
   Fit before, after;
-  double noise_floor = 0.0;                    ///< Standard deviation of what no model explains.
+  double noise_floor = 0.0;                    ///< Standard deviation that no model can explain.
   double closed_fraction = 0.0;                ///< (mse before - mse after) / (mse before - floor^2).
   double closed_low = 0.0, closed_high = 0.0;  ///< 95 % interval, bootstrap over blocks.
   std::vector<ModeFit> modes;
-  std::vector<StretchFit> stretches;  ///< Empty: there is one, or too many to list.
+  std::vector<StretchFit> stretches;  ///< Empty if there is only one, or too many to list.
   std::string control_effects;        ///< Negative control: the second-ranked effects, added instead.
   double control_closed_fraction = 0.0;
-  double gap_ratio = 0.0;  ///< Rms of the unexplained over the noise, base model refitted.
+  double gap_ratio = 0.0;  ///< Rms misfit of the refitted base model, relative to the noise.
 };
 
-/// A parameter of the base model, whose bias the missing effect caused.
+/// A parameter of the base model, without and with the added effects.
 struct ParameterChange {
   ParameterEstimate before, after;
 };
 
-/// A sum of simple terms that describes what is found but not in the catalogue.
+/// One term of the sum of simple terms that describes an unnamed misfit.
 struct SparseTerm {
   std::string expression;  ///< "v |v|"
   double coefficient = 0.0;
-  double share = 0.0;  ///< Of the gap, held out.
+  double share = 0.0;  ///< Share of the gap, on data left out.
 };
 
-/// Step time of the estimator with the model, and what the allocation counter saw.
+/// Step time of the estimator with the model.
 struct Budget {
   double adjust_ms_before = 0.0, adjust_ms_after = 0.0;
   double deadline_ms = 0.0;
@@ -119,14 +119,14 @@ struct Budget {
   bool measured = false;
 };
 
-/// What separates an ambiguous set.
+/// The experiment that separates an ambiguous set.
 struct Experiment {
   std::string words;
-  std::string scenario_file;  ///< Relative to the output folder; empty when nothing needs to be separated.
+  std::string scenario_file;  ///< Relative to the output folder; empty if there is no tie.
   double nats = 0.0;          ///< Expected evidence between the closest pair.
   std::string program{};      ///< Motion of the plant's library.
   double pace = 1.0;          ///< Of the motion, 1 as in the library.
-  double depth = 0.0;         ///< Of its deepest press, unit of the position.
+  double depth = 0.0;         ///< Depth of its deepest press, unit of the position.
   double sample_interval_s = 0.0;
   std::string scenario_text{};  ///< For the plant.
   Curve course{};               ///< Of the input that is moved, against time; empty: not shown.
@@ -137,7 +137,7 @@ struct Experiment {
 struct FeatureFigure {
   std::string feature;  ///< Axis title with unit.
   Curve before, after;  ///< Mean residual with 95 % band.
-  Curve effect;         ///< What the added effects contribute; empty without any.
+  Curve effect;         ///< Contribution of the added effects; empty without any.
 };
 
 /// Excess error over two features.
@@ -147,26 +147,26 @@ struct MapFigure {
   std::vector<double> value;  ///< Row by row of y; NaN where there are no data.
 };
 
-/// An effect that was named and added, with all before it refitted; or several that the data cannot tell apart.
+/// An effect that was named and added, with all earlier ones refitted; or several that the data cannot distinguish.
 struct LadderRung {
-  /// What was named; the first was added. Several at once: "a + b".
+  /// Names; the first was added. Several that are needed together: "a + b".
   std::vector<std::string> effects;
-  std::vector<std::string> parameters{};  ///< Of it, in words: "Fc = 20.4 +- 0.1 N".
-  double closed_fraction = 0.0;           ///< Of the gap, all rungs so far, on data kept apart.
-  double heldout_error = 0.0;             ///< Rms there, unit of the output.
-  double probability = 0.0;               ///< That an effect of this family is there.
-  double remainder_ratio = 0.0;           ///< What is still unexplained, over the noise (rms).
-  bool provisional = false;               ///< Seen in too few separate events.
+  std::vector<std::string> parameters{};  ///< In words: "Fc = 20.4 +- 0.1 N".
+  double closed_fraction = 0.0;           ///< Share of the gap closed by all rungs so far, on held-out data.
+  double heldout_error = 0.0;             ///< Rms on held-out data, unit of the output.
+  double probability = 0.0;               ///< Probability that an effect of this family is present.
+  double remainder_ratio = 0.0;           ///< Rms misfit that remains, relative to the noise.
+  bool provisional = false;               ///< Acts in too few separate events to be validated.
 };
 
-/// What is left when nothing more earns a name.
+/// The misfit that remains after the last rung.
 struct Unexplained {
-  double share = 0.0;  ///< Of the squared error beyond the noise before anything was named.
+  double share = 0.0;  ///< Relative to the squared error of the base model beyond the noise.
   std::vector<Where> where;
   std::vector<SparseTerm> sparse;
 };
 
-/// What somebody else reports of the same data.
+/// A published result on the same data.
 struct PublishedFigure {
   std::string what;
   double value = 0.0;
@@ -178,7 +178,7 @@ struct Figures {
   std::string output_title;                           ///< "force, N"
   Curve measured, predicted_before, predicted_after;  ///< Against time.
   Curve residual_before, residual_after;              ///< Against time.
-  double diagnosis_end_s = 0.0;                       ///< Data after this time were held out; NaN: another file was.
+  double diagnosis_end_s = 0.0;                       ///< Data after this time are held out; NaN: a separate file is.
   std::vector<FeatureFigure> features;
   Curve spectrum_before, spectrum_after;  ///< Hz, power of the whitened residual over that of white noise.
   MapFigure where;
@@ -193,32 +193,32 @@ struct Result {
   unsigned long long seed = 0;
   long long rows = 0;
   double dt = 0.0;
-  std::vector<std::string> notes;  ///< What a reader should know: columns derived, rows skipped, aliases, limits.
+  std::vector<std::string> notes;  ///< For the reader: columns derived, rows skipped, aliases, limits.
 
-  std::string equation;  ///< That carries the gap, where the plant has several. Empty: it has one.
+  std::string equation;  ///< The equation that carries the gap. Empty: the plant has only one.
 
   Verdict verdict = Verdict::kNone;
   std::string sentence;  ///< The verdict in one sentence.
   double probability_none = 1.0;
   double probability_unnamed = 0.0;
   std::vector<EffectFinding> effects;
-  /// What explains it equally well. Of two effects of one family both together, too: a latency may be part delay, part
-  /// lag.
+  /// Sets that explain it equally well. May contain two effects of one family together: a latency may be part delay,
+  /// part lag.
   std::vector<std::vector<std::string>> ambiguous_set;
   Experiment separate_by;
   std::vector<CandidateScore> candidates;  ///< Most probable first.
   std::vector<Where> where;                ///< Largest effect size first.
-  std::vector<std::string> aliases;        ///< What these inputs cannot show, whatever the data.
+  std::vector<std::string> aliases;        ///< Effects that these inputs cannot reveal.
   std::vector<SparseTerm> sparse;
   std::vector<LadderRung> ladder;  ///< In the order in which effects were named.
-  bool complete = false;           ///< Behind the last rung nothing is left that a flexible function finds.
+  bool complete = false;           ///< After the last rung, a flexible function finds no further misfit.
   Unexplained remainder;
   std::vector<PublishedFigure> published;
-  double relative_before = 0.0, relative_after = 0.0;  ///< Held-out rms error over the rms of what is explained.
+  double relative_before = 0.0, relative_after = 0.0;  ///< Held-out rms error relative to the rms of the output.
   GapSummary gap;
   std::vector<ParameterChange> parameters;
-  std::vector<ParameterDrift> drift;  ///< Of a described plant.
-  RunAlong run;                       ///< Of a described plant.
+  std::vector<ParameterDrift> drift;  ///< Plant files only.
+  RunAlong run;                       ///< Plant files only.
   Budget budget;
   std::string model_file;  ///< model.toml, relative to the output folder; empty when no effect was added.
   Figures figures;

@@ -12,8 +12,8 @@ namespace armcmc::gap {
 
 /// The result as the content of result.json, schema 1: everything but the curves of the figures.
 ///
-/// Keys that are there for every verdict: schema, verdict, sentence, probability, effects, ambiguous_set, separate_by,
-/// candidates, where, gap, parameters, budget, and what the result was made from. Numbers that are not finite are null;
+/// Keys that are present for every verdict: schema, verdict, sentence, probability, effects, ambiguous_set,
+/// separate_by, candidates, where, gap, parameters, budget, and the provenance. Numbers that are not finite are null;
 /// text is valid UTF-8, so that dump() never throws.
 [[nodiscard]] nlohmann::json ToJson(const Result& result);
 

@@ -7,14 +7,14 @@
 
 namespace armcmc::gap {
 
-/// How one parameter behaves over a recording: fitted anew to each of several stretches of it.
+/// One parameter over a recording: refitted to each of several segments.
 struct Steadiness {
-  bool fitted = false;    ///< The model has such a parameter.
-  Curve course;           ///< Against the middle of the stretch, s, with 95 % bands. Empty: no stretch tells it.
-  double mean = 0.0;      ///< Of the stretches, weighted by what they tell.
-  double moves_by = 0.0;  ///< Standard deviation from stretch to stretch beyond what the bands explain.
-  double p_value = 1.0;   ///< Of so much movement where there is none.
-  bool constant = true;   ///< It is at least 1 %.
+  bool fitted = false;  ///< The model has such a parameter.
+  Curve course;       ///< Against the middle of the segment, s, with 95 % bands. Empty: not determined in any segment.
+  double mean = 0.0;  ///< Mean of the segments, weighted by their information.
+  double moves_by = 0.0;  ///< Standard deviation between segments beyond their uncertainty.
+  double p_value = 1.0;   ///< P-value under the hypothesis of a constant parameter.
+  bool constant = true;   ///< The p-value is at least 0.01.
 
   [[nodiscard]] bool known() const { return !course.x.empty(); }
 };
@@ -24,23 +24,22 @@ struct ParameterDrift {
   Steadiness before, after;
 };
 
-/// Predictions that were made before the data were seen, against the data.
+/// Quality of predictions made one pack ahead.
 struct OneStepScore {
   long long samples = 0;
   double rmse = 0.0;
-  double coverage95 = 0.0;  ///< Share of samples inside the 95 % interval that was given for them.
-  double half_width = 0.0;  ///< Mean of that interval.
+  double coverage95 = 0.0;  ///< Share of samples inside their 95 % interval.
+  double half_width = 0.0;  ///< Mean half width of that interval.
 };
 
-/// What happens while a recording goes by, with the model as it is, and with what was named: how the estimator
-/// predicts, pack by pack, as live.
+/// The estimator run over a recording, pack by pack as live, with the base model and with the named effects.
 struct RunAlong {
   bool done = false;
-  std::string why_not;  ///< Of what is missing, for people.
+  std::string why_not;  ///< Reason if it was not done.
   bool has_after = false;
-  double pack_s = 0.0;                     ///< Length of a pack: predictions reach that far ahead.
+  double pack_s = 0.0;                     ///< Duration of a pack, and the horizon of the prediction.
   OneStepScore before, after;              ///< All samples that both predict.
-  OneStepScore before_apart, after_apart;  ///< Those of them that were kept apart.
+  OneStepScore before_apart, after_apart;  ///< The held-out ones among them.
   Curve error_before, error_after;         ///< Measured minus predicted, the interval about zero, against s.
 };
 

@@ -9,21 +9,22 @@
 
 namespace armcmc::gap {
 
-/// What a measured or derived quantity means for the plant. Effects ask for roles, never for columns, so that one
-/// effect serves every plant that has the roles it needs.
+/// Physical meaning of a measured or derived quantity. Effects refer to roles, never to columns, so that one effect
+/// serves every plant with the roles that it needs.
 enum class Role : std::uint8_t {
-  kPosition,      ///< Depth of a contact, angle of a joint: what a spring acts on.
+  kPosition,      ///< Depth of a contact, angle of a joint: the coordinate of a spring.
   kVelocity,      ///< Its rate.
   kAcceleration,  ///< Its second derivative.
-  kPressure,      ///< Of a chamber above that of the atmosphere.
+  kPressure,      ///< Of a chamber, above atmospheric.
   kOpening,       ///< Of a pair of valves: positive fills, negative vents.
   kCount,
 };
 inline constexpr std::size_t kNumRoles = static_cast<std::size_t>(Role::kCount);
 
-/// One recording as an equation sees it: smoothed inputs by role, the measured output, the mode of every sample.
+/// One recording in the form that an equation uses: smoothed inputs by role, the measured output, the mode of every
+/// sample.
 ///
-/// Inputs are smoothed without phase shift: noise on an input makes a model noisier than the data, and a delay or a low
+/// Inputs are smoothed without phase shift: noise on an input adds noise to the prediction, and a delay or a low
 /// pass would then fit better for the wrong reason.
 struct Signals {
   double dt = 0.0;  ///< s
@@ -32,20 +33,20 @@ struct Signals {
   std::array<Vector, kNumRoles> input;    ///< Empty for roles that the plant does not have.
   std::array<double, kNumRoles> scale{};  ///< Root mean square of each input while the law acts.
   double output_scale = 1.0;              ///< Root mean square of the output while the law acts.
-  double output_peak = 1.0;               ///< Largest output, outliers aside.
+  double output_peak = 1.0;               ///< Largest output without outliers.
   int window = 1;                         ///< Samples of the smoother.
-  double origin = 0.0;                    ///< Time from which effects that drift count; s.
-  double duration = 1.0;                  ///< Time over which they reach their amplitude; s.
+  double origin = 0.0;                    ///< Start time of effects that drift, s.
+  double duration = 1.0;                  ///< Time in which they reach their amplitude, s.
   bool law_seen = true;                   ///< The law acts often enough for its parameters to be fitted.
-  double smoothed_velocity_noise = 0.0;   ///< Standard deviation of what noise is left in the velocity.
-  double velocity_noise = 0.0;            ///< Standard deviation of what smoothing took off the velocity.
+  double smoothed_velocity_noise = 0.0;   ///< Standard deviation of the noise that remains in the velocity.
+  double velocity_noise = 0.0;            ///< Standard deviation of the noise that smoothing removed from the velocity.
   Vector active;                          ///< 1 where the law acts (contact), 0 where it does not.
 
   [[nodiscard]] Eigen::Index rows() const { return t.size(); }
   [[nodiscard]] const Vector& at(Role role) const { return input[static_cast<std::size_t>(role)]; }
   [[nodiscard]] Vector& at(Role role) { return input[static_cast<std::size_t>(role)]; }
   [[nodiscard]] double scale_of(Role role) const { return scale[static_cast<std::size_t>(role)]; }
-  /// Takes over what fitted coordinates are measured in: scales, and the time from which drifts count.
+  /// Copies the units of fitted coordinates: scales, and the start time of drifts.
   void MeasureLike(const Signals& like) {
     origin = like.origin;
     duration = like.duration;

@@ -5,7 +5,7 @@
 
 namespace armcmc::gap {
 
-/// Predictions of a fitted hypothesis on data that had no part in the fit.
+/// Predictions of a fitted hypothesis on held-out data.
 struct Trial {
   Vector residual;  ///< [held-out row]
   Vector predicted;
@@ -14,20 +14,19 @@ struct Trial {
   Matrix whitened_jacobian;
 };
 
-/// The sealed part of the data, opened once at the end.
+/// The held-out data, used once at the end.
 class HeldOut {
  public:
-  /// @param recording  Rows [first, end) are held out; those before only start the memory of effects.
-  /// @throws std::invalid_argument when too few rows are held out.
+  /// @param recording  Rows [first, end) are held out; earlier rows only initialise the memory of effects.
+  /// @throws std::invalid_argument if too few rows are held out.
   HeldOut(const Equation& equation, const Look& look, const Recording& recording, Eigen::Index first);
 
   [[nodiscard]] Trial Try(const Fitted& fitted) const;
   [[nodiscard]] Fit Judge(const Trial& trial) const;
-  /// Standard deviation of what no model explains: the error of `after` less what a flexible model still predicts of
-  /// it.
+  /// Noise floor: standard deviation of the error of `after` without the part that a flexible model predicts.
   [[nodiscard]] double NoiseFloor(const Trial& after) const;
-  /// Share of the gap that `after` closes where nothing else happens: the fifth of the blocks that it leaves most error
-  /// in is put aside, the noise is that of the diagnosis.
+  /// Share of the gap that `after` closes outside the fifth of the blocks with the largest error, with the noise of the
+  /// diagnosis.
   [[nodiscard]] double ClosedElsewhere(const Fitted& before, const Fitted& after) const;
   [[nodiscard]] const Signals& signals() const { return tail_; }
 
@@ -38,7 +37,7 @@ class HeldOut {
   Eigen::Index first_;
 };
 
-/// Step five: the gap on held-out data with the base model and with `after`, and with `control` instead (may be null).
+/// Step five: the gap on held-out data with the base model, with `after`, and with `control` (may be null).
 [[nodiscard]] GapSummary ShowGap(const Equation& equation, const HeldOut& data, const BlockBootstrap& bootstrap,
                                  const Fitted& before, const Fitted& after, const Fitted* control);
 

@@ -6,19 +6,18 @@ namespace armcmc::gap {
 
 /// Autoregressive noise:  e_t = sum_k phi_k e_{t-k} + w_t,  w white with variance s2.
 ///
-/// Before the first sample nothing is known: the first values are whitened by their stationary covariance.
+/// The first values are whitened by their stationary covariance.
 ///
-/// Whitening turns residuals and derivatives into those of w, so that least squares is maximum likelihood and a sample
-/// counts for what it adds.
+/// Whitened residuals and derivatives are those of w, so that least squares is maximum likelihood.
 struct Whitener {
-  Vector phi;       ///< Empty: white already.
-  double s2 = 1.0;  ///< Of w, squared unit of the output.
+  Vector phi;       ///< Empty: e is white.
+  double s2 = 1.0;  ///< Variance of w, squared unit of the output.
 
   [[nodiscard]] Vector Apply(const Vector& series) const;
   [[nodiscard]] Matrix Apply(const Matrix& columns) const;
-  /// The series e whose whitened form is w.
+  /// Inverse of whitening: the series e for a given w.
   [[nodiscard]] Vector Colour(const Vector& white) const;
-  /// Variance of e over that of w.
+  /// Variance of e divided by that of w.
   [[nodiscard]] double Gain() const;
 };
 

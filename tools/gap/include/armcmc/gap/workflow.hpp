@@ -19,23 +19,23 @@ enum class Step { kCompare, kFind, kName, kAdd, kShow };
 
 struct WorkflowRequest {
   std::string model = DefaultModel();  ///< Built-in name.
-  Recording data;                      ///< To diagnose; without `heldout`, its end is kept sealed.
-  std::optional<Recording> heldout;    ///< To show the gap on.
-  std::optional<Recording> earlier;    ///< What its verdict left open is judged by both recordings, see Join.
+  Recording data;                      ///< To diagnose; without `heldout`, its end is held out.
+  std::optional<Recording> heldout;    ///< Separate held-out data.
+  std::optional<Recording> earlier;    ///< A tie in its verdict is resolved with both recordings, see Join.
   Step until = Step::kShow;
   DiagnoseOptions diagnose;
-  /// Called with the name of each step as it begins, and the share of the work before it.
+  /// Called at the start of each step with its name and the share of the work that is done.
   std::function<void(const std::string&, double)> progress;
 };
 
-/// What a run hands to the writers of files.
+/// The result of a run, for the writers of files.
 struct WorkflowOutcome {
   Result result;
-  std::optional<EstimatorSettings> augmented;  ///< When an effect is to be added.
+  std::optional<EstimatorSettings> augmented;  ///< If an effect was named.
 };
 
-/// Simulate and compare, find where, name, add, show. Deterministic for a seed.
-/// @throws std::invalid_argument when the data cannot say anything; says why.
+/// Fit and compare, localise, name, add, verify. Deterministic for a seed.
+/// @throws std::invalid_argument, with the reason, if the data are unsuitable.
 [[nodiscard]] WorkflowOutcome RunWorkflow(const WorkflowRequest& request);
 
 }  // namespace armcmc::gap

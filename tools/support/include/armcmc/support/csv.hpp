@@ -35,7 +35,7 @@ struct BadRows {
 struct CsvSamples {
   std::vector<std::vector<double>> columns;  ///< [wanted column][row]
   BadRows bad;
-  std::vector<std::string> notes;  ///< What a person should know: columns derived, rows skipped.
+  std::vector<std::string> notes;  ///< For the user: columns derived, rows skipped.
   [[nodiscard]] std::size_t num_rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 

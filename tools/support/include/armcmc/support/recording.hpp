@@ -33,15 +33,15 @@ struct Recording {
   std::size_t output = 0;                    ///< Among the signals.
   double dt = 0.0;                           ///< s, sample interval.
   std::vector<double> t;                     ///< [row] s, increasing within a run.
-  std::vector<std::size_t> runs;             ///< First row of every run: no memory and no derivative goes across.
-  std::vector<std::uint8_t> held_out;        ///< [row] 1: kept apart, to judge a model on.
+  std::vector<std::size_t> runs;       ///< First row of every run: neither states nor derivatives are carried across.
+  std::vector<std::uint8_t> held_out;  ///< [row] 1: kept apart, to judge a model on.
   /// Standard deviation of the noise that the filter has let through where the output was filtered here; else 0.
   double smoothed_noise = 0.0;
   /// Where time was uneven and samples are interpolated, of the standard deviation of white noise on the rows: what is
   /// left of it on the samples, and what third differences of the samples tell of it. Else 1.
   double noise_kept = 1.0, noise_told = 1.0;
   std::vector<PublishedFigure> published;
-  std::vector<std::string> notes;  ///< What a person should know: what was derived, resampled, left out.
+  std::vector<std::string> notes;  ///< For the user: what was derived, resampled, left out.
 
   [[nodiscard]] std::size_t num_rows() const { return t.size(); }
 };

@@ -43,7 +43,7 @@ public final class StatusPainter implements Painter {
       header.alarm(Palette.BAD, "\u26A0 DEGRADED: " + String.join(", ", StatusFlags.degraded(s.degraded_flags)));
     }
     if (s.gap_suspected != 0) {
-      header.alarm(Palette.BAD, "\u26A0 MODEL GAP: the model misses something: " + Text.of(s.gap_where).replace('_', ' ') + ", since pack " + s.gap_since_seq
+      header.alarm(Palette.BAD, "\u26A0 MODEL GAP: the model is missing something: " + Text.of(s.gap_where).replace('_', ' ') + ", since pack " + s.gap_since_seq
           + "; armcmc-gap finds out what");
     }
     int faults = model.recentFaults(now);
