@@ -14,11 +14,14 @@ namespace {
 constexpr double kPilotEss = 250.0;      // effective draws of the pilot that suffice, or
 constexpr double kPilotEssShare = 0.24;  // of a round's draws, when there are few
 constexpr double kInitialShare = 0.10;   // of P_0 in the data-driven part of q
+constexpr double kStraightShare = 0.03;  // the same where the pilot's fit is settled and has no bends
+constexpr double kMemoryFactor = 0.4;    // of lambda_q where it is settled: that fits this pack, and not only the last
 constexpr double kLaplaceShare = 0.15;   // of the Laplace fits there, once the pilot's fit exists
 constexpr double kLackingShare = 0.5;    // the same where a part of the posterior has no block of the pilot
 constexpr int kDrawsPerAnchor = 16;      // of a round: finer steps than its draws can tell apart only cost time
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
-constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
+constexpr FitOptions kPilotFit{
+    .bandwidth_factor = 1.2, .tail_weight = 0.1, .tail_sd = 1.8, .inflation = 1.05, .shrink_to_normal = true};
 
 }  // namespace
 
@@ -29,18 +32,24 @@ void ModeSampler::AddPersisted(double share, Proposal* proposal) const noexcept 
 
 void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous,
                                 int num_pilot_blocks, Proposal* proposal) const noexcept {
+  // A part of the posterior whose draws in the pilot were too few for a block has the Laplace fits alone.
+  const bool lacking = num_pilot_blocks == 0 || pilot_lacks_;
+  // Where something may have changed, both what persisted and what did not are in need of all that may draw them.
+  const bool settled = !lacking && !(use_previous && may_have_changed_);
+  if (settled) lambda_q = std::fmax(kMemoryFactor * lambda_q, sampler_.lambda_q_min);
   proposal->Clear();
   if (use_previous)
     for (int b = 0; b < previous.num_blocks; ++b)
       proposal->Add(&previous.block[static_cast<std::size_t>(b)],
                     lambda_q * std::fmax(previous.weight[static_cast<std::size_t>(b)], 0.05));
   const double rest = use_previous ? 1.0 - lambda_q : 1.0;
-  // A part of the posterior whose draws in the pilot were too few for a block has the Laplace fits alone.
-  const bool lacking = num_pilot_blocks == 0 || pilot_lacks_;
-  const double laplace = num_pilot_blocks == 0 ? 1.0 - kInitialShare : (lacking ? kLackingShare : kLaplaceShare);
+  // Where a bend is extrapolated, beyond what the pilot has seen, draws of P_0 may be all there are.
+  bool straight = settled;
+  for (int b = 0; b < num_pilot_blocks; ++b) straight = straight && !pilot_blocks_[static_cast<std::size_t>(b)].bent;
+  const double initial = straight ? kStraightShare : kInitialShare;
+  const double laplace = num_pilot_blocks == 0 ? 1.0 - initial : (lacking ? kLackingShare : kLaplaceShare);
   for (int b = 0; b < num_pilot_blocks; ++b)
-    proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)],
-                  rest * (1.0 - kInitialShare - laplace) / num_pilot_blocks);
+    proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)], rest * (1.0 - initial - laplace) / num_pilot_blocks);
   // The pilot's blocks stand in for the Laplace fit of what they were drawn for; after a modification, with P_0 alone
   // in the target, it stays, against a late surprise in the tails.
   // The same holds for changes in part, which are several in one pilot's block.
@@ -51,7 +60,7 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
     // Where both may be: one draw of P_0's posterior, far from where the others are drawn, would hold all the weight.
     proposal->Add(&laplace_fresh_, rest * laplace);
   }
-  proposal->Add(&initial_block_, rest * kInitialShare);
+  proposal->Add(&initial_block_, rest * initial);
   proposal->Normalise();
 }
 
