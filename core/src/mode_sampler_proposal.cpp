@@ -14,11 +14,14 @@ namespace {
 constexpr double kPilotEss = 250.0;      // sufficient effective draws of the pilot, or
 constexpr double kPilotEssShare = 0.24;  // share of the draws of a round, if there are few
 constexpr double kInitialShare = 0.10;   // share of P_0 in the data-driven part of q
+constexpr double kStraightShare = 0.03;  // the same if the pilot's fit is settled and has no bends
+constexpr double kMemoryFactor = 0.4;    // times lambda_q if it is settled: it fits this pack, not only the last one
 constexpr double kLaplaceShare = 0.15;   // share of the Laplace fits there, once the pilot's fit exists
 constexpr double kLackingShare = 0.5;    // the same if a part of the posterior has no block of the pilot
 constexpr int kDrawsPerAnchor = 16;      // in a round: with fewer per anchor, more anchors do not help
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
-constexpr FitOptions kPilotFit{.bandwidth_factor = 1.2, .tail_weight = 0.15, .tail_sd = 1.8, .inflation = 1.1};
+constexpr FitOptions kPilotFit{
+    .bandwidth_factor = 1.2, .tail_weight = 0.1, .tail_sd = 1.8, .inflation = 1.05, .shrink_to_normal = true};
 
 }  // namespace
 
@@ -29,18 +32,24 @@ void ModeSampler::AddPersisted(double share, Proposal* proposal) const noexcept 
 
 void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous,
                                 int num_pilot_blocks, Proposal* proposal) const noexcept {
+  // A part of the posterior with too few pilot draws for a block is covered by the Laplace fits alone.
+  const bool lacking = num_pilot_blocks == 0 || pilot_lacks_;
+  // While a change is possible, both what persisted and what did not need every block that may draw them.
+  const bool settled = !lacking && !(use_previous && may_have_changed_);
+  if (settled) lambda_q = std::fmax(kMemoryFactor * lambda_q, sampler_.lambda_q_min);
   proposal->Clear();
   if (use_previous)
     for (int b = 0; b < previous.num_blocks; ++b)
       proposal->Add(&previous.block[static_cast<std::size_t>(b)],
                     lambda_q * std::fmax(previous.weight[static_cast<std::size_t>(b)], 0.05));
   const double rest = use_previous ? 1.0 - lambda_q : 1.0;
-  // A part of the posterior with too few pilot draws for a block is covered by the Laplace fits alone.
-  const bool lacking = num_pilot_blocks == 0 || pilot_lacks_;
-  const double laplace = num_pilot_blocks == 0 ? 1.0 - kInitialShare : (lacking ? kLackingShare : kLaplaceShare);
+  // If a bend is extrapolated beyond what the pilot has seen, there may be no draws but those of P_0.
+  bool straight = settled;
+  for (int b = 0; b < num_pilot_blocks; ++b) straight = straight && !pilot_blocks_[static_cast<std::size_t>(b)].bent;
+  const double initial = straight ? kStraightShare : kInitialShare;
+  const double laplace = num_pilot_blocks == 0 ? 1.0 - initial : (lacking ? kLackingShare : kLaplaceShare);
   for (int b = 0; b < num_pilot_blocks; ++b)
-    proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)],
-                  rest * (1.0 - kInitialShare - laplace) / num_pilot_blocks);
+    proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)], rest * (1.0 - initial - laplace) / num_pilot_blocks);
   // The pilot's blocks replace the Laplace fit of their part; after a modification, with P_0 alone in the target, it
   // is kept for the tails.
   // The same holds for partial changes, several of which share one block of the pilot.
@@ -51,7 +60,7 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
     // If both are possible: a single draw of the posterior of P_0, far from the others, would have all the weight.
     proposal->Add(&laplace_fresh_, rest * laplace);
   }
-  proposal->Add(&initial_block_, rest * kInitialShare);
+  proposal->Add(&initial_block_, rest * initial);
   proposal->Normalise();
 }
 

@@ -64,8 +64,9 @@ class SamplerWorkspace {
 ///
 /// g is data driven: first Laplace fits of this pack (against the previous posterior and against P_0) with heavy tails,
 /// for a pilot run of kPilotDraws candidates; then mostly a straightened, whitened histogram of the pilot's weighted
-/// draws. The pilot is part of the half of the chain that is thrown away, so adapting q once leaves the chain exact. A
-/// share of P_0 keeps q above the target's tails everywhere.
+/// draws, which then takes over a part of the share of P unless something may have changed. The pilot is part of the
+/// half of the chain that is thrown away, so adapting q once leaves the chain exact. A share of P_0 keeps q above the
+/// target's tails everywhere.
 class ModeSampler {
  public:
   static constexpr int kPilotDraws = 1024;  ///< In one round.

@@ -73,8 +73,8 @@ struct SamplerSettings {
   DrawRule rule = DrawRule::kChernoff;
   int fixed_draws = 5000;       ///< For kFixed, [kMinDraws, max_draws].
   int max_draws = 16'384;       ///< Size of the workspace and upper bound of any rule, [kMinDraws, kMaxDraws].
-  double lambda_q_min = 0.05;   ///< Share of candidates from the previous posterior is lambda clamped to
-  double lambda_q_max = 0.5;    ///< [lambda_q_min, lambda_q_max], both in (0, 1): q must dominate the tails.
+  double lambda_q_min = 0.05;   ///< Share of pilot candidates from the previous posterior: lambda clamped to
+  double lambda_q_max = 0.5;    ///< [lambda_q_min, lambda_q_max], both in (0, 1). Once fitted, fewer, not below min.
   std::uint64_t seed = 0x5eed;  ///< Fixed by default; never taken from the machine.
   bool use_proposal_ratio =
       true;  ///< false drops q from the acceptance ratio: wrong on purpose, for calibration tests.

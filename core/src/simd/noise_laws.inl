@@ -1,8 +1,8 @@
 // Laws of the measurement noise as sums over the samples; included by kernels.inl, once per instruction set.
 //
-// Each takes standardised errors of kGroup vectors of candidates, of which several advance together so that the
-// operations of one do not wait for each other, and is told after every kRun samples. Its result is
-// (log-likelihood - samples (constant - log scale)) / slope. All are even in the error.
+// Each takes errors of kGroup vectors of candidates, not yet divided by their scales, of which several advance together
+// so that the operations of one do not wait for each other, and is told after every kRun samples. Its result is
+// (log-likelihood - samples (constant + Constant() - log scale)) / Slope(). All are even in the error.
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
@@ -11,81 +11,100 @@ constexpr int kRun = 8;
 
 template <int kGroup>
 struct LaplaceSum {
-  explicit LaplaceSum(const NoiseSettings&) noexcept {}
+  LaplaceSum(const NoiseSettings&, const V* inverse_scale) noexcept { std::copy_n(inverse_scale, kGroup, inverse); }
   static double Slope(const NoiseSettings&) noexcept { return -1.0; }
+  static V Constant(const NoiseSettings&) noexcept { return V{}; }
   [[gnu::always_inline]] void Add(int g, V e) noexcept { sum[g] = sum[g] + Simd::Abs(e); }
   void EndRun() noexcept {}
-  [[nodiscard]] V Result(int g) const noexcept { return sum[g]; }
+  [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g]; }
 
+  V inverse[static_cast<unsigned>(kGroup)];
   V sum[static_cast<unsigned>(kGroup)] = {};
 };
 
 template <int kGroup>
 struct GaussianSum {
-  explicit GaussianSum(const NoiseSettings&) noexcept {}
+  GaussianSum(const NoiseSettings&, const V* inverse_scale) noexcept { std::copy_n(inverse_scale, kGroup, inverse); }
   static double Slope(const NoiseSettings&) noexcept { return -0.5; }
+  static V Constant(const NoiseSettings&) noexcept { return V{}; }
   [[gnu::always_inline]] void Add(int g, V e) noexcept { sum[g] = Simd::Fma(e, e, sum[g]); }
   void EndRun() noexcept {}
-  [[nodiscard]] V Result(int g) const noexcept { return sum[g]; }
+  [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g] * inverse[g]; }
 
+  V inverse[static_cast<unsigned>(kGroup)];
   V sum[static_cast<unsigned>(kGroup)] = {};
 };
 
-/// log2 (1 + e^2 / nu): one logarithm for the product of a run, whose factors are kept within what eight of them can
-/// hold.
+/// Sums of log2 of factors of at least 1: one logarithm for all of them. The product of a run, below 2^1000, is brought
+/// back to [1, 2), and its power of two counted.
 template <int kGroup>
-struct StudentSum {
-  explicit StudentSum(const NoiseSettings& s) noexcept : inverse_dof(Simd::Set(1.0 / s.dof)) {
+struct LogProduct {
+  LogProduct() noexcept {
     for (V& p : product) p = Simd::Set(1.0);
-  }
-  static double Slope(const NoiseSettings& s) noexcept { return -0.5 * (s.dof + 1.0) * kLn2; }
-  [[gnu::always_inline]] void Add(int g, V e) noexcept {
-    const V factor = Simd::Fma(e * inverse_dof, e, Simd::Set(1.0));
-    product[g] = product[g] * Simd::Min(factor, Simd::Set(1e30));
   }
   void EndRun() noexcept {
+    typedef std::uint64_t U __attribute__((vector_size(8 * Simd::kLanes)));  // whose shift every instruction set has
     for (int g = 0; g < kGroup; ++g) {
-      sum[g] = sum[g] + Simd::Log2(product[g]);
-      product[g] = Simd::Set(1.0);
+      const U exponent = (reinterpret_cast<U>(product[g]) >> 52) - 1023;
+      powers[g] += reinterpret_cast<Simd::I>(exponent);
+      product[g] = Simd::FromBits(Simd::Bits(product[g]) - reinterpret_cast<Simd::I>(exponent << 52));
     }
   }
-  [[nodiscard]] V Result(int g) const noexcept { return sum[g]; }
+  [[nodiscard]] V Result(int g) const noexcept {
+    const V magic = Simd::Set(6755399441055744.0);  // 1.5 * 2^52: small integers to doubles, through its bits
+    return Simd::Log2(product[g]) + (Simd::FromBits(powers[g] + Simd::Bits(magic)) - magic);
+  }
 
-  V inverse_dof;
   V product[static_cast<unsigned>(kGroup)];
-  V sum[static_cast<unsigned>(kGroup)] = {};
+  Simd::I powers[static_cast<unsigned>(kGroup)] = {};
 };
 
-/// log2 of p(e) = N(e; c) [(1 - w) exp(-e^2/2 (1 - 1/c^2)) + w / c], but for what every sample has alike. The bracket
-/// lies in [w / c, 1 + w / c], which settings keep far from 0.
+/// log2 (1 + e^2 / nu). Factors are kept within what a run of them can hold.
+template <int kGroup>
+struct StudentSum : LogProduct<kGroup> {
+  StudentSum(const NoiseSettings& s, const V* inverse_scale) noexcept {
+    for (int g = 0; g < kGroup; ++g) rate[g] = inverse_scale[g] * inverse_scale[g] * Simd::Set(1.0 / s.dof);
+  }
+  static double Slope(const NoiseSettings& s) noexcept { return -0.5 * (s.dof + 1.0) * kLn2; }
+  static V Constant(const NoiseSettings&) noexcept { return V{}; }
+  [[gnu::always_inline]] void Add(int g, V e) noexcept {
+    const V factor = Simd::Fma(e * e, rate[g], Simd::Set(1.0));
+    this->product[g] = this->product[g] * Simd::Min(factor, Simd::Set(1e30));
+  }
+
+  V rate[static_cast<unsigned>(kGroup)];
+};
+
+/// log2 of p(e) = N(e; c) (w / c) [1 + r exp(-e^2/2 (1 - 1/c^2))], r = (1 - w) c / w, but for what every sample has
+/// alike. The bracket lies in [1, 1 + r], which settings keep far from what a run can hold.
 template <class S, int kGroup>
-struct MixtureSum {
-  explicit MixtureSum(const NoiseSettings& s) noexcept
-      : inlier_rate(Simd::Set(-0.5 * kLog2E * (1.0 - 1.0 / (s.outlier_scale * s.outlier_scale)))),
-        wide_rate(Simd::Set(-0.5 * kLog2E / (s.outlier_scale * s.outlier_scale))),
-        inlier(Simd::Set(1.0 - s.outlier_weight)),
-        outlier(Simd::Set(s.outlier_weight / s.outlier_scale)) {
-    for (V& p : product) p = Simd::Set(1.0);
+struct MixtureSum : LogProduct<kGroup> {
+  MixtureSum(const NoiseSettings& s, const V* inverse_scale) noexcept
+      : log2_ratio(Simd::Log2(Simd::Set((1.0 - s.outlier_weight) * s.outlier_scale / s.outlier_weight))) {
+    const double wide = 1.0 / (s.outlier_scale * s.outlier_scale);
+    for (int g = 0; g < kGroup; ++g) {
+      const V precision = inverse_scale[g] * inverse_scale[g];
+      inlier_rate[g] = precision * Simd::Set(-0.5 * kLog2E * (1.0 - wide));
+      wide_rate[g] = precision * Simd::Set(-0.5 * kLog2E * wide);
+    }
   }
   static double Slope(const NoiseSettings&) noexcept { return kLn2; }
+  static V Constant(const NoiseSettings& s) noexcept {
+    return Simd::Set(kLn2) * Simd::Log2(Simd::Set(s.outlier_weight / s.outlier_scale));
+  }
   [[gnu::always_inline]] void Add(int g, V e) noexcept {
     const V square = e * e;
     squares[g] = squares[g] + square;
-    const V power = S::Exp2(Simd::Max(inlier_rate * square, Simd::Set(-1000.0)));
-    product[g] = product[g] * Simd::Fma(inlier, power, outlier);
+    const V power = S::Exp2(Simd::Max(Simd::Fma(square, inlier_rate[g], log2_ratio), Simd::Set(-1000.0)));
+    this->product[g] = Simd::Fma(this->product[g], power, this->product[g]);
   }
-  void EndRun() noexcept {
-    for (int g = 0; g < kGroup; ++g) {
-      sum[g] = sum[g] + Simd::Log2(product[g]);
-      product[g] = Simd::Set(1.0);
-    }
+  [[nodiscard]] V Result(int g) const noexcept {
+    return Simd::Fma(wide_rate[g], squares[g], LogProduct<kGroup>::Result(g));
   }
-  [[nodiscard]] V Result(int g) const noexcept { return Simd::Fma(wide_rate, squares[g], sum[g]); }
 
-  V inlier_rate, wide_rate, inlier, outlier;
-  V product[static_cast<unsigned>(kGroup)];
+  V log2_ratio;
+  V inlier_rate[static_cast<unsigned>(kGroup)], wide_rate[static_cast<unsigned>(kGroup)];
   V squares[static_cast<unsigned>(kGroup)] = {};
-  V sum[static_cast<unsigned>(kGroup)] = {};
 };
 
 /// fn.template operator()<Law>(), Law the class template instance of the kind for kGroup vectors.
@@ -99,21 +118,21 @@ void ForLaw(NoiseKind kind, const Fn& fn) noexcept {
   }
 }
 
-/// out[lane] = exp(-log_scale[lane]) of a tile.
-void InverseScale(const double* log_scale, double* out) noexcept {
-  for (int v = 0; v < kVectors; ++v)
-    Simd::Store(out + v * Simd::kLanes, Simd::Exp2(Simd::Load(log_scale + v * Simd::kLanes) * Simd::Set(-kLog2E)));
+/// exp(-log_scale[lane]) of kGroup vectors.
+template <int kGroup>
+void InverseScale(const double* log_scale, V* out) noexcept {
+  for (int g = 0; g < kGroup; ++g) out[g] = Simd::Exp2(Simd::Load(log_scale + g * Simd::kLanes) * Simd::Set(-kLog2E));
 }
 
-/// What a law's result becomes: out = slope out + samples (constant - log scale).
-void AddConstant(const NoiseModel& noise, double slope, int num_samples, const double* log_scale,
-                 double* out) noexcept {
+/// What a law's result becomes: out = Slope() out + samples (constant + Constant() - log scale).
+template <class Law>
+void AddConstant(const NoiseModel& noise, int num_samples, const double* log_scale, double* out) noexcept {
+  const V slope = Simd::Set(Law::Slope(noise.settings()));
   const V samples = Simd::Set(static_cast<double>(num_samples));
-  const V constant = Simd::Set(noise.log_constant());
+  const V constant = Simd::Set(noise.log_constant()) + Law::Constant(noise.settings());
   for (int v = 0; v < kVectors; ++v) {
     const V per_sample = constant - Simd::Load(log_scale + v * Simd::kLanes);
-    Simd::Store(out + v * Simd::kLanes,
-                Simd::Fma(Simd::Set(slope), Simd::Load(out + v * Simd::kLanes), samples * per_sample));
+    Simd::Store(out + v * Simd::kLanes, Simd::Fma(slope, Simd::Load(out + v * Simd::kLanes), samples * per_sample));
   }
 }
 
@@ -122,15 +141,13 @@ template <class S>
 void LogLikelihoodBy(const NoiseModel& noise, const ModeData& data, const PredictionTile& tile, const double* log_scale,
                      double* out) noexcept {
   constexpr int kGroup = 4;
-  alignas(64) double inverse_scale[kTileLanes];
-  InverseScale(log_scale, inverse_scale);
   const NoiseSettings& s = noise.settings();
   const V mean = Simd::Set(s.mean);
   ForLaw<S, kGroup>(s.kind, [&]<class Law>() noexcept {
     for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
-      Law law(s);
-      V inv[static_cast<unsigned>(kGroup)];
-      for (int g = 0; g < kGroup; ++g) inv[g] = Simd::Load(inverse_scale + (v0 + g) * Simd::kLanes);
+      V inverse_scale[static_cast<unsigned>(kGroup)];
+      InverseScale<kGroup>(log_scale + v0 * Simd::kLanes, inverse_scale);
+      Law law(s, inverse_scale);
       for (int n0 = 0; n0 < data.num_samples; n0 += kRun) {
         const int end = n0 + kRun < data.num_samples ? n0 + kRun : data.num_samples;
         for (int n = n0; n < end; ++n) {
@@ -139,14 +156,14 @@ void LogLikelihoodBy(const NoiseModel& noise, const ModeData& data, const Predic
           const V weight = Simd::Set(data.weight[k]);
           for (int g = 0; g < kGroup; ++g) {
             const V f = Simd::Load(&tile.value[k][static_cast<unsigned>((v0 + g) * Simd::kLanes)]);
-            law.Add(g, (target - f - mean) * (weight * inv[g]));
+            law.Add(g, (target - f - mean) * weight);
           }
         }
         law.EndRun();
       }
       for (int g = 0; g < kGroup; ++g) Simd::Store(out + (v0 + g) * Simd::kLanes, law.Result(g));
     }
-    AddConstant(noise, Law::Slope(s), data.num_samples, log_scale, out);
+    AddConstant<Law>(noise, data.num_samples, log_scale, out);
   });
 }
 

@@ -11,15 +11,14 @@ void ScoreTiles(int model, const NoiseModel& noise, const ModeData& data, const 
                                    : described              ? nullptr
                                                             : PlantTable<AllModels>::kPlainSquares[model];
   const NoiseSettings& settings = noise.settings();
-  // The mixture takes too many registers to be in one loop with a prediction.
-  const bool one_loop = settings.kind == NoiseKind::kLaplace || settings.kind == NoiseKind::kStudentT;
-  if (one_loop && !described && data.compiled == nullptr) {
+  const bool gaussian = settings.kind == NoiseKind::kGaussian;
+  if (!gaussian && !described && data.compiled == nullptr) {
     for (std::size_t t = 0; t < kTiles; ++t)
       PlantTable<AllModels>::kPlainScoreLaw[model](data, theta[t], noise, log_scale + t * kTileLanes,
                                                    out + t * kTileLanes);
     return;
   }
-  if (settings.kind != NoiseKind::kGaussian || (described ? settings.mean != 0.0 : sum_squares == nullptr)) {
+  if (!gaussian || (described ? settings.mean != 0.0 : sum_squares == nullptr)) {
     for (std::size_t t = 0; t < kTiles; ++t) {
       Predict(model, data, theta[t], scratch);
       LogLikelihoodBy<ScoreSimd>(noise, data, *scratch, log_scale + t * kTileLanes, out + t * kTileLanes);

@@ -68,42 +68,46 @@ void SumSquaresOf(const Forward& forward, const ModeData& data, const ThetaTile&
   }
 }
 
-/// Log-likelihood under another law than the Gaussian, without predictions in memory.
+/// Log-likelihood under another law than the Gaussian, without predictions in memory. Errors of a run first, then what
+/// the law makes of them: in one loop a sample would be one chain of operations, too long for a processor to begin the
+/// next ones in time.
 template <class Forward>
 void ScoreLaw(const Forward& forward, const ModeData& data, const ThetaTile& theta, const NoiseModel& noise,
               const double* log_scale, double* out) noexcept {
-  constexpr int kGroup = 2;
-  alignas(64) double inverse_scale[kTileLanes];
-  InverseScale(log_scale, inverse_scale);
+  constexpr int kGroup = 4;
   const NoiseSettings& s = noise.settings();
   ForLaw<ScoreSimd, kGroup>(s.kind, [&]<class Law>() noexcept {
     for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
-      Law law(s);
-      V inv[static_cast<unsigned>(kGroup)];
+      V inverse_scale[static_cast<unsigned>(kGroup)];
+      InverseScale<kGroup>(log_scale + v0 * Simd::kLanes, inverse_scale);
+      Law law(s, inverse_scale);
       V parameters[static_cast<unsigned>(kGroup)][Forward::kRows];
-      for (int g = 0; g < kGroup; ++g) {
-        const auto lane = static_cast<unsigned>((v0 + g) * Simd::kLanes);
-        inv[g] = Simd::Load(inverse_scale + lane);
-        for (unsigned i = 0; i < Forward::kRows; ++i) parameters[g][i] = forward.Load(theta, i, lane);
-      }
+      for (int g = 0; g < kGroup; ++g)
+        for (unsigned i = 0; i < Forward::kRows; ++i)
+          parameters[g][i] = forward.Load(theta, i, static_cast<unsigned>((v0 + g) * Simd::kLanes));
       for (int n0 = 0; n0 < data.num_samples; n0 += kRun) {
-        const int end = n0 + kRun < data.num_samples ? n0 + kRun : data.num_samples;
-        for (int n = n0; n < end; ++n) {
-          const auto in = static_cast<unsigned>(n);
-          const V minus_target = Simd::Set(s.mean - data.target[in]);
-          const V weight = Simd::Set(data.weight[in]);
-          const bool far = forward.Far(n);
-          for (int g = 0; g < kGroup; ++g) {
-            const V e = far ? forward.template AddTo<Simd>(minus_target, parameters[g], n)
-                            : forward.template AddTo<ScoreSimd>(minus_target, parameters[g], n);
-            law.Add(g, e * (weight * inv[g]));
+        const int size = n0 + kRun < data.num_samples ? kRun : data.num_samples - n0;
+        V e[static_cast<unsigned>(kRun)][static_cast<unsigned>(kGroup)];
+        for (int i = 0; i < size; ++i) {
+          const int n = n0 + i;
+          const V minus_target = Simd::Set(s.mean - data.target[static_cast<unsigned>(n)]);
+          if (forward.Far(n)) {
+            for (int g = 0; g < kGroup; ++g) e[i][g] = forward.template AddTo<Simd>(minus_target, parameters[g], n);
+          } else {
+            for (int g = 0; g < kGroup; ++g)
+              e[i][g] = forward.template AddTo<ScoreSimd>(minus_target, parameters[g], n);
           }
         }
+        if (data.weighted)
+          for (int i = 0; i < size; ++i)
+            for (int g = 0; g < kGroup; ++g) e[i][g] = e[i][g] * Simd::Set(data.weight[static_cast<unsigned>(n0 + i)]);
+        for (int i = 0; i < size; ++i)
+          for (int g = 0; g < kGroup; ++g) law.Add(g, e[i][g]);
         law.EndRun();
       }
       for (int g = 0; g < kGroup; ++g) Simd::Store(out + (v0 + g) * Simd::kLanes, law.Result(g));
     }
-    AddConstant(noise, Law::Slope(s), data.num_samples, log_scale, out);
+    AddConstant<Law>(noise, data.num_samples, log_scale, out);
   });
 }
 
