@@ -11,6 +11,7 @@ namespace armcmc::gap {
 namespace {
 
 constexpr int kMaxOrder = 8;
+constexpr Eigen::Index kChunk = 512;  // rows that stay in the fastest cache while all lags are subtracted
 constexpr double kMinLagGain = 6.0;  // nats of the criterion that a further lag must bring
 
 /// Autocovariances of the quieter half of the blocks. An effect that acts in a few events (a clipped peak) must not
@@ -59,8 +60,11 @@ Columns Whitened(const Whitener& noise, const Columns& columns) {
   Columns out = columns;
   if (order == 0 || columns.size() == 0) return out;
   for (Eigen::Index c = 0; c < columns.cols(); ++c)
-    for (Eigen::Index k = 0; k < order; ++k)
-      out.col(c).tail(n - order) -= phi[k] * columns.col(c).segment(order - k - 1, n - order);
+    for (Eigen::Index first = 0; first < n - order; first += kChunk) {
+      const Eigen::Index rows = std::min(kChunk, n - order - first);
+      auto chunk = out.col(c).segment(order + first, rows);
+      for (Eigen::Index k = 0; k < order; ++k) chunk -= phi[k] * columns.col(c).segment(first + order - k - 1, rows);
+    }
   const Matrix start = StartFactor(phi).topLeftCorner(order, order);
   out.topRows(order) = start.triangularView<Eigen::Lower>().solve(columns.topRows(order));
   return out;

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
+#include <vector>
 
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/smoothing.hpp"
@@ -117,15 +120,18 @@ class ContactEquation final : public Equation {
     const Vector& velocity = s.at(Role::kVelocity);
     out->y = Vector::Zero(s.rows());
     out->elastic = Vector::Zero(s.rows());
-    Vector slope_by_position = Vector::Zero(s.rows()), elastic_slope = Vector::Zero(s.rows());
-    Vector slope_by_gain = Vector::Zero(s.rows());
+    const bool shifts = !input.shift_slopes.empty(), gains = !input.gain_slopes.empty();
+    Vector slope_by_position = Vector::Zero(shifts ? s.rows() : 0), elastic_slope = slope_by_position;
+    Vector slope_by_gain = Vector::Zero(gains ? s.rows() : 0);
     const bool remembered = out->elastic_jacobian.cols() > 0;
-    for (Eigen::Index i = 0; i < s.rows(); ++i) {
-      const double shift = input.shift.size() > 0 ? input.shift[i] : 0.0;
-      const double u = (position[i] - shift) / depth_scale;
-      if (!(u > 0.0)) continue;
-      const double log_u = std::log(u);
-      const double power = s.output_scale * std::exp(p * log_u);
+    const std::shared_ptr<const Depths> inside =
+        input.shift.size() > 0 ? std::make_shared<const Depths>(Vector(position - input.shift), depth_scale)
+                               : depths_.Of(position, depth_scale);
+    const Eigen::ArrayXd powers = s.output_scale * (p * inside->log_u).exp();
+    for (std::size_t j = 0; j < inside->rows.size(); ++j) {
+      const Eigen::Index i = inside->rows[j];
+      const double log_u = inside->log_u[static_cast<Eigen::Index>(j)];
+      const double power = powers[static_cast<Eigen::Index>(j)];
       const double rate = velocity[i] / speed_scale;
       const double gain = input.gain.size() > 0 ? input.gain[i] : 1.0;
       const double elastic = power * k * gain;
@@ -139,10 +145,12 @@ class ContactEquation final : public Equation {
         out->elastic_jacobian(i, kStiffness) = power * gain;
         out->elastic_jacobian(i, kExponent) = elastic * log_u;
       }
-      const double per_position = p / (u * depth_scale);
-      slope_by_position[i] = force * per_position;
-      elastic_slope[i] = elastic * per_position;
-      slope_by_gain[i] = power * k;
+      if (shifts) {
+        const double per_position = p / (inside->u[static_cast<Eigen::Index>(j)] * depth_scale);
+        slope_by_position[i] = force * per_position;
+        elastic_slope[i] = elastic * per_position;
+      }
+      if (gains) slope_by_gain[i] = power * k;
     }
     for (const LawInput::Slope& slope : input.shift_slopes) {
       out->jacobian.col(slope.coordinate) -= slope_by_position.cwiseProduct(slope.rows);
@@ -183,6 +191,36 @@ class ContactEquation final : public Equation {
   }
 
  private:
+  /// Rows where the law acts, with their depths u over the scale.
+  struct Depths {
+    Depths(const Vector& position, double scale) {
+      for (Eigen::Index i = 0; i < position.size(); ++i)
+        if (position[i] / scale > 0.0) rows.push_back(i);
+      u = position(rows).array() / scale;
+      log_u = u.log();
+    }
+    std::vector<Eigen::Index> rows;
+    Eigen::ArrayXd u, log_u;
+  };
+  /// Those of the last positions asked for: fits ask for the same ones again and again. Threads may share it.
+  class LastDepths {
+   public:
+    std::shared_ptr<const Depths> Of(const Vector& position, double scale) {
+      const std::lock_guard lock(mutex_);
+      if (depths_ && scale == scale_ && position.size() == position_.size() && position == position_) return depths_;
+      position_ = position;
+      scale_ = scale;
+      depths_ = std::make_shared<const Depths>(position, scale);
+      return depths_;
+    }
+
+   private:
+    std::mutex mutex_;
+    Vector position_;
+    double scale_ = 0.0;
+    std::shared_ptr<const Depths> depths_;
+  };
+
   static Signals Smooth(const Recording& recording, int window) {
     Signals s;
     s.dt = recording.dt;
@@ -203,6 +241,8 @@ class ContactEquation final : public Equation {
     s.active = (s.at(Role::kPosition).array() > 0.0).cast<double>();
     return s;
   }
+
+  mutable LastDepths depths_;
 };
 
 // Hats over quantiles: where the data are, there are the knots.

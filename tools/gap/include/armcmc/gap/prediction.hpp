@@ -14,12 +14,15 @@ struct Slopes {
 
   [[nodiscard]] static Slopes None() { return {0, 0}; }
   [[nodiscard]] bool Has(int coordinate) const { return coordinate >= first && coordinate < end; }
+  /// Whether no coordinate before this one is asked for.
+  [[nodiscard]] bool NoneBelow(int coordinate) const { return first >= end || first >= coordinate; }
 };
 
 /// Predicted output and its derivative by the coordinates of a hypothesis.
 struct Prediction {
   Vector y;         ///< [row]
-  Slopes wanted;    ///< Of the columns below; others may be left at zero where they cost something.
+  Slopes wanted;    ///< Of the columns below; others may be left at zero where they cost something, and
+                    ///< where none is asked for there need not be any.
   Matrix jacobian;  ///< [row][coordinate]
   /// The part of the law that does not depend on rates (the elastic force of a contact), for effects that remember it.
   Vector elastic;

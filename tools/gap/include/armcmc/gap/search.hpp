@@ -84,6 +84,8 @@ class Search {
 
   /// @param parent  Whose known terms it shares; null: the base.
   [[nodiscard]] CandidatePtr Make(Fitted fit, const CandidatePtr& parent = nullptr) const;
+  /// The parent with one more term, each, on both cores.
+  [[nodiscard]] Candidates AddEach(const CandidatePtr& parent, const std::vector<Term>& terms) const;
   [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
   /// Gated hypotheses whose gates leave at least so many blocks active and promise most over the ungated ones.
   [[nodiscard]] Candidates ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const;
