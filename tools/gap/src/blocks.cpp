@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "gram.hpp"
+
 namespace armcmc::gap {
 namespace {
 
@@ -92,10 +94,7 @@ BlockGrams MakeGrams(const Matrix& columns, const Vector& residual) {
   }
   for (std::size_t b = 0; b < kNumBlocks; ++b) {
     const auto block = columns.middleRows(edges[b], edges[b + 1] - edges[b]);
-    Matrix gram = Matrix::Zero(columns.cols(), columns.cols());
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose());
-    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-    grams.gram.push_back(std::move(gram));
+    grams.gram.push_back(GramOf(columns, edges[b], edges[b + 1] - edges[b]));
     grams.cross.push_back(block.transpose() * residual.segment(edges[b], edges[b + 1] - edges[b]));
   }
   return grams;

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <utility>
 
+#include "gram.hpp"
+
 namespace armcmc::gap {
 namespace {
 
@@ -19,14 +21,6 @@ constexpr int kStepsForHope = 2;          // before which a tangent says little 
 constexpr double kHope = 4.0;             // times what the tangent promises, short of which a descent is given up
 constexpr double kSmallAmplitude = 1e-3;  // where an amplitude starts that its bounds would hold at zero
 constexpr std::size_t kRefinedStarts = 2;
-
-/// columns' columns.
-Matrix Gram(const Matrix& columns) {
-  Matrix gram = Matrix::Zero(columns.cols(), columns.cols());
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-  return gram;
-}
 
 void Clamp(const std::vector<Coordinate>& coordinates, Vector* theta) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -221,7 +215,7 @@ Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& star
   for (int step = 0; step < max_steps; ++step) {
     at.columns = whitener_.Apply(at.prediction.jacobian);
     Vector ascent = at.columns.transpose() * at.residual;
-    Matrix gram = Gram(at.columns);
+    Matrix gram = GramOf(at.columns, 0, at.columns.rows());
     if (prior != nullptr) {
       ascent += whitener_.s2 * (prior->precision * (prior->mean - at.theta));
       gram += whitener_.s2 * prior->precision;
@@ -354,8 +348,7 @@ std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, cons
       if (amplitudes.isZero(0.0)) amplitudes[0] = kSmallAmplitude;
       theta.segment(first, form.num_amplitudes) = amplitudes;
     } else {
-      const Vector step =
-          whitener_.Apply(Vector(Predict(hypothesis, theta, Slopes::None()).y - parent.predicted));
+      const Vector step = whitener_.Apply(Vector(Predict(hypothesis, theta, Slopes::None()).y - parent.predicted));
       squares = (parent.whitened_residual - project(step).col(0)).squaredNorm();
     }
     Clamp(coordinates, &theta);

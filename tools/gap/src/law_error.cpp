@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "armcmc/gap/features.hpp"
 #include "armcmc/gap/form_tools.hpp"
 
 namespace armcmc::gap {
@@ -23,7 +24,7 @@ Matrix Bumps(const Signals& signals, const LawVariable& variable) {
   else
     place = (value - variable.low) / (variable.high - variable.low);
   Matrix bumps(signals.rows(), kPlaces);
-  for (int k = 0; k < kPlaces; ++k) bumps.col(k) = (-0.5 * (((kPlaces - 1) * place - k) / kWidth).square()).exp();
+  for (int k = 0; k < kPlaces; ++k) bumps.col(k) = Exp(-0.5 * (((kPlaces - 1) * place - k) / kWidth).square());
   return bumps;
 }
 

@@ -12,9 +12,9 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr double kLineProminence = 40.0;                      // white noise of 10 000 samples reaches 20
+constexpr double kLineProminence = 40.0;                        // white noise of 10 000 samples reaches 20
 constexpr std::array kRidges = {3e-5, 3e-4, 3e-3, 3e-2, 3e-1};  // per row, for columns of rms one
-constexpr double kFreeRidge = 1e-9;                           // the hypothesis' own columns are not penalised
+constexpr double kFreeRidge = 1e-9;                             // the hypothesis' own columns are not penalised
 
 Matrix UnitRms(Matrix columns) {
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
@@ -46,9 +46,8 @@ Best ChooseRidge(const BlockGrams& grams, Eigen::Index num_free, double rows) {
     return ridge;
   };
   std::array<Vector, kRidges.size()> squares;
-  support::InParallel(kRidges.size(), [&](std::size_t i) {
-    squares[i] = LeaveBlockOut(grams, total, cross, ridge_of(kRidges[i]));
-  });
+  support::InParallel(kRidges.size(),
+                      [&](std::size_t i) { squares[i] = LeaveBlockOut(grams, total, cross, ridge_of(kRidges[i])); });
   // Of sums that are not numbers none is the least.
   std::size_t best = kRidges.size();
   double least = std::numeric_limits<double>::infinity();

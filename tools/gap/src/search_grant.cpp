@@ -37,9 +37,8 @@ Search::Candidates Search::Beside(const Candidates& listed, const Candidates& un
   for (const EffectForm& form : *catalogue_)
     if (form.exact()) promises.emplace_back(0.0, Term{&form, {}});
   (void)parent->fit.basis();
-  support::InParallel(promises.size(), [&](std::size_t i) {
-    promises[i].first = fitter_->Promise(parent->fit, promises[i].second);
-  });
+  support::InParallel(promises.size(),
+                      [&](std::size_t i) { promises[i].first = fitter_->Promise(parent->fit, promises[i].second); });
   std::stable_sort(promises.begin(), promises.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Term> terms;
   for (std::size_t i = 0; i < std::min(kBesideGrant, promises.size()); ++i) terms.push_back(promises[i].second);

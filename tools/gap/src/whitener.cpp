@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMaxOrder = 8;
 constexpr Eigen::Index kChunk = 512;  // rows that stay in the fastest cache while all lags are subtracted
-constexpr double kMinLagGain = 6.0;  // nats of the criterion that a further lag must bring
+constexpr double kMinLagGain = 6.0;   // nats of the criterion that a further lag must bring
 
 /// Autocovariances of the quieter half of the blocks. An effect that acts in a few events (a clipped peak) must not
 /// pass for coloured noise: it would be whitened away.
@@ -57,13 +57,15 @@ template <typename Columns>
 Columns Whitened(const Whitener& noise, const Columns& columns) {
   const Vector& phi = noise.phi;
   const Eigen::Index n = columns.rows(), order = std::min(phi.size(), n);
-  Columns out = columns;
-  if (order == 0 || columns.size() == 0) return out;
+  if (order == 0 || columns.size() == 0) return columns;
+  Columns out(n, columns.cols());
   for (Eigen::Index c = 0; c < columns.cols(); ++c)
     for (Eigen::Index first = 0; first < n - order; first += kChunk) {
       const Eigen::Index rows = std::min(kChunk, n - order - first);
+      const auto series = columns.col(c);
       auto chunk = out.col(c).segment(order + first, rows);
-      for (Eigen::Index k = 0; k < order; ++k) chunk -= phi[k] * columns.col(c).segment(first + order - k - 1, rows);
+      chunk = series.segment(order + first, rows);
+      for (Eigen::Index k = 0; k < order; ++k) chunk -= phi[k] * series.segment(first + order - k - 1, rows);
     }
   const Matrix start = StartFactor(phi).topLeftCorner(order, order);
   out.topRows(order) = start.triangularView<Eigen::Lower>().solve(columns.topRows(order));

@@ -127,7 +127,7 @@ class ContactEquation final : public Equation {
     const std::shared_ptr<const Depths> inside =
         input.shift.size() > 0 ? std::make_shared<const Depths>(Vector(position - input.shift), depth_scale)
                                : depths_.Of(position, depth_scale);
-    const Eigen::ArrayXd powers = s.output_scale * (p * inside->log_u).exp();
+    const Vector powers = s.output_scale * Exp(p * inside->log_u);
     for (std::size_t j = 0; j < inside->rows.size(); ++j) {
       const Eigen::Index i = inside->rows[j];
       const double log_u = inside->log_u[static_cast<Eigen::Index>(j)];
@@ -196,11 +196,11 @@ class ContactEquation final : public Equation {
     Depths(const Vector& position, double scale) {
       for (Eigen::Index i = 0; i < position.size(); ++i)
         if (position[i] / scale > 0.0) rows.push_back(i);
-      u = position(rows).array() / scale;
-      log_u = u.log();
+      u = position(rows) / scale;
+      log_u = u.array().log();
     }
     std::vector<Eigen::Index> rows;
-    Eigen::ArrayXd u, log_u;
+    Vector u, log_u;
   };
   /// Those of the last positions asked for: fits ask for the same ones again and again. Threads may share it.
   class LastDepths {
@@ -254,18 +254,19 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
   const Vector free = 1.0 - s.active.array();
   const Vector depth = x.cwiseMax(0.0);
   const Vector time = s.Elapsed();
-  const Vector direction = (v / (0.05 * s.scale_of(Role::kVelocity))).array().tanh();
+  const Vector direction = Tanh(v / (0.05 * s.scale_of(Role::kVelocity)));
   const double samples = s.duration / s.dt;
+  const std::vector<double> x_inside = Sorted(x, s.active), v_inside = Sorted(v, s.active);
 
   std::vector<FeatureGroup> groups;
-  groups.push_back({"depth", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 8)), s.active), free)});
+  groups.push_back({"depth", Beside(Gated(Hats(x, QuantileKnots(x_inside, 8)), s.active), free)});
   groups.push_back({"speed", Hats(v, QuantileKnots(v, all, 9))});
-  groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v, s.active, 5)), s.active)});
+  groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v_inside, 5)), s.active)});
   groups.push_back({"time", Hats(time, EvenKnots(9))});
   groups.push_back({"time x force", Gated(Hats(time, EvenKnots(4)), predicted)});
   groups.push_back({"acceleration", Hats(a, QuantileKnots(a, all, 6))});
   groups.push_back(
-      {"direction of motion", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 5)), direction.cwiseProduct(s.active)),
+      {"direction of motion", Beside(Gated(Hats(x, QuantileKnots(x_inside, 5)), direction.cwiseProduct(s.active)),
                                      direction.cwiseProduct(free))});
   Matrix memory(s.rows(), 4);
   for (int i = 0; i < 4; ++i) memory.col(i) = depth - Leaky(depth, 30.0 * std::pow(samples / 300.0, i / 3.0));
@@ -283,7 +284,7 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
   groups.push_back({"force", Gated(Hats(predicted, QuantileKnots(predicted, s.active, 6)), s.active)});
   groups.push_back(
       {"depth x speed",
-       Gated(Products(Hats(x, QuantileKnots(x, s.active, 4)), Hats(v, QuantileKnots(v, s.active, 4))), s.active)});
+       Gated(Products(Hats(x, QuantileKnots(x_inside, 4)), Hats(v, QuantileKnots(v_inside, 4))), s.active)});
   return groups;
 }
 

@@ -41,7 +41,8 @@ class HeldOut {
   const Look* look_;
   Signals all_, tail_;
   Eigen::Index first_;
-  mutable std::vector<std::pair<Vector, double>> floors_;  ///< By prediction: the same models are shown again and again.
+  mutable std::vector<std::pair<Vector, double>>
+      floors_;  ///< By prediction: the same models are shown again and again.
 };
 
 /// Step five: the gap on held-out data with the base model and with `after`, and with `control` instead (may be null).
