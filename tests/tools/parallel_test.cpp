@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <stdexcept>
 #include <thread>
@@ -24,6 +25,7 @@ TEST(InParallel, WorkInsideOfWorkStaysOnItsThread) {
   InParallel(4, [&](std::size_t) {
     const std::thread::id outer = std::this_thread::get_id();
     InParallel(50, [&](std::size_t) {
+      std::this_thread::sleep_for(std::chrono::microseconds(100));  // time for another thread to come
       ++done;
       if (std::this_thread::get_id() != outer) ++elsewhere;
     });

@@ -6,12 +6,11 @@
 #include "armcmc/support/wider_lanes.hpp"
 
 namespace armcmc::gap {
+namespace {
 
 /// Adds the products of all pairs of columns to the lower triangle of `gram`, four pairs at a time.
 /// @param rows    A multiple of 8.
 /// @param stride  Numbers from one column to the next.
-void AddProducts(const double* x, Eigen::Index stride, Eigen::Index rows, Eigen::Index columns, double* gram);
-
 ARMCMC_FOR_WIDER_LANES void AddProducts(const double* x, Eigen::Index stride, Eigen::Index rows, Eigen::Index columns,
                                         double* gram) {
   constexpr Eigen::Index kLanes = 8;
@@ -39,6 +38,8 @@ ARMCMC_FOR_WIDER_LANES void AddProducts(const double* x, Eigen::Index stride, Ei
       if (next_j > j && next_i > i) gram[next_j * columns + next_i] += total[3];
     }
 }
+
+}  // namespace
 
 Matrix GramOf(const Matrix& x, Eigen::Index first, Eigen::Index rows) {
   constexpr Eigen::Index kChunk = 256;  // rows that stay in a fast cache while all pairs are multiplied

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "armcmc/gap/blocks.hpp"
+#include "armcmc/support/wider_lanes.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -52,6 +53,17 @@ Matrix StartFactor(const Vector& phi) {
   return factor.matrixL();
 }
 
+/// What the lags leave of a series, from the first row on that has them all.
+ARMCMC_FOR_WIDER_LANES void Innovations(const double* __restrict series, Eigen::Index rows,
+                                        const double* __restrict phi, Eigen::Index order, double* __restrict out) {
+  for (Eigen::Index first = order; first < rows; first += kChunk) {
+    const Eigen::Index end = std::min(first + kChunk, rows);
+    for (Eigen::Index t = first; t < end; ++t) out[t] = series[t] - phi[0] * series[t - 1];
+    for (Eigen::Index k = 1; k < order; ++k)
+      for (Eigen::Index t = first; t < end; ++t) out[t] -= phi[k] * series[t - k - 1];
+  }
+}
+
 /// Of every column.
 template <typename Columns>
 Columns Whitened(const Whitener& noise, const Columns& columns) {
@@ -60,13 +72,7 @@ Columns Whitened(const Whitener& noise, const Columns& columns) {
   if (order == 0 || columns.size() == 0) return columns;
   Columns out(n, columns.cols());
   for (Eigen::Index c = 0; c < columns.cols(); ++c)
-    for (Eigen::Index first = 0; first < n - order; first += kChunk) {
-      const Eigen::Index rows = std::min(kChunk, n - order - first);
-      const auto series = columns.col(c);
-      auto chunk = out.col(c).segment(order + first, rows);
-      chunk = series.segment(order + first, rows);
-      for (Eigen::Index k = 0; k < order; ++k) chunk -= phi[k] * series.segment(first + order - k - 1, rows);
-    }
+    Innovations(columns.data() + c * n, n, phi.data(), order, out.data() + c * n);
   const Matrix start = StartFactor(phi).topLeftCorner(order, order);
   out.topRows(order) = start.triangularView<Eigen::Lower>().solve(columns.topRows(order));
   return out;
