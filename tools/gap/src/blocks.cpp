@@ -110,17 +110,17 @@ Vector LeaveBlockOut(const BlockGrams& grams, Matrix total, const Vector& cross,
   total.diagonal() += ridge;
   // Columns in very different units would make the floor meaningless: it is relative to each.
   total.diagonal() += kRelativeFloor * total.diagonal();
-  Vector squares(kNumBlocks), c(k), error(k);
+  Vector squares(kNumBlocks), c(k), right(k), error(k);
   Matrix without(k, k);
   for (std::size_t b = 0; b < kNumBlocks; ++b) {
     without = total - grams.gram[b];
-    c = cross - grams.cross[b];
+    right = cross - grams.cross[b];
     // A factor that fails leaves the matrix spoilt: only then is one made that pivots.
     const Eigen::LLT<Eigen::Ref<Matrix>> factor(without);
     if (factor.info() == Eigen::Success)
-      factor.solveInPlace(c);
+      c = factor.solve(right);
     else
-      c = (total - grams.gram[b]).ldlt().solve(cross - grams.cross[b]);
+      c = (total - grams.gram[b]).ldlt().solve(right);
     error.noalias() = grams.gram[b] * c;
     squares[static_cast<Eigen::Index>(b)] =
         grams.squares[static_cast<Eigen::Index>(b)] - 2.0 * c.dot(grams.cross[b]) + c.dot(error);
