@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <vector>
 
+#include "gram.hpp"
 #include "tools/gap/gap_rig.hpp"
 
 namespace armcmc::gap::blocks_test {
@@ -55,6 +57,41 @@ TEST(LeaveBlockOut, EqualsRefitsOfAllOtherBlocks) {
       }
     }
   }
+}
+
+// A column without anything in it makes the products singular.
+TEST(LeaveBlockOut, AColumnOfZerosChangesNothing) {
+  const Matrix columns = NoiseColumns(800, 3);
+  const Vector residual = columns * Vector{{30.0, -2.0, 0.4}} + Noise(800, 9);
+  Matrix wider = Matrix::Zero(800, 4);
+  wider << columns.leftCols(1), Vector::Zero(800), columns.rightCols(2);
+  const Vector without = LeaveBlockOut(MakeGrams(columns, residual), Vector::Zero(3));
+  const Vector with = LeaveBlockOut(MakeGrams(wider, residual), Vector::Zero(4));
+  for (Eigen::Index b = 0; b < kNumBlocks; ++b) EXPECT_NEAR(with[b], without[b], 1e-9 * without[b]);
+}
+
+TEST(BlockGrams, OfSomeColumnsAreAsIfThereWereNoOthers) {
+  const Matrix columns = NoiseColumns(403, 6);
+  const Vector residual = Noise(403, 11);
+  const std::vector<Eigen::Index> chosen = {1, 2, 5};
+  const BlockGrams some = MakeGrams(columns, residual).Only(chosen);
+  const BlockGrams own = MakeGrams(columns(Eigen::all, chosen), residual);
+  EXPECT_TRUE(some.TotalGram().isApprox(own.TotalGram(), 1e-12));
+  EXPECT_TRUE(some.TotalCross().isApprox(own.TotalCross(), 1e-12));
+  EXPECT_EQ(some.squares, own.squares);
+}
+
+TEST(GramOf, IsTheProductWhateverTheCounts) {
+  for (const Eigen::Index rows : {0, 1, 7, 8, 9, 175, 256, 1001})
+    for (const Eigen::Index cols : {0, 1, 2, 3, 6, 7}) {
+      const Matrix columns = NoiseColumns(rows + 5, cols);
+      const Matrix block = columns.middleRows(3, rows), product = block.transpose() * block;
+      const Matrix gram = GramOf(columns, 3, rows);
+      ASSERT_EQ(gram.rows(), cols);
+      EXPECT_EQ(gram, Matrix(gram.transpose()));
+      EXPECT_TRUE(rows == 0 || cols == 0 || gram.isApprox(product, 1e-13)) << rows << " x " << cols;
+      EXPECT_TRUE(rows > 0 || gram.isZero(0.0));
+    }
 }
 
 TEST(LeaveBlockOut, WithoutColumnsIsTheResidual) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,18 @@ namespace armcmc::gap::signal_tools_test {
 namespace {
 
 using test::Noise;
+
+TEST(ElementaryFunctions, AreThoseOfTheLibraryWhateverTheCount) {
+  for (const int rows : {0, 1, 15, 16, 17, 100}) {
+    const Vector x = 3.0 * Noise(rows, 5), phase = 1e4 * x;
+    for (int i = 0; i < rows; ++i) {
+      EXPECT_NEAR(Exp(x)[i], std::exp(x[i]), 4e-15 * std::max(std::exp(x[i]), 1.0));
+      EXPECT_NEAR(Tanh(x)[i], std::tanh(x[i]), 4e-15);
+      EXPECT_NEAR(Sin(phase)[i], std::sin(phase[i]), 4e-15);
+      EXPECT_NEAR(Cos(phase)[i], std::cos(phase[i]), 4e-15);
+    }
+  }
+}
 
 TEST(SavitzkyGolay, IsExactOnCubicsAtBothEndsToo) {
   for (const int rows : {9, 40, 201}) {

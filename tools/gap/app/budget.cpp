@@ -12,7 +12,7 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr int kMaxPacks = 20;
+constexpr int kMaxPacks = 10;
 
 std::vector<DataPack> ReadPacks(const Estimator& estimator, const std::shared_ptr<const PlantProgram>& described,
                                 replay::SourceRequest request) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "armcmc/gap/gate_scan.hpp"
+#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -19,6 +20,13 @@ constexpr double kNothing = 1e-12;  // of the prediction's square
 struct Signatures {
   std::string effect;
   std::vector<Vector> of;
+};
+
+/// What of a signature no parameter absorbs.
+struct Outside {
+  explicit Outside(Vector part) : g(std::move(part)), norm(g.norm()) {}
+  Vector g;
+  double norm;
 };
 
 class Tangent {
@@ -57,12 +65,16 @@ std::string BiasText(const Equation& equation, const Look& look, const Vector& c
 
 std::vector<Signatures> SignaturesOf(const Look& look) {
   const Fitted& base = look.finding.base->fit;
-  std::vector<Signatures> all;
+  std::vector<const EffectForm*> forms;
   for (const EffectForm& form : look.catalogue) {
     const bool known = std::any_of(base.hypothesis.terms.begin(), base.hypothesis.terms.end(),
                                    [&](const Term& term) { return term.form->effect == form.effect; });
-    if (form.exact() && !known) all.push_back({form.effect, Templates(*look.fitter, base, form, nullptr)});
+    if (form.exact() && !known) forms.push_back(&form);
   }
+  std::vector<Signatures> all(forms.size());
+  support::InParallel(forms.size(), [&](std::size_t i) {
+    all[i] = {forms[i]->effect, Templates(*look.fitter, base, *forms[i], nullptr)};
+  });
   return all;
 }
 
@@ -78,16 +90,16 @@ std::vector<std::string> Aliases(const Equation& equation, const Look& look) {
     texts.push_back("a wrong gain or unit of the " + equation.output_name() +
                     ": the parameters absorb it. One percent too much looks like " +
                     BiasText(equation, look, Vector(0.01 * tangent.Bias(predicted))));
-  std::vector<std::pair<std::string, std::vector<Vector>>> visible;  // with the parts that no parameter absorbs
+  std::vector<std::pair<std::string, std::vector<Outside>>> visible;
   for (const Signatures& signatures : SignaturesOf(look)) {
-    std::vector<Vector> outside;
+    std::vector<Outside> outside;
     const Vector* strongest = nullptr;
     bool absorbed = true;
     for (const Vector& g : signatures.of) {
       if (!(g.squaredNorm() > kNothing * predicted.squaredNorm())) continue;
       if (strongest == nullptr || g.squaredNorm() > strongest->squaredNorm()) strongest = &g;
       absorbed = absorbed && tangent.Absorbed(g) > kAbsorbed;
-      outside.push_back(tangent.Outside(g));
+      outside.emplace_back(tangent.Outside(g));
     }
     if (strongest == nullptr)
       texts.push_back(signatures.effect + ": never acts in this motion");
@@ -100,9 +112,9 @@ std::vector<std::string> Aliases(const Equation& equation, const Look& look) {
   for (std::size_t i = 0; i < visible.size(); ++i)
     for (std::size_t j = i + 1; j < visible.size(); ++j) {
       double alike = 0.0;
-      for (const Vector& g : visible[i].second)
-        for (const Vector& h : visible[j].second)
-          alike = std::max(alike, std::abs(g.dot(h)) / (g.norm() * h.norm() + 1e-300));
+      for (const Outside& one : visible[i].second)
+        for (const Outside& other : visible[j].second)
+          alike = std::max(alike, std::abs(one.g.dot(other.g)) / (one.norm * other.norm + 1e-300));
       if (!(alike > kAlike)) continue;
       char text[200];
       std::snprintf(text, sizeof(text),

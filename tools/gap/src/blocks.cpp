@@ -3,8 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
+
+#include "gram.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -60,8 +61,27 @@ double BlockBootstrap::RatioQuantile(const Vector& a, const Vector& b, double qu
   return sorted[static_cast<std::size_t>(at)];
 }
 
-Matrix BlockGrams::TotalGram() const { return std::accumulate(gram.begin() + 1, gram.end(), gram.front()); }
-Vector BlockGrams::TotalCross() const { return std::accumulate(cross.begin() + 1, cross.end(), cross.front()); }
+Matrix BlockGrams::TotalGram() const {
+  Matrix total = gram.front();
+  for (std::size_t b = 1; b < gram.size(); ++b) total += gram[b];
+  return total;
+}
+
+Vector BlockGrams::TotalCross() const {
+  Vector total = cross.front();
+  for (std::size_t b = 1; b < cross.size(); ++b) total += cross[b];
+  return total;
+}
+
+BlockGrams BlockGrams::Only(const std::vector<Eigen::Index>& chosen) const {
+  BlockGrams some;
+  some.squares = squares;
+  for (std::size_t b = 0; b < gram.size(); ++b) {
+    some.gram.emplace_back(gram[b](chosen, chosen));
+    some.cross.emplace_back(cross[b](chosen));
+  }
+  return some;
+}
 
 BlockGrams MakeGrams(const Matrix& columns, const Vector& residual) {
   const auto edges = BlockEdges(residual.size());
@@ -74,28 +94,36 @@ BlockGrams MakeGrams(const Matrix& columns, const Vector& residual) {
   }
   for (std::size_t b = 0; b < kNumBlocks; ++b) {
     const auto block = columns.middleRows(edges[b], edges[b + 1] - edges[b]);
-    Matrix gram = Matrix::Zero(columns.cols(), columns.cols());
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose());
-    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-    grams.gram.push_back(std::move(gram));
+    grams.gram.push_back(GramOf(columns, edges[b], edges[b + 1] - edges[b]));
     grams.cross.push_back(block.transpose() * residual.segment(edges[b], edges[b + 1] - edges[b]));
   }
   return grams;
 }
 
 Vector LeaveBlockOut(const BlockGrams& grams, const Vector& ridge) {
-  Matrix total = grams.TotalGram();
-  const Vector cross = grams.TotalCross();
+  return LeaveBlockOut(grams, grams.TotalGram(), grams.TotalCross(), ridge);
+}
+
+Vector LeaveBlockOut(const BlockGrams& grams, Matrix total, const Vector& cross, const Vector& ridge) {
   const Eigen::Index k = cross.size();
   if (k == 0) return grams.squares;
   total.diagonal() += ridge;
   // Columns in very different units would make the floor meaningless: it is relative to each.
   total.diagonal() += kRelativeFloor * total.diagonal();
-  Vector squares(kNumBlocks);
+  Vector squares(kNumBlocks), c(k), right(k), error(k);
+  Matrix without(k, k);
   for (std::size_t b = 0; b < kNumBlocks; ++b) {
-    const Vector c = (total - grams.gram[b]).ldlt().solve(cross - grams.cross[b]);
+    without = total - grams.gram[b];
+    right = cross - grams.cross[b];
+    // A factor that fails leaves the matrix spoilt: only then is one made that pivots.
+    const Eigen::LLT<Eigen::Ref<Matrix>> factor(without);
+    if (factor.info() == Eigen::Success)
+      c = factor.solve(right);
+    else
+      c = (total - grams.gram[b]).ldlt().solve(right);
+    error.noalias() = grams.gram[b] * c;
     squares[static_cast<Eigen::Index>(b)] =
-        grams.squares[static_cast<Eigen::Index>(b)] - 2.0 * c.dot(grams.cross[b]) + c.dot(grams.gram[b] * c);
+        grams.squares[static_cast<Eigen::Index>(b)] - 2.0 * c.dot(grams.cross[b]) + c.dot(error);
   }
   return squares;
 }

@@ -1,10 +1,14 @@
 #include "armcmc/gap/features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 #include <vector>
+
+#include "armcmc/expression/elementary.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -23,13 +27,38 @@ Eigen::Index SmoothLength(Eigen::Index n) {
   }
 }
 
+Vector OfEach(expression::Op op, const Vector& of) {
+  constexpr std::size_t kStride = expression::kElementaryStride;
+  const auto count = static_cast<std::size_t>(of.size()), whole = count / kStride * kStride;
+  Vector result(of.size());
+  expression::Elementary(op, whole, of.data(), nullptr, result.data());
+  std::array<double, kStride> rest{}, result_of_rest{};
+  std::copy(of.data() + whole, of.data() + count, rest.begin());
+  expression::Elementary(op, kStride, rest.data(), nullptr, result_of_rest.data());
+  std::copy_n(result_of_rest.begin(), count - whole, result.data() + whole);
+  return result;
+}
+
 }  // namespace
 
-Vector QuantileKnots(const Vector& series, const Vector& mask, int count) {
+Vector Exp(const Vector& of) { return OfEach(expression::Op::kExp, of); }
+Vector Tanh(const Vector& of) { return OfEach(expression::Op::kTanh, of); }
+Vector Sin(const Vector& of) { return OfEach(expression::Op::kSin, of); }
+Vector Cos(const Vector& of) { return OfEach(expression::Op::kCos, of); }
+
+std::vector<double> Sorted(const Vector& series, const Vector& mask) {
   std::vector<double> sorted;
   for (Eigen::Index i = 0; i < series.size(); ++i)
     if (mask[i] != 0.0) sorted.push_back(series[i]);
   std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+Vector QuantileKnots(const Vector& series, const Vector& mask, int count) {
+  return QuantileKnots(Sorted(series, mask), count);
+}
+
+Vector QuantileKnots(const std::vector<double>& sorted, int count) {
   std::vector<double> knots;
   for (int k = 0; k < count && !sorted.empty(); ++k) {
     const double share = 0.01 + 0.98 * k / (count - 1);
@@ -76,12 +105,12 @@ Matrix Products(const Matrix& a, const Matrix& b) {
 }
 
 Vector Bristle(const Vector& velocity, double distance, double dt) {
-  Vector deflection(velocity.size());
+  Vector deflection = Exp(velocity.cwiseAbs() * (-dt / distance));
   double z = 0.0;
   for (Eigen::Index i = 0; i < velocity.size(); ++i) {
     const double v = velocity[i];
     const double end = v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : z);
-    z = end + (z - end) * std::exp(-std::abs(v) * dt / distance);
+    z = end + (z - end) * deflection[i];
     deflection[i] = z;
   }
   return deflection;
@@ -133,9 +162,9 @@ Line StrongestLine(const Vector& series, double dt) {
 Matrix Waves(const Vector& t, double frequency, int first_harmonic, int last_harmonic) {
   Matrix waves(t.size(), 2 * (last_harmonic - first_harmonic + 1));
   for (int h = first_harmonic; h <= last_harmonic; ++h) {
-    const Eigen::ArrayXd phase = 2.0 * std::numbers::pi * frequency * h * t.array();
-    waves.col(2 * (h - first_harmonic)) = phase.cos();
-    waves.col(2 * (h - first_harmonic) + 1) = phase.sin();
+    const Vector phase = 2.0 * std::numbers::pi * frequency * h * t;
+    waves.col(2 * (h - first_harmonic)) = Cos(phase);
+    waves.col(2 * (h - first_harmonic) + 1) = Sin(phase);
   }
   return waves;
 }

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <utility>
+
+#include "gram.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -17,14 +21,6 @@ constexpr int kStepsForHope = 2;          // before which a tangent says little 
 constexpr double kHope = 4.0;             // times what the tangent promises, short of which a descent is given up
 constexpr double kSmallAmplitude = 1e-3;  // where an amplitude starts that its bounds would hold at zero
 constexpr std::size_t kRefinedStarts = 2;
-
-/// columns' columns.
-Matrix Gram(const Matrix& columns) {
-  Matrix gram = Matrix::Zero(columns.cols(), columns.cols());
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-  return gram;
-}
 
 void Clamp(const std::vector<Coordinate>& coordinates, Vector* theta) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -170,7 +166,23 @@ Fitter::Fitter(const Equation& equation, const Signals& signals, Whitener whiten
     : equation_(&equation), signals_(&signals), whitener_(std::move(whitener)) {}
 
 Prediction Fitter::Predict(const Hypothesis& hypothesis, const Vector& theta, Slopes wanted) const {
-  return Evaluate(*equation_, *signals_, hypothesis, theta, wanted, &memo_);
+  std::unique_ptr<LawMemo> memo = memos_.Take();
+  Prediction prediction = Evaluate(*equation_, *signals_, hypothesis, theta, wanted, memo.get());
+  memos_.Give(std::move(memo));
+  return prediction;
+}
+
+std::unique_ptr<LawMemo> Fitter::Memos::Take() {
+  const std::lock_guard lock(mutex_);
+  if (idle_.empty()) return std::make_unique<LawMemo>();
+  std::unique_ptr<LawMemo> memo = std::move(idle_.back());
+  idle_.pop_back();
+  return memo;
+}
+
+void Fitter::Memos::Give(std::unique_ptr<LawMemo> memo) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(memo));
 }
 
 /// A descent: where it is, and what is known there.
@@ -179,12 +191,13 @@ struct Fitter::Descent {
   Vector theta;
   Prediction prediction;
   Vector residual;        ///< Whitened.
+  Matrix columns;         ///< Whitened derivatives there; empty: not made yet.
   bool hopeless = false;  ///< It was given up for its rival.
 };
 
 Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& start, int max_steps,
                                 const CoordinatePrior* prior, const Fitted* rival) const {
-  Descent at{CoordinatesOf(*equation_, *signals_, hypothesis), start, {}, {}};
+  Descent at{CoordinatesOf(*equation_, *signals_, hypothesis), start, {}, {}, {}};
   Clamp(at.coordinates, &at.theta);
   CoordinatePrior regular;
   if (prior == nullptr && std::any_of(hypothesis.terms.begin(), hypothesis.terms.end(),
@@ -200,9 +213,9 @@ Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& star
   double squares = at.residual.squaredNorm() + penalty(at.theta);
   double damping = kLeastDamping;
   for (int step = 0; step < max_steps; ++step) {
-    const Matrix columns = whitener_.Apply(at.prediction.jacobian);
-    Vector ascent = columns.transpose() * at.residual;
-    Matrix gram = Gram(columns);
+    at.columns = whitener_.Apply(at.prediction.jacobian);
+    Vector ascent = at.columns.transpose() * at.residual;
+    Matrix gram = GramOf(at.columns, 0, at.columns.rows());
     if (prior != nullptr) {
       ascent += whitener_.s2 * (prior->precision * (prior->mean - at.theta));
       gram += whitener_.s2 * prior->precision;
@@ -232,6 +245,7 @@ Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& star
       decrease = (squares - next_squares) / squares;
       at.theta = tried;
       at.prediction = std::move(next);
+      at.columns.resize(0, 0);
       at.residual = std::move(next_residual);
       squares = next_squares;
       damping = std::max(0.2 * damping, 1e-8);
@@ -246,7 +260,7 @@ Fitted Fitter::Finish(const Hypothesis& hypothesis, Descent at) const {
   fitted.hypothesis = hypothesis;
   fitted.coordinates = std::move(at.coordinates);
   fitted.theta = std::move(at.theta);
-  fitted.whitened_jacobian = whitener_.Apply(at.prediction.jacobian);
+  fitted.whitened_jacobian = at.columns.size() > 0 ? std::move(at.columns) : whitener_.Apply(at.prediction.jacobian);
   fitted.predicted = std::move(at.prediction.y);
   fitted.whitened_residual = std::move(at.residual);
   fitted.squares = fitted.whitened_residual.squaredNorm();
@@ -268,13 +282,12 @@ void Fitter::Score(Fitted* fitted) const {
         fitted->coordinates[i].nuisance)
       fitted->at_bound[i] = true;
   const std::vector<Eigen::Index> free = FreeOf(fitted->at_bound);
-  const Matrix columns = fitted->whitened_jacobian(Eigen::all, free);
-  const BlockGrams grams = MakeGrams(columns, fitted->whitened_residual);
+  const BlockGrams grams = MakeGrams(fitted->whitened_jacobian, fitted->whitened_residual);
   const Vector ridge = whitener_.s2 * ShapePrecision(*fitted)(free);
-  fitted->heldout = -0.5 / whitener_.s2 * LeaveBlockOut(grams, ridge);
+  fitted->heldout = -0.5 / whitener_.s2 * LeaveBlockOut(grams.Only(free), ridge);
 
   // Laplace: the Hessian of the log posterior at the fit, prior included.
-  Matrix hessian = Gram(fitted->whitened_jacobian) / whitener_.s2;
+  Matrix hessian = grams.TotalGram() / whitener_.s2;
   double log_prior = 0.0;
   for (std::size_t i = 0; i < fitted->coordinates.size(); ++i) {
     const Coordinate& c = fitted->coordinates[i];
@@ -309,17 +322,20 @@ std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, cons
   if (form.find_starts)
     for (std::vector<double>& start : form.find_starts(*signals_, parent.whitened_residual))
       grid.push_back(std::move(start));
+  const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
+  const bool only_adds = LastOnlyAdds(hypothesis);
+  const auto by_amplitudes = [&](const Vector& theta) -> Matrix {
+    if (only_adds) return Features(*signals_, term, theta.data() + first + form.num_amplitudes);
+    const Slopes wanted{static_cast<int>(first), static_cast<int>(first) + form.num_amplitudes};
+    return Predict(hypothesis, theta, wanted).jacobian.middleCols(first, form.num_amplitudes);
+  };
   for (const std::vector<double>& start : grid) {
     Vector theta(first + form.size());
     theta << parent.theta, Eigen::Map<const Vector>(start.data(), form.size());
-    const std::vector<Coordinate> coordinates = CoordinatesOf(*equation_, *signals_, hypothesis);
-    if (form.linear) theta.segment(first, form.num_amplitudes).setZero();
-    const Slopes amplitudes_only{static_cast<int>(first), static_cast<int>(first) + form.num_amplitudes};
-    const Prediction prediction = Predict(hypothesis, theta, form.linear ? amplitudes_only : Slopes::None());
     double squares = 0.0;
     if (form.linear) {
-      const Matrix columns =
-          project(whitener_.Apply(Matrix(prediction.jacobian.middleCols(first, form.num_amplitudes))));
+      theta.segment(first, form.num_amplitudes).setZero();
+      const Matrix columns = project(whitener_.Apply(by_amplitudes(theta)));
       Matrix gram = columns.transpose() * columns;
       gram.diagonal().array() += 1e-12 * gram.trace() + 1e-300;
       Vector amplitudes = gram.ldlt().solve(columns.transpose() * parent.whitened_residual);
@@ -332,7 +348,7 @@ std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, cons
       if (amplitudes.isZero(0.0)) amplitudes[0] = kSmallAmplitude;
       theta.segment(first, form.num_amplitudes) = amplitudes;
     } else {
-      const Vector step = whitener_.Apply(Vector(prediction.y - parent.predicted));
+      const Vector step = whitener_.Apply(Vector(Predict(hypothesis, theta, Slopes::None()).y - parent.predicted));
       squares = (parent.whitened_residual - project(step).col(0)).squaredNorm();
     }
     Clamp(coordinates, &theta);

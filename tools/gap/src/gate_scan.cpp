@@ -136,7 +136,14 @@ std::vector<Vector> Templates(const Fitter& fitter, const Fitted& parent, const 
     starts.emplace_back(own.data(), own.data() + own.size());
   }
   std::vector<Vector> templates;
+  const bool only_adds = form.linear && LastOnlyAdds(hypothesis);
   for (const std::vector<double>& start : starts) {
+    if (only_adds) {
+      const Matrix columns = Features(fitter.signals(), {&form, {}}, start.data() + form.num_amplitudes);
+      for (int a = 0; a < form.num_amplitudes; ++a)
+        templates.push_back(fitter.whitener().Apply(Vector(kUnit * columns.col(a))));
+      continue;
+    }
     Vector theta(first + form.size());
     theta << parent.theta, Eigen::Map<const Vector>(start.data(), form.size());
     for (int a = 0; form.linear && a < form.num_amplitudes; ++a) {

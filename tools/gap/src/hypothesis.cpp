@@ -11,10 +11,10 @@ namespace {
 /// A term with its gate and the place of its coordinates.
 struct Placed {
   const EffectForm* form;
-  Vector gate;
-  bool always;  ///< The gate is one everywhere.
+  Vector gate;  ///< Empty: one everywhere.
   int first;
   const double* theta;
+  [[nodiscard]] bool always() const { return gate.size() == 0; }
   [[nodiscard]] const double* shapes() const { return theta + form->num_amplitudes; }
 };
 
@@ -25,39 +25,47 @@ std::vector<Placed> Place(const Signals& signals, const Hypothesis& hypothesis, 
   std::vector<Placed> placed;
   int first = num_base;
   for (const Term& term : hypothesis.terms) {
-    placed.push_back(
-        {term.form, GateOf(term.when, signals), term.when.kind == When::Kind::kAlways, first, theta.data() + first});
+    placed.push_back({term.form, term.when.kind == When::Kind::kAlways ? Vector() : GateOf(term.when, signals), first,
+                      theta.data() + first});
     first += term.form->size();
   }
   return placed;
 }
 
+/// Features with the gate included.
+Matrix GatedColumns(const Signals& signals, const Placed& term, const double* shapes) {
+  Matrix columns = term.form->features(signals, shapes);
+  if (!term.always()) columns.array().colwise() *= term.gate.array();
+  return columns;
+}
+
 /// Features times amplitudes, gate included, with the derivative by every coordinate of the term that is wanted.
 struct Sum {
   Vector value;
-  Matrix slopes;  ///< [row][coordinate of the term]
+  Matrix columns;  ///< [row][amplitude]: the derivatives by the amplitudes.
+  Matrix shapes;   ///< [row][shape]; no columns where none is wanted.
+  /// Column of a coordinate of the term that is wanted.
+  [[nodiscard]] auto Slope(Eigen::Index c, int num_amplitudes) const {
+    return c < num_amplitudes ? columns.col(c) : shapes.col(c - num_amplitudes);
+  }
 };
 
 Sum Evaluate(const Signals& signals, const Placed& term, Slopes wanted) {
   const EffectForm& form = *term.form;
-  const auto features = [&](const double* shapes) -> Matrix {
-    Matrix columns = form.features(signals, shapes);
-    if (!term.always) columns = term.gate.asDiagonal() * columns;
-    return columns;
-  };
-  const Matrix columns = features(term.shapes());
   const Vector amplitudes = form.num_amplitudes == 0
                                 ? Vector(Vector::Ones(1))
                                 : Vector(Eigen::Map<const Vector>(term.theta, form.num_amplitudes));
-  Sum sum{columns * amplitudes, Matrix::Zero(signals.rows(), form.size())};
-  sum.slopes.leftCols(form.num_amplitudes) = columns.leftCols(form.num_amplitudes);
+  Sum sum;
+  sum.columns = GatedColumns(signals, term, term.shapes());
+  sum.value = sum.columns * amplitudes;
   std::vector<double> shape(term.shapes(), term.theta + form.size());
   for (std::size_t s = 0; s < shape.size(); ++s) {
     if (!wanted.Has(term.first + form.num_amplitudes + static_cast<int>(s))) continue;
+    if (sum.shapes.cols() == 0) sum.shapes = Matrix::Zero(signals.rows(), static_cast<Eigen::Index>(shape.size()));
     const double at = shape[s];
     shape[s] = at + kShapeStep;
-    const Vector moved = features(shape.data()) * amplitudes;
-    sum.slopes.col(form.num_amplitudes + static_cast<Eigen::Index>(s)) = (moved - sum.value) / kShapeStep;
+    const Vector moved = GatedColumns(signals, term, shape.data()) * amplitudes;
+    sum.shapes.col(static_cast<Eigen::Index>(s)) = (moved - sum.value) / kShapeStep;
     shape[s] = at;
   }
   return sum;
@@ -75,8 +83,9 @@ void AddFeatures(const Signals& signals, const Placed& term, const LawInput& inp
   const Signals seen = moves ? Moved(signals, input.shift) : Signals();
   const Sum sum = Evaluate(moves ? seen : signals, term, out->wanted);
   out->y += sum.value;
-  out->jacobian.middleCols(term.first, term.form->size()) += sum.slopes;
-  if (!moves) return;
+  for (int c = 0; c < term.form->size(); ++c)
+    if (out->wanted.Has(term.first + c)) out->jacobian.col(term.first + c) += sum.Slope(c, term.form->num_amplitudes);
+  if (!moves || out->jacobian.cols() == 0) return;
   for (const LawInput::Slope& slope : input.shift_slopes) {
     const Signals beside = Moved(seen, kShapeStep * slope.rows);
     out->jacobian.col(slope.coordinate) += (Evaluate(beside, term, Slopes::None()).value - sum.value) / kShapeStep;
@@ -87,9 +96,8 @@ void AddToInput(const Sum& sum, const Placed& term, Slopes wanted, Vector* value
                 std::vector<LawInput::Slope>* slopes) {
   if (value->size() == 0) *value = Vector::Zero(sum.value.size());
   *value += sum.value;
-  for (Eigen::Index c = 0; c < sum.slopes.cols(); ++c)
-    if (wanted.Has(term.first + static_cast<int>(c)))
-      slopes->push_back({term.first + static_cast<int>(c), sum.slopes.col(c)});
+  for (int c = 0; c < term.form->size(); ++c)
+    if (wanted.Has(term.first + c)) slopes->push_back({term.first + c, sum.Slope(c, term.form->num_amplitudes)});
 }
 
 void AddMemory(const Signals& signals, const Placed& term, Prediction* out) {
@@ -97,26 +105,30 @@ void AddMemory(const Signals& signals, const Placed& term, Prediction* out) {
   std::vector<double> shape(term.shapes(), term.theta + form.size());
   for (int a = 0; a < form.num_amplitudes; ++a) {
     const double amplitude = term.theta[a];
-    const Vector branch = form.filter(signals, out->elastic, a, shape.data());
-    out->y += amplitude * term.gate.cwiseProduct(branch);
-    out->jacobian.col(term.first + a) += term.gate.cwiseProduct(branch);
+    const auto filtered = [&](const Vector& series) {
+      Vector branch = form.filter(signals, series, a, shape.data());
+      if (!term.always()) branch = term.gate.cwiseProduct(branch);
+      return branch;
+    };
+    const Vector branch = filtered(out->elastic);
+    out->y += amplitude * branch;
+    if (out->wanted.Has(term.first + a)) out->jacobian.col(term.first + a) += branch;
     for (Eigen::Index c = 0; c < out->elastic_jacobian.cols(); ++c)
       if (out->wanted.Has(static_cast<int>(c)) && !out->elastic_jacobian.col(c).isZero(0.0))
-        out->jacobian.col(c) +=
-            amplitude * term.gate.cwiseProduct(form.filter(signals, out->elastic_jacobian.col(c), a, shape.data()));
+        out->jacobian.col(c) += amplitude * filtered(out->elastic_jacobian.col(c));
     for (std::size_t s = 0; s < shape.size(); ++s) {
       if (!out->wanted.Has(term.first + form.num_amplitudes + static_cast<int>(s))) continue;
       const double at = shape[s];
       shape[s] = at + kShapeStep;
       out->jacobian.col(term.first + form.num_amplitudes + static_cast<Eigen::Index>(s)) +=
-          amplitude / kShapeStep * term.gate.cwiseProduct(form.filter(signals, out->elastic, a, shape.data()) - branch);
+          amplitude / kShapeStep * (filtered(out->elastic) - branch);
       shape[s] = at;
     }
   }
 }
 
 void Sense(const Signals& signals, const Placed& term, Prediction* out) {
-  if (term.always) {
+  if (term.always()) {
     term.form->sense(signals, term.theta, term.first, out);
     return;
   }
@@ -129,15 +141,15 @@ void Sense(const Signals& signals, const Placed& term, Prediction* out) {
 }
 
 /// The law that no effect reaches into.
-void PlainLaw(const Equation& equation, const Signals& signals, const Vector& theta, int num_base, LawMemo* memo,
-              Prediction* out) {
+/// @param remembers  Whether an effect remembers its elastic part.
+void PlainLaw(const Equation& equation, const Signals& signals, const Vector& theta, int num_base, bool remembers,
+              LawMemo* memo, Prediction* out) {
   const Slopes wanted = out->wanted;
-  const bool all = wanted.first == 0 && wanted.end >= num_base, none = wanted.first >= num_base || wanted.end == 0;
-  if (memo == nullptr || !(all || none)) {
+  const bool all = wanted.first == 0 && wanted.end >= num_base;
+  if (memo == nullptr || !(all || wanted.NoneBelow(num_base))) {
     equation.Law(signals, theta.data(), {}, out);
     return;
   }
-  const bool remembers = out->elastic_jacobian.cols() > 0;
   Prediction& law = memo->law;
   if (memo->theta.size() != num_base || memo->theta != theta.head(num_base) || memo->with_slopes != all ||
       (remembers && law.elastic_jacobian.cols() == 0)) {
@@ -149,9 +161,14 @@ void PlainLaw(const Equation& equation, const Signals& signals, const Vector& th
     memo->with_slopes = all;
   }
   out->y = law.y;
-  out->elastic = law.elastic;
+  if (remembers) out->elastic = law.elastic;
+  if (!all) return;
   out->jacobian.leftCols(num_base) = law.jacobian;
   if (remembers) out->elastic_jacobian.leftCols(num_base) = law.elastic_jacobian;
+}
+
+bool AnyIn(const std::vector<Placed>& terms, Slot slot) {
+  return std::any_of(terms.begin(), terms.end(), [&](const Placed& term) { return term.form->slot == slot; });
 }
 
 }  // namespace
@@ -187,6 +204,20 @@ std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& s
   return coordinates;
 }
 
+bool LastOnlyAdds(const Hypothesis& hypothesis) {
+  const EffectForm& last = *hypothesis.terms.back().form;
+  return last.slot == Slot::kAdditive &&
+         std::none_of(hypothesis.terms.begin(), hypothesis.terms.end(), [&](const Term& term) {
+           return term.form->slot > Slot::kAdditive || (last.from_surface && term.form->slot == Slot::kInputMap);
+         });
+}
+
+Matrix Features(const Signals& signals, const Term& term, const double* shapes) {
+  Matrix columns = term.form->features(signals, shapes);
+  if (term.when.kind != When::Kind::kAlways) columns.array().colwise() *= GateOf(term.when, signals).array();
+  return columns;
+}
+
 Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypothesis& hypothesis, const Vector& theta,
                     Slopes wanted, LawMemo* memo) {
   int num_base = static_cast<int>(theta.size());
@@ -198,17 +229,24 @@ Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypo
     if (term.form->slot == Slot::kInputMap) AddToInput(sum(), term, wanted, &input.shift, &input.shift_slopes);
     if (term.form->slot == Slot::kParameter) AddToInput(sum(), term, wanted, &input.gain, &input.gain_slopes);
     if (term.form->slot == Slot::kDrive) AddToInput(sum(), term, wanted, &input.drive, &input.drive_slopes);
-    if (term.form->slot == Slot::kForce) input.forces.push_back({term.form, term.theta, term.first, term.gate});
+    if (term.form->slot == Slot::kForce)
+      input.forces.push_back(
+          {term.form, term.theta, term.first, term.always() ? Vector(Vector::Ones(signals.rows())) : term.gate});
   }
   if (input.gain.size() > 0) input.gain.array() += 1.0;
+  const bool plain =
+      input.shift.size() == 0 && input.gain.size() == 0 && input.drive.size() == 0 && input.forces.empty();
+  const bool remembers = AnyIn(terms, Slot::kMemory);
+  // What nobody asks for is not even made, where only this file would fill it.
+  const bool law_alone = plain && memo != nullptr;
+  const bool no_slopes = law_alone && wanted.NoneBelow(static_cast<int>(theta.size())) && !AnyIn(terms, Slot::kStatics);
+  const bool no_elastic_slopes = !remembers || (law_alone && wanted.NoneBelow(num_base));
   Prediction out;
   out.wanted = wanted;
-  out.jacobian = Matrix::Zero(signals.rows(), theta.size());
-  const bool remembers =
-      std::any_of(terms.begin(), terms.end(), [](const Placed& term) { return term.form->slot == Slot::kMemory; });
-  out.elastic_jacobian = Matrix::Zero(signals.rows(), remembers ? theta.size() : 0);
-  if (input.shift.size() == 0 && input.gain.size() == 0 && input.drive.size() == 0 && input.forces.empty())
-    PlainLaw(equation, signals, theta, num_base, memo, &out);
+  out.jacobian = Matrix::Zero(signals.rows(), no_slopes ? 0 : theta.size());
+  out.elastic_jacobian = Matrix::Zero(signals.rows(), no_elastic_slopes ? 0 : theta.size());
+  if (plain)
+    PlainLaw(equation, signals, theta, num_base, remembers, memo, &out);
   else
     equation.Law(signals, theta.data(), input, &out);
   for (const Placed& term : terms) {

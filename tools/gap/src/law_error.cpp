@@ -1,8 +1,11 @@
 #include "armcmc/gap/law_error.hpp"
 
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 
+#include "armcmc/gap/features.hpp"
 #include "armcmc/gap/form_tools.hpp"
 
 namespace armcmc::gap {
@@ -21,30 +24,34 @@ Matrix Bumps(const Signals& signals, const LawVariable& variable) {
   else
     place = (value - variable.low) / (variable.high - variable.low);
   Matrix bumps(signals.rows(), kPlaces);
-  for (int k = 0; k < kPlaces; ++k) bumps.col(k) = (-0.5 * (((kPlaces - 1) * place - k) / kWidth).square()).exp();
+  for (int k = 0; k < kPlaces; ++k) bumps.col(k) = Exp(-0.5 * (((kPlaces - 1) * place - k) / kWidth).square());
   return bumps;
 }
 
-/// One bump of both variables a column. They depend on nothing that is fitted, so that the last are kept.
+/// One bump of both variables a column. They depend on nothing that is fitted, so that the last are kept. Threads may
+/// share it.
 class BumpsOfBoth {
  public:
   BumpsOfBoth(const LawVariable& a, const LawVariable& b) : a_(a), b_(b) {}
 
-  const Matrix& Of(const Signals& signals) {
+  std::shared_ptr<const Matrix> Of(const Signals& signals) {
+    const std::lock_guard lock(mutex_);
     const Vector &first = signals.at(a_.role), &second = signals.at(b_.role);
     if (first.size() == first_.size() && first == first_ && second == second_) return bumps_;
     first_ = first;
     second_ = second;
     const Matrix left = Bumps(signals, a_), right = Bumps(signals, b_);
-    bumps_.resize(signals.rows(), kPlaces * kPlaces);
-    for (int i = 0; i < kPlaces; ++i) bumps_.middleCols(i * kPlaces, kPlaces) = left.col(i).asDiagonal() * right;
+    Matrix bumps(signals.rows(), kPlaces * kPlaces);
+    for (int i = 0; i < kPlaces; ++i) bumps.middleCols(i * kPlaces, kPlaces) = left.col(i).asDiagonal() * right;
+    bumps_ = std::make_shared<const Matrix>(std::move(bumps));
     return bumps_;
   }
 
  private:
   LawVariable a_, b_;
+  std::mutex mutex_;
   Vector first_, second_;
-  Matrix bumps_;
+  std::shared_ptr<const Matrix> bumps_;
 };
 
 }  // namespace
@@ -60,7 +67,7 @@ EffectForm LawErrorForm(const LawVariable& a, const LawVariable& b) {
     form.coordinates.back().nuisance = true;
   }
   form.features = [bumps = std::make_shared<BumpsOfBoth>(a, b)](const Signals& in, const double*) -> Matrix {
-    return bumps->Of(in);
+    return *bumps->Of(in);
   };
   SetStarts(&form, {});
   return form;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "armcmc/gap/features.hpp"
+#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -95,12 +96,29 @@ class Tree {
   std::vector<Leaf> leaves_;
 };
 
-double ShareIn(const Mask& rows, const Vector& excess, std::size_t shift) {
-  double inside = 0.0;
-  const auto n = rows.size();
-  for (std::size_t i = 0; i < n; ++i)
-    if (rows[i] != 0) inside += excess[static_cast<Eigen::Index>(i + shift < n ? i + shift : i + shift - n)];
-  return inside / std::max(excess.sum(), 1e-300);
+/// Shares of an excess that a region holds when it is shifted in time, the end joined to the start.
+class Shifted {
+ public:
+  explicit Shifted(const Vector& excess) : total_(std::max(excess.sum(), 1e-300)), twice_(2 * excess.size()) {
+    twice_ << excess, excess;
+  }
+  [[nodiscard]] double Share(const std::vector<Eigen::Index>& rows, std::size_t shift) const {
+    const double* const from = twice_.data() + shift;
+    double inside = 0.0;
+    for (const Eigen::Index row : rows) inside += from[row];
+    return inside / total_;
+  }
+
+ private:
+  double total_;
+  Vector twice_;
+};
+
+std::vector<Eigen::Index> RowsOf(const Mask& mask) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    if (mask[i] != 0) rows.push_back(static_cast<Eigen::Index>(i));
+  return rows;
 }
 
 }  // namespace
@@ -113,12 +131,13 @@ std::vector<Where> FindWhere(const Equation& equation, const Look& look, const B
   const Referee& referee = look.search->referee();
   std::vector<Where> found;
   const double explainable = std::max(look.finding.gap, 1e-12);
-  for (const FeatureGroup& group : referee.groups()) {
-    const Vector gain = referee.GainOf(base, {group.name}, Matrix(look.signals.rows(), 0));
+  found.resize(referee.groups().size());
+  support::InParallel(found.size(), [&](std::size_t i) {
+    const std::string& name = referee.groups()[i].name;
+    const Vector gain = referee.GainOf(base, {name}, Matrix(look.signals.rows(), 0));
     const double size = std::max(2.0 * gain.sum() / rows, 0.0);
-    found.push_back(
-        {group.name, "", std::clamp(size / explainable, 0.0, 1.0), size, 1.0 - bootstrap.ProbabilityAbove(gain, 0.0)});
-  }
+    found[i] = {name, "", std::clamp(size / explainable, 0.0, 1.0), size, 1.0 - bootstrap.ProbabilityAbove(gain, 0.0)};
+  });
   const Line line = StrongestLine(base.whitened_residual, look.signals.dt);
   const Vector gain = referee.GainOf(base, {}, Waves(look.signals.t, line.frequency, 1, 1));
   char words[64];
@@ -134,16 +153,17 @@ std::vector<Where> FindWhere(const Equation& equation, const Look& look, const B
   const Tree tree(equation.SplitVariables(look.signals), excess);
   std::vector<Where> regions;
   std::mt19937_64 engine(seed);
+  const Shifted shifted(excess);
   for (const Tree::Leaf& leaf : tree.leaves()) {
-    const double share = ShareIn(leaf.rows, excess, 0);
+    const std::vector<Eigen::Index> inside_rows = RowsOf(leaf.rows);
+    const double share = shifted.Share(inside_rows, 0);
     int as_large = 0;
     for (int i = 0; i < kShifts; ++i) {
       const auto shift = static_cast<std::size_t>(engine() % leaf.rows.size());
-      as_large += ShareIn(leaf.rows, excess, shift) >= share ? 1 : 0;
+      as_large += shifted.Share(inside_rows, shift) >= share ? 1 : 0;
     }
     double inside = 0.0;
-    for (std::size_t i = 0; i < leaf.rows.size(); ++i)
-      if (leaf.rows[i] != 0) inside += excess[static_cast<Eigen::Index>(i)];
+    for (const Eigen::Index row : inside_rows) inside += excess[row];
     regions.push_back({"region", leaf.words, std::clamp(share, 0.0, 1.0), std::max(inside / rows, 0.0),
                        (as_large + 1.0) / (kShifts + 1.0)});
   }

@@ -2,17 +2,19 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "armcmc/gap/features.hpp"
+#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
 
-constexpr double kLineProminence = 40.0;                      // white noise of 10 000 samples reaches 20
-constexpr double kRidges[] = {3e-5, 3e-4, 3e-3, 3e-2, 3e-1};  // per row, for columns of rms one
-constexpr double kFreeRidge = 1e-9;                           // the hypothesis' own columns are not penalised
+constexpr double kLineProminence = 40.0;                        // white noise of 10 000 samples reaches 20
+constexpr std::array kRidges = {3e-5, 3e-4, 3e-3, 3e-2, 3e-1};  // per row, for columns of rms one
+constexpr double kFreeRidge = 1e-9;                             // the hypothesis' own columns are not penalised
 
 Matrix UnitRms(Matrix columns) {
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
@@ -38,20 +40,26 @@ struct Best {
 Best ChooseRidge(const BlockGrams& grams, Eigen::Index num_free, double rows) {
   const Matrix total = grams.TotalGram();
   const Vector cross = grams.TotalCross();
-  Best best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double strength : kRidges) {
+  const auto ridge_of = [&](double strength) {
     Vector ridge = Vector::Constant(cross.size(), strength * rows);
     ridge.head(num_free).setConstant(kFreeRidge * rows);
-    const Vector squares = LeaveBlockOut(grams, ridge);
-    if (!(squares.sum() < least)) continue;
-    least = squares.sum();
-    best.squares = squares;
-    Matrix penalised = total;
-    penalised.diagonal() += ridge;
-    best.coefficients = penalised.ldlt().solve(cross);
+    return ridge;
+  };
+  std::array<Vector, kRidges.size()> squares;
+  support::InParallel(kRidges.size(),
+                      [&](std::size_t i) { squares[i] = LeaveBlockOut(grams, total, cross, ridge_of(kRidges[i])); });
+  // Of sums that are not numbers none is the least.
+  std::size_t best = kRidges.size();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < kRidges.size(); ++i) {
+    if (!(squares[i].sum() < least)) continue;
+    least = squares[i].sum();
+    best = i;
   }
-  return best;
+  if (best == kRidges.size()) return {};
+  Matrix penalised = total;
+  penalised.diagonal() += ridge_of(kRidges[best]);
+  return {squares[best], penalised.ldlt().solve(cross)};
 }
 
 }  // namespace
@@ -101,16 +109,6 @@ Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* une
   return -0.5 / fitter_->whitener().s2 * best.squares - fitted.heldout;
 }
 
-Vector Referee::Gain(const Fitted& fitted, const Matrix& whitened, Vector* unexplained) const {
-  const Matrix free = FreeColumns(fitted);
-  Matrix columns(free.rows(), free.cols() + whitened.cols());
-  columns << free, UnitRms(whitened);
-  const Best best =
-      ChooseRidge(MakeGrams(columns, fitted.whitened_residual), free.cols(), static_cast<double>(free.rows()));
-  if (unexplained != nullptr) *unexplained = fitted.whitened_residual - columns * best.coefficients;
-  return -0.5 / fitter_->whitener().s2 * best.squares - fitted.heldout;
-}
-
 Remainder Referee::Judge(const Fitted& fitted) const {
   const Signals& signals = fitter_->signals();
   Remainder remainder;
@@ -129,10 +127,19 @@ Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra) const {
 }
 
 Vector Referee::GainOf(const Fitted& fitted, const std::vector<std::string>& groups, const Matrix& extra) const {
-  Matrix columns = extra;
-  for (const FeatureGroup& group : groups_)
-    if (std::find(groups.begin(), groups.end(), group.name) != groups.end()) columns = Beside(columns, group.columns);
-  return Gain(fitted, fitter_->whitener().Apply(columns), nullptr);
+  std::vector<Eigen::Index> chosen;
+  Eigen::Index at = 0;
+  for (const FeatureGroup& group : groups_) {
+    if (std::find(groups.begin(), groups.end(), group.name) != groups.end())
+      for (Eigen::Index c = 0; c < group.columns.cols(); ++c) chosen.push_back(at + c);
+    at += group.columns.cols();
+  }
+  const Matrix free = FreeColumns(fitted);
+  Matrix columns(free.rows(), free.cols() + extra.cols() + static_cast<Eigen::Index>(chosen.size()));
+  columns << free, UnitRms(fitter_->whitener().Apply(extra)), columns_(Eigen::all, chosen);
+  const Best best =
+      ChooseRidge(MakeGrams(columns, fitted.whitened_residual), free.cols(), static_cast<double>(free.rows()));
+  return -0.5 / fitter_->whitener().s2 * best.squares - fitted.heldout;
 }
 
 }  // namespace armcmc::gap

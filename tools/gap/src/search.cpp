@@ -6,6 +6,7 @@
 
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/gate_scan.hpp"
+#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -91,11 +92,19 @@ Search::Candidates Search::Near(const Candidates& sorted, double gap) const {
   return near;
 }
 
+Search::Candidates Search::AddEach(const CandidatePtr& parent, const std::vector<Term>& terms) const {
+  (void)parent->fit.basis();
+  Candidates candidates(terms.size());
+  support::InParallel(terms.size(),
+                      [&](std::size_t i) { candidates[i] = Make(fitter_->Add(parent->fit, terms[i]), parent); });
+  return candidates;
+}
+
 Search::Candidates Search::Extend(const CandidatePtr& parent, bool variants) const {
-  Candidates extended;
+  std::vector<Term> terms;
   for (const EffectForm& form : *catalogue_)
-    if (!form.regular && !Holds(parent->fit, form.effect) && (form.exact() || variants))
-      extended.push_back(Make(fitter_->Add(parent->fit, {&form, {}}), parent));
+    if (!form.regular && !Holds(parent->fit, form.effect) && (form.exact() || variants)) terms.push_back({&form, {}});
+  Candidates extended = AddEach(parent, terms);
   // A second effect that acts at times only could repair the formula of the first.
   const double floor = parent == base_ ? 0.0 : limits_.tie_share * Gain(parent) * rows_ / 2.0;
   const auto better = [&](const CandidatePtr& gated) {
@@ -113,20 +122,25 @@ Search::Candidates Search::Extend(const CandidatePtr& parent, bool variants) con
 }
 
 Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candidates& always, int min_active) const {
+  (void)parent->fit.basis();
+  std::vector<std::vector<GateCandidate>> found(always.size());
+  support::InParallel(always.size(), [&](std::size_t i) {
+    const Fitted& single = always[i]->fit;
+    const EffectForm& form = *single.hypothesis.terms.back().form;
+    if (!form.exact() || !(form.gates_by_time || form.gates_by_mode)) return;
+    found[i] = ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &single), min_active);
+  });
   std::vector<GateCandidate> gates;
-  for (const CandidatePtr& single : always) {
-    const EffectForm& form = *single->fit.hypothesis.terms.back().form;
-    if (!form.exact() || !(form.gates_by_time || form.gates_by_mode)) continue;
-    for (const GateCandidate& gate :
-         ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, &single->fit), min_active)) {
-      const double ungated = std::max(parent->fit.squares - single->fit.squares, gate.always_gain);
+  for (std::size_t i = 0; i < always.size(); ++i)
+    for (const GateCandidate& gate : found[i]) {
+      const double ungated = std::max(parent->fit.squares - always[i]->fit.squares, gate.always_gain);
       if (gate.gain - ungated > limits_.min_gain * rows_ * fitter_->whitener().s2) gates.push_back(gate);
     }
-  }
   std::sort(gates.begin(), gates.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   if (gates.size() > kMaxGated) gates.resize(kMaxGated);
-  Candidates gated;
-  for (const GateCandidate& gate : gates) gated.push_back(Make(fitter_->Add(parent->fit, gate.term), parent));
+  std::vector<Term> terms;
+  for (const GateCandidate& gate : gates) terms.push_back(gate.term);
+  Candidates gated = AddEach(parent, terms);
   if (parent == base_) ShareOnset(min_active, &gated);
   return gated;
 }
@@ -146,16 +160,22 @@ void Search::ShareOnset(int min_active, Candidates* gated) const {
       return term.form == &form && term.when.kind == When::Kind::kFrom;
     });
   };
+  std::vector<const EffectForm*> forms;
   for (const EffectForm& form : *catalogue_) {
     if (!form.exact() || !form.gates_by_time || dated(form)) continue;
     const bool misfitted = !form.linear && form.force == nullptr;
-    if (!misfitted && form.family != first.form->family) continue;
+    if (misfitted || form.family == first.form->family) forms.push_back(&form);
+  }
+  std::vector<Candidates> found(forms.size());
+  support::InParallel(forms.size(), [&](std::size_t i) {
+    const EffectForm& form = *forms[i];
     // Its shape as it is from that time on finds its own time.
     const Fitted shape = fitter_->Add(base_->fit, {&form, {When::Kind::kFrom, first.when.time_s}});
     for (const GateCandidate& gate :
          ScanGates(*fitter_, base_->fit, form, Templates(*fitter_, base_->fit, form, &shape), min_active))
-      if (gate.term.when.kind == When::Kind::kFrom) gated->push_back(Make(fitter_->Add(base_->fit, gate.term)));
-  }
+      if (gate.term.when.kind == When::Kind::kFrom) found[i].push_back(Make(fitter_->Add(base_->fit, gate.term)));
+  });
+  for (const Candidates& some : found) gated->insert(gated->end(), some.begin(), some.end());
 }
 
 Search::Candidates Search::OnePerName(const Candidates& candidates) const {
@@ -214,9 +234,12 @@ Finding Search::Run(bool pairs) const {
     finding.p_missing = 1.0 - finding.p_none;
   }
 
+  const Candidates near = Near(listed, gap);
+  std::vector<char> adequate(near.size());
+  support::InParallel(near.size(), [&](std::size_t i) { adequate[i] = Adequate(near[i], gap) ? 1 : 0; });
   Candidates good;
-  for (const CandidatePtr& candidate : Near(listed, gap))
-    if (Adequate(candidate, gap)) good.push_back(candidate);
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (adequate[i] != 0) good.push_back(near[i]);
   CandidatePtr top = listed.front();
   Candidates all_pairs, second;
   if (!good.empty()) {

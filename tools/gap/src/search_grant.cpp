@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "armcmc/gap/search.hpp"
+#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -18,13 +19,13 @@ Search::Candidates Search::Beside(const Candidates& listed, const Candidates& un
   for (const CandidatePtr& physics : unlisted) grants.push_back(physics->fit.hypothesis.terms.back());
   for (const EffectForm& form : *catalogue_)
     if (form.regular) grants.push_back({&form, {}});
+  const Candidates granted = AddEach(listed.front(), grants);
   const Term* best = nullptr;
   double most = listed.front()->fit.score();
-  for (const Term& grant : grants) {
-    const double score = fitter_->Add(listed.front()->fit, grant).score();
-    if (!(score > most)) continue;
-    best = &grant;
-    most = score;
+  for (std::size_t i = 0; i < grants.size(); ++i) {
+    if (!(granted[i]->fit.score() > most)) continue;
+    best = &grants[i];
+    most = granted[i]->fit.score();
   }
   if (best == nullptr) return {};
   const CandidatePtr parent = Make(fitter_->Add(base_->fit, *best));
@@ -34,11 +35,14 @@ Search::Candidates Search::Beside(const Candidates& listed, const Candidates& un
   parent->granted->without = parent->fit;
   std::vector<std::pair<double, Term>> promises;
   for (const EffectForm& form : *catalogue_)
-    if (form.exact()) promises.emplace_back(fitter_->Promise(parent->fit, {&form, {}}), Term{&form, {}});
+    if (form.exact()) promises.emplace_back(0.0, Term{&form, {}});
+  (void)parent->fit.basis();
+  support::InParallel(promises.size(),
+                      [&](std::size_t i) { promises[i].first = fitter_->Promise(parent->fit, promises[i].second); });
   std::stable_sort(promises.begin(), promises.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  Candidates beside;
-  for (std::size_t i = 0; i < std::min(kBesideGrant, promises.size()); ++i)
-    beside.push_back(Make(fitter_->Add(parent->fit, promises[i].second), parent));
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < std::min(kBesideGrant, promises.size()); ++i) terms.push_back(promises[i].second);
+  Candidates beside = AddEach(parent, terms);
   SortByScore(&beside);
   return beside;
 }

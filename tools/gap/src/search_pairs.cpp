@@ -5,6 +5,7 @@
 
 #include "armcmc/gap/gate_scan.hpp"
 #include "armcmc/gap/search.hpp"
+#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -102,7 +103,8 @@ Search::Candidates Search::Pairs(const Candidates& order, const CandidatePtr& pa
   }
   SortByScore(&pairs);
   pairs = OnePerName(pairs);
-  for (std::size_t i = 0; i < std::min(kRefinedPairs, pairs.size()); ++i) pairs[i] = Refined(pairs[i]);
+  (void)base_->fit.basis();
+  support::InParallel(std::min(kRefinedPairs, pairs.size()), [&](std::size_t i) { pairs[i] = Refined(pairs[i]); });
   SortByScore(&pairs);
   return pairs;
 }

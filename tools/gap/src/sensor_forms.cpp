@@ -119,9 +119,10 @@ std::vector<EffectForm> SaturationForms(const Signals& signals) {
   soft.sense = [peak](const Signals&, const double* c, int own, Prediction* out) {
     const double limit = c[0] * peak;
     for (Eigen::Index i = 0; i < out->y.size(); ++i) {
-      const double f = std::max(out->y[i], 0.0);
-      const double ratio = std::pow(f / limit, 8.0);
-      const double damp = std::pow(1.0 + ratio, -0.125);
+      const double f = out->y[i];
+      if (!(f > 0.0)) continue;
+      const double square = f / limit * (f / limit), fourth = square * square, ratio = fourth * fourth;
+      const double damp = 1.0 / std::sqrt(std::sqrt(std::sqrt(1.0 + ratio)));
       out->y[i] *= damp;
       out->jacobian.row(i) *= damp / (1.0 + ratio);
       out->jacobian(i, own) = f / limit * damp * ratio / (1.0 + ratio) * peak;

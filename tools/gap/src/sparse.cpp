@@ -87,16 +87,6 @@ Columns Whiten(const Look& look, const std::vector<SimpleTerm>& terms) {
   return columns;
 }
 
-BlockGrams Only(const BlockGrams& all, const std::vector<Eigen::Index>& chosen) {
-  BlockGrams some;
-  some.squares = all.squares;
-  for (std::size_t b = 0; b < all.gram.size(); ++b) {
-    some.gram.push_back(all.gram[b](chosen, chosen));
-    some.cross.push_back(all.cross[b](chosen));
-  }
-  return some;
-}
-
 }  // namespace
 
 std::vector<SparseTerm> DescribeSparsely(const Equation& equation, const Diagnosis& diagnosis) {
@@ -111,7 +101,7 @@ std::vector<SparseTerm> DescribeSparsely(const Equation& equation, const Diagnos
   };
   std::vector<Eigen::Index> chosen;
   for (Eigen::Index c = 0; c < columns.num_base; ++c) chosen.push_back(c);
-  Vector squares = LeaveBlockOut(Only(columns.grams, chosen), ridge_of(chosen.size()));
+  Vector squares = LeaveBlockOut(columns.grams.Only(chosen), ridge_of(chosen.size()));
   std::vector<SparseTerm> found;
   while (found.size() < kMaxTerms) {
     Vector best_squares;
@@ -122,7 +112,7 @@ std::vector<SparseTerm> DescribeSparsely(const Equation& equation, const Diagnos
       if (!(columns.rms[column] > 0.0) || std::find(chosen.begin(), chosen.end(), column) != chosen.end()) continue;
       std::vector<Eigen::Index> with = chosen;
       with.push_back(column);
-      Vector left = LeaveBlockOut(Only(columns.grams, with), ridge_of(with.size()));
+      Vector left = LeaveBlockOut(columns.grams.Only(with), ridge_of(with.size()));
       const double gain = (squares - left).sum() * (k < num_always ? 1.0 : kGatePenalty);
       if (!(gain > most)) continue;
       most = gain;
@@ -138,7 +128,7 @@ std::vector<SparseTerm> DescribeSparsely(const Equation& equation, const Diagnos
     squares = best_squares;
   }
   if (found.empty()) return found;
-  const BlockGrams grams = Only(columns.grams, chosen);
+  const BlockGrams grams = columns.grams.Only(chosen);
   Matrix total = grams.TotalGram();
   total.diagonal() += ridge_of(chosen.size());
   const Vector coefficients = total.ldlt().solve(grams.TotalCross());

@@ -100,6 +100,13 @@ Fit HeldOut::Judge(const Trial& trial) const {
 }
 
 double HeldOut::NoiseFloor(const Trial& after) const {
+  for (const auto& [predicted, floor] : floors_)
+    if (predicted == after.predicted) return floor;
+  floors_.emplace_back(after.predicted, MeasureNoiseFloor(after));
+  return floors_.back().second;
+}
+
+double HeldOut::MeasureNoiseFloor(const Trial& after) const {
   // The parameters may be wrong on these data, too: their columns are among those that are penalised, none is free.
   const Whitener& whitener = look_->fitter->whitener();
   const Fitter fitter(*equation_, tail_, whitener);

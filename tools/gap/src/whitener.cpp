@@ -6,12 +6,14 @@
 #include <cstddef>
 
 #include "armcmc/gap/blocks.hpp"
+#include "armcmc/support/wider_lanes.hpp"
 
 namespace armcmc::gap {
 namespace {
 
 constexpr int kMaxOrder = 8;
-constexpr double kMinLagGain = 6.0;  // nats of the criterion that a further lag must bring
+constexpr Eigen::Index kChunk = 512;  // rows that stay in the fastest cache while all lags are subtracted
+constexpr double kMinLagGain = 6.0;   // nats of the criterion that a further lag must bring
 
 /// Autocovariances of the quieter half of the blocks. An effect that acts in a few events (a clipped peak) must not
 /// pass for coloured noise: it would be whitened away.
@@ -51,16 +53,26 @@ Matrix StartFactor(const Vector& phi) {
   return factor.matrixL();
 }
 
+/// What the lags leave of a series, from the first row on that has them all.
+ARMCMC_FOR_WIDER_LANES void Innovations(const double* __restrict series, Eigen::Index rows,
+                                        const double* __restrict phi, Eigen::Index order, double* __restrict out) {
+  for (Eigen::Index first = order; first < rows; first += kChunk) {
+    const Eigen::Index end = std::min(first + kChunk, rows);
+    for (Eigen::Index t = first; t < end; ++t) out[t] = series[t] - phi[0] * series[t - 1];
+    for (Eigen::Index k = 1; k < order; ++k)
+      for (Eigen::Index t = first; t < end; ++t) out[t] -= phi[k] * series[t - k - 1];
+  }
+}
+
 /// Of every column.
 template <typename Columns>
 Columns Whitened(const Whitener& noise, const Columns& columns) {
   const Vector& phi = noise.phi;
   const Eigen::Index n = columns.rows(), order = std::min(phi.size(), n);
-  Columns out = columns;
-  if (order == 0 || columns.size() == 0) return out;
+  if (order == 0 || columns.size() == 0) return columns;
+  Columns out(n, columns.cols());
   for (Eigen::Index c = 0; c < columns.cols(); ++c)
-    for (Eigen::Index k = 0; k < order; ++k)
-      out.col(c).tail(n - order) -= phi[k] * columns.col(c).segment(order - k - 1, n - order);
+    Innovations(columns.data() + c * n, n, phi.data(), order, out.data() + c * n);
   const Matrix start = StartFactor(phi).topLeftCorner(order, order);
   out.topRows(order) = start.triangularView<Eigen::Lower>().solve(columns.topRows(order));
   return out;

@@ -184,10 +184,15 @@ Parts Divide(const WorkflowRequest& request) {
   return parts;
 }
 
+/// What is shown the gap on, in the equation that carries the diagnosis.
+HeldOut RestOf(const PlantDiagnosis& plant, const Parts& parts) {
+  const EquationDiagnosis& carrying = plant.carrying();
+  return {*carrying.equation, *carrying.diagnosis.look, parts.shown, parts.first_shown};
+}
+
 /// Whether the rest of the recording contradicts the model that explains its first part: the 95 % bands hold less than
 /// they should by far, or what the model leaves follows a pattern.
-bool RestContradicts(const EquationDiagnosis& one, const Parts& parts) {
-  const HeldOut rest(*one.equation, *one.diagnosis.look, parts.shown, parts.first_shown);
+bool RestContradicts(const EquationDiagnosis& one, const HeldOut& rest) {
   const Finding& finding = one.diagnosis.finding;
   const CandidatePtr& best = finding.set.empty() ? finding.base : finding.best;
   const Fit fit = rest.Judge(rest.Try(best->granted ? best->granted->with : best->fit));
@@ -195,10 +200,9 @@ bool RestContradicts(const EquationDiagnosis& one, const Parts& parts) {
 }
 
 /// Whether a name is given to so little that the rest of the recording can neither confirm nor contradict it.
-bool RestCannotConfirm(const EquationDiagnosis& one, const Parts& parts) {
+bool RestCannotConfirm(const EquationDiagnosis& one, const HeldOut& rest) {
   const Diagnosis& diagnosis = one.diagnosis;
   if (diagnosis.finding.set.empty()) return false;
-  const HeldOut rest(*one.equation, *diagnosis.look, parts.shown, parts.first_shown);
   return ShowGap(*one.equation, rest, *diagnosis.bootstrap, diagnosis.finding.base->fit, diagnosis.finding.best->fit,
                  nullptr)
              .gap_ratio < kUnseenRatio;
@@ -206,21 +210,22 @@ bool RestCannotConfirm(const EquationDiagnosis& one, const Parts& parts) {
 
 /// Whether all of the recording is worth a second look, which costs as much as the first. In a plant with several
 /// equations always where the first part lacks nothing: a load may come late.
-bool DeservesSecondLook(const WorkflowRequest& request, const Parts& parts, const PlantDiagnosis& plant) {
+bool DeservesSecondLook(const WorkflowRequest& request, const HeldOut& rest, const PlantDiagnosis& plant) {
   if (request.heldout || !plant.carrying().suitability.can_name) return false;
   const Finding& first = plant.carrying().diagnosis.finding;
   const bool several = plant.equations.size() > 1;
   if (first.verdict == Verdict::kUnnamed) return several && !first.events_s.empty();
-  return (several && first.verdict == Verdict::kNone) || RestContradicts(plant.carrying(), parts) ||
-         RestCannotConfirm(plant.carrying(), parts);
+  return (several && first.verdict == Verdict::kNone) || RestContradicts(plant.carrying(), rest) ||
+         RestCannotConfirm(plant.carrying(), rest);
 }
 
 /// Where the first part of a recording lacks nothing, shows single events that nothing explains, or names what the rest
 /// contradicts or cannot confirm, all of it is looked at: what acts in free motion only needs free motion, a limit a
 /// high force, and chance does not go on for the whole of a recording.
+/// @param rest  The sealed part, as the first look sees it.
 /// @return what that changed, empty: nothing; `plant` is then what all of the recording says.
-std::string LookAtAll(const WorkflowRequest& request, const Parts& parts, PlantDiagnosis* plant) {
-  if (!DeservesSecondLook(request, parts, *plant)) return {};
+std::string LookAtAll(const WorkflowRequest& request, const Parts& parts, const HeldOut& rest, PlantDiagnosis* plant) {
+  if (!DeservesSecondLook(request, rest, *plant)) return {};
   PlantDiagnosis whole = DiagnosePlant(request.model, request.data, request.diagnose);
   const Finding& first = plant->carrying().diagnosis.finding;
   const Finding& all = whole.carrying().diagnosis.finding;
@@ -229,7 +234,7 @@ std::string LookAtAll(const WorkflowRequest& request, const Parts& parts, PlantD
   if (first.set.empty()) {
     if (first.verdict == Verdict::kNone ? nothing : all.set.empty()) return {};
   } else {
-    if (RestContradicts(whole.carrying(), parts)) return {};
+    if (RestContradicts(whole.carrying(), RestOf(whole, parts))) return {};
     const std::string named = "the first 70 % of the recording name " + Joined(Texts(first.best), " and ");
     found = named + ", which the rest contradicts";
     if (nothing) {
@@ -237,7 +242,7 @@ std::string LookAtAll(const WorkflowRequest& request, const Parts& parts, PlantD
       return named + ", all of it shows nothing beyond the noise";
     }
     const bool other = !all.set.empty() && NamesOf(all) != NamesOf(first);
-    if (!other || !RestContradicts(plant->carrying(), parts)) return {};
+    if (!other || !RestContradicts(plant->carrying(), rest)) return {};
   }
   *plant = std::move(whole);
   found += ": nothing could be kept sealed, and the gap is shown on data that were diagnosed, too. ";
@@ -276,7 +281,8 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
 
   clock.Begin("compare and name", 0.0);
   PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
-  const std::string second_look = LookAtAll(request, parts, &plant);
+  std::optional<HeldOut> rest(RestOf(plant, parts));
+  const std::string second_look = LookAtAll(request, parts, *rest, &plant);
   if (!second_look.empty()) result.notes.push_back(second_look);
   std::optional<PlantDiagnosis> earlier;
   if (request.earlier) earlier = JoinEarlier(request, parts.diagnosis, &plant);
@@ -298,7 +304,8 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
       if (!equation->name().empty()) where.feature = equation->name() + ": " + where.feature;
   }
   if (can_name) result.aliases = Aliases(*equation, look);
-  const HeldOut heldout(*equation, look, parts.shown, parts.first_shown);
+  if (!second_look.empty() || earlier) rest.emplace(RestOf(plant, parts));
+  const HeldOut& heldout = *rest;
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
     clock.Begin("confirm", 0.72);
     Confirm(*equation, heldout, request.diagnose.thresholds, &diagnosis, &result);

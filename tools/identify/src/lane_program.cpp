@@ -6,7 +6,7 @@
 
 #include "armcmc/expression/elementary.hpp"
 #include "armcmc/expression/evaluate.hpp"
-#include "wider_lanes.hpp"
+#include "armcmc/support/wider_lanes.hpp"
 
 namespace armcmc::identify {
 namespace {

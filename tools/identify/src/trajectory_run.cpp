@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "armcmc/identify/trajectory_model.hpp"
-#include "wider_lanes.hpp"
+#include "armcmc/support/wider_lanes.hpp"
 
 namespace armcmc::identify {
 namespace {

@@ -7,8 +7,8 @@
 #include "action.hpp"
 #include "armcmc/ladder/features.hpp"
 #include "armcmc/plant/error.hpp"
+#include "armcmc/support/parallel.hpp"
 #include "comparison.hpp"
-#include "parallel.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -155,7 +155,7 @@ std::vector<Candidate> Curves::MostPromising() const {
     error = (model.target() - prediction)(rows);
     square = error.squaredNorm();
   }
-  InParallel(all.size(), [&](std::size_t i) {
+  support::InParallel(all.size(), [&](std::size_t i) {
     try {
       const identify::TrajectoryModel model(all[i].plant, quick.series);
       VectorXd theta = model.Start(), prediction;
@@ -190,7 +190,7 @@ void Curves::FitThem() {
   for (Candidate& candidate : MostPromising())
     fitted_->push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
   const VectorXd error = base_.model->target() - base_.fit.prediction;
-  InParallel(fitted_->size(), [&](std::size_t i) {
+  support::InParallel(fitted_->size(), [&](std::size_t i) {
     Contender& c = (*fitted_)[i];
     try {
       c.trial = Try(c.candidate.plant, QuickPart(*c.candidate.plant, data_, error), base_.fit.theta, 1);

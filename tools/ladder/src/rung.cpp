@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "armcmc/plant/error.hpp"
+#include "armcmc/support/parallel.hpp"
 #include "comparison.hpp"
-#include "parallel.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -147,7 +147,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     c->closed = std::clamp(1.0 - Square(c->trial) / quick(*c)->square, 0.0, 1.0);
   };
   std::vector<std::string> not_tried(all.size());
-  InParallel(all.size(), [&](std::size_t i) {
+  support::InParallel(all.size(), [&](std::size_t i) {
     try {
       try_from(rung->base.fit.theta, StartsFor(all[i]), &all[i]);
     } catch (const PlantError& why) {  // as a rate that would have to remember a state
@@ -162,7 +162,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     return best;
   };
   const double quick_best = best_closing();
-  InParallel(all.size(), [&](std::size_t i) {
+  support::InParallel(all.size(), [&](std::size_t i) {
     if (!all[i].trial.fit.valid || all[i].closed < kWorthIt * quick_best) return;
     // What runs freely may have been bent by what is missing so far that no fit finds back from there.
     if (IsSimulated(plant->description())) try_from({}, kAnywhere, &all[i]);
@@ -178,7 +178,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
   const auto worth = [&](std::size_t i) { return all[i].closed - 0.005 * static_cast<double>(NumParameters(all[i])); };
   std::stable_sort(judged.begin(), judged.end(), [&](std::size_t a, std::size_t b) { return worth(a) > worth(b); });
   judged.resize(std::min(judged.size(), kMostJudged));
-  InParallel(judged.size(), [&](std::size_t k) {
+  support::InParallel(judged.size(), [&](std::size_t k) {
     const std::size_t i = judged[k];
     LeaveOut(view, &all[i].trial);
     all[i].alone = Compare(view, all[i], rung->base, false);
@@ -198,7 +198,7 @@ Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data,
                    [](const Contender* a, const Contender* b) { return a->closed > b->closed; });
   first.resize(std::min(first.size(), kTried));
   std::vector<Trial> trials(first.size());
-  InParallel(first.size(), [&](std::size_t i) {
+  support::InParallel(first.size(), [&](std::size_t i) {
     trials[i] = Refine(plant, data, first[i]->trial.fit.theta.head(rung.base.fit.theta.size()));
   });
   double least = kBetter * rung.base.fit.error_sd;

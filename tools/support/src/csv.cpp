@@ -101,15 +101,15 @@ class Reader {
     for (std::size_t i = 0; i < source_.size(); ++i) {
       if (source_[i] == kAbsent) continue;
       const std::string_view text = fields_[source_[i]];
-      const std::string what = request_.columns[i] + " = " + (text.empty() ? "(empty)" : Printable(text));
+      const auto what = [&] { return request_.columns[i] + " = " + (text.empty() ? "(empty)" : Printable(text)); };
       const bool is_time = i == 0 && request_.columns[i] == "t";
       const std::optional<double> value = text.empty() ? std::numeric_limits<double>::quiet_NaN()
                                           : is_time    ? time_.Parse(text)
                                                        : ParseNumber(text);
-      if (!value) return Reject(&BadRows::malformed, what + ": expected a number" + NumberHint(text));
+      if (!value) return Reject(&BadRows::malformed, what() + ": expected a number" + NumberHint(text));
       if (!std::isfinite(*value))
         return Reject(&BadRows::non_finite,
-                      what + ": expected a finite number" + (text.empty() ? NumberHint(text) : ""));
+                      what() + ": expected a finite number" + (text.empty() ? NumberHint(text) : ""));
       row_.push_back(*value);
     }
     std::vector<double>& t = result_.columns.front();

@@ -31,7 +31,7 @@ void AddSensorZero(const Signals& s, std::vector<EffectForm>* out) {
       {AmplitudeOf("force", "N", force, false), DownTo(ShapeOf("time_constant", "s", s.duration, 0.05, 1.5))}, 1);
   exponential.features = [exponential](const Signals& in, const double* shape) -> Matrix {
     const double tau = ShapeValue(exponential, 0, shape);
-    return in.output_scale * (1.0 - (-(in.t.array() - in.origin) / tau).exp()).matrix();
+    return in.output_scale * (1.0 - Exp((in.origin - in.t.array()) / tau).array()).matrix();
   };
   SetStarts(&exponential, {3});
   out->push_back(exponential);
@@ -44,6 +44,9 @@ void AddDryFriction(const Signals& s, std::vector<EffectForm>* out) {
   const Coordinate distance = UpTo(ShapeOf("distance", "m", length, 0.003, 0.6));
   const Coordinate stribeck_speed = ShapeOf("stribeck_speed", "m/s", speed, 0.03, 1.0);
   EffectForm coulomb = FromCore("coulomb_friction", {level, width});
+  coulomb.features = [coulomb](const Signals& in, const double* shape) -> Matrix {
+    return coulomb.coordinates[0].unit_size * Tanh(in.at(Role::kVelocity) / ShapeValue(coulomb, 0, shape));
+  };
   coulomb.gates_by_mode = true;
   coulomb.own_groups = {"speed", "direction of motion", "distance since reversal"};
   SetStarts(&coulomb, {5});
@@ -53,16 +56,27 @@ void AddDryFriction(const Signals& s, std::vector<EffectForm>* out) {
       Reformulated(coulomb, "stribeck", "f + (force + excess exp(-(v / stribeck_speed)^2)) tanh(v / speed)",
                    {level, AmplitudeOf("excess", "N", force, true), width, stribeck_speed}, 2);
   stribeck.features = [stribeck](const Signals& in, const double* shape) -> Matrix {
-    const Eigen::ArrayXd v = in.at(Role::kVelocity).array();
+    const Vector& v = in.at(Role::kVelocity);
     Matrix columns(in.rows(), 2);
-    columns.col(0) = in.output_scale * (v / ShapeValue(stribeck, 0, shape)).tanh();
-    columns.col(1) = columns.col(0).array() * (-(v / ShapeValue(stribeck, 1, shape)).square()).exp();
+    columns.col(0) = in.output_scale * Tanh(v / ShapeValue(stribeck, 0, shape));
+    columns.col(1) = columns.col(0).cwiseProduct(Exp(-(v / ShapeValue(stribeck, 1, shape)).cwiseAbs2()));
     return columns;
   };
   SetStarts(&stribeck, {3, 3});
   out->push_back(stribeck);
 
   EffectForm dahl = FromCore("presliding_friction", {level, distance});
+  dahl.features = [dahl](const Signals& in, const double* shape) -> Matrix {
+    const Vector& v = in.at(Role::kVelocity);
+    Vector column = Exp(v.cwiseAbs() * (-in.dt / ShapeValue(dahl, 0, shape)));
+    double z = 0.0;  // before the second sample, as in the estimator
+    for (Eigen::Index i = 0; i < in.rows(); ++i) {
+      const double end = v[i] > 0.0 ? 1.0 : (v[i] < 0.0 ? -1.0 : z);
+      if (i > 0) z = end + (z - end) * column[i];
+      column[i] = dahl.coordinates[0].unit_size * z;
+    }
+    return column;
+  };
   dahl.gates_by_mode = true;
   dahl.own_groups = coulomb.own_groups;
   SetStarts(&dahl, {5});
@@ -81,13 +95,14 @@ void AddDryFriction(const Signals& s, std::vector<EffectForm>* out) {
     const Vector& v = in.at(Role::kVelocity);
     const double reach = ShapeValue(lugre, 0, shape), slow = ShapeValue(lugre, 1, shape),
                  excess = ShapeValue(lugre, 2, shape);
+    const Vector level_of = 1.0 + excess * Exp(-(v / slow).cwiseAbs2()).array();
+    const Vector kept = Exp(-v.cwiseAbs().cwiseQuotient(level_of) * (in.dt / reach));
     Matrix columns(in.rows(), 2);
     double z = 0.0;
     for (Eigen::Index i = 0; i < in.rows(); ++i) {
-      const double ratio = v[i] / slow;
-      const double g = 1.0 + excess * std::exp(-ratio * ratio);
+      const double g = level_of[i];
       const double end = v[i] > 0.0 ? g : (v[i] < 0.0 ? -g : z);
-      const double next = end + (z - end) * std::exp(-std::abs(v[i]) * in.dt / (reach * g));
+      const double next = end + (z - end) * kept[i];
       columns(i, 0) = in.output_scale * next;
       columns(i, 1) = in.output_scale * 0.01 * (next - z) / in.dt;
       z = next;
@@ -129,6 +144,9 @@ void AddPeriodic(const Signals& s, std::vector<EffectForm>* out) {
       start.push_back(std::log(std::max(StrongestLine(residual, in.dt).frequency, 3.0 / in.duration)));
       return std::vector<std::vector<double>>{start};
     };
+  };
+  sine.features = [sine](const Signals& in, const double* shape) -> Matrix {
+    return sine.coordinates[0].unit_size * Waves(in.t, ShapeValue(sine, 0, shape), 1, 1);
   };
   sine.gates_by_mode = true;
   // One that begins or ends is lost in the spectrum of the whole.

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
+#include <vector>
 
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/smoothing.hpp"
@@ -117,15 +120,18 @@ class ContactEquation final : public Equation {
     const Vector& velocity = s.at(Role::kVelocity);
     out->y = Vector::Zero(s.rows());
     out->elastic = Vector::Zero(s.rows());
-    Vector slope_by_position = Vector::Zero(s.rows()), elastic_slope = Vector::Zero(s.rows());
-    Vector slope_by_gain = Vector::Zero(s.rows());
+    const bool shifts = !input.shift_slopes.empty(), gains = !input.gain_slopes.empty();
+    Vector slope_by_position = Vector::Zero(shifts ? s.rows() : 0), elastic_slope = slope_by_position;
+    Vector slope_by_gain = Vector::Zero(gains ? s.rows() : 0);
     const bool remembered = out->elastic_jacobian.cols() > 0;
-    for (Eigen::Index i = 0; i < s.rows(); ++i) {
-      const double shift = input.shift.size() > 0 ? input.shift[i] : 0.0;
-      const double u = (position[i] - shift) / depth_scale;
-      if (!(u > 0.0)) continue;
-      const double log_u = std::log(u);
-      const double power = s.output_scale * std::exp(p * log_u);
+    const std::shared_ptr<const Depths> inside =
+        input.shift.size() > 0 ? std::make_shared<const Depths>(Vector(position - input.shift), depth_scale)
+                               : depths_.Of(position, depth_scale);
+    const Vector powers = s.output_scale * Exp(p * inside->log_u);
+    for (std::size_t j = 0; j < inside->rows.size(); ++j) {
+      const Eigen::Index i = inside->rows[j];
+      const double log_u = inside->log_u[static_cast<Eigen::Index>(j)];
+      const double power = powers[static_cast<Eigen::Index>(j)];
       const double rate = velocity[i] / speed_scale;
       const double gain = input.gain.size() > 0 ? input.gain[i] : 1.0;
       const double elastic = power * k * gain;
@@ -139,10 +145,12 @@ class ContactEquation final : public Equation {
         out->elastic_jacobian(i, kStiffness) = power * gain;
         out->elastic_jacobian(i, kExponent) = elastic * log_u;
       }
-      const double per_position = p / (u * depth_scale);
-      slope_by_position[i] = force * per_position;
-      elastic_slope[i] = elastic * per_position;
-      slope_by_gain[i] = power * k;
+      if (shifts) {
+        const double per_position = p / (inside->u[static_cast<Eigen::Index>(j)] * depth_scale);
+        slope_by_position[i] = force * per_position;
+        elastic_slope[i] = elastic * per_position;
+      }
+      if (gains) slope_by_gain[i] = power * k;
     }
     for (const LawInput::Slope& slope : input.shift_slopes) {
       out->jacobian.col(slope.coordinate) -= slope_by_position.cwiseProduct(slope.rows);
@@ -183,6 +191,36 @@ class ContactEquation final : public Equation {
   }
 
  private:
+  /// Rows where the law acts, with their depths u over the scale.
+  struct Depths {
+    Depths(const Vector& position, double scale) {
+      for (Eigen::Index i = 0; i < position.size(); ++i)
+        if (position[i] / scale > 0.0) rows.push_back(i);
+      u = position(rows) / scale;
+      log_u = u.array().log();
+    }
+    std::vector<Eigen::Index> rows;
+    Vector u, log_u;
+  };
+  /// Those of the last positions asked for: fits ask for the same ones again and again. Threads may share it.
+  class LastDepths {
+   public:
+    std::shared_ptr<const Depths> Of(const Vector& position, double scale) {
+      const std::lock_guard lock(mutex_);
+      if (depths_ && scale == scale_ && position.size() == position_.size() && position == position_) return depths_;
+      position_ = position;
+      scale_ = scale;
+      depths_ = std::make_shared<const Depths>(position, scale);
+      return depths_;
+    }
+
+   private:
+    std::mutex mutex_;
+    Vector position_;
+    double scale_ = 0.0;
+    std::shared_ptr<const Depths> depths_;
+  };
+
   static Signals Smooth(const Recording& recording, int window) {
     Signals s;
     s.dt = recording.dt;
@@ -203,6 +241,8 @@ class ContactEquation final : public Equation {
     s.active = (s.at(Role::kPosition).array() > 0.0).cast<double>();
     return s;
   }
+
+  mutable LastDepths depths_;
 };
 
 // Hats over quantiles: where the data are, there are the knots.
@@ -214,18 +254,19 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
   const Vector free = 1.0 - s.active.array();
   const Vector depth = x.cwiseMax(0.0);
   const Vector time = s.Elapsed();
-  const Vector direction = (v / (0.05 * s.scale_of(Role::kVelocity))).array().tanh();
+  const Vector direction = Tanh(v / (0.05 * s.scale_of(Role::kVelocity)));
   const double samples = s.duration / s.dt;
+  const std::vector<double> x_inside = Sorted(x, s.active), v_inside = Sorted(v, s.active);
 
   std::vector<FeatureGroup> groups;
-  groups.push_back({"depth", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 8)), s.active), free)});
+  groups.push_back({"depth", Beside(Gated(Hats(x, QuantileKnots(x_inside, 8)), s.active), free)});
   groups.push_back({"speed", Hats(v, QuantileKnots(v, all, 9))});
-  groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v, s.active, 5)), s.active)});
+  groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v_inside, 5)), s.active)});
   groups.push_back({"time", Hats(time, EvenKnots(9))});
   groups.push_back({"time x force", Gated(Hats(time, EvenKnots(4)), predicted)});
   groups.push_back({"acceleration", Hats(a, QuantileKnots(a, all, 6))});
   groups.push_back(
-      {"direction of motion", Beside(Gated(Hats(x, QuantileKnots(x, s.active, 5)), direction.cwiseProduct(s.active)),
+      {"direction of motion", Beside(Gated(Hats(x, QuantileKnots(x_inside, 5)), direction.cwiseProduct(s.active)),
                                      direction.cwiseProduct(free))});
   Matrix memory(s.rows(), 4);
   for (int i = 0; i < 4; ++i) memory.col(i) = depth - Leaky(depth, 30.0 * std::pow(samples / 300.0, i / 3.0));
@@ -243,7 +284,7 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
   groups.push_back({"force", Gated(Hats(predicted, QuantileKnots(predicted, s.active, 6)), s.active)});
   groups.push_back(
       {"depth x speed",
-       Gated(Products(Hats(x, QuantileKnots(x, s.active, 4)), Hats(v, QuantileKnots(v, s.active, 4))), s.active)});
+       Gated(Products(Hats(x, QuantileKnots(x_inside, 4)), Hats(v, QuantileKnots(v_inside, 4))), s.active)});
   return groups;
 }
 

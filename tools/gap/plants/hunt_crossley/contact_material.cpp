@@ -2,18 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
+#include "armcmc/gap/features.hpp"
 #include "armcmc/gap/smoothing.hpp"
 #include "gap/plants/hunt_crossley/contact_forms.hpp"
 
 namespace armcmc::gap {
 namespace {
 
-/// Probability that the true speed is negative, given the smoothed one.
-Vector Retracting(const Signals& s) {
-  const double spread = std::max(s.smoothed_velocity_noise, 1e-9 * s.scale_of(Role::kVelocity));
-  return s.at(Role::kVelocity).unaryExpr([spread](double v) { return 0.5 * std::erfc(v / (std::sqrt(2.0) * spread)); });
-}
+/// Probability that the true speed is negative, given the smoothed one. It depends on nothing that is fitted, so that
+/// the last is kept. Threads may share it.
+class Retracting {
+ public:
+  Vector Of(const Signals& s) {
+    const double spread = std::max(s.smoothed_velocity_noise, 1e-9 * s.scale_of(Role::kVelocity));
+    const Vector& velocity = s.at(Role::kVelocity);
+    const std::lock_guard lock(mutex_);
+    if (spread == spread_ && velocity.size() == velocity_.size() && velocity == velocity_) return last_;
+    spread_ = spread;
+    velocity_ = velocity;
+    last_ = velocity.unaryExpr([spread](double v) { return 0.5 * std::erfc(v / (std::sqrt(2.0) * spread)); });
+    return last_;
+  }
+
+ private:
+  std::mutex mutex_;
+  double spread_ = 0.0;
+  Vector velocity_, last_;
+};
 
 }  // namespace
 
@@ -63,10 +81,11 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   const Coordinate tension = AmplitudeOf("force", "N", force, true, 0.3);
   const Coordinate reach = UpTo(ShapeOf("distance", "m", length, 0.015, 1.2));
   EffectForm adhesion = FromCore("adhesion", {tension, reach});
-  adhesion.features = [adhesion](const Signals& in, const double* shape) -> Matrix {
+  const auto retracting = std::make_shared<Retracting>();
+  adhesion.features = [adhesion, retracting](const Signals& in, const double* shape) -> Matrix {
     const Eigen::ArrayXd x = in.at(Role::kPosition).array();
-    const Eigen::ArrayXd pull = in.output_scale * (-x.max(0.0) / ShapeValue(adhesion, 0, shape)).exp();
-    return (-pull * Retracting(in).array() * (x >= 0.0).cast<double>()).matrix();
+    const Eigen::ArrayXd pull = in.output_scale * Exp(-x.max(0.0) / ShapeValue(adhesion, 0, shape));
+    return (-pull * retracting->Of(in).array() * (x >= 0.0).cast<double>()).matrix();
   };
   adhesion.own_groups = {"direction of motion"};
   SetStarts(&adhesion, {4});
@@ -92,10 +111,10 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   out->push_back(neck);
   EffectForm tail =
       Reformulated(adhesion, "power_law", "f - force / (1 + x / distance)^2 for v < 0, x >= 0", {tension, reach}, 1);
-  tail.features = [tail](const Signals& in, const double* shape) -> Matrix {
+  tail.features = [tail, retracting](const Signals& in, const double* shape) -> Matrix {
     const Eigen::ArrayXd x = in.at(Role::kPosition).array();
     const Eigen::ArrayXd pull = in.output_scale / (1.0 + x.max(0.0) / ShapeValue(tail, 0, shape)).square();
-    return (-pull * Retracting(in).array() * (x >= 0.0).cast<double>()).matrix();
+    return (-pull * retracting->Of(in).array() * (x >= 0.0).cast<double>()).matrix();
   };
   SetStarts(&tail, {3});
   out->push_back(tail);
@@ -124,7 +143,7 @@ void AddSurfaceAndStiffness(const Signals& s, std::vector<EffectForm>* out) {
       1);
   exponential.features = [exponential](const Signals& in, const double* shape) -> Matrix {
     const double tau = ShapeValue(exponential, 0, shape);
-    return (1.0 - (-(in.t.array() - in.origin) / tau).exp()).matrix();
+    return (1.0 - Exp((in.origin - in.t.array()) / tau).array()).matrix();
   };
   SetStarts(&exponential, {3});
   out->push_back(exponential);

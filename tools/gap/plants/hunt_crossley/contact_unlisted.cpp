@@ -28,7 +28,7 @@ void AddUnlisted(const Signals& s, std::vector<EffectForm>* out) {
                             ShapeOf("length", "m", length, 0.15, 2.0)};
   stiffening.features = [stiffening](const Signals& in, const double* shape) -> Matrix {
     const double scale = ShapeValue(stiffening, 0, shape);
-    return (in.at(Role::kPosition).cwiseMax(0.0) / scale).array().min(30.0).exp() - 1.0;
+    return Exp((in.at(Role::kPosition).cwiseMax(0.0) / scale).cwiseMin(30.0)).array() - 1.0;
   };
   SetStarts(&stiffening, {4});
   out->push_back(stiffening);
@@ -53,7 +53,7 @@ void AddUnlisted(const Signals& s, std::vector<EffectForm>* out) {
   load.slot = Slot::kMemory;
   load.coordinates = {AmplitudeOf("share", "-", 1.0, true, 0.3), ShapeOf("speed", "m/s", speed, 0.003, 0.4)};
   load.filter = [load](const Signals& in, const Vector& series, int, const double* shape) -> Vector {
-    return series.array() * (in.at(Role::kVelocity) / ShapeValue(load, 0, shape)).array().tanh();
+    return series.cwiseProduct(Tanh(in.at(Role::kVelocity) / ShapeValue(load, 0, shape)));
   };
   SetStarts(&load, {3});
   out->push_back(load);

@@ -42,10 +42,15 @@ struct BlockGrams {
 
   [[nodiscard]] Matrix TotalGram() const;
   [[nodiscard]] Vector TotalCross() const;
+  /// Of some of the columns.
+  [[nodiscard]] BlockGrams Only(const std::vector<Eigen::Index>& chosen) const;
 };
 [[nodiscard]] BlockGrams MakeGrams(const Matrix& columns, const Vector& residual);
 
 /// Squared error in each block of the fit to all other blocks.
 [[nodiscard]] Vector LeaveBlockOut(const BlockGrams& grams, const Vector& ridge);
+/// The same where the sums over all blocks are known.
+[[nodiscard]] Vector LeaveBlockOut(const BlockGrams& grams, Matrix total_gram, const Vector& total_cross,
+                                   const Vector& ridge);
 
 }  // namespace armcmc::gap

@@ -1,10 +1,23 @@
 #pragma once
 
+#include <vector>
+
 #include "armcmc/gap/types.hpp"
 
 namespace armcmc::gap {
 
-/// `count` quantiles (1 % to 99 %) of the series where `mask` is not zero; equal ones once.
+/// Of each element, by vector instructions: within some 1e-15 of the larger of the result and 1, for sizes up to 1e7 of
+/// what sine and cosine are taken of.
+[[nodiscard]] Vector Exp(const Vector& of);
+[[nodiscard]] Vector Tanh(const Vector& of);
+[[nodiscard]] Vector Sin(const Vector& of);
+[[nodiscard]] Vector Cos(const Vector& of);
+
+/// The series where `mask` is not zero, least first.
+[[nodiscard]] std::vector<double> Sorted(const Vector& series, const Vector& mask);
+/// `count` quantiles (1 % to 99 %) of what is sorted; equal ones once.
+[[nodiscard]] Vector QuantileKnots(const std::vector<double>& sorted, int count);
+/// The same of the series where `mask` is not zero.
 [[nodiscard]] Vector QuantileKnots(const Vector& series, const Vector& mask, int count);
 /// `count` knots from 0 to 1.
 [[nodiscard]] Vector EvenKnots(int count);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -33,7 +34,8 @@ struct Fitted {
   /// Loss of log likelihood, in nats, if a coordinate is set to its prior mean and the others are refitted
   /// (linearised).
   [[nodiscard]] double CostOfLeaving(Eigen::Index coordinate) const;
-  /// Orthonormal basis of whitened_jacobian; computed once, since every extension of the fit projects it out.
+  /// Orthonormal basis of whitened_jacobian; computed once, by one thread before others ask for it, since every
+  /// extension of the fit projects it out.
   [[nodiscard]] const Matrix& basis() const;
   /// s2 H^-1 of the whitened fit, zero for coordinates at a bound. Events are included.
   [[nodiscard]] Matrix Covariance(double s2) const;
@@ -48,7 +50,7 @@ struct CoordinatePrior {
   Matrix precision;
 };
 
-/// Fits hypotheses to one recording with one noise model.
+/// Fits hypotheses to one recording with one noise model. Threads may share it.
 class Fitter {
  public:
   static constexpr int kMaxSteps = 12;
@@ -84,10 +86,21 @@ class Fitter {
   /// Fills at_bound, heldout and log_evidence.
   void Score(Fitted* fitted) const;
 
+  /// One for each thread that fits.
+  class Memos {
+   public:
+    [[nodiscard]] std::unique_ptr<LawMemo> Take();
+    void Give(std::unique_ptr<LawMemo> memo);
+
+   private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<LawMemo>> idle_;
+  };
+
   const Equation* equation_;
   const Signals* signals_;
   Whitener whitener_;
-  mutable LawMemo memo_;
+  mutable Memos memos_;
 };
 
 }  // namespace armcmc::gap

@@ -26,6 +26,11 @@ struct Hypothesis {
 [[nodiscard]] std::vector<Coordinate> CoordinatesOf(const Equation& equation, const Signals& signals,
                                                     const Hypothesis& hypothesis);
 
+/// Whether the last term adds its features to the output and nothing else: they depend on no other coordinate.
+[[nodiscard]] bool LastOnlyAdds(const Hypothesis& hypothesis);
+/// Features of a term, gate included: [row][amplitude].
+[[nodiscard]] Matrix Features(const Signals& signals, const Term& term, const double* shapes);
+
 /// The last prediction of the law alone, kept because a grid over an effect evaluates it repeatedly at the same
 /// coordinates.
 struct LawMemo {

@@ -14,12 +14,15 @@ struct Slopes {
 
   [[nodiscard]] static Slopes None() { return {0, 0}; }
   [[nodiscard]] bool Has(int coordinate) const { return coordinate >= first && coordinate < end; }
+  /// Whether no coordinate before this one is asked for.
+  [[nodiscard]] bool NoneBelow(int coordinate) const { return first >= end || first >= coordinate; }
 };
 
 /// Predicted output and its derivatives with respect to the coordinates of a hypothesis.
 struct Prediction {
-  Vector y;         ///< [row]
-  Slopes wanted;    ///< Valid columns of the jacobian; others may be zero.
+  Vector y;  ///< [row]
+  Slopes
+      wanted;  ///< Valid columns of the jacobian; others may be zero, and if none is wanted there need be no columns.
   Matrix jacobian;  ///< [row][coordinate]
   /// The part of the law that does not depend on rates (the elastic force of a contact), for effects with memory of it.
   Vector elastic;

@@ -31,8 +31,7 @@ class Referee {
   [[nodiscard]] const std::vector<FeatureGroup>& groups() const { return groups_; }
 
  private:
-  [[nodiscard]] Vector Gain(const Fitted& fitted, const Matrix& whitened, Vector* unexplained) const;
-  /// As Gain with all columns, using the stored products.
+  /// Gain of all columns, using the stored products.
   [[nodiscard]] Vector GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* unexplained) const;
 
   const Fitter* fitter_;

@@ -84,6 +84,8 @@ class Search {
 
   /// @param parent  The candidate with the same known terms; null: the base.
   [[nodiscard]] CandidatePtr Make(Fitted fit, const CandidatePtr& parent = nullptr) const;
+  /// The parent with one more term, each, on both cores.
+  [[nodiscard]] Candidates AddEach(const CandidatePtr& parent, const std::vector<Term>& terms) const;
   [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
   /// The gated hypotheses with the largest expected gain over the ungated ones, among those active in at least
   /// `min_active` blocks.

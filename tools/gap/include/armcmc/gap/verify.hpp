@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/result.hpp"
 
@@ -31,10 +34,14 @@ class HeldOut {
   [[nodiscard]] const Signals& signals() const { return tail_; }
 
  private:
+  [[nodiscard]] double MeasureNoiseFloor(const Trial& after) const;
+
   const Equation* equation_;
   const Look* look_;
   Signals all_, tail_;
   Eigen::Index first_;
+  mutable std::vector<std::pair<Vector, double>>
+      floors_;  ///< By prediction: the same models are shown again and again.
 };
 
 /// Step five: the gap on held-out data with the base model, with `after`, and with `control` (may be null).
