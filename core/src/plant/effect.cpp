@@ -16,6 +16,8 @@ namespace {
 using NameMap = std::map<std::string, std::string>;
 
 const std::string kRateOf = "rate_of_";  // and the state: of the let that holds a rate which an effect wraps
+// And the number of a mode: of lets that hold what it explains, as signals have it and as effects leave it.
+const std::string kAsRead = "_as_read_", kAsFelt = "_as_felt_";
 
 /// To as many digits as a prior deserves.
 double ShortPrior(double value) {
@@ -49,6 +51,8 @@ std::string UnitOfSymbol(const PlantDescription& plant, const std::string& name)
     if (s.name == name) return s.unit;
   for (const auto& p : plant.parameters)
     if (p.name == name) return p.unit;
+  for (const auto& c : plant.constants)
+    if (c.name == name && !c.unit.empty()) return c.unit;
   return "1";
 }
 
@@ -146,7 +150,8 @@ class Composer {
   void ForEachText(const Change& change) {
     for (std::string* text : {&plant_.law, &plant_.predicts}) change(text);
     for (ModeDescription& mode : plant_.modes) change(&mode.law);
-    for (LetDescription& let : plant_.lets) change(&let.text);
+    for (LetDescription& let : plant_.lets)
+      if (let.name.find(kAsRead) == std::string::npos) change(&let.text);
     for (StateDescription& state : plant_.states) change(&state.rate);
   }
 
@@ -154,10 +159,29 @@ class Composer {
     const std::string& symbol = binding_.symbols.at(term.of);
     const bool decides = std::any_of(plant_.modes.begin(), plant_.modes.end(),
                                      [&](const auto& mode) { return Mentions(mode.when, symbol); });
-    if (decides) Merge();
+    if (decides && MayMerge(plant_)) Merge();
     const std::string name = prefix_ + symbol;
+    SplitTargets(symbol);
     ForEachText([&](std::string* text) { *text = WithNames(*text, {{symbol, name}}); });
     plant_.lets.insert(plant_.lets.begin(), {name, Inserted(term.formula, names_)});
+  }
+
+  /// Targets that depend on the symbol stay as they are read; the law gets a let for that, and one that effects change.
+  void SplitTargets(const std::string& symbol) {
+    for (std::size_t m = 0; m < plant_.modes.size(); ++m) {
+      ModeDescription& mode = plant_.modes[m];
+      if (mode.passive || mode.target.empty()) continue;
+      const std::string target = WithoutLets(plant_, mode.target), number = std::to_string(m + 1);
+      if (!Mentions(target, symbol)) continue;
+      mode.target = target;
+      const bool split = std::any_of(plant_.lets.begin(), plant_.lets.end(),
+                                     [&](const LetDescription& let) { return let.name.ends_with(kAsRead + number); });
+      if (split) continue;
+      const std::string read = prefix_ + "target" + kAsRead + number, felt = prefix_ + "target" + kAsFelt + number;
+      plant_.lets.push_back({read, target});
+      plant_.lets.push_back({felt, target});
+      mode.law = SumText(mode.law, read + " - " + felt);
+    }
   }
 
   void Merge() {

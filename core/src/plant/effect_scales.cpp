@@ -178,6 +178,8 @@ double ScaleValue(std::string_view text, const PlantDescription& plant, const Da
   const auto scale_of = [&](const std::string& name) {
     for (const ParameterDescription& p : plant.parameters)
       if (p.name == name) return QuantityScale{p.mean, SizeOf(p), p.lower.value_or(0.0), p.upper.value_or(0.0)};
+    for (const ConstantDescription& c : plant.constants)
+      if (c.name == name) return QuantityScale{c.value, std::fabs(c.value), c.value, c.value};
     const auto found = scales.quantity.find(name);
     return found == scales.quantity.end() ? QuantityScale{} : found->second;
   };

@@ -48,7 +48,7 @@ struct DataScales {
 ///
 /// Names: dt, record, start, period, noise; of the output, and of each name in `bound` (name -> quantity of the plant):
 /// NAME (rms about the mean), mean_NAME, low_NAME, high_NAME, range_NAME (high - low), rate_NAME (NAME times 2 pi /
-/// period). A bound parameter has |mean| + sd.
+/// period). A bound parameter has |mean| + sd, a constant |value|.
 /// @throws expression::Error, UnknownName with the column.
 [[nodiscard]] double ScaleValue(std::string_view text, const PlantDescription& plant, const DataScales& scales,
                                 const std::map<std::string, std::string>& bound);
