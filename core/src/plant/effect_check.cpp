@@ -72,8 +72,8 @@ class FormChecker {
     for (const EffectNeed& need : form_.needs) {
       const std::string key = key_ + "needs." + need.name;
       ExpectOneOf(key + ".kind", need.kind, {"signal", "state", "parameter", "constant"});
-      for (const auto& [other, what] : {std::pair{need.per, ".per"}, std::pair{need.reads, ".reads"},
-                                        std::pair{need.rate_of, ".rate_of"}})
+      for (const auto& [other, what] :
+           {std::pair{need.per, ".per"}, std::pair{need.reads, ".reads"}, std::pair{need.rate_of, ".rate_of"}})
         if (!other.empty()) ExpectOneOf(key + what, other, NeedNames());
       if (!need.reads.empty() && need.kind != "state") throw PlantError(key + ".reads", 0, "only a state has a rate");
       if (!need.rate_of.empty() && need.kind != "signal")

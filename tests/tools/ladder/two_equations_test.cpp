@@ -69,8 +69,8 @@ std = 0.5
 )";
 
 struct Hidden {
-  double lost = 0.0;                                                      ///< 1/s
-  std::function<double(double t)> seen = [](double) { return 0.0; };      ///< K, on what the thermometer shows.
+  double lost = 0.0;                                                  ///< 1/s
+  std::function<double(double t)> seen = [](double) { return 0.0; };  ///< K, on what the thermometer shows.
 };
 
 /// Three minutes at 20 Hz: the oven is heated to one level after the other, and cooled.
@@ -85,7 +85,8 @@ support::Recording Baked(const Plant& plant, const Hidden& hidden) {
   recording.output = static_cast<std::size_t>(plant.output());
   recording.dt = kDt;
   recording.runs = {0};
-  for (const SignalDescription& signal : description.signals) recording.signals.push_back({signal.name, signal.unit, {}});
+  for (const SignalDescription& signal : description.signals)
+    recording.signals.push_back({signal.name, signal.unit, {}});
   std::mt19937_64 random(17);
   std::normal_distribution<double> normal(0.0, 1.0);
   double air = 300.0, glass = 300.0;
@@ -114,7 +115,7 @@ support::Recording Baked(const Plant& plant, const Hidden& hidden) {
 ladder::Diagnosis Diagnosed(const Hidden& hidden) {
   const Plant plant = support::PlantFromText(kOven, "oven.toml");
   const support::PlantFile file{plant.description(), plant, {}};
-  const std::vector<std::string> tried = {"linear_loss",     "input_bias",  "output_bias",
+  const std::vector<std::string> tried = {"linear_loss",     "input_bias",   "output_bias",
                                           "input_dead_band", "sensor_delay", "periodic_disturbance"};
   ladder::DiagnosisRequest request;
   request.recording = Baked(plant, hidden);
@@ -157,8 +158,7 @@ TEST(TwoEquations, SayThatThePredictionLacksARipple) {
 }
 
 TEST(TwoEquations, SayBothWhereBothLackSomething) {
-  const ladder::Diagnosis found =
-      Diagnosed({.lost = 0.004, .seen = [](double t) { return 0.4 * std::sin(4.1 * t); }});
+  const ladder::Diagnosis found = Diagnosed({.lost = 0.004, .seen = [](double t) { return 0.4 * std::sin(4.1 * t); }});
   std::vector<std::string> names;
   for (const gap::EffectFinding& effect : found.result.effects) names.push_back(effect.name);
   EXPECT_THAT(names, ::testing::UnorderedElementsAre("linear_loss", "periodic_disturbance"));
@@ -188,8 +188,7 @@ TEST(TwoEquations, ASignalStandsForTheStateThatItMeasures) {
 }
 
 TEST(TwoEquations, TheLawAloneHasNoStatesThatOnlyThePredictionReads) {
-  const PlantDescription law =
-      ladder::LawEquation(support::PlantFromText(kOven, "oven.toml").description());
+  const PlantDescription law = ladder::LawEquation(support::PlantFromText(kOven, "oven.toml").description());
   EXPECT_THAT(law.states, IsEmpty());
   EXPECT_THAT(law.predicts, IsEmpty());
   EXPECT_EQ(law.constants.size(), 2U) << "wire and room";

@@ -188,7 +188,7 @@ Ladder Climb(const ClimbRequest& request) {
   Ladder ladder;
   ladder.entries = std::make_shared<const std::vector<EffectEntry>>(request.entries);
   ladder.plant = request.plant;
-  Dataset data = Compared(*ladder.plant, request.data);
+  Dataset data = Compared(*ladder.plant, request.data, request.most_simulated);
 
   progress.Tell("fitting the model as it is", 0.0);
   Trial base = FitAlone(ladder.plant, &data);
@@ -196,10 +196,9 @@ Ladder Climb(const ClimbRequest& request) {
     ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
     return ladder;
   }
-  ladder.noise_floor =
-      request.known_noise > 0.0
-          ? request.known_noise
-          : request.noise_over_differences * NoiseFloor(data, SmoothBut(base), base.model->active());
+  ladder.noise_floor = request.known_noise > 0.0
+                           ? request.known_noise
+                           : request.noise_over_differences * NoiseFloor(data, SmoothBut(base), base.model->active());
   ladder.base = base;
   std::set<std::string> families;
   int again = 2;  // rungs that begin anew from a better fit

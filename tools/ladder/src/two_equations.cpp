@@ -37,10 +37,8 @@ struct Equation {
   [[nodiscard]] bool Names() const { return !result().ladder.empty(); }
 };
 
-std::unique_ptr<Equation> MakeEquation(const DiagnosisRequest& whole, const PlantDescription& plant,
-                                       std::string name) {
-  auto equation = std::make_unique<Equation>(
-      Equation{{plant, Plant(plant), whole.plant->effects}, whole, {}, {}});
+std::unique_ptr<Equation> MakeEquation(const DiagnosisRequest& whole, const PlantDescription& plant, std::string name) {
+  auto equation = std::make_unique<Equation>(Equation{{plant, Plant(plant), whole.plant->effects}, whole, {}, {}});
   equation->request.plant = &equation->file;
   equation->request.equation = std::move(name);
   return equation;
@@ -126,11 +124,17 @@ std::vector<std::size_t> NamedAndAlike(const Ladder& ladder) {
   const Rung& rung = ladder.rungs.front();
   std::vector<std::size_t> named = rung.named;
   if (named.empty()) return named;
+  const auto slot = [](const Contender& c) { return c.candidate.form().terms.front().slot; };
   std::set<std::string> families;
-  for (const std::size_t i : named) families.insert(rung.contenders[i].candidate.entry->family);
-  for (std::size_t i = 0; i < rung.contenders.size(); ++i) {
+  bool of_sensor = false;
+  for (const std::size_t i : named) {
     const Contender& c = rung.contenders[i];
-    if (!c.trial.judged || !c.earned || c.ruled_out) continue;
+    families.insert(c.candidate.entry->family);
+    of_sensor = of_sensor || slot(c) == "input" || slot(c) == "output";
+  }
+  for (std::size_t i = 0; i < rung.contenders.size() && of_sensor; ++i) {
+    const Contender& c = rung.contenders[i];
+    if (!c.trial.judged || !c.earned || c.ruled_out || (slot(c) != "input" && slot(c) != "output")) continue;
     if (c.alone.folds > kAlike * rung.leader().alone.folds) continue;
     if (c.candidate.form().parameters.size() > rung.leader().candidate.form().parameters.size()) continue;
     if (families.insert(c.candidate.entry->family).second) named.push_back(i);
