@@ -18,6 +18,8 @@ using NameMap = std::map<std::string, std::string>;
 const std::string kRateOf = "rate_of_";  // and the state: of the let that holds a rate which an effect wraps
 // And the number of a mode: of lets that hold what it explains, as signals have it and as effects leave it.
 const std::string kAsRead = "_as_read_", kAsFelt = "_as_felt_";
+const std::string kSize = "_size_";           // likewise: of one over the other
+const std::string kReference = "target_at_";  // and a signal: the value at which they are compared
 
 /// To as many digits as a prior deserves.
 double ShortPrior(double value) {
@@ -96,6 +98,7 @@ class Composer {
       if (term.slot == "output" || term.slot == "law") ChangeOutput(term);
     }
     plant_.lets = InOrder(std::move(plant_.lets));
+    SetTargetSizes();
     return std::move(plant_);
   }
 
@@ -180,8 +183,50 @@ class Composer {
       const std::string read = prefix_ + "target" + kAsRead + number, felt = prefix_ + "target" + kAsFelt + number;
       plant_.lets.push_back({read, target});
       plant_.lets.push_back({felt, target});
-      mode.law = SumText(mode.law, read + " - " + felt);
+      const std::string size = prefix_ + "target" + kSize + number;
+      plant_.lets.push_back({size, "1"});
+      mode.law = read + " - (" + felt + " - " + Bracketed(mode.law) + ")*" + size;
     }
+  }
+
+  /// A target that an effect makes small would make its error small, too, whatever the law: errors count as many times
+  /// as much as the target is smaller, where inputs are at their most and all else is as it is on the average.
+  void SetTargetSizes() {
+    for (std::size_t l = 0; l < plant_.lets.size(); ++l) {
+      const std::size_t at = plant_.lets[l].name.find(kSize);
+      if (at == std::string::npos) continue;
+      const std::string number = plant_.lets[l].name.substr(at + kSize.size());
+      const auto there = [&](const std::string& which) {
+        const auto let = std::find_if(plant_.lets.begin(), plant_.lets.end(),
+                                      [&](const auto& one) { return one.name.ends_with(which + number); });
+        return AtOnePlace(WithoutLets(plant_, let->text));
+      };
+      const std::string read = there(kAsRead), felt = there(kAsFelt);
+      const bool known = !read.empty() && !felt.empty();
+      plant_.lets[l].text = known ? "if(" + read + " == 0, 1, (" + read + ")/(" + felt + "))" : "1";
+    }
+  }
+
+  /// The text with a number for each signal, and states where they start; empty where it depends on time.
+  std::string AtOnePlace(std::string text) {
+    for (const StateDescription& state : plant_.states)
+      if (Mentions(text, state.name)) text = WithoutLets(plant_, Inserted(text, {{state.name, state.start}}));
+    for (const std::string& name : NamesIn(text))
+      if (name == "t" || name == "integral" || name == "elapsed") return {};
+    NameMap by;
+    for (const SignalDescription& signal : plant_.signals) {
+      if (!Mentions(text, signal.name)) continue;
+      const std::string constant = kReference + signal.name;
+      by[signal.name] = constant;
+      if (std::any_of(plant_.constants.begin(), plant_.constants.end(),
+                      [&](const ConstantDescription& c) { return c.name == constant; }))
+        continue;
+      const auto found = scales_.quantity.find(signal.name);
+      const QuantityScale scale = found == scales_.quantity.end() ? QuantityScale{} : found->second;
+      const double most = std::fabs(scale.high) < std::fabs(scale.low) ? scale.low : scale.high;
+      plant_.constants.push_back({constant, ShortPrior(signal.role == "drive" ? most : scale.mean), signal.unit});
+    }
+    return WithNames(text, by);
   }
 
   void Merge() {

@@ -23,7 +23,9 @@ std::vector<EffectCandidate> CandidatesOf(const PlantDescription& plant, const s
   else if (kind == "parameter")
     for (const ParameterDescription& p : plant.parameters) all.push_back({p.name, "", p.unit});
   else if (kind == "constant")
-    for (const ConstantDescription& c : plant.constants) all.push_back({c.name, "", c.unit});
+    for (const ConstantDescription& c : plant.constants) {
+      if (!c.name.starts_with("target_at_")) all.push_back({c.name, "", c.unit});  // where targets are compared
+    }
   else
     for (const SignalDescription& s : plant.signals)
       if (s.name != plant.output) all.push_back({s.name, s.role, s.unit});

@@ -215,7 +215,7 @@ Ladder Climb(const ClimbRequest& request) {
       rung.contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
     progress.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
                   static_cast<double>(r) / request.max_rungs);
-    TryAll(ladder.plant, data, ladder.view, &rung, &ladder.notes);
+    TryAll(ladder.plant, data, ladder.view, ladder.noise_floor, &rung, &ladder.notes);
     if (Trial better = BetterBase(ladder.plant, data, rung); better.fit.valid && again > 0) {
       base = std::move(better);
       --again;
