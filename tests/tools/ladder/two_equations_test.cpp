@@ -112,11 +112,12 @@ support::Recording Baked(const Plant& plant, const Hidden& hidden) {
 }
 
 /// Diagnosed with a part of the catalogue, which takes less long.
-ladder::Diagnosis Diagnosed(const Hidden& hidden) {
-  const Plant plant = support::PlantFromText(kOven, "oven.toml");
+ladder::Diagnosis Diagnosed(const Hidden& hidden, const std::string& oven = kOven) {
+  const Plant plant = support::PlantFromText(oven, "oven.toml");
   const support::PlantFile file{plant.description(), plant, {}};
   const std::vector<std::string> tried = {"linear_loss",     "input_bias",   "output_bias",
-                                          "input_dead_band", "sensor_delay", "periodic_disturbance"};
+                                          "input_dead_band", "sensor_delay", "periodic_disturbance",
+                                          "sensor_saturation"};
   ladder::DiagnosisRequest request;
   request.recording = Baked(plant, hidden);
   request.plant = &file;
@@ -164,6 +165,18 @@ TEST(TwoEquations, SayBothWhereBothLackSomething) {
   EXPECT_THAT(names, ::testing::UnorderedElementsAre("linear_loss", "periodic_disturbance"));
   EXPECT_THAT(found.result.sentence, HasSubstr("Missing in the law: linear loss."));
   EXPECT_THAT(found.result.sentence, HasSubstr("Missing in the prediction of shown: periodic disturbance."));
+}
+
+TEST(TwoEquations, NameNothingInAPredictionWhoseConstantsAreFarOff) {
+  std::string oven = kOven;
+  const std::string predicts = "predicts = \"glass\"";
+  oven.replace(oven.find(predicts), predicts.size(), "predicts = \"1000*glass\"");
+  const ladder::Diagnosis found = Diagnosed({}, oven);
+  EXPECT_EQ(found.result.verdict, gap::Verdict::kUnnamed) << found.result.sentence;
+  EXPECT_EQ(found.result.equation, "prediction of shown");
+  EXPECT_THAT(found.result.notes, ::testing::Contains(HasSubstr("check the constants")));
+  // What the law lacks is named all the same.
+  EXPECT_EQ(Diagnosed({.lost = 0.004}, oven).result.effects.at(0).name, "linear_loss");
 }
 
 TEST(TwoEquations, ASignalStandsForTheStateThatItMeasures) {

@@ -12,6 +12,7 @@
 
 #include "armcmc/ladder/equations.hpp"
 #include "armcmc/plant/error.hpp"
+#include "armcmc/support/plant_effects.hpp"
 #include "comparison.hpp"
 #include "held_out.hpp"
 #include "one_equation.hpp"
@@ -99,6 +100,34 @@ std::optional<PlantDescription> PredictionOf(const DiagnosisRequest& whole, cons
   if (!model.PredictOne(ValuesFrom(model, {&fitted, &law}), &prediction)) return by_signals;
   if (!fitted.fit.valid) return simulated;
   return TrainingError(model, data, prediction) < kClearly * fitted.fit.error_sd ? simulated : by_signals;
+}
+
+/// A prediction that errs by more than the output varies has wrong constants or units, and whatever bends it most, as a
+/// limit does, would seem to explain the output: nothing is named in it.
+/// @return what to tell; empty: it is close enough to be judged.
+std::string TooFarOff(const Equation& prediction) {
+  Dataset data = DatasetOf(prediction.request.recording);
+  const Trial trial = FitAlone(std::make_shared<const Plant>(prediction.file.plant.description()), &data);
+  if (!trial.fit.valid) return {};
+  double count = 0.0, sum = 0.0, squares = 0.0, both = 0.0, of_prediction = 0.0;
+  for (std::size_t n = 0; n < data.training.size(); ++n) {
+    if (data.training[n] == 0 || trial.model->active()[n] == 0) continue;
+    const double y = trial.model->target()[static_cast<Eigen::Index>(n)];
+    const double predicted = trial.fit.prediction[static_cast<Eigen::Index>(n)];
+    count += 1.0;
+    sum += y;
+    squares += y * y;
+    both += y * predicted;
+    of_prediction += predicted * predicted;
+  }
+  const double variance = squares / count - sum / count * (sum / count);
+  if (!(trial.fit.error_sd * trial.fit.error_sd > variance)) return {};
+  char text[200];
+  std::snprintf(text, sizeof(text),
+                " errs by more than the output varies, so nothing is named in it; %.3g times it would be closest: check "
+                "the constants and their units",
+                both / std::max(of_prediction, 1e-300));
+  return prediction.request.equation + text;
 }
 
 /// The contender becomes the only one, or with others one of those, that its ladder names, and the last.
@@ -312,7 +341,13 @@ Diagnosis DiagnoseBoth(const DiagnosisRequest& request) {
   std::vector<std::string> notes;
   if (const std::optional<PlantDescription> prediction = PredictionOf(request, law.ladder().base)) {
     equations.push_back(MakeEquation(request, *prediction, "prediction of " + plant.output));
-    Look(equations.back().get(), kLook, 2.0 * kLook);
+    Equation& last = *equations.back();
+    if (const std::string far_off = TooFarOff(last); !far_off.empty()) {
+      notes.push_back(far_off);
+      for (const EffectEntry& entry : support::EffectsFor(last.file.effects))
+        last.request.without.push_back(entry.name);
+    }
+    Look(&last, kLook, 2.0 * kLook);
   } else {
     notes.push_back("prediction of " + plant.output + ": has no parameter and no state, and is not judged");
   }
