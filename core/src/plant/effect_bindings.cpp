@@ -136,7 +136,25 @@ class FormBinder {
     return true;
   }
 
+  /// One text of the plant, lets put in, says all of them: a constant has no role that tells what it is of.
+  [[nodiscard]] bool SaidTogether() const {
+    std::vector<std::string> texts{plant_.law, plant_.predicts};
+    for (const ModeDescription& mode : plant_.modes) texts.insert(texts.end(), {mode.law, mode.target});
+    for (const StateDescription& state : plant_.states) texts.push_back(state.rate);
+    return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
+      const std::string whole = WithoutLets(plant_, text);
+      return std::all_of(form_.needs.begin(), form_.needs.end(),
+                         [&](const EffectNeed& need) { return Mentions(whole, symbols_.at(need.name)); });
+    });
+  }
+
   bool TermsFit() {
+    const bool of_constant = std::any_of(form_.needs.begin(), form_.needs.end(),
+                                         [](const EffectNeed& need) { return need.kind == "constant"; });
+    if (of_constant && !SaidTogether()) {
+      why_ = "nothing that it says reads such a constant together with the others";
+      return false;
+    }
     for (const EffectNeed& need : form_.needs) {
       if (!need.reads.empty() && !RateReads(plant_, symbols_.at(need.name), symbols_.at(need.reads))) return false;
       if (!need.rate_of.empty() && !IsRateOf(plant_, symbols_.at(need.name), symbols_.at(need.rate_of))) {

@@ -419,7 +419,8 @@ TEST(EffectScalesTest, OfARateWhoseTermsCancelAreThoseOfItsTerms) {
   const std::vector<double> times{0.0, 1.0, 2.0, 3.0, 4.0}, drive{0.0, 1.0, 0.0, -1.0, 0.0};
   const std::vector<double> position{0.0, 1.0, 0.0, -1.0, 0.0};
   const double free = ScaleValue("rate_v", plant, MeasuredScales(plant, {drive, position}, times), {{"v", "speed"}});
-  plant.states[1].rate = "u - k*pos - 1e4*speed";
+  plant.constants = {{"d", 1e4, "1/s"}};
+  plant.states[1].rate = "u - k*pos - d*speed";
   plant.parameters[0].mean = 1e4;
   plant.parameters[0].upper = 1e6;
   const DataScales scales = MeasuredScales(plant, {drive, position}, times);

@@ -22,7 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr const char* kOven = R"(schema = 1
+constexpr const char* kOven = R"toml(schema = 1
 name = "oven"
 title = "Oven with a heater and a fan, and a slow thermometer"
 output = "shown"
@@ -66,7 +66,7 @@ glass = { unit = "K", role = "temperature", start = "shown", rate = "(inside - g
 [noise]
 law = "gaussian"
 std = 0.5
-)";
+)toml";
 
 struct Hidden {
   double lost = 0.0;                                                  ///< 1/s

@@ -14,7 +14,9 @@ namespace armcmc {
 /// Something of a plant that an effect acts on or is computed from. In the effect's texts it has a name of its own.
 struct EffectNeed {
   std::string name;
-  std::string kind = "signal";     ///< "signal" (never the output), "state", "parameter" or "constant".
+  /// "signal" (never the output), "state", "parameter", or "constant": one that a law, a target or a rate reads together
+  /// with all other needs.
+  std::string kind = "signal";
   std::vector<std::string> roles;  ///< One of these; none: whatever it is.
   std::string unit;                ///< That it must have; empty: any.
   std::string per;                 ///< Its unit is the output's over a power above 0 of what this need is bound to.
