@@ -115,9 +115,8 @@ support::Recording Baked(const Plant& plant, const Hidden& hidden) {
 ladder::Diagnosis Diagnosed(const Hidden& hidden, const std::string& oven = kOven) {
   const Plant plant = support::PlantFromText(oven, "oven.toml");
   const support::PlantFile file{plant.description(), plant, {}};
-  const std::vector<std::string> tried = {"linear_loss",     "input_bias",   "output_bias",
-                                          "input_dead_band", "sensor_delay", "periodic_disturbance",
-                                          "sensor_saturation"};
+  const std::vector<std::string> tried = {"linear_loss",  "input_bias",           "output_bias",      "input_dead_band",
+                                          "sensor_delay", "periodic_disturbance", "sensor_saturation"};
   ladder::DiagnosisRequest request;
   request.recording = Baked(plant, hidden);
   request.plant = &file;

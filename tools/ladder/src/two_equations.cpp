@@ -123,10 +123,11 @@ std::string TooFarOff(const Equation& prediction) {
   const double variance = squares / count - sum / count * (sum / count);
   if (!(trial.fit.error_sd * trial.fit.error_sd > variance)) return {};
   char text[200];
-  std::snprintf(text, sizeof(text),
-                " errs by more than the output varies, so nothing is named in it; %.3g times it would be closest: check "
-                "the constants and their units",
-                both / std::max(of_prediction, 1e-300));
+  std::snprintf(
+      text, sizeof(text),
+      " errs by more than the output varies, so nothing is named in it; %.3g times it would be closest: check "
+      "the constants and their units",
+      both / std::max(of_prediction, 1e-300));
   return prediction.request.equation + text;
 }
 

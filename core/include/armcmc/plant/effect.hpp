@@ -14,8 +14,8 @@ namespace armcmc {
 /// Something of a plant that an effect acts on or is computed from. In the effect's texts it has a name of its own.
 struct EffectNeed {
   std::string name;
-  /// "signal" (never the output), "state", "parameter", or "constant": one that a law, a target or a rate reads together
-  /// with all other needs.
+  /// "signal" (never the output), "state", "parameter", or "constant": one that a law, a target or a rate reads
+  /// together with all other needs.
   std::string kind = "signal";
   std::vector<std::string> roles;  ///< One of these; none: whatever it is.
   std::string unit;                ///< That it must have; empty: any.
