@@ -29,6 +29,16 @@ class PlantRun {
 
   /// What is predicted of the output. @param columns  [signal][sample].
   std::vector<double> Output(const std::vector<std::vector<double>>& columns, double dt) {
+    return Run(columns, dt, plant_.predicts() >= 0 ? graph_.Substitute(plant_.predicts(), fixed_) : Law());
+  }
+
+  /// What the law of the mode that acts says: of the output, or of what the mode explains instead.
+  std::vector<double> Explained(const std::vector<std::vector<double>>& columns, double dt) {
+    return Run(columns, dt, Law());
+  }
+
+ private:
+  std::vector<double> Run(const std::vector<std::vector<double>>& columns, double dt, int shown) {
     const std::size_t num_states = plant_.states().size();
     std::vector<int> rates, starts;
     for (const PlantState& state : plant_.states()) {
@@ -51,7 +61,7 @@ class PlantRun {
       remembered[memories[m]] = graph_.Symbol(expression::SymbolKind::kSignal, num_signals_ + int(num_states) + int(m));
     for (int& rate : rates) rate = graph_.Substitute(rate, remembered);
     const expression::FeatureProgram rate_program(graph_, rates), start_program(graph_, starts),
-        law_program(graph_, {Law()});
+        law_program(graph_, {shown});
 
     const std::size_t rows = columns.front().size();
     std::vector<std::vector<double>> inputs(rows);
@@ -74,11 +84,9 @@ class PlantRun {
     return output;
   }
 
- private:
   int Node(expression::SymbolKind kind, std::size_t index) { return graph_.Symbol(kind, static_cast<int>(index)); }
 
   int Law() {
-    if (plant_.predicts() >= 0) return graph_.Substitute(plant_.predicts(), fixed_);
     int law = graph_.Number(0.0);
     for (std::size_t m = plant_.modes().size(); m-- > 0;) {
       const PlantMode& mode = plant_.modes()[m];

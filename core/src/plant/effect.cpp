@@ -16,6 +16,10 @@ namespace {
 using NameMap = std::map<std::string, std::string>;
 
 const std::string kRateOf = "rate_of_";  // and the state: of the let that holds a rate which an effect wraps
+// And the number of a mode: of lets that hold what it explains, as signals have it and as effects leave it.
+const std::string kAsRead = "_as_read_", kAsFelt = "_as_felt_";
+const std::string kSize = "_size_";           // likewise: of one over the other
+const std::string kReference = "target_at_";  // and a signal: the value at which they are compared
 
 /// With the number of digits that is sensible for a prior.
 double ShortPrior(double value) {
@@ -49,6 +53,8 @@ std::string UnitOfSymbol(const PlantDescription& plant, const std::string& name)
     if (s.name == name) return s.unit;
   for (const auto& p : plant.parameters)
     if (p.name == name) return p.unit;
+  for (const auto& c : plant.constants)
+    if (c.name == name && !c.unit.empty()) return c.unit;
   return "1";
 }
 
@@ -92,6 +98,7 @@ class Composer {
       if (term.slot == "output" || term.slot == "law") ChangeOutput(term);
     }
     plant_.lets = InOrder(std::move(plant_.lets));
+    SetTargetSizes();
     return std::move(plant_);
   }
 
@@ -146,7 +153,8 @@ class Composer {
   void ForEachText(const Change& change) {
     for (std::string* text : {&plant_.law, &plant_.predicts}) change(text);
     for (ModeDescription& mode : plant_.modes) change(&mode.law);
-    for (LetDescription& let : plant_.lets) change(&let.text);
+    for (LetDescription& let : plant_.lets)
+      if (let.name.find(kAsRead) == std::string::npos) change(&let.text);
     for (StateDescription& state : plant_.states) change(&state.rate);
   }
 
@@ -154,10 +162,71 @@ class Composer {
     const std::string& symbol = binding_.symbols.at(term.of);
     const bool decides = std::any_of(plant_.modes.begin(), plant_.modes.end(),
                                      [&](const auto& mode) { return Mentions(mode.when, symbol); });
-    if (decides) Merge();
+    if (decides && MayMerge(plant_)) Merge();
     const std::string name = prefix_ + symbol;
+    SplitTargets(symbol);
     ForEachText([&](std::string* text) { *text = WithNames(*text, {{symbol, name}}); });
     plant_.lets.insert(plant_.lets.begin(), {name, Inserted(term.formula, names_)});
+  }
+
+  /// Targets that depend on the symbol stay as they are read; the law gets a let for that, and one that effects change.
+  void SplitTargets(const std::string& symbol) {
+    for (std::size_t m = 0; m < plant_.modes.size(); ++m) {
+      ModeDescription& mode = plant_.modes[m];
+      if (mode.passive || mode.target.empty()) continue;
+      const std::string target = WithoutLets(plant_, mode.target), number = std::to_string(m + 1);
+      if (!Mentions(target, symbol)) continue;
+      mode.target = target;
+      const bool split = std::any_of(plant_.lets.begin(), plant_.lets.end(),
+                                     [&](const LetDescription& let) { return let.name.ends_with(kAsRead + number); });
+      if (split) continue;
+      const std::string read = prefix_ + "target" + kAsRead + number, felt = prefix_ + "target" + kAsFelt + number;
+      plant_.lets.push_back({read, target});
+      plant_.lets.push_back({felt, target});
+      const std::string size = prefix_ + "target" + kSize + number;
+      plant_.lets.push_back({size, "1"});
+      mode.law = read + " - (" + felt + " - " + Bracketed(mode.law) + ")*" + size;
+    }
+  }
+
+  /// A target that an effect makes small would make its error small, too, whatever the law: errors count as many times
+  /// as much as the target is smaller, where inputs are at their most and all else is as it is on the average.
+  void SetTargetSizes() {
+    for (std::size_t l = 0; l < plant_.lets.size(); ++l) {
+      const std::size_t at = plant_.lets[l].name.find(kSize);
+      if (at == std::string::npos) continue;
+      const std::string number = plant_.lets[l].name.substr(at + kSize.size());
+      const auto there = [&](const std::string& which) {
+        const auto let = std::find_if(plant_.lets.begin(), plant_.lets.end(),
+                                      [&](const auto& one) { return one.name.ends_with(which + number); });
+        return AtOnePlace(WithoutLets(plant_, let->text));
+      };
+      const std::string read = there(kAsRead), felt = there(kAsFelt);
+      const bool known = !read.empty() && !felt.empty();
+      plant_.lets[l].text = known ? "if(" + read + " == 0, 1, (" + read + ")/(" + felt + "))" : "1";
+    }
+  }
+
+  /// The text with a number for each signal, and states where they start; empty where it depends on time.
+  std::string AtOnePlace(std::string text) {
+    for (const StateDescription& state : plant_.states)
+      if (Mentions(text, state.name)) text = WithoutLets(plant_, Inserted(text, {{state.name, state.start}}));
+    for (const std::string& name : NamesIn(text))
+      if (name == "t" || name == "integral" || name == "elapsed") return {};
+    NameMap by;
+    for (const SignalDescription& signal : plant_.signals) {
+      if (!Mentions(text, signal.name)) continue;
+      const std::string constant = kReference + signal.name;
+      by[signal.name] = constant;
+      if (std::any_of(plant_.constants.begin(), plant_.constants.end(),
+                      [&](const ConstantDescription& c) { return c.name == constant; }))
+        continue;
+      const auto found = scales_.quantity.find(signal.name);
+      const QuantityScale scale = found == scales_.quantity.end() ? QuantityScale{} : found->second;
+      const double most = std::fabs(scale.high) < std::fabs(scale.low) ? scale.low : scale.high;
+      plant_.constants.push_back({constant, ShortPrior(signal.role == "drive" ? most : scale.mean), signal.unit});
+    }
+    return WithNames(text, by);
   }
 
   void Merge() {

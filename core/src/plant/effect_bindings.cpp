@@ -22,6 +22,10 @@ std::vector<EffectCandidate> CandidatesOf(const PlantDescription& plant, const s
     for (const StateDescription& s : plant.states) all.push_back({s.name, s.role, s.unit});
   else if (kind == "parameter")
     for (const ParameterDescription& p : plant.parameters) all.push_back({p.name, "", p.unit});
+  else if (kind == "constant")
+    for (const ConstantDescription& c : plant.constants) {
+      if (!c.name.starts_with("target_at_")) all.push_back({c.name, "", c.unit});  // where targets are compared
+    }
   else
     for (const SignalDescription& s : plant.signals)
       if (s.name != plant.output) all.push_back({s.name, s.role, s.unit});
@@ -45,6 +49,11 @@ bool IsPerPower(const std::string& unit, const std::string& output, const std::s
   for (const double n : {1.0, 1.5, 2.0, 3.0, 0.5})
     if (whole->Same(above->Over(below->Power(n)))) return true;
   return false;
+}
+
+bool IsRateOf(const PlantDescription& plant, const std::string& rate, const std::string& of) {
+  return std::any_of(plant.signals.begin(), plant.signals.end(),
+                     [&](const SignalDescription& s) { return s.name == rate && s.derivative_of == of; });
 }
 
 /// One form in one plant.
@@ -104,11 +113,12 @@ class FormBinder {
     if (!any && why_.empty())
       why_ = "it has no " + need.kind + (need.roles.empty() ? "" : " with the role " + Or(need.roles)) +
              (need.unit.empty() ? "" : " in " + need.unit) + (need.used ? " that the law reads" : "") +
-             (need.reads.empty() ? "" : " whose rate reads " + need.reads);
+             (need.reads.empty() ? "" : " whose rate reads " + need.reads) +
+             (need.rate_of.empty() ? "" : " that is the derivative of " + need.rate_of);
   }
 
   [[nodiscard]] std::string UnitText(const std::string& symbol) const {
-    for (const char* kind : {"signal", "state", "parameter"})
+    for (const char* kind : {"signal", "state", "parameter", "constant"})
       for (const EffectCandidate& candidate : CandidatesOf(plant_, kind))
         if (candidate.name == symbol) return candidate.unit;
     return "";
@@ -126,9 +136,31 @@ class FormBinder {
     return true;
   }
 
+  /// One text of the plant, lets put in, says all of them: a constant has no role that tells what it is of.
+  [[nodiscard]] bool SaidTogether() const {
+    std::vector<std::string> texts{plant_.law, plant_.predicts};
+    for (const ModeDescription& mode : plant_.modes) texts.insert(texts.end(), {mode.law, mode.target});
+    for (const StateDescription& state : plant_.states) texts.push_back(state.rate);
+    return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
+      const std::string whole = WithoutLets(plant_, text);
+      return std::all_of(form_.needs.begin(), form_.needs.end(),
+                         [&](const EffectNeed& need) { return Mentions(whole, symbols_.at(need.name)); });
+    });
+  }
+
   bool TermsFit() {
+    const bool of_constant = std::any_of(form_.needs.begin(), form_.needs.end(),
+                                         [](const EffectNeed& need) { return need.kind == "constant"; });
+    if (of_constant && !SaidTogether()) {
+      why_ = "nothing that it says reads such a constant together with the others";
+      return false;
+    }
     for (const EffectNeed& need : form_.needs) {
       if (!need.reads.empty() && !RateReads(plant_, symbols_.at(need.name), symbols_.at(need.reads))) return false;
+      if (!need.rate_of.empty() && !IsRateOf(plant_, symbols_.at(need.name), symbols_.at(need.rate_of))) {
+        why_ = "it has no signal that is the derivative of " + need.rate_of;
+        return false;
+      }
       if (!need.per.empty() &&
           !IsPerPower(UnitText(symbols_.at(need.name)), OutputSignal(plant_)->unit, UnitText(symbols_.at(need.per))))
         return false;
@@ -145,11 +177,8 @@ class FormBinder {
     }
     if (term.slot == "rate") return true;
     for (const ModeDescription& mode : plant_.modes) {
-      if (Mentions(mode.target, symbol)) {
-        why_ = "what a mode explains depends on " + symbol;
-        return false;
-      }
-      if (Mentions(mode.when, symbol) && !MayMerge(plant_)) {
+      // A mode that explains something else is chosen by what was measured.
+      if (mode.target.empty() && !mode.passive && Mentions(mode.when, symbol) && !MayMerge(plant_)) {
         why_ = "a mode depends on " + symbol + ", and the modes cannot be written as one law";
         return false;
       }

@@ -71,10 +71,13 @@ class FormChecker {
   void CheckNeeds() const {
     for (const EffectNeed& need : form_.needs) {
       const std::string key = key_ + "needs." + need.name;
-      ExpectOneOf(key + ".kind", need.kind, {"signal", "state", "parameter"});
-      for (const auto& [other, what] : {std::pair{need.per, ".per"}, std::pair{need.reads, ".reads"}})
+      ExpectOneOf(key + ".kind", need.kind, {"signal", "state", "parameter", "constant"});
+      for (const auto& [other, what] :
+           {std::pair{need.per, ".per"}, std::pair{need.reads, ".reads"}, std::pair{need.rate_of, ".rate_of"}})
         if (!other.empty()) ExpectOneOf(key + what, other, NeedNames());
       if (!need.reads.empty() && need.kind != "state") throw PlantError(key + ".reads", 0, "only a state has a rate");
+      if (!need.rate_of.empty() && need.kind != "signal")
+        throw PlantError(key + ".rate_of", 0, "only a signal is measured as the derivative of another");
       if (!need.unit.empty()) (void)expression::ParseUnit(need.unit);
     }
   }
@@ -128,9 +131,10 @@ class FormChecker {
       return;
     }
     const std::string kind = term.slot == "rate" ? "state" : term.slot == "input" ? "signal" : "parameter";
+    const bool or_constant = term.slot == "parameter";
     const auto need =
         std::find_if(form_.needs.begin(), form_.needs.end(), [&](const auto& n) { return n.name == term.of; });
-    if (need == form_.needs.end() || need->kind != kind)
+    if (need == form_.needs.end() || (need->kind != kind && !(or_constant && need->kind == "constant")))
       throw PlantError(key_ + at + "of", 0, "expected a name of [needs] that is a " + kind, term.of, NeedNames());
     CheckText(at + "formula", term.formula, with(term.slot == "rate" ? NameList{"rate"} : NameList{}));
   }

@@ -59,8 +59,11 @@ std::string MergedLaw(const PlantDescription& plant) {
 
 bool LawReads(const PlantDescription& plant, const std::string& name) {
   std::vector<std::string> texts{plant.law, plant.predicts};
-  for (const ModeDescription& mode : plant.modes)
-    if (!mode.passive) texts.push_back(mode.law);
+  for (const ModeDescription& mode : plant.modes) {
+    if (mode.passive) continue;
+    texts.push_back(mode.law);
+    texts.push_back(mode.target);
+  }
   for (std::size_t round = 0; round <= plant.states.size(); ++round) {
     const std::set<std::string> names = Reached(plant, texts);
     if (names.contains(name)) return true;
@@ -68,6 +71,12 @@ bool LawReads(const PlantDescription& plant, const std::string& name) {
       if (names.contains(state.name)) texts.push_back(state.rate);
   }
   return false;
+}
+
+std::string WithoutLets(const PlantDescription& plant, std::string text) {
+  for (std::size_t l = plant.lets.size(); l-- > 0;)
+    if (Mentions(text, plant.lets[l].name)) text = Inserted(text, {{plant.lets[l].name, plant.lets[l].text}});
+  return text;
 }
 
 bool RateReads(const PlantDescription& plant, const std::string& state, const std::string& name) {

@@ -20,8 +20,12 @@ namespace armcmc {
 /// if(when, law, if(.., .., ..)): the law of the mode that acts, 0 where none does.
 [[nodiscard]] std::string MergedLaw(const PlantDescription& plant);
 
-/// A law that is not passive, or `predicts`, depends on the name: directly, through lets, or through states.
+/// A law that is not passive, what it explains, or `predicts` depends on the name: directly, through lets, or through
+/// states.
 [[nodiscard]] bool LawReads(const PlantDescription& plant, const std::string& name);
+
+/// The text with all lets that it uses, and those that they use, inserted.
+[[nodiscard]] std::string WithoutLets(const PlantDescription& plant, std::string text);
 
 /// The rate of a state contains the name, directly or through lets.
 [[nodiscard]] bool RateReads(const PlantDescription& plant, const std::string& state, const std::string& name);

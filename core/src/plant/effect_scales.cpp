@@ -8,6 +8,7 @@
 #include "armcmc/expression/check.hpp"
 #include "armcmc/expression/graph.hpp"
 #include "armcmc/plant/error.hpp"
+#include "armcmc/plant/plant.hpp"
 #include "effect_units.hpp"
 
 namespace armcmc {
@@ -106,6 +107,60 @@ double SizeOf(const ParameterDescription& p) {
   return std::fabs(p.mean) + p.sd;
 }
 
+/// Value of a parameter where it is sampled, at its prior's centre.
+double CentreOf(const ParameterDescription& p) {
+  if (p.prior == "lognormal") return std::log(p.mean);
+  if (p.prior == "uniform") return 0.5 * (p.lower.value_or(0.0) + p.upper.value_or(1.0));
+  return p.mean;
+}
+
+/// Of each state the largest |d rate / d x| times the rms of x, for signals and states x; about the means.
+std::vector<double> LargestTerms(const Plant& plant, const DataScales& scales) {
+  using expression::SymbolKind;
+  const PlantDescription& description = plant.description();
+  expression::Graph graph = plant.graph();
+  std::map<int, int> by;
+  std::vector<std::pair<int, double>> moves;  // node, rms
+  const auto add = [&](SymbolKind kind, const auto& list, bool moving, const auto& centre) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const int node = plant.NodeOf(kind, static_cast<int>(i));
+      if (node < 0) continue;
+      by.emplace(node, graph.Number(centre(list[i])));
+      if (moving) moves.emplace_back(node, scales.quantity.at(list[i].name).rms);
+    }
+  };
+  const auto mean = [&](const auto& of) { return scales.quantity.at(of.name).mean; };
+  add(SymbolKind::kSignal, description.signals, true, mean);
+  add(SymbolKind::kState, description.states, true, mean);
+  add(SymbolKind::kParameter, description.parameters, false, CentreOf);
+  std::vector<double> largest;
+  for (const PlantState& state : plant.states()) {
+    largest.push_back(0.0);
+    for (const auto& [node, rms] : moves) {
+      if (!graph.DependsOn(state.rate, node)) continue;
+      const int slope = graph.Differentiate(state.rate, node);
+      const int value = slope < 0 ? -1 : graph.Substitute(slope, by);
+      if (value < 0 || !graph.IsNumber(value) || !std::isfinite(graph.at(value).value)) continue;
+      largest.back() = std::fmax(largest.back(), std::fabs(graph.at(value).value) * rms);
+    }
+  }
+  return largest;
+}
+
+/// Rates of states whose terms cancel.
+void RaiseRates(const PlantDescription& plant, DataScales* scales) {
+  constexpr double kOfLargest = 0.1;
+  if (plant.states.empty()) return;
+  try {
+    const std::vector<double> largest = LargestTerms(Plant(plant), *scales);
+    for (std::size_t s = 0; s < largest.size(); ++s) {
+      QuantityScale& scale = scales->quantity.at(plant.states[s].name);
+      if (kOfLargest * largest[s] > scale.rms * kTurn / scales->period) scale.rate = kOfLargest * largest[s];
+    }
+  } catch (const PlantError&) {  // a part of a plant: sizes are taken all the same
+  }
+}
+
 }  // namespace
 
 DataScales MeasuredScales(const PlantDescription& plant, const std::vector<std::vector<double>>& columns,
@@ -127,6 +182,7 @@ DataScales MeasuredScales(const PlantDescription& plant, const std::vector<std::
   }
   scales.period = PeriodOf(columns[output], scales.quantity[plant.output], scales.record);
   FillTheRest(plant, &scales);
+  RaiseRates(plant, &scales);
   return scales;
 }
 
@@ -173,11 +229,13 @@ double ScaleValue(std::string_view text, const PlantDescription& plant, const Da
     add("low_" + name, scale.low);
     add("high_" + name, scale.high);
     add("range_" + name, scale.high > scale.low ? scale.high - scale.low : scale.rms);
-    add("rate_" + name, scale.rms * kTurn / scales.period);
+    add("rate_" + name, scale.rate > 0.0 ? scale.rate : scale.rms * kTurn / scales.period);
   };
   const auto scale_of = [&](const std::string& name) {
     for (const ParameterDescription& p : plant.parameters)
       if (p.name == name) return QuantityScale{p.mean, SizeOf(p), p.lower.value_or(0.0), p.upper.value_or(0.0)};
+    for (const ConstantDescription& c : plant.constants)
+      if (c.name == name) return QuantityScale{c.value, std::fabs(c.value), c.value, c.value};
     const auto found = scales.quantity.find(name);
     return found == scales.quantity.end() ? QuantityScale{} : found->second;
   };

@@ -210,6 +210,71 @@ TEST(EffectComposition, ChangesAParameterWhereverItIsRead) {
   EXPECT_EQ(composed.states[1].rate, "u - changed_k*pos");
 }
 
+/// A tank behind a valve: its law explains what the valve lets in.
+PlantDescription Filled() {
+  PlantDescription plant;
+  plant.name = "filled";
+  plant.output = "y";
+  plant.signals = {{"u", "1", "drive", ""}, {"p", "Pa", "pressure", ""}, {"r", "Pa/s", "", "p"}, {"y", "m", "", ""}};
+  plant.constants = {{"source", 5e5, "Pa"}};
+  plant.parameters = {{"k", "s", "normal", 1.0, 1.0, 0.0, 10.0}};
+  plant.lets = {{"head", "source - p"}};
+  plant.modes = {{"open", "u > 0", "k*r", "u*head"}, {"shut", "", "", "", true}};
+  return plant;
+}
+
+EffectEntry OnInput(const std::string& name, const std::string& kind, const std::string& formula) {
+  EffectEntry entry = WithTerm(kind == "constant" ? "parameter" : "input", formula, name);
+  entry.forms[0].explains.clear();
+  entry.forms[0].needs = {Need(name, kind, "")};
+  entry.forms[0].needs[0].used = true;
+  entry.forms[0].terms[0].of = name;
+  return entry;
+}
+
+TEST(EffectComposition, LeavesATargetAsItIsReadAndMovesTheLaw) {
+  EffectEntry bias = OnInput("p", "signal", "p - c");
+  bias.forms[0].needs[0].roles = {"pressure"};
+  const PlantDescription composed = Added(Filled(), bias);
+  EXPECT_EQ(composed.modes[0].target, "u*(source - p)");
+  EXPECT_EQ(composed.modes[0].law,
+            "changed_target_as_read_1 - (changed_target_as_felt_1 - (k*r))*changed_target_size_1");
+  const auto let = [&composed](const std::string& name) {
+    for (const LetDescription& one : composed.lets)
+      if (one.name == name) return one.text;
+    return std::string("none");
+  };
+  EXPECT_EQ(let("changed_target_as_read_1"), "u*(source - p)");
+  EXPECT_EQ(let("changed_target_as_felt_1"), "u*(source - changed_p)");
+  EXPECT_EQ(let("changed_p"), "p - changed_c");
+  EXPECT_EQ(let("changed_target_size_1"),
+            "if(target_at_u*(source - target_at_p) == 0, 1, (target_at_u*(source - target_at_p))/"
+            "(target_at_u*(source - (target_at_p - changed_c))))");
+  // What comes later acts on what the first one left.
+  EffectEntry supply = OnInput("source", "constant", "source - c");
+  const PlantDescription twice = Added(composed, supply);
+  EXPECT_EQ(twice.modes[0].law, composed.modes[0].law);
+  EXPECT_EQ(twice.modes[0].target, "u*(source - p)");
+  for (const LetDescription& one : twice.lets) {
+    if (one.name == "changed_target_as_felt_1") {
+      EXPECT_EQ(one.text, "u*(changed_2_source - changed_p)");
+    }
+    if (one.name == "changed_target_as_read_1") {
+      EXPECT_EQ(one.text, "u*(source - p)");
+    }
+  }
+}
+
+TEST(EffectBindings, KnowWhichSignalIsTheRateOfWhich) {
+  EffectEntry loss = OnInput("r", "signal", "r + c*p");
+  loss.forms[0].parameters[0].unit = "r/p";
+  loss.forms[0].needs.push_back(Need("p", "signal", ""));
+  loss.forms[0].needs[0].rate_of = "p";
+  const auto bindings = Bindings(Filled(), loss);
+  ASSERT_EQ(bindings.size(), 1u);
+  EXPECT_THAT(bindings[0].symbols, UnorderedElementsAre(Pair("r", "r"), Pair("p", "p")));
+}
+
 TEST(EffectBindings, AreAllWaysInWhichTheRolesFit) {
   PlantDescription plant = test::DescribedAxis();
   plant.signals.push_back({"v2", "m/s", "velocity", ""});
@@ -347,6 +412,21 @@ TEST(EffectScalesTest, AreThoseOfTheData) {
   EXPECT_EQ(scales.quantity.at("pos").rms, scales.quantity.at("y").rms) << "role and unit of the output";
   EXPECT_NEAR(scales.quantity.at("speed").rms, 2.0 * 3.141592653589793 / scales.period, 1e-9) << "its rate";
   EXPECT_NEAR(ScaleValue("0.5*x + 2*dt + high_output", plant, scales, {{"x", "u"}}), 1.5 + 0.02 + 1.0, 1e-12);
+}
+
+TEST(EffectScalesTest, OfARateWhoseTermsCancelAreThoseOfItsTerms) {
+  PlantDescription plant = Simulated();
+  const std::vector<double> times{0.0, 1.0, 2.0, 3.0, 4.0}, drive{0.0, 1.0, 0.0, -1.0, 0.0};
+  const std::vector<double> position{0.0, 1.0, 0.0, -1.0, 0.0};
+  const double free = ScaleValue("rate_v", plant, MeasuredScales(plant, {drive, position}, times), {{"v", "speed"}});
+  plant.constants = {{"d", 1e4, "1/s"}};
+  plant.states[1].rate = "u - k*pos - d*speed";
+  plant.parameters[0].mean = 1e4;
+  plant.parameters[0].upper = 1e6;
+  const DataScales scales = MeasuredScales(plant, {drive, position}, times);
+  const double damped = ScaleValue("rate_v", plant, scales, {{"v", "speed"}});
+  EXPECT_LT(free, 100.0);
+  EXPECT_NEAR(damped, 0.1 * 1e4 * std::max(scales.quantity.at("speed").rms, scales.quantity.at("pos").rms), 1.0);
 }
 
 TEST(EffectScalesTest, RefuseWhatIsNoSizeAndDataThatAreNone) {

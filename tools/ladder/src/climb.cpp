@@ -162,6 +162,14 @@ const Contender* NamedAgain(const Ladder& ladder, const Rung& rung) {
   return nullptr;
 }
 
+/// Which changes from sample to sample like the noise: the output; where the law explains a target instead, the error
+/// of the law. Inputs that switch make a target jump, and noise is that of the signals that the law is made of.
+Eigen::VectorXd SmoothBut(const Trial& base) {
+  const std::vector<ModeDescription>& modes = base.model->plant().description().modes;
+  const bool target = std::any_of(modes.begin(), modes.end(), [](const auto& mode) { return !mode.target.empty(); });
+  return target ? Eigen::VectorXd(base.model->target() - base.fit.prediction) : base.model->target();
+}
+
 /// Back to where nothing had been named on a rung.
 void TakeBack(std::size_t rung, Ladder* ladder, Trial* base) {
   ladder->rungs.resize(rung + 1);
@@ -180,7 +188,7 @@ Ladder Climb(const ClimbRequest& request) {
   Ladder ladder;
   ladder.entries = std::make_shared<const std::vector<EffectEntry>>(request.entries);
   ladder.plant = request.plant;
-  Dataset data = Compared(*ladder.plant, request.data);
+  Dataset data = Compared(*ladder.plant, request.data, request.most_simulated);
 
   progress.Tell("fitting the model as it is", 0.0);
   Trial base = FitAlone(ladder.plant, &data);
@@ -188,9 +196,9 @@ Ladder Climb(const ClimbRequest& request) {
     ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
     return ladder;
   }
-  ladder.noise_floor = request.known_noise > 0.0 ? request.known_noise
-                                                 : request.noise_over_differences *
-                                                       NoiseFloor(data, base.model->target(), base.model->active());
+  ladder.noise_floor = request.known_noise > 0.0
+                           ? request.known_noise
+                           : request.noise_over_differences * NoiseFloor(data, SmoothBut(base), base.model->active());
   ladder.base = base;
   std::set<std::string> families;
   int again = 2;  // rungs that begin anew from a better fit
@@ -207,7 +215,7 @@ Ladder Climb(const ClimbRequest& request) {
       rung.contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
     progress.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
                   static_cast<double>(r) / request.max_rungs);
-    TryAll(ladder.plant, data, ladder.view, &rung, &ladder.notes);
+    TryAll(ladder.plant, data, ladder.view, ladder.noise_floor, &rung, &ladder.notes);
     if (Trial better = BetterBase(ladder.plant, data, rung); better.fit.valid && again > 0) {
       base = std::move(better);
       --again;

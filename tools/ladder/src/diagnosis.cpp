@@ -12,7 +12,9 @@
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/sha256.hpp"
 #include "held_out.hpp"
+#include "one_equation.hpp"
 #include "run_along.hpp"
+#include "two_equations.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -86,6 +88,7 @@ class Teller {
     const support::Recording& recording = request_.recording;
     result_.version = support::Version();
     result_.model = recording.plant;
+    result_.equation = request_.equation;
     result_.data_file = recording.title;
     std::vector<std::string> sums;
     for (const std::filesystem::path& file : recording.files) sums.push_back(support::Sha256OfFile(file));
@@ -233,6 +236,8 @@ class Teller {
       if (data_.training[n] != 0 && before_.model->active()[n] != 0) rows.push_back(static_cast<Index>(n));
     if (before_.error.size() > 0)
       result_.where = WhereErrorsAre(before_.error, features, rows, result_.gap.noise_floor);
+    for (gap::Where& where : result_.where)
+      if (!request_.equation.empty()) where.feature = request_.equation + ": " + where.feature;
     if (after_.error.size() > 0) {
       const double noise = result_.gap.noise_floor * result_.gap.noise_floor;
       const double base = ladder_.base.fit.error_sd * ladder_.base.fit.error_sd - noise;
@@ -277,19 +282,24 @@ class Teller {
     }
     if (tie != nullptr) {
       const auto begin = std::chrono::steady_clock::now();
-      result_.separate_by = SeparatingMotion(data_, *tie, request_.plant->plant.description());
+      // A signal that one equation reads is what another decides: it cannot be moved as one likes.
+      if (request_.equation.empty())
+        result_.separate_by = SeparatingMotion(data_, *tie, request_.plant->plant.description());
       result_.seconds.emplace_back("experiment",
                                    std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-      result_.separate_by.words += " What shows each of them: " + Joined(shows, " ");
+      if (!result_.separate_by.words.empty()) result_.separate_by.words += ' ';
+      result_.separate_by.words += "What shows each of them: " + Joined(shows, " ");
     }
     result_.sentence = Sentence();
   }
 
   std::string Sentence() const {
     const std::string percent = Number(std::round(1000.0 * result_.gap.closed_fraction) / 10.0);
+    const std::string in = request_.equation.empty() ? "" : " in the " + request_.equation;
     if (result_.ladder.empty())
-      return complete_ ? "Nothing is missing that these data show: the model explains them to the noise."
-                       : "Something is missing, and no effect that fits this plant earns a name." + ActsAsIf();
+      return complete_
+                 ? "Nothing is missing that these data show: the model explains them to the noise."
+                 : "Something is missing" + in + ", and no effect that fits this plant earns a name." + ActsAsIf();
     std::vector<std::string> rungs;
     for (const Rung& rung : ladder_.rungs) {
       if (rung.named.empty()) continue;
@@ -297,7 +307,7 @@ class Teller {
       for (const std::size_t i : rung.named) titles.push_back(InWords(NameOf(rung.contenders[i])));
       rungs.push_back(Joined(titles, " or "));
     }
-    return "Missing: " + Joined(rungs, ", then ") + ". With that, " + percent +
+    return "Missing" + in + ": " + Joined(rungs, ", then ") + ". With that, " + percent +
            " % of the gap on held-out data is closed" +
            (complete_ ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf());
   }
@@ -340,13 +350,12 @@ class Teller {
 
 }  // namespace
 
-Diagnosis Diagnose(const DiagnosisRequest& request) {
-  const auto begin = std::chrono::steady_clock::now();
+Diagnosis LookAt(const DiagnosisRequest& request, Dataset* data) {
   Diagnosis diagnosis;
-  Dataset data = DatasetOf(request.recording);
-  if (data.num_training() < 100)
+  *data = DatasetOf(request.recording);
+  if (data->num_training() < 100)
     throw support::InputError(request.recording.title + ": a diagnosis needs at least 100 rows to fit to, there are " +
-                              std::to_string(data.num_training()));
+                              std::to_string(data->num_training()));
   ClimbRequest climb;
   climb.plant = std::make_shared<const Plant>(request.plant->plant.description());
   for (EffectEntry& entry : support::EffectsFor(request.plant->effects)) {
@@ -357,42 +366,76 @@ Diagnosis Diagnose(const DiagnosisRequest& request) {
     };
     if (!named(request.without) && !named(request.plant->effects.without)) climb.entries.push_back(std::move(entry));
   }
-  climb.data = data;
+  climb.data = *data;
   climb.known_noise = request.recording.smoothed_noise;
   climb.noise_over_differences = request.recording.noise_kept / request.recording.noise_told;
-  constexpr double kClimb = 0.9;  // share of the time, about
-  if (request.progress)
-    climb.progress = [&](const std::string& step, double share) { request.progress(step, kClimb * share); };
+  // Rows that the law was judged on are judged here, too: a load may come late.
+  constexpr std::size_t kSecond = 16'000;
+  if (!request.equation.empty()) climb.most_simulated = kSecond;
+  climb.progress = request.progress;
   diagnosis.ladder = Climb(climb);
   const Ladder& ladder = diagnosis.ladder;
   if (!ladder.base.fit.valid) throw support::InputError(request.recording.title + ": " + Joined(ladder.notes, "; "));
-  LeaveOutStarts(ladder.base, &data);
-  Teller(request, data, ladder, &diagnosis.result).TellAll();
+  LeaveOutStarts(ladder.base, data);
+  Tell(request, *data, &diagnosis);
+  return diagnosis;
+}
+
+void Tell(const DiagnosisRequest& request, const Dataset& data, Diagnosis* diagnosis) {
+  diagnosis->result = {};
+  Teller(request, data, diagnosis->ladder, &diagnosis->result).TellAll();
+}
+
+void FollowUp(const DiagnosisRequest& request, const Dataset& data, Diagnosis* diagnosis) {
+  const Ladder& ladder = diagnosis->ladder;
   const std::size_t own = request.plant->plant.description().parameters.size();
-  diagnosis.before = Tuned(request.plant->plant.description(), own, ladder.base, ladder.view.data.training);
-  diagnosis.after = Tuned(ladder.plant->description(), own, ladder.final_trial, ladder.view.data.training);
+  diagnosis->before = Tuned(request.plant->plant.description(), own, ladder.base, ladder.view.data.training);
+  diagnosis->after = Tuned(ladder.plant->description(), own, ladder.final_trial, ladder.view.data.training);
   const bool named = NumNamed(ladder) > 0;
-  if (named && !diagnosis.after.held.empty())
-    diagnosis.result.notes.push_back(
+  if (named && !diagnosis->after.held.empty())
+    diagnosis->result.notes.push_back(
         "constants in the new model, since these data do not tell them, they lie on a bound, or the estimator "
         "samples no more: " +
-        Joined(diagnosis.after.held, ", "));
+        Joined(diagnosis->after.held, ", "));
   const auto seconds = [](auto since) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
   };
   const auto run_begin = std::chrono::steady_clock::now();
-  diagnosis.result.seed = request.seed;
-  diagnosis.result.drift =
-      DriftOver(data, diagnosis.before, ladder.base, named ? &diagnosis.after : nullptr, ladder.final_trial);
+  diagnosis->result.seed = request.seed;
+  diagnosis->result.drift =
+      DriftOver(data, diagnosis->before, ladder.base, named ? &diagnosis->after : nullptr, ladder.final_trial);
   const auto drift_end = std::chrono::steady_clock::now();
-  diagnosis.result.run = RunAlong(std::make_shared<const support::Recording>(request.recording), diagnosis.before,
-                                  named ? &diagnosis.after : nullptr, request.seed, [&](double share) {
-                                    if (request.progress) request.progress("run", kClimb + (1.0 - kClimb) * share);
-                                  });
-  diagnosis.result.seconds.emplace_back("one step", seconds(drift_end));
-  diagnosis.result.seconds.emplace_back("drift", std::chrono::duration<double>(drift_end - run_begin).count());
-  diagnosis.result.seconds.emplace_back("all", seconds(begin));
+  diagnosis->result.run = RunAlong(std::make_shared<const support::Recording>(request.recording), diagnosis->before,
+                                   named ? &diagnosis->after : nullptr, request.seed, [&](double share) {
+                                     if (request.progress) request.progress("run", share);
+                                   });
+  diagnosis->result.seconds.emplace_back("one step", seconds(drift_end));
+  diagnosis->result.seconds.emplace_back("drift", std::chrono::duration<double>(drift_end - run_begin).count());
+}
+
+Diagnosis Diagnose(const DiagnosisRequest& request) {
+  constexpr double kClimb = 0.9;  // share of the time, about
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnosis diagnosis;
+  if (request.plant->plant.description().predicts.empty()) {
+    Dataset data;
+    DiagnosisRequest part = request;
+    part.progress = PartOf(request.progress, 0.0, kClimb);
+    diagnosis = LookAt(part, &data);
+    part.progress = PartOf(request.progress, kClimb, 1.0);
+    FollowUp(part, data, &diagnosis);
+  } else {
+    diagnosis = DiagnoseBoth(request);
+  }
+  diagnosis.result.seconds.emplace_back(
+      "all", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   return diagnosis;
+}
+
+std::function<void(const std::string&, double)> PartOf(
+    const std::function<void(const std::string& step, double share)>& progress, double from, double to) {
+  if (!progress) return {};
+  return [progress, from, to](const std::string& step, double share) { progress(step, from + (to - from) * share); };
 }
 
 }  // namespace armcmc::ladder

@@ -124,9 +124,10 @@ bool AreKin(const EffectEntry& a, const EffectEntry& b) {
   return lists(a, b) || lists(b, a);
 }
 
-void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung,
+void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor, Rung* rung,
             std::vector<std::string>* notes) {
   constexpr double kWorthIt = 0.25, kNoGain = 0.05;
+  constexpr double kNoiseAlone = 1.2, kMoreThanNoise = 1.5;  // times its square
   std::vector<Contender>& all = rung->contenders;
   const Eigen::VectorXd error = rung->base.model->target() - rung->base.fit.prediction;
   // With what remembers and what does not: quick parts of two kinds.
@@ -138,6 +139,9 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     if (std::optional<QuickBase>& base = quick(c); !base) {
       base.emplace(QuickBase{QuickPart(*c.candidate.plant, data, error), 0.0});
       base->square = Square(Refine(plant, base->data, rung->base.fit.theta));
+      // What begins later does not show in beginnings.
+      if (base->square < kNoiseAlone * floor * floor && Square(rung->base) > kMoreThanNoise * floor * floor)
+        base.emplace(QuickBase{data, Square(rung->base)});
     }
   // From what the model so far has, or from anywhere where `known` is empty.
   const auto try_from = [&](const Eigen::VectorXd& known, std::size_t starts, Contender* c) {

@@ -9,8 +9,10 @@
 namespace armcmc::ladder {
 
 /// Fits everything quickly, what is worth it on all rows, and compares what may be named with the base.
+/// @param floor  Standard deviation of the noise: where the quick part shows nothing more, though all rows do, it is
+///               all of them.
 /// @param notes  Gets why an effect could not be tried.
-void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, Rung* rung,
+void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor, Rung* rung,
             std::vector<std::string>* notes);
 
 /// A better fit of the model so far than it has, from where effects that explain most have its parameters: what runs

@@ -143,10 +143,9 @@ Trial Try(const std::shared_ptr<const Plant>& plant, const Dataset& data, const 
   return trial;
 }
 
-Dataset Compared(const Plant& plant, const Dataset& data) {
+Dataset Compared(const Plant& plant, const Dataset& data, std::size_t most_simulated) {
   constexpr std::size_t kMost = 20'000, kWindow = 1000;  // long enough for what remembers
-  constexpr std::size_t kMostSimulated = 8000;           // fits take long
-  return IsSimulated(plant.description()) ? Beginnings(data, kMostSimulated) : Windows(data, {}, kWindow, kMost);
+  return IsSimulated(plant.description()) ? Beginnings(data, most_simulated) : Windows(data, {}, kWindow, kMost);
 }
 
 Trial FitAlone(const std::shared_ptr<const Plant>& plant, Dataset* data) {

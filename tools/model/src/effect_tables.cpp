@@ -20,6 +20,8 @@ std::string NeedsOf(const EffectForm& form) {
     std::string text = need.roles.empty() ? "" : Joined(need.roles, "/") + ' ';
     text += need.kind == "signal" ? "" : need.kind + ' ';
     if (!need.unit.empty()) text += "in " + need.unit + ' ';
+    if (!need.rate_of.empty()) text += "rate of " + need.rate_of + ' ';
+    if (text.empty()) text = "any signal ";
     text.pop_back();
     needs.push_back(std::move(text));
   }

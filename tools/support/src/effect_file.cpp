@@ -28,11 +28,12 @@ void ReadNeeds(StrictTable needs, EffectForm* form) {
     StrictTable at = needs.Table(name);
     EffectNeed need;
     need.name = name;
-    need.kind = at.Choice("kind", "signal", {"signal", "state", "parameter"});
+    need.kind = at.Choice("kind", "signal", {"signal", "state", "parameter", "constant"});
     need.roles = at.Texts("role");
     need.unit = at.Text("unit", "");
     need.per = at.Text("per", "");
     need.reads = at.Text("reads", "");
+    need.rate_of = at.Text("rate_of", "");
     need.used = at.Boolean("used", false);
     form->needs.push_back(std::move(need));
   }

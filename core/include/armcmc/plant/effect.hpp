@@ -14,12 +14,15 @@ namespace armcmc {
 /// Something of a plant that an effect acts on or is computed from. In the effect's texts it has a name of its own.
 struct EffectNeed {
   std::string name;
-  std::string kind = "signal";     ///< "signal" (never the output), "state" or "parameter".
+  /// "signal" (never the output), "state", "parameter", or "constant": one that a law, a target or a rate reads
+  /// together with all other needs.
+  std::string kind = "signal";
   std::vector<std::string> roles;  ///< One of these; none: whatever it is.
   std::string unit;                ///< That it must have; empty: any.
   std::string per;                 ///< Its unit is the output's over a power above 0 of what this need is bound to.
   std::string reads;               ///< Of a state: its rate reads what this need is bound to.
-  bool used = false;               ///< The law reads it.
+  std::string rate_of;             ///< Of a signal: the derivative of the signal that this need is bound to.
+  bool used = false;               ///< The law, or what it explains, reads it.
 };
 
 /// A parameter of an effect. Sizes are texts over the scales of data (see ScaleValue), so that they fit any plant.
@@ -46,7 +49,13 @@ struct EffectConstant {
 ///   law        takes the place of what explains the output
 ///   rate       added to the rate of the state `of`; where it says `rate`, it takes that one's place
 ///   input      takes the place of the input `of` wherever the plant reads it
-///   parameter  takes the place of the parameter `of` likewise
+///   parameter  takes the place of the parameter or constant `of` likewise
+///
+/// What a mode explains instead of the output, its target T, is made of signals alone and stays so. Where an input or a
+/// constant in it is replaced, which makes T' of it, the law explains T with T - (T' - law) S: the error is that of law
+/// against T'. S is T / T' at one place, inputs with the role "drive" at their most and other signals at their mean:
+/// without it an effect that makes T' small would leave a small error with a law that is small. Such a mode goes on to
+/// be chosen by what was measured.
 struct EffectTerm {
   std::string slot = "output";
   std::string of;

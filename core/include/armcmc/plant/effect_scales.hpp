@@ -15,6 +15,7 @@ struct QuantityScale {
   double rms = 1.0;   ///< About the mean; > 0.
   double low = -2.0;  ///< Least and greatest value.
   double high = 2.0;
+  double rate = 0.0;  ///< Size of its rate; 0: rms times 2 pi over the period.
 };
 
 /// What the priors of an effect are measured in.
@@ -31,7 +32,9 @@ struct DataScales {
 /// @param columns  Of every signal in the order of the file, equally long; an empty one: not recorded.
 /// @param times    s, of every row, increasing.
 /// States have the scale of a signal with their unit, first one of their role; else that of a signal whose rate has
-/// their unit, times 2 pi / period a rate; else 1.
+/// their unit, times 2 pi / period a rate; else 1. The rate of a state is at least a tenth of the largest term in it,
+/// |d rate / d x| times the rms of x: where a state is damped heavily, its terms cancel and its rate says little of
+/// them.
 /// @throws PlantError where there are fewer than two rows or lengths differ.
 [[nodiscard]] DataScales MeasuredScales(const PlantDescription& plant, const std::vector<std::vector<double>>& columns,
                                         const std::vector<double>& times);
@@ -48,7 +51,7 @@ struct DataScales {
 ///
 /// Names: dt, record, start, period, noise; of the output, and of each name in `bound` (name -> quantity of the plant):
 /// NAME (rms about the mean), mean_NAME, low_NAME, high_NAME, range_NAME (high - low), rate_NAME (NAME times 2 pi /
-/// period). A bound parameter has |mean| + sd.
+/// period). A bound parameter has |mean| + sd, a constant |value|.
 /// @throws expression::Error, UnknownName with the column.
 [[nodiscard]] double ScaleValue(std::string_view text, const PlantDescription& plant, const DataScales& scales,
                                 const std::map<std::string, std::string>& bound);

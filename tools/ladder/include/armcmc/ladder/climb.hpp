@@ -72,6 +72,8 @@ struct ClimbRequest {
   /// are interpolated and share noise.
   double noise_over_differences = 1.0;
   int max_rungs = 5;
+  /// Rows at most that a simulated plant is compared on.
+  std::size_t most_simulated = kMostSimulated;
   std::function<void(const std::string& step, double share)> progress;
 };
 

@@ -41,9 +41,13 @@ struct Trial {
 /// True for a plant whose own states are integrated from the beginning of a run, not those of an effect only.
 [[nodiscard]] bool IsSimulated(const PlantDescription& plant);
 
+/// Rows on which simulated plants are compared, where nothing else is asked for: fits take long.
+inline constexpr std::size_t kMostSimulated = 8000;
+
 /// The rows on which models are compared: all of a short recording, stretches of a long one that a law with memory can
 /// follow, beginnings where the plant is simulated.
-[[nodiscard]] Dataset Compared(const Plant& plant, const Dataset& data);
+/// @param most_simulated  Rows of those beginnings, at most.
+[[nodiscard]] Dataset Compared(const Plant& plant, const Dataset& data, std::size_t most_simulated = kMostSimulated);
 
 /// A plant as it is, fitted to the training rows of `data`, from many starts; then those near the beginning of a run
 /// that depend on states nobody measured do not count any more, in `data` neither. Not valid where the law has no

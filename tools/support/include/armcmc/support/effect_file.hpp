@@ -15,7 +15,7 @@ namespace armcmc::support {
 ///   single = true                       it has a kink: two of them in one place are pieces of a curve, and no name
 ///   slot, of, formula, explains, online, reason        the usual form (see EffectForm and EffectTerm)
 ///   also = [{ slot, of, formula }, ..]                 where it acts in more than one place
-///   [needs]      NAME = { role, kind, unit, per, reads, used }
+///   [needs]      NAME = { role, kind, unit, per, reads, rate_of, used }
 ///   [constants]  NAME = { unit, value }                value: a size, see ScaleValue
 ///   [let]        NAME = "expression"
 ///   [states]     NAME = { unit, rate, start, role, substeps }
