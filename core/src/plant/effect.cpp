@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
+#include <string_view>
 
 #include "armcmc/plant/plant.hpp"
 #include "effect_reading.hpp"
@@ -20,6 +22,12 @@ const std::string kRateOf = "rate_of_";  // and the state: of the let that holds
 const std::string kAsRead = "_as_read_", kAsFelt = "_as_felt_";
 const std::string kSize = "_size_";           // likewise: of one over the other
 const std::string kReference = "target_at_";  // and a signal: the value at which they are compared
+
+std::string Joined(std::initializer_list<std::string_view> parts) {
+  std::string text;
+  for (const std::string_view part : parts) text += part;
+  return text;
+}
 
 /// With the number of digits that is sensible for a prior.
 double ShortPrior(double value) {
@@ -180,12 +188,13 @@ class Composer {
       const bool split = std::any_of(plant_.lets.begin(), plant_.lets.end(),
                                      [&](const LetDescription& let) { return let.name.ends_with(kAsRead + number); });
       if (split) continue;
-      const std::string read = prefix_ + "target" + kAsRead + number, felt = prefix_ + "target" + kAsFelt + number;
+      const std::string read = Joined({prefix_, "target", kAsRead, number});
+      const std::string felt = Joined({prefix_, "target", kAsFelt, number});
       plant_.lets.push_back({read, target});
       plant_.lets.push_back({felt, target});
-      const std::string size = prefix_ + "target" + kSize + number;
+      const std::string size = Joined({prefix_, "target", kSize, number});
       plant_.lets.push_back({size, "1"});
-      mode.law = read + " - (" + felt + " - " + Bracketed(mode.law) + ")*" + size;
+      mode.law = Joined({read, " - (", felt, " - ", Bracketed(mode.law), ")*", size});
     }
   }
 
@@ -203,7 +212,7 @@ class Composer {
       };
       const std::string read = there(kAsRead), felt = there(kAsFelt);
       const bool known = !read.empty() && !felt.empty();
-      plant_.lets[l].text = known ? "if(" + read + " == 0, 1, (" + read + ")/(" + felt + "))" : "1";
+      plant_.lets[l].text = known ? Joined({"if(", read, " == 0, 1, (", read, ")/(", felt, "))"}) : "1";
     }
   }
 

@@ -83,15 +83,16 @@ TEST(BlockGrams, OfSomeColumnsAreAsIfThereWereNoOthers) {
 
 TEST(GramOf, IsTheProductWhateverTheCounts) {
   for (const Eigen::Index rows : {0, 1, 7, 8, 9, 175, 256, 1001})
-    for (const Eigen::Index cols : {0, 1, 2, 3, 6, 7}) {
+    for (const Eigen::Index cols : {1, 2, 3, 6, 7}) {
       const Matrix columns = NoiseColumns(rows + 5, cols);
       const Matrix block = columns.middleRows(3, rows), product = block.transpose() * block;
       const Matrix gram = GramOf(columns, 3, rows);
       ASSERT_EQ(gram.rows(), cols);
       EXPECT_EQ(gram, Matrix(gram.transpose()));
-      EXPECT_TRUE(rows == 0 || cols == 0 || gram.isApprox(product, 1e-13)) << rows << " x " << cols;
+      EXPECT_TRUE(rows == 0 || gram.isApprox(product, 1e-13)) << rows << " x " << cols;
       EXPECT_TRUE(rows > 0 || gram.isZero(0.0));
     }
+  EXPECT_EQ(GramOf(NoiseColumns(9, 0), 3, 5).size(), 0);
 }
 
 TEST(LeaveBlockOut, WithoutColumnsIsTheResidual) {

@@ -48,8 +48,8 @@ std::vector<double> Continued(const std::vector<double>& x, std::size_t window, 
   for (Eigen::Index i = 0; i < rows; ++i) {
     const double from_end = (static_cast<double>(i) - length) / length;
     last[i] = x[x.size() - static_cast<std::size_t>(rows - i)];
-    double power = 1.0;
-    for (Eigen::Index d = 0; d <= degree; ++d, power *= from_end) powers(i, d) = power;
+    powers(i, 0) = 1.0;
+    for (Eigen::Index d = 1; d <= degree; ++d) powers(i, d) = powers(i, d - 1) * from_end;
   }
   const Eigen::VectorXd c = powers.householderQr().solve(last);
   std::vector<double> beyond(count);
@@ -109,7 +109,9 @@ double SuitableBandwidth(const std::vector<double>& x, double dt) {
   // 1 + 9 + 9 + 1 of the noise's variance.
   const double noise = std::sqrt(square / (20.0 * std::max<double>(1.0, static_cast<double>(x.size()) - 3.0)));
   double bandwidth = 0.25 / dt;
-  for (double next = bandwidth / 1.25; next * dt * static_cast<double>(x.size()) > 10.0; next /= 1.25) {
+  while (true) {
+    const double next = bandwidth / 1.25;
+    if (next * dt * static_cast<double>(x.size()) <= 10.0) break;
     const std::vector<double> smooth = ZeroPhase(x, dt, next);
     double taken = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) taken += (x[i] - smooth[i]) * (x[i] - smooth[i]);
