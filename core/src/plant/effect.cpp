@@ -1,14 +1,10 @@
 #include "armcmc/plant/effect.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <initializer_list>
-#include <string_view>
 
 #include "armcmc/plant/plant.hpp"
 #include "effect_reading.hpp"
+#include "effect_targets.hpp"
 #include "effect_text.hpp"
 #include "effect_units.hpp"
 
@@ -18,26 +14,6 @@ namespace {
 using NameMap = std::map<std::string, std::string>;
 
 const std::string kRateOf = "rate_of_";  // and the state: of the let that holds a rate which an effect wraps
-// And the number of a mode: of lets that hold what it explains, as signals have it and as effects leave it.
-const std::string kAsRead = "_as_read_", kAsFelt = "_as_felt_";
-const std::string kSize = "_size_";           // likewise: of one over the other
-const std::string kReference = "target_at_";  // and a signal: the value at which they are compared
-
-std::string Joined(std::initializer_list<std::string_view> parts) {
-  std::string text;
-  for (const std::string_view part : parts) text += part;
-  return text;
-}
-
-/// With the number of digits that is sensible for a prior.
-double ShortPrior(double value) {
-  if (value == 0.0) return value;
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 3).ptr;
-  double rounded = value;
-  std::from_chars(text.data(), end, rounded);
-  return rounded;
-}
 
 bool IsTaken(const PlantDescription& plant, const std::string& prefix) {
   const auto begins = [&](const auto& list) {
@@ -106,7 +82,7 @@ class Composer {
       if (term.slot == "output" || term.slot == "law") ChangeOutput(term);
     }
     plant_.lets = InOrder(std::move(plant_.lets));
-    SetTargetSizes();
+    SetTargetSizes(scales_, &plant_);
     return std::move(plant_);
   }
 
@@ -147,11 +123,11 @@ class Composer {
       added.unit = UnitIn(p.unit, units_);
       added.prior = p.prior;
       if (p.prior != "uniform") {
-        added.mean = ShortPrior(Size(p.mean));
-        added.sd = ShortPrior(Size(p.sd));
+        added.mean = ShortNumber(Size(p.mean));
+        added.sd = ShortNumber(Size(p.sd));
       }
-      if (!p.lower.empty()) added.lower = ShortPrior(Size(p.lower));
-      if (!p.upper.empty()) added.upper = ShortPrior(Size(p.upper));
+      if (!p.lower.empty()) added.lower = ShortNumber(Size(p.lower));
+      if (!p.upper.empty()) added.upper = ShortNumber(Size(p.upper));
       plant_.parameters.push_back(std::move(added));
     }
   }
@@ -162,7 +138,7 @@ class Composer {
     for (std::string* text : {&plant_.law, &plant_.predicts}) change(text);
     for (ModeDescription& mode : plant_.modes) change(&mode.law);
     for (LetDescription& let : plant_.lets)
-      if (let.name.find(kAsRead) == std::string::npos) change(&let.text);
+      if (!IsTargetAsRead(let.name)) change(&let.text);
     for (StateDescription& state : plant_.states) change(&state.rate);
   }
 
@@ -172,70 +148,9 @@ class Composer {
                                      [&](const auto& mode) { return Mentions(mode.when, symbol); });
     if (decides && MayMerge(plant_)) Merge();
     const std::string name = prefix_ + symbol;
-    SplitTargets(symbol);
+    SplitTargets(prefix_, symbol, &plant_);
     ForEachText([&](std::string* text) { *text = WithNames(*text, {{symbol, name}}); });
     plant_.lets.insert(plant_.lets.begin(), {name, Inserted(term.formula, names_)});
-  }
-
-  /// Targets that depend on the symbol stay as they are read; the law gets a let for that, and one that effects change.
-  void SplitTargets(const std::string& symbol) {
-    for (std::size_t m = 0; m < plant_.modes.size(); ++m) {
-      ModeDescription& mode = plant_.modes[m];
-      if (mode.passive || mode.target.empty()) continue;
-      const std::string target = WithoutLets(plant_, mode.target), number = std::to_string(m + 1);
-      if (!Mentions(target, symbol)) continue;
-      mode.target = target;
-      const bool split = std::any_of(plant_.lets.begin(), plant_.lets.end(),
-                                     [&](const LetDescription& let) { return let.name.ends_with(kAsRead + number); });
-      if (split) continue;
-      const std::string read = Joined({prefix_, "target", kAsRead, number});
-      const std::string felt = Joined({prefix_, "target", kAsFelt, number});
-      plant_.lets.push_back({read, target});
-      plant_.lets.push_back({felt, target});
-      const std::string size = Joined({prefix_, "target", kSize, number});
-      plant_.lets.push_back({size, "1"});
-      mode.law = Joined({read, " - (", felt, " - ", Bracketed(mode.law), ")*", size});
-    }
-  }
-
-  /// A target that an effect makes small would make its error small, too, whatever the law: errors count as many times
-  /// as much as the target is smaller, where inputs are at their most and all else is as it is on the average.
-  void SetTargetSizes() {
-    for (std::size_t l = 0; l < plant_.lets.size(); ++l) {
-      const std::size_t at = plant_.lets[l].name.find(kSize);
-      if (at == std::string::npos) continue;
-      const std::string number = plant_.lets[l].name.substr(at + kSize.size());
-      const auto there = [&](const std::string& which) {
-        const auto let = std::find_if(plant_.lets.begin(), plant_.lets.end(),
-                                      [&](const auto& one) { return one.name.ends_with(which + number); });
-        return AtOnePlace(WithoutLets(plant_, let->text));
-      };
-      const std::string read = there(kAsRead), felt = there(kAsFelt);
-      const bool known = !read.empty() && !felt.empty();
-      plant_.lets[l].text = known ? Joined({"if(", read, " == 0, 1, (", read, ")/(", felt, "))"}) : "1";
-    }
-  }
-
-  /// The text with a number for each signal, and states where they start; empty where it depends on time.
-  std::string AtOnePlace(std::string text) {
-    for (const StateDescription& state : plant_.states)
-      if (Mentions(text, state.name)) text = WithoutLets(plant_, Inserted(text, {{state.name, state.start}}));
-    for (const std::string& name : NamesIn(text))
-      if (name == "t" || name == "integral" || name == "elapsed") return {};
-    NameMap by;
-    for (const SignalDescription& signal : plant_.signals) {
-      if (!Mentions(text, signal.name)) continue;
-      const std::string constant = kReference + signal.name;
-      by[signal.name] = constant;
-      if (std::any_of(plant_.constants.begin(), plant_.constants.end(),
-                      [&](const ConstantDescription& c) { return c.name == constant; }))
-        continue;
-      const auto found = scales_.quantity.find(signal.name);
-      const QuantityScale scale = found == scales_.quantity.end() ? QuantityScale{} : found->second;
-      const double most = std::fabs(scale.high) < std::fabs(scale.low) ? scale.low : scale.high;
-      plant_.constants.push_back({constant, ShortPrior(signal.role == "drive" ? most : scale.mean), signal.unit});
-    }
-    return WithNames(text, by);
   }
 
   void Merge() {

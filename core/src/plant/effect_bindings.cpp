@@ -4,6 +4,7 @@
 #include "armcmc/expression/unit.hpp"
 #include "armcmc/plant/effect.hpp"
 #include "effect_reading.hpp"
+#include "effect_targets.hpp"
 #include "effect_text.hpp"
 #include "effect_units.hpp"
 
@@ -24,7 +25,7 @@ std::vector<EffectCandidate> CandidatesOf(const PlantDescription& plant, const s
     for (const ParameterDescription& p : plant.parameters) all.push_back({p.name, "", p.unit});
   else if (kind == "constant")
     for (const ConstantDescription& c : plant.constants) {
-      if (!c.name.starts_with("target_at_")) all.push_back({c.name, "", c.unit});  // where targets are compared
+      if (!IsTargetReference(c.name)) all.push_back({c.name, "", c.unit});
     }
   else
     for (const SignalDescription& s : plant.signals)

@@ -1,6 +1,8 @@
 #include "effect_text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 
 #include "armcmc/expression/operation.hpp"
 #include "armcmc/expression/syntax.hpp"
@@ -107,6 +109,15 @@ std::string SumText(const std::string& first, const std::string& second) {
   const std::size_t begin = second.find_first_not_of(' ');
   if (begin != std::string::npos && second[begin] == '-') return first + " - " + second.substr(begin + 1);
   return first + " + " + second;
+}
+
+double ShortNumber(double value) {
+  if (value == 0.0) return value;
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 3).ptr;
+  double rounded = value;
+  std::from_chars(text.data(), end, rounded);
+  return rounded;
 }
 
 }  // namespace armcmc

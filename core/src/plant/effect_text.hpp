@@ -24,4 +24,7 @@ namespace armcmc {
 /// first + second in the usual notation: a sum with a negative term is a difference.
 [[nodiscard]] std::string SumText(const std::string& first, const std::string& second);
 
+/// The value with four digits, which a person reads.
+[[nodiscard]] double ShortNumber(double value);
+
 }  // namespace armcmc

@@ -59,18 +59,6 @@ EffectEntry WithTerm(const std::string& slot, const std::string& formula, const 
   return entry;
 }
 
-/// A mass on a spring, simulated: its position is measured.
-PlantDescription Simulated() {
-  PlantDescription plant;
-  plant.name = "spring";
-  plant.output = "y";
-  plant.law = "pos";
-  plant.signals = {{"u", "m/s^2", "drive", ""}, {"y", "m", "position", ""}};
-  plant.parameters = {{"k", "1/s^2", "normal", 10.0, 5.0, 0.0, 100.0}};
-  plant.states = {{"pos", "m", "position", "speed", "y", ""}, {"speed", "m/s", "velocity", "u - k*pos", "0", ""}};
-  return plant;
-}
-
 PlantDescription Added(const PlantDescription& plant, const EffectEntry& entry) {
   return AddEffect(plant, entry, Bindings(plant, entry).at(0), DefaultScales(plant));
 }
@@ -147,7 +135,7 @@ TEST(EffectComposition, AddsToTheRateOfTheStateThatHasTheRole) {
   entry.forms[0].explains.clear();
   entry.forms[0].needs = {Need("v", "state", "velocity")};
   entry.forms[0].terms[0].of = "v";
-  const PlantDescription composed = Added(Simulated(), entry);
+  const PlantDescription composed = Added(test::SimulatedSpring(), entry);
   EXPECT_EQ(composed.states[1].rate, "u - k*pos - changed_c*speed");
 }
 
@@ -164,17 +152,17 @@ TEST(EffectComposition, WrapsWhatIsAddedToARateLaterAsIfItHadBeenThereBefore) {
   drag.forms[0].needs = limit.forms[0].needs;
   drag.forms[0].terms[0].of = "v";
   drag.forms[0].lets = {{"pull", "c*v"}};
-  const PlantDescription later = Added(Added(Simulated(), limit), drag);
+  const PlantDescription later = Added(Added(test::SimulatedSpring(), limit), drag);
   EXPECT_EQ(later.states[1].rate, "limit_rate_of_speed - limit_surplus");
   ASSERT_EQ(later.lets.size(), 3U);
   EXPECT_EQ(later.lets[0].text, "drag_c*speed");
   EXPECT_EQ(later.lets[1].text, "u - k*pos - drag_pull");
   EXPECT_EQ(later.lets[2].text, "max(limit_rate_of_speed - limit_c, 0)");
-  const PlantDescription before = Added(Added(Simulated(), drag), limit);
+  const PlantDescription before = Added(Added(test::SimulatedSpring(), drag), limit);
   EXPECT_EQ(before.states[1].rate, later.states[1].rate);
   EXPECT_EQ(before.lets[1].text, later.lets[1].text);
   // One limit in another: both hold back what is added.
-  const PlantDescription twice = Added(Added(Added(Simulated(), limit), limit), drag);
+  const PlantDescription twice = Added(Added(Added(test::SimulatedSpring(), limit), limit), drag);
   EXPECT_EQ(twice.states[1].rate, "limit_2_rate_of_speed - limit_2_surplus");
   EXPECT_NO_THROW(Plant{twice});
 }
@@ -205,7 +193,7 @@ TEST(EffectComposition, ChangesAParameterWhereverItIsRead) {
   entry.forms[0].needs = {Need("k", "parameter", "")};
   entry.forms[0].needs[0].unit = "1/s^2";
   entry.forms[0].terms[0].of = "k";
-  const PlantDescription composed = Added(Simulated(), entry);
+  const PlantDescription composed = Added(test::SimulatedSpring(), entry);
   EXPECT_EQ(composed.lets.front().text, "k*(1 + changed_c*t)");
   EXPECT_EQ(composed.states[1].rate, "u - changed_k*pos");
 }
@@ -265,6 +253,27 @@ TEST(EffectComposition, LeavesATargetAsItIsReadAndMovesTheLaw) {
   }
 }
 
+TEST(EffectComposition, TakesNoLetOfThePlantForItsOwn) {
+  // Names that the lets of a split target could have.
+  PlantDescription plant = Filled();
+  plant.lets.push_back({"bore_size_1", "2"});
+  plant.lets.push_back({"target_size_1", "3"});
+  plant.lets.push_back({"target_as_read_2", "4"});
+  EffectEntry bias = OnInput("p", "signal", "p - c");
+  bias.forms[0].needs[0].roles = {"pressure"};
+  for (const PlantDescription& composed :
+       {Added(plant, bias), Added(plant, OnInput("source", "constant", "source - c"))}) {
+    const auto text = [&composed](const std::string& name) {
+      for (const LetDescription& one : composed.lets)
+        if (one.name == name) return one.text;
+      return std::string("none");
+    };
+    EXPECT_EQ(text("bore_size_1"), "2");
+    EXPECT_EQ(text("target_size_1"), "3");
+    EXPECT_EQ(text("target_as_read_2"), "4");
+  }
+}
+
 TEST(EffectBindings, KnowWhichSignalIsTheRateOfWhich) {
   EffectEntry loss = OnInput("r", "signal", "r + c*p");
   loss.forms[0].parameters[0].unit = "r/p";
@@ -297,12 +306,13 @@ TEST(EffectBindings, UseTheFirstFormThatFitsAndEveryVariant) {
   std::vector<std::size_t> forms;
   for (const EffectBinding& binding : Bindings(test::DescribedAxis(), entry)) forms.push_back(binding.form);
   EXPECT_THAT(forms, ElementsAre(0u, 3u)) << "not the third, which fits as well";
-  EXPECT_EQ(Bindings(Simulated(), entry).at(0).form, 1u) << "its output is a position, its velocity a state";
+  EXPECT_EQ(Bindings(test::SimulatedSpring(), entry).at(0).form, 1u)
+      << "its output is a position, its velocity a state";
 }
 
 TEST(EffectBindings, AreNoneWhereTheOutputIsSomethingElseOrTheLawDoesNotRead) {
-  EXPECT_TRUE(Bindings(Simulated(), Friction()).empty());
-  EXPECT_THAT(WhyNot(Simulated(), Friction()), HasSubstr("its output would be a force"));
+  EXPECT_TRUE(Bindings(test::SimulatedSpring(), Friction()).empty());
+  EXPECT_THAT(WhyNot(test::SimulatedSpring(), Friction()), HasSubstr("its output would be a force"));
   EffectEntry contact = Friction();
   contact.forms[0].needs = {Need("v", "signal", "position")};
   contact.forms[0].needs[0].used = true;
@@ -329,8 +339,8 @@ TEST(EffectBindings, OfAStateThatFeedsAnotherReadItsRate) {
   entry.forms[0].needs = {Need("v", "state", "velocity"), Need("x", "state", "position")};
   entry.forms[0].needs[1].reads = "v";
   entry.forms[0].terms[0].of = "v";
-  EXPECT_EQ(Bindings(Simulated(), entry).size(), 1u);
-  PlantDescription other = Simulated();
+  EXPECT_EQ(Bindings(test::SimulatedSpring(), entry).size(), 1u);
+  PlantDescription other = test::SimulatedSpring();
   other.states[0].rate = "0*u*1 + 0*t*pos";  // reads itself, not the velocity
   EXPECT_TRUE(Bindings(other, entry).empty());
 }
@@ -393,56 +403,6 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"UnknownKind", [](auto* f) { f->needs[0].kind = "column"; }, "needs.v.kind", 0, "signal, state"},
         Wrong{"ReadsNoNeed", [](auto* f) { f->needs[0].per = "y"; }, "needs.v.per", 0, "expected v"}),
     [](const auto& at) { return std::string(at.param.name); });
-
-TEST(EffectScalesTest, AreThoseOfTheData) {
-  const PlantDescription plant = Simulated();
-  std::vector<double> times, drive, position;
-  for (int n = 0; n < 400; ++n) {
-    times.push_back(5.0 + 0.01 * n);
-    drive.push_back(3.0);
-    position.push_back(n % 100 < 50 ? 1.0 : -1.0);
-  }
-  const DataScales scales = MeasuredScales(plant, {drive, position}, times);
-  EXPECT_NEAR(scales.dt, 0.01, 1e-12);
-  EXPECT_EQ(scales.start, 5.0);
-  EXPECT_NEAR(scales.record, 3.99, 1e-12);
-  EXPECT_NEAR(scales.period, 2.0 * 3.99 / 7.0, 1e-12) << "seven crossings";
-  EXPECT_NEAR(scales.quantity.at("y").rms, 1.0, 1e-12);
-  EXPECT_NEAR(scales.quantity.at("u").rms, 3.0, 1e-12) << "what stands still has the size of its value";
-  EXPECT_EQ(scales.quantity.at("pos").rms, scales.quantity.at("y").rms) << "role and unit of the output";
-  EXPECT_NEAR(scales.quantity.at("speed").rms, 2.0 * 3.141592653589793 / scales.period, 1e-9) << "its rate";
-  EXPECT_NEAR(ScaleValue("0.5*x + 2*dt + high_output", plant, scales, {{"x", "u"}}), 1.5 + 0.02 + 1.0, 1e-12);
-}
-
-TEST(EffectScalesTest, OfARateWhoseTermsCancelAreThoseOfItsTerms) {
-  PlantDescription plant = Simulated();
-  const std::vector<double> times{0.0, 1.0, 2.0, 3.0, 4.0}, drive{0.0, 1.0, 0.0, -1.0, 0.0};
-  const std::vector<double> position{0.0, 1.0, 0.0, -1.0, 0.0};
-  const double free = ScaleValue("rate_v", plant, MeasuredScales(plant, {drive, position}, times), {{"v", "speed"}});
-  plant.constants = {{"d", 1e4, "1/s"}};
-  plant.states[1].rate = "u - k*pos - d*speed";
-  plant.parameters[0].mean = 1e4;
-  plant.parameters[0].upper = 1e6;
-  const DataScales scales = MeasuredScales(plant, {drive, position}, times);
-  const double damped = ScaleValue("rate_v", plant, scales, {{"v", "speed"}});
-  EXPECT_LT(free, 100.0);
-  EXPECT_NEAR(damped, 0.1 * 1e4 * std::max(scales.quantity.at("speed").rms, scales.quantity.at("pos").rms), 1.0);
-}
-
-TEST(EffectScalesTest, RefuseWhatIsNoSizeAndDataThatAreNone) {
-  const PlantDescription plant = Simulated();
-  EXPECT_THROW((void)ScaleValue("0.5*w", plant, DefaultScales(plant), {}), expression::Error);
-  EXPECT_THROW((void)ScaleValue("output/0", plant, DefaultScales(plant), {}), expression::Error);
-  EXPECT_THROW((void)MeasuredScales(plant, {{1.0}, {1.0}}, {0.0}), PlantError);
-  EXPECT_THROW((void)MeasuredScales(plant, {{1.0, 2.0}, {1.0, std::nan("")}}, {0.0, 1.0}), PlantError);
-}
-
-TEST(EffectScalesTest, WithoutDataFollowFromNoiseAndPriors) {
-  const DataScales scales = DefaultScales(test::DescribedAxis());
-  EXPECT_EQ(scales.quantity.at("F").rms, 30.0);
-  EXPECT_DOUBLE_EQ(scales.quantity.at("v").rms, 30.0 / 300.0) << "Fv = 200 +- 100 N s/m";
-  EXPECT_DOUBLE_EQ(scales.quantity.at("a").rms, 30.0 / 120.0) << "M = 90 +- 30 kg";
-}
 
 }  // namespace
 }  // namespace armcmc::effect_composition_test

@@ -35,6 +35,18 @@ inline PlantDescription DescribedAxis() {
   return plant;
 }
 
+/// A mass on a spring, simulated: its position is measured.
+inline PlantDescription SimulatedSpring() {
+  PlantDescription plant;
+  plant.name = "spring";
+  plant.output = "y";
+  plant.law = "pos";
+  plant.signals = {{"u", "m/s^2", "drive", ""}, {"y", "m", "position", ""}};
+  plant.parameters = {{"k", "1/s^2", "normal", 10.0, 5.0, 0.0, 100.0}};
+  plant.states = {{"pos", "m", "position", "speed", "y", ""}, {"speed", "m/s", "velocity", "u - k*pos", "0", ""}};
+  return plant;
+}
+
 /// A vessel that a valve fills (u > 0) and drains (u < 0) at rates that are measured; its level is what is shown.
 inline PlantDescription DescribedVessel() {
   PlantDescription plant;

@@ -45,10 +45,10 @@ std::unique_ptr<Equation> MakeEquation(const DiagnosisRequest& whole, const Plan
   return equation;
 }
 
-void Look(Equation* equation, double from, double to) {
+void DiagnosePart(Equation* equation, double from, double to) {
   const auto progress = equation->request.progress;
   equation->request.progress = PartOf(progress, from, to);
-  equation->diagnosis = LookAt(equation->request, &equation->data);
+  equation->diagnosis = DiagnoseEquation(equation->request, &equation->data);
   equation->request.progress = progress;
 }
 
@@ -333,12 +333,12 @@ void TellOfOther(const Equation& other, Equation* carrier) {
 }  // namespace
 
 Diagnosis DiagnoseBoth(const DiagnosisRequest& request) {
-  constexpr double kLook = 0.45;  // of the time, about, each
+  constexpr double kEach = 0.45;  // of the time, about, each
   const PlantDescription& plant = request.plant->plant.description();
   std::vector<std::unique_ptr<Equation>> equations;
   equations.push_back(MakeEquation(request, LawEquation(plant), kLaw));
   Equation& law = *equations.front();
-  Look(&law, 0.0, kLook);
+  DiagnosePart(&law, 0.0, kEach);
   std::vector<std::string> notes;
   if (const std::optional<PlantDescription> prediction = PredictionOf(request, law.ladder().base)) {
     equations.push_back(MakeEquation(request, *prediction, "prediction of " + plant.output));
@@ -348,7 +348,7 @@ Diagnosis DiagnoseBoth(const DiagnosisRequest& request) {
       for (const EffectEntry& entry : support::EffectsFor(last.file.effects))
         last.request.without.push_back(entry.name);
     }
-    Look(&last, kLook, 2.0 * kLook);
+    DiagnosePart(&last, kEach, 2.0 * kEach);
   } else {
     notes.push_back("prediction of " + plant.output + ": has no parameter and no state, and is not judged");
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "armcmc/models/registry.hpp"
+#include "armcmc/support/median_step.hpp"
 #include "armcmc/support/pack_length.hpp"
 #include "armcmc/support/program.hpp"
 
@@ -47,14 +48,6 @@ double Snapped(double value) {
   return std::strtod(text.data(), nullptr);
 }
 
-double MedianStep(const std::vector<double>& t) {
-  std::vector<double> steps(t.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = t[i + 1] - t[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 }  // namespace
 
 CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> record)
@@ -80,7 +73,7 @@ CsvSource::CsvSource(const SourceRequest& request, std::optional<DrawRecord> rec
 
 void CsvSource::NumberSamples(const SourceRequest& request) {
   const std::vector<double>& t = samples_.columns.front();
-  const double step = MedianStep(t);
+  const double step = support::MedianStep(t);
   number_.resize(t.size());
   number_[0] = row_ > 0 ? 0 : 1;
   for (std::size_t i = 1; i < t.size(); ++i) {

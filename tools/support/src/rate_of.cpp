@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "armcmc/support/median_step.hpp"
 #include "zero_phase.hpp"
 
 namespace armcmc::support {
@@ -17,14 +18,6 @@ struct Stretch {
   std::size_t first, last;
   [[nodiscard]] std::size_t size() const { return last - first; }
 };
-
-double MedianStep(const std::vector<double>& t) {
-  std::vector<double> steps(t.size() - 1);
-  for (std::size_t n = 0; n < steps.size(); ++n) steps[n] = t[n + 1] - t[n];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
 
 std::vector<Stretch> Stretches(const std::vector<double>& t) {
   const double step = MedianStep(t);
