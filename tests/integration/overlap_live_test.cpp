@@ -102,12 +102,22 @@ TEST_F(OverlapLive, PacksThatTheOverlapDoesNotDivideAreRejectedAndCounted) {
   EXPECT_EQ(report["steps"], 0);
 }
 
-TEST_F(OverlapLive, RefusesToResume) {
-  const Outcome o = RunProgram(Program("armcmc-estimator"),
-                               {"--config", config_, "--lcm-url", bus_->url(), "--resume", dir_ / "snapshot"});
-  EXPECT_EQ(o.code, 2);
-  EXPECT_NE(o.err.find("--resume"), std::string::npos) << o.err;
-  EXPECT_NE(o.err.find("overlap = 10"), std::string::npos) << o.err;
+TEST_F(OverlapLive, EveryRecursionGoesOnFromWhatItHadLearnt) {
+  const std::string file = dir_ / "learnt.snapshot";
+  for (const bool resumed : {false, true}) {
+    const std::size_t before = recorder_->estimates().size();
+    auto estimator = StartEstimator({"--resume", file});
+    auto plant = StartPlant("1");
+    ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
+    ASSERT_TRUE(recorder_->WaitForEstimates(before + 2 * kOverlap)) << estimator->err();
+    const Json report = Finish(estimator.get());
+    EXPECT_GT(report["snapshot"]["written"], 0);
+    EXPECT_EQ(report["snapshot"]["failed"], 0);
+    EXPECT_EQ(report["snapshot"]["resumed_from_pack"] > 0, resumed);
+    for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
+    for (std::size_t k = before; resumed && k < before + kOverlap; ++k)
+      EXPECT_EQ(recorder_->estimates()[k].known, 1) << "from the first word of every recursion on: " << k - before;
+  }
 }
 
 }  // namespace
