@@ -22,7 +22,7 @@ constexpr int kDrawsPerAnchor = 16;      // in a round: with fewer per anchor, m
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
 constexpr FitOptions kPilotFit{
     .bandwidth_factor = 1.2, .tail_weight = 0.1, .tail_sd = 1.8, .inflation = 1.05, .shrink_to_normal = true};
-constexpr double kTailInflation = 3.0;  // of the straightened coordinates, for the tails of a bent fit
+constexpr double kTailInflation = 2.5;  // of the straightened coordinates, for the tails of a bent fit
 
 /// The same bends with heavier tails: each straightened coordinate by `law`, and wider.
 DensityBlock WithTails(const DensityBlock& fit, const MarginalTable* law) noexcept {
