@@ -129,7 +129,7 @@ void SetThickness(const Eigen::Vector3d& fit, double explained, double draws, in
   if (2.0 * draws * explained < kSignificant) return;
   // The change of the thickness within the reach is limited to a factor of e^2.
   constexpr double kMost = 2.0;
-  const double reach = DensityBlock::kBendReach;
+  const double reach = DensityBlock::kTaperReach;
   const double change = std::fabs(fit[1]) * reach + std::fabs(fit[2]) * reach * reach;
   const double keep = change > kMost ? kMost / change : 1.0;
   // A change of less than a tenth within two standard deviations does not justify an exponential per draw.
@@ -151,7 +151,7 @@ void FitThickness(const WeightedDraws& draws, double ess, double* const* e, Dens
   const int stride = std::max(draws.size / kEnough, 1);
   std::array<Bin, kBins> bins{};
   for (int k = 0; k < draws.size; k += stride) {
-    const double c = DensityBlock::Clamped(e[0][k]);
+    const double c = DensityBlock::ClampedForTaper(e[0][k]);
     Bin& bin = bins[static_cast<std::size_t>(std::clamp((c + kEdge) * (kBins / (2.0 * kEdge)), 0.0, kBins - 1.0))];
     const double w = draws.weight[k];
     bin.mass += w;

@@ -11,10 +11,9 @@ InterleavedEstimator::InterleavedEstimator(const EstimatorSettings& settings) {
   drawn_ = estimators_.front().get();
 }
 
-Estimator& InterleavedEstimator::Of(std::int64_t seq) noexcept {
-  const auto count = static_cast<std::int64_t>(estimators_.size());
+int InterleavedEstimator::TurnOf(std::int64_t seq) const noexcept {
   // A number below 1 is invalid for a pack, and is rejected by the recursion that receives it.
-  return *estimators_[static_cast<std::size_t>(seq > 0 ? seq % count : 0)];
+  return seq > 0 ? static_cast<int>(seq % overlap()) : 0;
 }
 
 Status InterleavedEstimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,

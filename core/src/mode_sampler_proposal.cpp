@@ -22,6 +22,19 @@ constexpr int kDrawsPerAnchor = 16;      // in a round: with fewer per anchor, m
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
 constexpr FitOptions kPilotFit{
     .bandwidth_factor = 1.2, .tail_weight = 0.1, .tail_sd = 1.8, .inflation = 1.05, .shrink_to_normal = true};
+constexpr double kTailInflation = 2.5;  // of the straightened coordinates, for the tails of a bent fit
+
+/// The same bends with heavier tails: each straightened coordinate by `law`, and wider.
+DensityBlock WithTails(const DensityBlock& fit, const MarginalTable* law) noexcept {
+  DensityBlock wide = fit;
+  for (int i = 0; i < wide.dim; ++i) {
+    const auto ii = static_cast<std::size_t>(i);
+    wide.marginal[ii] = law;
+    wide.scale[ii] *= kTailInflation;
+    wide.norm /= kTailInflation;
+  }
+  return wide;
+}
 
 }  // namespace
 
@@ -31,7 +44,7 @@ void ModeSampler::AddPersisted(double share, Proposal* proposal) const noexcept 
 }
 
 void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous,
-                                int num_pilot_blocks, Proposal* proposal) const noexcept {
+                                int num_pilot_blocks, Proposal* proposal) noexcept {
   // A part of the posterior with too few pilot draws for a block is covered by the Laplace fits alone.
   const bool lacking = num_pilot_blocks == 0 || pilot_lacks_;
   // While a change is possible, both what persisted and what did not need every block that may draw them.
@@ -51,11 +64,19 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
   for (int b = 0; b < num_pilot_blocks; ++b)
     proposal->Add(&pilot_blocks_[static_cast<std::size_t>(b)], rest * (1.0 - initial - laplace) / num_pilot_blocks);
   // The pilot's blocks replace the Laplace fit of their part; after a modification, with P_0 alone in the target, it
-  // is kept for the tails.
+  // is kept for the tails of blocks without bends.
   // The same holds for partial changes, several of which share one block of the pilot.
   if (use_previous && (lacking || transition_.Offers(previous))) {
     AddPersisted(0.6 * rest * laplace, proposal);
     proposal->Add(&laplace_fresh_, 0.4 * rest * laplace);
+  } else if (!use_previous && settled && !straight) {
+    // The Laplace fit leaves a bent ridge on a tangent. A draw of the posterior beyond the tails of the pilot's blocks
+    // would have nothing but P_0 for it, and most of the weight.
+    for (int b = 0; b < num_pilot_blocks; ++b) {
+      const auto i = static_cast<std::size_t>(b);
+      tail_blocks_[i] = WithTails(pilot_blocks_[i], &student_table_);
+      proposal->Add(&tail_blocks_[i], rest * laplace / num_pilot_blocks);
+    }
   } else if (!use_previous || may_have_changed_) {
     // If both are possible: a single draw of the posterior of P_0, far from the others, would have all the weight.
     proposal->Add(&laplace_fresh_, rest * laplace);

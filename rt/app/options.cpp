@@ -80,9 +80,6 @@ Configuration Load(const Options& options) {
     CheckPath("--resume", plant.resume);
     if (!plant.resume.empty() && plant.estimator.method != Method::kArmcmc)
       throw support::InputError("--resume: only method = \"armcmc\" keeps what it has learnt; leave --resume out");
-    if (!plant.resume.empty() && plant.estimator.overlap > 1)
-      throw support::InputError("--resume: keeps one posterior, and with [timing] overlap = " +
-                                std::to_string(plant.estimator.overlap) + " there are as many; leave --resume out");
     if (!options.gap_log.empty()) plant.gap_log.directory = options.gap_log;
     // Files of several plants are told apart by their folder.
     if (plants > 1 && !plant.gap_log.directory.empty())

@@ -12,10 +12,7 @@
 namespace armcmc::app {
 
 PlantRun::PlantRun(const PlantConfiguration& configuration, bool several)
-    : configuration_(configuration),
-      name_(several ? configuration.prefix : ""),
-      snapshots_(Estimator::kSnapshotBytes),
-      engine_(configuration.estimator) {}
+    : configuration_(configuration), name_(several ? configuration.prefix : ""), engine_(configuration.estimator) {}
 
 rt::LanePlant PlantRun::ForPipeline(rt::StepEngine* engine) const {
   return {engine, configuration_.prefix, engine_.estimator().watches_gap()};
@@ -27,8 +24,9 @@ void PlantRun::Resume(rt::Lane* lane, const Say& say) {
   Snapshot start = LoadSnapshot(
       configuration_.resume, SnapshotIdentity(engine_.estimator().settings()), rt::RealtimeMicros(),
       [this](const Snapshot& s) { return engine_.Resume(s.adjusted, s.executed); }, say);
-  engine_.SetSnapshots(&snapshots_);
-  saver_ = std::make_unique<SnapshotSaver>(configuration_.resume, std::move(start), &snapshots_, say,
+  snapshots_ = std::make_unique<rt::SnapshotHandOver>(Estimator::kSnapshotBytes, configuration_.estimator.overlap);
+  engine_.SetSnapshots(snapshots_.get());
+  saver_ = std::make_unique<SnapshotSaver>(configuration_.resume, std::move(start), snapshots_.get(), say,
                                            [lane] { lane->RaiseFault(estimator_status_t::FAULT_SNAPSHOT); });
 }
 

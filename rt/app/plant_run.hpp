@@ -48,7 +48,7 @@ class PlantRun {
  private:
   PlantConfiguration configuration_;
   std::string name_;  ///< For people; empty: the plant is alone.
-  rt::SnapshotHandOver snapshots_;
+  std::unique_ptr<rt::SnapshotHandOver> snapshots_;
   rt::EstimatorEngine engine_;
   rt::Lane* lane_ = nullptr;
   std::unique_ptr<SnapshotSaver> saver_;

@@ -15,7 +15,7 @@ namespace armcmc::app {
 namespace {
 
 constexpr char kMagic[] = {'A', 'R', 'M', 'C', 'M', 'C', 'S', 'N'};
-constexpr std::size_t kLargestFile = 16U << 20U;
+constexpr std::size_t kLargestFile = 160U << 20U;  // both parts of as many recursions as a pack has samples
 
 struct Header {
   char magic[8];

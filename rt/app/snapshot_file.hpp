@@ -15,7 +15,8 @@ namespace armcmc::app {
 ///   identity    u64, armcmc::SnapshotIdentity() of the settings
 ///   seq         i64, pack after which the posterior was saved
 ///   utime       i64, us, CLOCK_REALTIME when it was saved
-///   sizes       2 x u32: bytes of the two parts that follow (Estimator::SaveAdjusted and SaveExecuted)
+///   sizes       2 x u32: bytes of the two parts that follow (Estimator::SaveAdjusted and SaveExecuted;
+///               of several recursions rt::JoinParts)
 ///   parts
 ///   checksum    u64, CRC-64 (ECMA-182) of everything before
 ///
@@ -39,7 +40,7 @@ inline constexpr std::uint32_t kSnapshotVersion = 3;
 /// @return empty, or why it failed.
 [[nodiscard]] std::string ReplaceFile(const std::string& path, std::span<const std::byte> bytes);
 
-/// Reads a file of at most 16 MB. @return empty, or why it failed.
+/// Reads a file of at most 160 MB. @return empty, or why it failed.
 [[nodiscard]] std::string ReadFile(const std::string& path, std::vector<std::byte>* bytes);
 
 }  // namespace armcmc::app

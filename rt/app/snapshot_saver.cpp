@@ -1,5 +1,6 @@
 #include "snapshot_saver.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -31,23 +32,41 @@ SnapshotSaver::SnapshotSaver(std::string path, Snapshot start, rt::SnapshotHandO
       resumed_from_(snapshot_.seq),
       parts_(parts),
       say_(std::move(say)),
-      on_failure_(std::move(on_failure)) {}
+      on_failure_(std::move(on_failure)),
+      adjusted_(rt::SplitParts(snapshot_.adjusted, parts->size())),
+      executed_(rt::SplitParts(snapshot_.executed, parts->size())) {
+  adjusted_.resize(static_cast<std::size_t>(parts->size()));  // empty where there is nothing to go on from
+  executed_.resize(static_cast<std::size_t>(parts->size()));
+}
 
 void SnapshotSaver::Take() {
-  if (const rt::SnapshotPart* part = parts_->adjusted.Take(); part != nullptr) {
-    snapshot_.adjusted.assign(part->used().begin(), part->used().end());
-    snapshot_.seq = part->seq;
-    fresh_ = true;
+  std::int64_t newest = 0;  // a plant that restarts begins to count anew
+  for (int j = 0; j < parts_->size(); ++j) {
+    rt::SnapshotHandOver::Recursion& from = parts_->of(j);
+    if (const rt::SnapshotPart* part = from.adjusted.Take(); part != nullptr) {
+      adjusted_[static_cast<std::size_t>(j)].assign(part->used().begin(), part->used().end());
+      newest = std::max(newest, part->seq);
+      fresh_ = true;
+    }
+    if (const rt::SnapshotPart* part = from.executed.Take(); part != nullptr) {
+      executed_[static_cast<std::size_t>(j)].assign(part->used().begin(), part->used().end());
+      fresh_ = true;
+    }
   }
-  if (const rt::SnapshotPart* part = parts_->executed.Take(); part != nullptr) {
-    snapshot_.executed.assign(part->used().begin(), part->used().end());
-    fresh_ = true;
-  }
+  if (newest > 0) snapshot_.seq = newest;
+}
+
+bool SnapshotSaver::Complete() const {
+  for (std::size_t j = 0; j < adjusted_.size(); ++j)
+    if (!adjusted_[j].empty() && !executed_[j].empty()) return true;
+  return false;
 }
 
 void SnapshotSaver::Save() {
   Take();
-  if (!fresh_ || snapshot_.adjusted.empty() || snapshot_.executed.empty()) return;
+  if (!fresh_ || !Complete()) return;
+  snapshot_.adjusted = rt::JoinParts(adjusted_);
+  snapshot_.executed = rt::JoinParts(executed_);
   snapshot_.utime = rt::RealtimeMicros();
   const std::string reason = ReplaceFile(path_, EncodeSnapshot(snapshot_));
   if (reason.empty()) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "armcmc/rt/snapshot_hand_over.hpp"
 #include "snapshot_file.hpp"
@@ -40,9 +41,11 @@ class SnapshotSaver {
 
  private:
   void Take();
+  [[nodiscard]] bool Complete() const;
 
   std::string path_;
   Snapshot snapshot_;
+  std::vector<std::vector<std::byte>> adjusted_, executed_;  // by recursion
   std::int64_t resumed_from_;
   rt::SnapshotHandOver* parts_;
   Say say_;

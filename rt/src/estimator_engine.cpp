@@ -37,28 +37,44 @@ void EstimatorEngine::Remember(ClockRef clock) noexcept {
   estimator_.Remember(clock);
   if (snapshots_ == nullptr || !warm_ || !learnt_) return;
   learnt_ = false;
-  snapshots_->adjusted.Write(
-      seq_, [this](std::span<std::byte> out) noexcept { return estimator_.first().SaveAdjusted(out); });
+  const int turn = estimator_.TurnOf(seq_);
+  snapshots_->of(turn).adjusted.Write(
+      seq_, [&](std::span<std::byte> out) noexcept { return estimator_.recursion(turn).SaveAdjusted(out); });
 }
 
 void EstimatorEngine::Execute(int slot, Estimate* estimate) noexcept {
   estimator_.Execute(*results_[static_cast<std::size_t>(slot)], estimate);
   if (snapshots_ != nullptr && warm_) {
-    snapshots_->executed.Write(
-        estimate->seq, [this](std::span<std::byte> out) noexcept { return estimator_.first().SaveExecuted(out); });
+    const int turn = estimator_.TurnOf(estimate->seq);
+    snapshots_->of(turn).executed.Write(
+        estimate->seq, [&](std::span<std::byte> out) noexcept { return estimator_.recursion(turn).SaveExecuted(out); });
   }
 }
 
 bool EstimatorEngine::Resume(std::span<const std::byte> adjusted, std::span<const std::byte> executed) {
-  if (!estimator_.first().Restore(adjusted, executed)) return false;
-  resumed_adjusted_.assign(adjusted.begin(), adjusted.end());
-  resumed_executed_.assign(executed.begin(), executed.end());
-  return true;
+  resumed_adjusted_ = SplitParts(adjusted, estimator_.overlap());
+  resumed_executed_ = SplitParts(executed, estimator_.overlap());
+  if (!resumed_adjusted_.empty() && !resumed_executed_.empty() && RestoreResumed()) return true;
+  resumed_adjusted_.clear();
+  resumed_executed_.clear();
+  estimator_.Reset();
+  return false;
+}
+
+bool EstimatorEngine::RestoreResumed() noexcept {
+  bool good = true;
+  for (std::size_t j = 0; j < resumed_adjusted_.size(); ++j) {
+    // A recursion that had not had its first pack in both stages begins afresh.
+    const bool some = estimator_.overlap() == 1 || (!resumed_adjusted_[j].empty() && !resumed_executed_[j].empty());
+    if (some)
+      good = estimator_.recursion(static_cast<int>(j)).Restore(resumed_adjusted_[j], resumed_executed_[j]) && good;
+  }
+  return good;
 }
 
 void EstimatorEngine::Reset() noexcept {
   estimator_.Reset();
-  if (!resumed_adjusted_.empty()) (void)estimator_.first().Restore(resumed_adjusted_, resumed_executed_);
+  (void)RestoreResumed();
   warm_ = true;
 }
 

@@ -311,6 +311,25 @@ TEST(InterleavedEstimator, ForgetsAllRecursions) {
     test::ExpectSameBits(used.Step(series.Pack(seq)), fresh.Step(series.Pack(seq)));
 }
 
+TEST(InterleavedEstimator, GoesOnFromTheSnapshotsOfItsRecursionsToTheBit) {
+  // Saved in the middle of a turn, in contact and in free motion.
+  const EstimatorSettings settings = Overlapping(BuiltinSettings("hunt_crossley"));
+  const Series series = ContactSeries(60);
+  for (const std::int64_t saved : {std::int64_t{6}, std::int64_t{39}}) {
+    Interleaved first(settings), second(settings);
+    for (std::int64_t seq = 1; seq <= saved; ++seq) first.Step(series.Pack(seq));
+    for (int j = 0; j < kOverlap; ++j) {
+      std::vector<std::byte> adjusted(Estimator::kSnapshotBytes), executed(Estimator::kSnapshotBytes);
+      Estimator& from = first.estimator.recursion(j);
+      adjusted.resize(from.SaveAdjusted(adjusted));
+      executed.resize(from.SaveExecuted(executed));
+      ASSERT_TRUE(second.estimator.recursion(j).Restore(adjusted, executed)) << j;
+    }
+    for (std::int64_t seq = saved + 1; seq <= series.num_packs(); ++seq)
+      test::ExpectSameBits(first.Step(series.Pack(seq)), second.Step(series.Pack(seq)));
+  }
+}
+
 TEST(InterleavedEstimator, RefusesPacksThatTheOverlapDoesNotDivide) {
   Interleaved interleaved(Overlapping(BuiltinSettings("hunt_crossley")));
   DataPack pack = ContactSeries(1).Pack(1);

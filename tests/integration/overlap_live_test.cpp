@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -102,12 +103,28 @@ TEST_F(OverlapLive, PacksThatTheOverlapDoesNotDivideAreRejectedAndCounted) {
   EXPECT_EQ(report["steps"], 0);
 }
 
-TEST_F(OverlapLive, RefusesToResume) {
-  const Outcome o = RunProgram(Program("armcmc-estimator"),
-                               {"--config", config_, "--lcm-url", bus_->url(), "--resume", dir_ / "snapshot"});
-  EXPECT_EQ(o.code, 2);
-  EXPECT_NE(o.err.find("--resume"), std::string::npos) << o.err;
-  EXPECT_NE(o.err.find("overlap = 10"), std::string::npos) << o.err;
+TEST_F(OverlapLive, EveryRecursionGoesOnFromWhatItHadLearnt) {
+  const std::string file = dir_ / "learnt.snapshot";
+  auto first = StartEstimator({"--resume", file});
+  auto plant = StartPlant("1");
+  ASSERT_EQ(plant->Wait(std::chrono::seconds(60)).code, 0) << plant->err();
+  ASSERT_TRUE(recorder_->WaitForEstimates(2 * kOverlap)) << first->err();
+  first->Signal(SIGINT);
+  EXPECT_EQ(first->Wait(std::chrono::seconds(30)).code, 0) << first->err();
+  const std::size_t before = recorder_->estimates().size();
+
+  auto second = StartEstimator({"--resume", file});
+  auto again = StartPlant("1");
+  ASSERT_EQ(again->Wait(std::chrono::seconds(60)).code, 0) << again->err();
+  ASSERT_TRUE(recorder_->WaitForEstimates(before + kOverlap)) << second->err();
+  const Json report = Finish(second.get());
+  EXPECT_GT(report["snapshot"]["resumed_from_pack"], 0);
+  EXPECT_GT(report["snapshot"]["written"], 0);
+  EXPECT_EQ(report["snapshot"]["failed"], 0);
+  for (const char* stage : {"collect", "adjust", "execute"}) EXPECT_EQ(report["allocations"][stage], 0) << stage;
+  const std::vector<estimate_t> live = recorder_->estimates();
+  for (std::size_t k = before; k < before + kOverlap; ++k)
+    EXPECT_EQ(live[k].known, 1) << "from the first word of every recursion on: " << k - before;
 }
 
 }  // namespace

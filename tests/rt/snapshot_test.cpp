@@ -107,8 +107,8 @@ class SnapshotSaverTest : public ::testing::Test {
       std::fill(out.begin(), out.end(), static_cast<std::byte>(value));
       return out.size();
     };
-    parts_.adjusted.Write(seq, save);
-    parts_.executed.Write(seq, save);
+    parts_.of(0).adjusted.Write(seq, save);
+    parts_.of(0).executed.Write(seq, save);
   }
   std::unique_ptr<SnapshotSaver> Make(Snapshot start = {}) {
     start.identity = kIdentity;
@@ -146,7 +146,7 @@ TEST_F(SnapshotSaverTest, WritesTheNewestAndNothingTwice) {
 
 TEST_F(SnapshotSaverTest, KeepsAPartOfWhichNothingNewCame) {
   auto saver = Make(Example());
-  parts_.executed.Write(18, [](std::span<std::byte> out) noexcept { return out.size(); });
+  parts_.of(0).executed.Write(18, [](std::span<std::byte> out) noexcept { return out.size(); });
   saver->Save();
   const Snapshot s = Load();
   EXPECT_EQ(s.adjusted, Example().adjusted);
@@ -243,8 +243,8 @@ TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
   rt::EstimatorEngine engine(settings);
   engine.SetSnapshots(parts.get());
   rt::WarmUp(&engine);
-  EXPECT_EQ(parts->adjusted.Take(), nullptr);
-  EXPECT_EQ(parts->executed.Take(), nullptr);
+  EXPECT_EQ(parts->of(0).adjusted.Take(), nullptr);
+  EXPECT_EQ(parts->of(0).executed.Take(), nullptr);
 
   const auto estimate = std::make_unique<Estimate>();
   for (int i = 0; i < 4; ++i) {
@@ -252,8 +252,8 @@ TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
     engine.Execute(0, estimate.get());
     engine.Remember(ClockRef{});
   }
-  const rt::SnapshotPart* adjusted = parts->adjusted.Take();
-  const rt::SnapshotPart* executed = parts->executed.Take();
+  const rt::SnapshotPart* adjusted = parts->of(0).adjusted.Take();
+  const rt::SnapshotPart* executed = parts->of(0).executed.Take();
   ASSERT_TRUE(adjusted != nullptr && executed != nullptr);
   EXPECT_EQ(adjusted->seq, 14);
 
@@ -268,6 +268,63 @@ TEST(EngineSnapshots, SurviveTheWarmUpAndHoldNothingOfIt) {
   EXPECT_EQ(resumed->modes[0].decision, Decision::kReinforcement);
   EXPECT_EQ(resumed->modes[0].log_evidence, estimate->modes[0].log_evidence);
   EXPECT_EQ(resumed->modes[0].marginal[0].ar_ap, estimate->modes[0].marginal[0].ar_ap);
+}
+
+TEST(SnapshotParts, AreThoseThatWereJoined) {
+  const std::vector<std::vector<std::byte>> parts = {Bytes(100, 1), {}, Bytes(7, 3)};
+  EXPECT_EQ(rt::SplitParts(rt::JoinParts(parts), 3), parts);
+  const std::vector<std::vector<std::byte>> single(1, Bytes(9, 4));
+  EXPECT_EQ(rt::JoinParts(single), single.front()) << "as it is";
+  EXPECT_EQ(rt::SplitParts(single.front(), 1), single);
+  // Another number of parts, or bytes missing or left over.
+  std::vector<std::byte> joined = rt::JoinParts(parts);
+  EXPECT_TRUE(rt::SplitParts(joined, 2).empty());
+  EXPECT_TRUE(rt::SplitParts(joined, 4).empty());
+  joined.pop_back();
+  EXPECT_TRUE(rt::SplitParts(joined, 3).empty());
+}
+
+/// Where packs overlap: every recursion goes on from its own part; those that have none yet begin afresh.
+TEST(EngineSnapshots, HoldEveryRecursion) {
+  EstimatorSettings settings = BuiltinSettings("hunt_crossley");
+  settings.overlap = 4;
+  armcmc::test::ScratchDir dir;
+  const std::string path = dir / "learnt.snapshot";
+  rt::SnapshotHandOver parts(Estimator::kSnapshotBytes, settings.overlap);
+  rt::EstimatorEngine engine(settings);
+  engine.SetSnapshots(&parts);
+  rt::WarmUp(&engine);
+  SnapshotSaver saver(
+      path, {.identity = kIdentity}, &parts, [](const std::string&) {}, [] {});
+  const auto estimate = std::make_unique<Estimate>(), resumed = std::make_unique<Estimate>();
+  const auto step = [](rt::EstimatorEngine* of, std::int64_t seq, Estimate* to) {
+    ASSERT_EQ(of->Adjust(rt::SyntheticPack(of->pack_format(), seq), 0, ClockRef{}, 0), Status::kOk) << seq;
+    of->Execute(0, to);
+    of->Remember(ClockRef{});
+  };
+  std::int64_t next = 10;
+  for (const int packs : {3, 6}) {  // before every recursion has had a pack, and after that
+    for (int i = 0; i < packs; ++i) step(&engine, next++, estimate.get());
+    saver.Save();
+    Snapshot saved;
+    std::vector<std::byte> bytes;
+    ASSERT_EQ(ReadFile(path, &bytes), "");
+    ASSERT_EQ(DecodeSnapshot(bytes, kIdentity, &saved), "");
+    EXPECT_EQ(saved.seq, next);
+
+    rt::EstimatorEngine second(settings);
+    ASSERT_TRUE(second.Resume(saved.adjusted, saved.executed));
+    rt::WarmUp(&second);
+    for (int i = 0; i < settings.overlap; ++i, ++next) {
+      step(&engine, next, estimate.get());
+      step(&second, next, resumed.get());
+      EXPECT_EQ(resumed->modes[0].decision, estimate->modes[0].decision) << next;
+      EXPECT_EQ(resumed->modes[0].log_evidence, estimate->modes[0].log_evidence) << next;
+      EXPECT_EQ(resumed->modes[0].marginal[0].ar_ap, estimate->modes[0].marginal[0].ar_ap) << next;
+    }
+    saved.adjusted.pop_back();
+    EXPECT_FALSE(second.Resume(saved.adjusted, saved.executed)) << "damaged";
+  }
 }
 
 }  // namespace

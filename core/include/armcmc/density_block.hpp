@@ -17,15 +17,18 @@ namespace armcmc {
 ///   c   = clamp(z_0, -kBendReach, kBendReach)
 ///   e_0 = z_0,   e_1 = z_1 - poly_1(c)
 ///   e_i = z_i - poly_i(c) - sum_{1<=j<i} a_ij e_j - b_i e_1 c - d_i e_1^2           i >= 2
-///   x_i = (e_i exp(-alpha_i c - beta_i c^2) - center_i) / scale_i
-///   p(u) = |det W| prod_i m_i(x_i) / scale_i exp(-alpha_i c - beta_i c^2)
+///   x_i = (e_i exp(-alpha_i t - beta_i t^2) - center_i) / scale_i,   t = clamp(c, -kTaperReach, kTaperReach)
+///   p(u) = |det W| prod_i m_i(x_i) / scale_i exp(-alpha_i t - beta_i t^2)
 ///
 /// poly_i, of degree 5, straightens a bent ridge (poor excitation leaves K x^p nearly constant: a long, thin, curved
 /// valley); alpha and beta let its thickness vary along it. With all of them zero and analytic marginals it is a
 /// Gaussian or Student-t around a mode. Drawn by inverse CDF of each marginal, then forward substitution.
 struct DensityBlock {
   static constexpr int kDegree = 5;
-  static constexpr double kBendReach = 3.5;  ///< Beyond, the polynomials are held constant: no extrapolation.
+  /// Beyond, the polynomials are held constant. As far out as there may be a draw: a ridge that turns away from its fit
+  /// in the tails leaves a few draws there with most of the weight.
+  static constexpr double kBendReach = 5.0;
+  static constexpr double kTaperReach = 3.5;  ///< The same for the thickness, whose parabola is known less well.
   using Row = std::array<double, kMaxParams>;
 
   int dim = 0;
@@ -54,10 +57,12 @@ struct DensityBlock {
     const auto& t = thickness[static_cast<std::size_t>(i)];
     return t[0] != 0.0 || t[1] != 0.0;
   }
-  /// alpha_i c + beta_i c^2.
+  static double ClampedForTaper(double c) noexcept { return std::min(std::max(c, -kTaperReach), kTaperReach); }
+  /// alpha_i t + beta_i t^2.
   [[nodiscard]] double LogThickness(int i, double c) const noexcept {
-    const auto& t = thickness[static_cast<std::size_t>(i)];
-    return c * (t[0] + c * t[1]);
+    const auto& coefficient = thickness[static_cast<std::size_t>(i)];
+    const double t = ClampedForTaper(c);
+    return t * (coefficient[0] + t * coefficient[1]);
   }
 
   /// p(u); scalar reference of the batch kernel.

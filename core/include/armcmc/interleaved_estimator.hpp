@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -48,13 +49,21 @@ class InterleavedEstimator {
   /// Forgets everything learnt by all recursions.
   void Reset() noexcept ARMCMC_NONBLOCKING;
 
-  /// The one that watches for a gap, and with L = 1 the only one: for names, units, the gap watch and snapshots.
+  /// Which recursion takes a pack: seq mod L.
+  [[nodiscard]] int TurnOf(std::int64_t seq) const noexcept ARMCMC_NONBLOCKING;
+  /// Recursion j, for its snapshots: Estimator::SaveAdjusted() and so on, with the same rules. When each has been
+  /// restored, the packs that follow give the same estimates to the bit.
+  /// @pre 0 <= j < overlap().
+  [[nodiscard]] Estimator& recursion(int j) noexcept ARMCMC_NONBLOCKING {
+    return *estimators_[static_cast<std::size_t>(j)];
+  }
+  /// The one that watches for a gap, and with L = 1 the only one: for names, units and the gap watch.
   [[nodiscard]] const Estimator& first() const noexcept ARMCMC_NONBLOCKING { return *estimators_.front(); }
   [[nodiscard]] Estimator& first() noexcept ARMCMC_NONBLOCKING { return *estimators_.front(); }
   [[nodiscard]] int overlap() const noexcept ARMCMC_NONBLOCKING { return static_cast<int>(estimators_.size()); }
 
  private:
-  [[nodiscard]] Estimator& Of(std::int64_t seq) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Estimator& Of(std::int64_t seq) noexcept ARMCMC_NONBLOCKING { return recursion(TurnOf(seq)); }
 
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< [seq mod L].
   Estimator* drawn_;                                    ///< By whom the newest Draw() was.

@@ -68,7 +68,8 @@ class SamplerWorkspace {
 /// for a pilot run of kPilotDraws candidates; then mostly a straightened, whitened histogram of the pilot's weighted
 /// draws, which then takes over a part of the share of P unless something may have changed. The pilot is part of the
 /// half of the chain that is thrown away, so adapting q once leaves the chain exact. A share of P_0 keeps q above the
-/// target's tails everywhere.
+/// target's tails everywhere; where the histogram is bent and P_0 alone is the prior, its tails are covered by the same
+/// bends with a wider t law.
 class ModeSampler {
  public:
   static constexpr int kPilotDraws = 1024;  ///< In one round.
@@ -188,7 +189,7 @@ class ModeSampler {
   void FitFromScattered(const ModeData& data, const RandomStream& stream, SamplerWorkspace* ws, double best,
                         Gaussian* fit) const noexcept ARMCMC_NONBLOCKING;
   void BuildProposal(const PosteriorMemory& previous, double lambda_q, bool use_previous, int num_pilot_blocks,
-                     Proposal* proposal) const noexcept ARMCMC_NONBLOCKING;
+                     Proposal* proposal) noexcept ARMCMC_NONBLOCKING;
   /// The Laplace fits under what is carried on.
   void AddPersisted(double share, Proposal* proposal) const noexcept ARMCMC_NONBLOCKING;
   void DrawAndScore(const Proposal& proposal, const PosteriorMemory& previous, const ModeData& data, int first,
@@ -261,7 +262,8 @@ class ModeSampler {
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> laplace_persisted_;  ///< One for each change in part, else one.
   int num_persisted_ = 0;
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> pilot_blocks_;
-  int laplace_fits_ = 1;      ///< That FitLaplace made.
+  std::array<DensityBlock, PosteriorMemory::kMaxBlocks> tail_blocks_;  ///< With heavier tails, where they are bent.
+  int laplace_fits_ = 1;                                               ///< That FitLaplace made.
   bool pilot_lacks_ = false;  ///< A part of the pilot's draws was too small for a block of its own.
   Gaussian fit_fresh_, fit_persisted_;
   std::array<RidgeAnchor, kRidgeAnchors> anchors_;

@@ -54,10 +54,12 @@ template <int kDim>
   for (int i = 1; i < kDim; ++i) e[i] = e[i] - Bend(block, i, *c, e);
 }
 
-/// alpha_i c + beta_i c^2.
+/// alpha_i t + beta_i t^2, t = c within kTaperReach.
 V LogThickness(const DensityBlock& block, int i, V c) noexcept {
-  const auto& t = block.thickness[static_cast<unsigned>(i)];
-  return c * Simd::Fma(Simd::Set(t[1]), c, Simd::Set(t[0]));
+  const V reach = Simd::Set(DensityBlock::kTaperReach);
+  const V t = Simd::Min(Simd::Max(c, -reach), reach);
+  const auto& coefficient = block.thickness[static_cast<unsigned>(i)];
+  return t * Simd::Fma(Simd::Set(coefficient[1]), t, Simd::Set(coefficient[0]));
 }
 
 /// Inverse CDF of a marginal table; the vector form of MarginalTable::Draw.

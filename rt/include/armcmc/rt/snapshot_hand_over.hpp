@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -49,10 +50,28 @@ class SnapshotChannel {
   std::array<SnapshotPart, LatestValue::kSlots> parts_;
 };
 
-/// Both stages that learn.
-struct SnapshotHandOver {
-  explicit SnapshotHandOver(std::size_t bytes) : adjusted(bytes), executed(bytes) {}
-  SnapshotChannel adjusted, executed;
+/// Both stages that learn, and each recursion where packs overlap: a pack changes what one of them knows.
+class SnapshotHandOver {
+ public:
+  struct Recursion {
+    explicit Recursion(std::size_t bytes) : adjusted(bytes), executed(bytes) {}
+    SnapshotChannel adjusted, executed;
+  };
+  explicit SnapshotHandOver(std::size_t bytes, int recursions = 1) {
+    for (int j = 0; j < recursions; ++j) recursions_.emplace_back(bytes);
+  }
+
+  [[nodiscard]] int size() const noexcept ARMCMC_NONBLOCKING { return static_cast<int>(recursions_.size()); }
+  /// @pre 0 <= j < size().
+  [[nodiscard]] Recursion& of(int j) noexcept ARMCMC_NONBLOCKING { return recursions_[static_cast<std::size_t>(j)]; }
+
+ private:
+  std::deque<Recursion> recursions_;  // which do not move
 };
+
+/// The parts of all recursions in a row: a single one as it is, several with the size of each before it (u32).
+[[nodiscard]] std::vector<std::byte> JoinParts(std::span<const std::vector<std::byte>> parts);
+/// Undoes JoinParts(). @return `count` parts, or none when the bytes are not that.
+[[nodiscard]] std::vector<std::vector<std::byte>> SplitParts(std::span<const std::byte> bytes, int count);
 
 }  // namespace armcmc::rt

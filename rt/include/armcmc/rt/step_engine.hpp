@@ -69,11 +69,12 @@ class EstimatorEngine final : public StepEngine {
   void Reset() noexcept ARMCMC_NONBLOCKING override;
 
   /// Hands what is learnt to another thread after every step. Before the pipeline starts.
-  /// @pre estimator().settings().overlap == 1, as of Resume().
-  /// @param snapshots  Of Estimator::kSnapshotBytes; outlives the engine.
+  /// @param snapshots  Of Estimator::kSnapshotBytes for each of estimator().settings().overlap recursions; outlives the
+  ///                   engine.
   void SetSnapshots(SnapshotHandOver* snapshots) noexcept { snapshots_ = snapshots; }
   /// Goes on from what an engine of the same SnapshotIdentity() has saved; kept, so that Reset(), which ends the
   /// warm-up, comes back to it. Before the pipeline starts.
+  /// @param adjusted, executed  JoinParts() of the parts that were handed over.
   /// @return false when it is damaged: starts afresh.
   [[nodiscard]] bool Resume(std::span<const std::byte> adjusted, std::span<const std::byte> executed);
 
@@ -81,13 +82,15 @@ class EstimatorEngine final : public StepEngine {
   [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_.first(); }
 
  private:
+  [[nodiscard]] bool RestoreResumed() noexcept ARMCMC_NONBLOCKING;
+
   InterleavedEstimator estimator_;
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
   SnapshotHandOver* snapshots_ = nullptr;
   bool warm_ = false;    // what the warm-up learns is handed to nobody
   bool learnt_ = false;  // by the newest Adjust()
   std::int64_t seq_ = 0;
-  std::vector<std::byte> resumed_adjusted_, resumed_executed_;
+  std::vector<std::vector<std::byte>> resumed_adjusted_, resumed_executed_;  // by recursion
 };
 
 }  // namespace armcmc::rt
