@@ -48,11 +48,12 @@ bool APassiveModePredicts(const PlantProgram& program) {
 
 }  // namespace
 
-DescribedFamily::DescribedFamily(const PlantProgram& program) {
+DescribedFamily::DescribedFamily(const PlantProgram& program, const std::vector<std::string>& probes) {
   const Plant& plant = program.plant();
   const PlantDescription& description = plant.description();
   const ModelInfo& info = program.info();
   judges_passive_ = APassiveModePredicts(program);
+  trajectories_begin_anew_ = program.states().size() > 0;
   checks_.serial = kSerialChecks;
   Add(Kind::kEverywhere, 0, "everywhere");
   const std::vector<bool> explained = ExplainedSignals(plant);
@@ -60,6 +61,8 @@ DescribedFamily::DescribedFamily(const PlantProgram& program) {
     Add(Kind::kOutputRate, 0, "output_rate");
     Add(Kind::kHighOutput, 0, "high_output");
   }
+  if (!probes.empty()) first_probe_ = checks_.num_regions;
+  for (const std::string& name : probes) Add(Kind::kProbe, 0, name);
   const int num_modes = info.num_modes + (judges_passive_ ? 1 : 0);
   for (int m = 1; m < num_modes; ++m) Add(Kind::kInMode, m, "in_" + std::string(info.modes[At(m)]));
   const bool has_acceleration = !plant.SignalsWithRole("acceleration").empty();
@@ -130,6 +133,8 @@ void DescribedFamily::Fill(const DataPack& pack, const std::array<int, kMaxPackS
       input.positive = u > 0.0;
       input.seen = true;
     }
+    if (n == 0 && trajectories_begin_anew_)
+      memory->last_prediction = prediction[0] - (pack.num_samples > 1 ? prediction[1] - prediction[0] : 0.0);
     const double size = std::fabs(prediction[n]);
     memory->highest_prediction = std::fmax(memory->highest_prediction, size);
     for (int r = 0; r < checks_.num_regions; ++r) {
@@ -140,6 +145,7 @@ void DescribedFamily::Fill(const DataPack& pack, const std::array<int, kMaxPackS
         case Kind::kInMode: value = modes[n] == region.index ? 1.0 : 0.0; break;
         case Kind::kOutputRate: value = prediction[n] - memory->last_prediction; break;
         case Kind::kHighOutput: value = size > kHigh * memory->highest_prediction ? 1.0 : 0.0; break;
+        case Kind::kProbe: break;
         case Kind::kSlope: value = slope[At(region.index)]; break;
         default: value = Value(region.kind, pack.u[n][At(region.index)], memory->input[At(region.index)]); break;
       }

@@ -11,6 +11,8 @@ namespace {
 constexpr double kDependent = 1e-9;    // pivot over diagonal below which a direction counts as linearly dependent
 constexpr double kFewestPacks = 4.0;   // minimum effective number of packs for a score
 constexpr double kCarryOver = 2.5;     // correlation of neighbouring means, times their samples
+constexpr double kNoMean = 1e-6;       // share of a pack's mean below which its unknowns have taken it
+constexpr double kConverged = 1e-3;    // mean square of the last step of the fit, in that of the errors
 constexpr double kMostLeverage = 0.9;  // of a pack, above which its residual carries no information
 
 double Dot(const double* a, const double* b, int n) noexcept {
@@ -34,6 +36,7 @@ void GapBlock::AddFit(int k, const GapRows& rows, double tau, bool changed) noex
   pack.direction = {1.0, tau, changed ? 1.0 : 0.0, 1.5 * tau * tau - 0.5, (2.5 * tau * tau - 1.5) * tau};
   const int n = rows.num_samples;
   pack.count = static_cast<int>(std::count(rows.used.begin(), rows.used.begin() + n, true));
+  pack.removed = rows.num_removed;
   pack.error_square = Dot(rows.error.data(), rows.error.data(), n);
   for (int a = 0; a < columns_; ++a) {
     pack.slope_error[At(a)] = Dot(rows.slope[At(a)].data(), rows.error.data(), n);
@@ -96,9 +99,12 @@ void GapBlock::SumNormalMatrix() noexcept {
   }
 }
 
-void GapBlock::AddPrecision(const std::array<double, kGapColumns>& precision) noexcept {
+void GapBlock::AddPrecision(const std::array<double, kGapColumns>& precision, double damping) noexcept {
   for (int i = 0; i < directions_; ++i)
-    for (int a = 0; a < columns_; ++a) matrix_[At(i * columns_ + a)][At(i * columns_ + a)] += precision[At(a)];
+    for (int a = 0; a < columns_; ++a) {
+      double& diagonal = matrix_[At(i * columns_ + a)][At(i * columns_ + a)];
+      diagonal += precision[At(a)] + damping * diagonal;
+    }
 }
 
 void GapBlock::Factor() noexcept {
@@ -156,10 +162,10 @@ void GapBlock::SolveErrors(Vector* solution) const noexcept {
   SolveUpper(solution);
 }
 
-void GapBlock::Fit(const std::array<double, kGapColumns>& precision,
+void GapBlock::Fit(const std::array<double, kGapColumns>& precision, double damping,
                    std::array<GapShift, kGapBlockPacks>* shift) noexcept {
   SumNormalMatrix();
-  AddPrecision(precision);
+  AddPrecision(precision, damping);
   Factor();
   Vector solution;
   SolveErrors(&solution);
@@ -167,12 +173,13 @@ void GapBlock::Fit(const std::array<double, kGapColumns>& precision,
 }
 
 double GapBlock::CarryOver() const noexcept {
-  int packs = 0, samples = 0;
+  int packs = 0, samples = 0, removed = 0;
   for (const PackSums& pack : packs_) {
     packs += pack.used && pack.count > 0 ? 1 : 0;
     samples += pack.used ? pack.count : 0;
+    removed = pack.used ? std::max(removed, pack.removed) : removed;
   }
-  return samples > 0 ? std::min(kCarryOver * packs / samples, 1.0) : 0.0;
+  return samples > 0 ? std::min((2 * removed + 1) * kCarryOver * packs / samples, 1.0) : 0.0;
 }
 
 CheckScore GapBlock::ScoreRegion(int region, double tolerance, double* explained) const noexcept {
@@ -255,12 +262,14 @@ CheckScore GapBlock::ScoreWander(int lag, double tolerance, double* explained) c
   int run = 0;                     // packs without a gap before this one
   for (int k = 0; k < kGapBlockPacks; ++k) {
     const PackSums& pack = packs_[At(k)];
-    if (!pack.used || pack.count == 0) {
+    const double square_of_mean =
+        pack.region[0].square;  // of the constant, which is `count` unless some is projected out
+    if (!pack.used || pack.count == 0 || !(square_of_mean > kNoMean * pack.count)) {
       run = 0;
       continue;
     }
     const double total = pack.region[0].error - Dot(pack.region[0].slope.data(), fit_[At(k)].data(), columns_);
-    const double mean = total / std::sqrt(static_cast<double>(pack.count));
+    const double mean = total / std::sqrt(square_of_mean);
     const double earlier = before[At((k + lag) % 2)];
     if (run >= lag) {
       const double product = mean * earlier;
@@ -292,15 +301,23 @@ void GapBlock::BeginScores() noexcept {
   Vector solution;
   SolveErrors(&solution);
   excess_ = 0.0;
+  double moved = 0.0, squares = 0.0;
+  int count = 0, removed = 0;
   for (int k = 0; k < kGapBlockPacks; ++k) {
     const PackSums& pack = packs_[At(k)];
     if (!pack.used) continue;
     const GapShift& dk = fit_[At(k)] = ShiftOf(pack, solution);
-    excess_ += pack.error_square - pack.count;
+    excess_ += pack.error_square - (pack.count - pack.removed);
+    squares += pack.error_square;
+    count += pack.count;
+    removed += pack.removed;
+    for (int a = 0; a < columns_; ++a) moved += dk[At(a)] * Dot(pack.slope_slope[At(a)].data(), dk.data(), columns_);
     for (int a = 0; a < columns_; ++a)
       excess_ -= dk[At(a)] * (2.0 * pack.slope_error[At(a)] - Dot(pack.slope_slope[At(a)].data(), dk.data(), columns_));
   }
-  excess_ += static_cast<double>(std::count(kept_.begin(), kept_.begin() + columns_ * directions_, true));
+  const auto fitted = static_cast<double>(std::count(kept_.begin(), kept_.begin() + columns_ * directions_, true));
+  excess_ += fitted;
+  converged_ = removed == 0 || moved <= kConverged * std::max(static_cast<double>(count), squares);
   if (!std::isfinite(excess_)) excess_ = 0.0;
 }
 
@@ -315,8 +332,8 @@ CheckScore GapBlock::Score(int check, double tolerance) noexcept {
     default: score = ScoreRegion(check, tolerance, explained); break;
   }
   // Data without noise: the residual is rounding error, and its squares may underflow.
-  if (!std::isfinite(score.z) || !std::isfinite(score.margin)) score = CheckScore{};
-  if (!std::isfinite(*explained)) *explained = 0.0;
+  if (!converged_ || !std::isfinite(score.z) || !std::isfinite(score.margin)) score = CheckScore{};
+  if (!converged_ || !std::isfinite(*explained)) *explained = 0.0;
   return score;
 }
 

@@ -18,6 +18,8 @@ GapLineariser::GapLineariser(const EstimatorSettings& settings, int model, const
                              bool judges_passive)
     : settings_(settings), model_(model), kernels_(kernels), judges_passive_(judges_passive), composition_(settings) {
   effects_ = composition_.MakePack();
+  if (settings.plant != nullptr && settings.plant->states().size() > 0)
+    starts_ = std::make_unique<GapStarts>(settings.plant->states(), kernels);
 }
 
 const ParameterSettings& GapLineariser::parameter(int column) const noexcept {
@@ -46,9 +48,20 @@ void GapLineariser::FillTheta(const std::array<double, kMaxParams>& theta) noexc
   }
 }
 
+bool GapLineariser::Predict(const DataPack& pack, double noise_std) noexcept {
+  if (!starts_) {
+    kernels_.predict(model_, data_, theta_, &prediction_);
+    return true;
+  }
+  std::array<double, kMaxParams> theta{};
+  for (int d = 0; d < info().num_parameters; ++d) theta[At(d)] = theta_.value[At(d)][0];
+  if (!starts_->Fit(pack, theta, noise_std, &data_, &effects_.described.states)) return false;
+  kernels_.run_states(data_, theta_, no_offset_, &end_, &prediction_);
+  return true;
+}
+
 bool GapLineariser::FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
                              GapRows* rows) noexcept {
-  kernels_.predict(model_, data_, theta_, &prediction_);
   bool finite = true;
   int row = 0;
   for (std::size_t n = 0; n < At(rows->num_samples) && row < data_.num_samples; ++n) {
@@ -88,7 +101,13 @@ bool GapLineariser::Linearise(const DataPack& pack, const GapReference& at, GapR
     } else {
       composition_.Fill(pack, effects_, m, &data_);
     }
-    if (data_.num_samples > 0) finite = FillMode(m, at.noise_std[At(m)], *modes, rows) && finite;
+    if (data_.num_samples == 0) continue;
+    finite = Predict(pack, at.noise_std[At(m)]) && FillMode(m, at.noise_std[At(m)], *modes, rows) && finite;
+  }
+  if (starts_) {
+    rows->num_removed = starts_->directions().count();
+    RemoveStarts(&rows->error);
+    for (int c = 0; c < num_columns(); ++c) RemoveStarts(&rows->slope[At(c)]);
   }
   if (judges_passive_ && at.known[0]) FillPassive(pack, at.noise_std[0], *modes, rows);
   return finite;

@@ -262,18 +262,6 @@ TEST(DescribedWatch, LeavesAPassiveModeAloneThatSaysNothing) {
   }
 }
 
-TEST(DescribedWatch, LeavesPlantsAloneWhoseLawNeedsStates) {
-  PlantDescription vessel = test::DescribedVessel();
-  vessel.predicts.clear();
-  vessel.modes = {{"", "", "level", "", false}};
-  vessel.parameters[0].per_mode = false;
-  vessel.states[0].rate = "g*u + 0*r";
-  vessel.law.clear();
-  const Rig rig(vessel, {2.0});
-  EXPECT_FALSE(rig.watch().enabled());
-  EXPECT_FALSE(rig.watch().state().watched);
-}
-
 TEST(DescribedWatch, AllocatesNothing) {
   Rig rig(Axis(), kNearTruth);
   std::vector<DataPack> packs;

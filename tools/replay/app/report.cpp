@@ -57,7 +57,8 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
         << "; log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
         << '\n';
   } else if (!gap.watched) {
-    out << "gap between model and plant: not watched; armcmc-gap judges a recording\n";
+    out << "gap between model and plant: not watched (switched off, or too many parameters); armcmc-gap judges a "
+           "recording\n";
   }
   out << (any_known ? table.ToString() : std::string("nothing is known: no pack said anything about a parameter\n"));
   if (summary.packs > 0 && summary.compute_s > 0.0)

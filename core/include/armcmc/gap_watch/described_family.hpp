@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "armcmc/gap_watch/gap_checks.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -19,7 +20,11 @@ namespace armcmc {
 class DescribedFamily final : public GapFamily {
  public:
   /// Allocates. @param plant  Outlives the family.
-  explicit DescribedFamily(const PlantProgram& plant);
+  /// @param probes  Names of regions that somebody else fills (StateProbes).
+  explicit DescribedFamily(const PlantProgram& plant, const std::vector<std::string>& probes = {});
+  static constexpr int kMostProbes = 8;
+  /// The region of the first of them; negative: there is none.
+  [[nodiscard]] int first_probe() const noexcept ARMCMC_NONBLOCKING { return first_probe_; }
 
   void Fill(const DataPack& pack, const std::array<int, kMaxPackSamples>& modes, const double* prediction,
             RegionMemory* memory, RegionTemplates* out) const noexcept ARMCMC_NONBLOCKING override;
@@ -30,6 +35,7 @@ class DescribedFamily final : public GapFamily {
     kInMode,
     kOutputRate,
     kHighOutput,
+    kProbe,
     kDirection,
     kValue,
     kSlow,
@@ -51,6 +57,8 @@ class DescribedFamily final : public GapFamily {
   [[nodiscard]] static double Value(Kind kind, double u, const RegionMemory::Input& input) noexcept ARMCMC_NONBLOCKING;
 
   std::array<Region, kMaxRegions> regions_;
+  int first_probe_ = -1;
+  bool trajectories_begin_anew_ = false;  ///< With every pack.
 };
 
 }  // namespace armcmc

@@ -22,6 +22,7 @@ struct GapRows {
   std::array<double, kMaxPackSamples> error{};   ///< Measured minus predicted; 0 where not used.
   std::array<double, kMaxPackSamples> output{};  ///< Predicted.
   std::array<std::array<double, kMaxPackSamples>, kGapColumns> slope{};  ///< d predicted / d parameter.
+  int num_removed = 0;  ///< Directions that are projected out of errors and slopes: those of this pack's own unknowns.
 };
 
 /// Change of the parameters of one pack from the point at which it was linearised.
@@ -44,6 +45,11 @@ using GapShift = std::array<double, kGapColumns>;
 /// the two wanders score products of the means of neighbouring packs, and of those two apart. What coloured noise
 /// carries from one pack into the next is allowed for up to AR(1) noise with coefficient 0.8 from sample to sample:
 /// neighbouring means of n samples then correlate by 0.8 / (0.36 n).
+///
+/// What else is unknown of a pack alone, as the start of its states, is projected out of e, J and phi beforehand, by
+/// Q_k of rank n - r. Q_k noise_k is symmetric where noise_k is, so that nothing else changes; but what is left leans
+/// on the ends of the pack, up to 2 r + 1 times as much as its mean (Legendre polynomials do), and neighbours correlate
+/// as much more.
 class GapBlock {
  public:
   GapBlock(const GapChecks& checks, int num_columns) noexcept : checks_(checks), columns_(num_columns) {}
@@ -57,10 +63,13 @@ class GapBlock {
   void AddRegions(int k, const GapRows& rows, double tau, bool changed, const RegionTemplates& regions,
                   bool continues) noexcept ARMCMC_NONBLOCKING;
   /// Least squares with a weak prior (precision in units of the noise) on every direction: where to linearise next.
+  /// @param damping  Relative to the normal matrix: what the block hardly tells apart moves little.
   /// @param[out] shift  Of every pack.
-  void Fit(const std::array<double, kGapColumns>& precision,
+  void Fit(const std::array<double, kGapColumns>& precision, double damping,
            std::array<GapShift, kGapBlockPacks>* shift) noexcept ARMCMC_NONBLOCKING;
-  /// After the second pass: the fit that the scores are free of. @rt O(packs).
+  /// After the second pass: the fit that the scores are free of. Where packs have unknowns of their own, and the fit
+  /// still moves the prediction by more than a tenth of the noise, the trajectory is not where it is linearised, and
+  /// all scores are zero. @rt O(packs).
   void BeginScores() noexcept ARMCMC_NONBLOCKING;
   /// Score of one check; zero where the block says too little. @pre BeginScores(), and no pack since.
   /// @param tolerance  See GapWatchSettings. @rt O(packs).
@@ -81,6 +90,7 @@ class GapBlock {
     bool used = false;
     std::array<double, kGapDirections> direction{};
     int count = 0;
+    int removed = 0;
     double error_square = 0.0;
     std::array<double, kGapColumns> slope_error{};
     std::array<std::array<double, kGapColumns>, kGapColumns> slope_slope{};
@@ -89,7 +99,7 @@ class GapBlock {
   };
   using Vector = std::array<double, kGapNuisance>;
 
-  void AddPrecision(const std::array<double, kGapColumns>& precision) noexcept ARMCMC_NONBLOCKING;
+  void AddPrecision(const std::array<double, kGapColumns>& precision, double damping) noexcept ARMCMC_NONBLOCKING;
   void SumNormalMatrix() noexcept ARMCMC_NONBLOCKING;
   /// Cholesky factor; directions that the block cannot tell apart from the ones before are left out.
   void Factor() noexcept ARMCMC_NONBLOCKING;
@@ -116,6 +126,7 @@ class GapBlock {
   std::array<GapShift, kGapBlockPacks> fit_{};  ///< Of the parameters, where the scores are taken.
   std::array<double, kMaxGapChecks> explained_{};
   double excess_ = 0.0;
+  bool converged_ = true;
 };
 
 }  // namespace armcmc

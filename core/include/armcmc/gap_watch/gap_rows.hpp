@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/effects/composition.hpp"
 #include "armcmc/gap_watch/gap_block.hpp"
 #include "armcmc/gap_watch/gap_checks.hpp"
+#include "armcmc/gap_watch/gap_starts.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/model.hpp"
 #include "armcmc/nonblocking.hpp"
@@ -25,7 +27,8 @@ struct GapReference {
 };
 
 /// Errors and sensitivities of packs, for any model: the scoring kernel is asked once for the reference and two points
-/// beside it for each parameter, side by side in one tile.
+/// beside it for each parameter, side by side in one tile. Of a plant with states, the starts are fitted to each pack,
+/// and what they can explain is projected out of errors and sensitivities (GapStarts).
 class GapLineariser {
  public:
   /// @param settings  Valid; of the estimator. @param judges_passive  See GapFamily.
@@ -44,10 +47,23 @@ class GapLineariser {
   [[nodiscard]] bool Linearise(const DataPack& pack, const GapReference& at, GapRows* rows,
                                std::array<int, kMaxPackSamples>* modes) noexcept ARMCMC_NONBLOCKING;
   /// Forgets the packs before.
-  void Reset() noexcept { composition_.Reset(); }
+  void Reset() noexcept {
+    composition_.Reset();
+    if (starts_) starts_->Reset();
+  }
+  /// values <- what the starts of the states of the pack that was linearised last cannot explain of them.
+  void RemoveStarts(std::array<double, kMaxPackSamples>* values) const noexcept ARMCMC_NONBLOCKING {
+    if (starts_) starts_->directions().Remove(values);
+  }
+  /// States at the first sample of that pack. @pre The law has states.
+  [[nodiscard]] const std::array<double, kMaxStates>& start() const noexcept ARMCMC_NONBLOCKING {
+    return effects_.described.states.value;
+  }
 
  private:
   void FillTheta(const std::array<double, kMaxParams>& theta) noexcept ARMCMC_NONBLOCKING;
+  /// predict() of `theta_`. @return false where the states have no finite trajectory.
+  [[nodiscard]] bool Predict(const DataPack& pack, double noise_std) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool FillMode(int mode, double noise_std, const std::array<int, kMaxPackSamples>& modes,
                               GapRows* rows) noexcept ARMCMC_NONBLOCKING;
   /// Errors of the samples at which no mode acts.
@@ -61,6 +77,8 @@ class GapLineariser {
   Composition composition_;
   EffectPack effects_;
   ModeData data_;
+  std::unique_ptr<GapStarts> starts_;  ///< Null: the law has no states.
+  StateTile no_offset_{}, end_;
   ThetaTile theta_;
   PredictionTile prediction_;
 };

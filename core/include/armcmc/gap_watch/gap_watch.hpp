@@ -14,6 +14,7 @@
 #include "armcmc/gap_watch/gap_rows.hpp"
 #include "armcmc/gap_watch/gap_settings.hpp"
 #include "armcmc/gap_watch/gap_state.hpp"
+#include "armcmc/gap_watch/state_probes.hpp"
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/settings.hpp"
 
@@ -35,8 +36,17 @@ namespace armcmc {
 ///
 /// The estimates decide only where to linearise, so the number of draws hardly matters here.
 ///
-/// Not watched: plants with more than kGapColumns parameters in all modes together, and described plants whose law
-/// needs states, since where those start in a pack is itself an estimate that follows the misfit.
+/// Of a described plant whose law needs states, each pack is a trajectory of its own: where it starts is fitted to the
+/// pack, and what a start can explain is projected out of errors, sensitivities and regions (GapStarts). Regions are
+/// the responses to terms that the rates lack (StateProbes). So that trajectories are long, packs are joined while
+/// there is room. Since they bend with their parameters, the block is linearised four times instead of twice, and
+/// scored only where the last fit hardly moves it: a block that is not gives no evidence for or against a gap, as a
+/// pack does whose start has not been found. What remains silent, too: an effect that moves the output of a trajectory
+/// of a few hundred samples less than the start and the parameters do. Packs should therefore last as long as the plant
+/// takes to answer. The inputs count as exact, as they do in every law: noise on an input that rings on in a resonance,
+/// and is larger there than that of the output, looks like a missing friction.
+///
+/// Not watched: plants with more than kGapColumns parameters in all modes together.
 class GapWatch {
  public:
   /// Allocates. @param settings  Valid; outlives the watch. @param rate  Of false alarms, see GapEvidence.
@@ -63,7 +73,9 @@ class GapWatch {
   /// Of the analysis of one block, for every pack of the next one: a pack of one pass, the fit, a score. All pieces
   /// are done well before the next block is full.
   static constexpr int kPiecesPerPack = 6;
+  static constexpr int kMostPasses = 4;
   static_assert(kPiecesPerPack * kGapBlockPacks > 2 * (2 * kGapBlockPacks + kMaxGapChecks + 3));
+  static_assert(kPiecesPerPack * kGapBlockPacks > kMostPasses * (kGapBlockPacks + 1) + kMaxGapChecks + 2);
   static constexpr double kShortestPack = 0.1;  ///< s: longer than coloured noise remembers.
   static constexpr int kNoChange = kGapBlockPacks;
 
@@ -81,15 +93,21 @@ class GapWatch {
   void BeginAnalysis(const GapReference& estimate) noexcept ARMCMC_NONBLOCKING;
   /// The first change of the block, and which packs around it are left out.
   void PlaceChange() noexcept ARMCMC_NONBLOCKING;
-  void AnalysePack(int k, bool second_pass) noexcept ARMCMC_NONBLOCKING;
+  /// @param pass  The last one is that which is scored.
+  void AnalysePack(int k, int pass) noexcept ARMCMC_NONBLOCKING;
   void FitTrajectory() noexcept ARMCMC_NONBLOCKING;
   void Judge() noexcept ARMCMC_NONBLOCKING;
 
   const GapWatchSettings& settings_;
-  std::unique_ptr<const GapFamily> described_;  ///< Null: built in.
+  std::unique_ptr<StateProbes> probes_;               ///< Null: the law has no states.
+  std::unique_ptr<const DescribedFamily> described_;  ///< Null: built in.
   const GapFamily& family_;
-  GapLineariser first_, second_;  ///< One for each pass: each sees every pack once, in order.
+  /// One for each pass: each sees every pack once, in order. A trajectory bends more with its parameters than a law
+  /// does, and is fitted more often.
+  std::vector<std::unique_ptr<GapLineariser>> passes_;
   bool enabled_;
+  int most_samples_;   ///< Of a pack of a block.
+  double shortest_s_;  ///< Below which packs are joined while there is room.
   GapBlock block_;
   GapJudge judge_;
   std::array<CheckScore, kMaxGapChecks> scores_{}, new_scores_{};
