@@ -23,6 +23,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+std::string TextOf(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 TEST(Pages, TheTutorialOfAPlantWorks) {
   const ScratchDir dir;
   EXPECT_THAT(FollowPage(SourceDir() / "core/plants/README.md", dir.path()), IsEmpty());
@@ -36,6 +41,14 @@ TEST(Pages, ThePlantAndTheCsvOfTheReadmeWork) {
   EXPECT_THAT(FollowPage(SourceDir() / "README.md", dir.path()), IsEmpty());
   for (const char* made : {"motor.csv", "estimates.csv", "axis/report.html", "axis/model.toml"})
     EXPECT_TRUE(std::filesystem::exists(dir / made)) << made;
+  // What the caption of its report says, and the name that it shows.
+  const std::string result = TextOf(dir / "axis/result.json"), readme = TextOf(SourceDir() / "README.md");
+  std::smatch caption, before, after;
+  ASSERT_TRUE(std::regex_search(readme, caption, std::regex(R"(the error falls from ([0-9.]+) to ([0-9.]+) N\])")));
+  ASSERT_TRUE(std::regex_search(result, before, std::regex(R"("heldout_rmse_before": ([0-9.]+))")));
+  ASSERT_TRUE(std::regex_search(result, after, std::regex(R"("heldout_rmse_after": ([0-9.]+))")));
+  EXPECT_NEAR(std::stod(caption[1]), std::stod(before[1]), 0.005);
+  EXPECT_NEAR(std::stod(caption[2]), std::stod(after[1]), 0.005);
 }
 
 TEST(Pages, ResultsAreMadeByTheCommandsThatTheyShow) {
@@ -93,11 +106,6 @@ TEST(Pages, LinksLeadToFilesAndPagesAreShort) {
     }
   }
   EXPECT_GT(links, 30);
-}
-
-std::string TextOf(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// Files and folders of the tree from its top, "core/src/settings.cpp".
