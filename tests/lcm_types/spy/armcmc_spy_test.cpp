@@ -68,6 +68,13 @@ TEST_F(ArmcmcSpy, ExplainsItself) {
   }
 }
 
+TEST_F(ArmcmcSpy, RepeatsNothingThatATerminalActsOn) {
+  const Outcome run = Run({"--\x1b[2J\xff\\033[2J"});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.err, "armcmc-spy: --?[2J?\\033[2J is not an option (see armcmc-spy --help)\n");
+  EXPECT_LT(Run({"--lcm-url", std::string(9000, 'x')}).err.size(), 1100U);
+}
+
 TEST_F(ArmcmcSpy, SaysWhichPackageIsMissing) {
   const auto expect = [this](const std::string& words) {
     const Outcome o = Run({});
