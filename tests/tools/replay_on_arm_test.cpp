@@ -1,8 +1,11 @@
-// A whole recording through the estimator on AArch64, under qemu: the same estimates, to the bit, as here.
+// Whole recordings through the estimator on AArch64, under qemu: the same estimates as here. The kernels give the same
+// bits on both (kernel_bits_test.cpp). The mathematical library rounds some functions in another way, and Eigen fuses
+// multiplications and additions; the fits between packs amplify that to some 1e-7 posterior standard deviations.
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +16,7 @@
 
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "tools/csv_rows.hpp"
 
 namespace armcmc::test::replay_on_arm_test {
 namespace {
@@ -44,7 +48,9 @@ class ReplayOnArm : public testing::Test {
       GTEST_SKIP() << program_ << " is older than this build: cmake --build --preset aarch64";
   }
 
-  void ExpectSameBits(std::vector<std::string> arguments) {
+  /// Runs both, and compares all cells: words are equal, numbers differ by at most 0.001 posterior standard deviations
+  /// (those without one by 0.001 of their value), a twentieth of the Monte Carlo error of 1000 draws.
+  void ExpectSameEstimates(std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--out", dir_ / "here.csv"});
     const Outcome here = RunProgram(Program("armcmc-replay"), arguments);
     ASSERT_EQ(here.code, 0) << here.err;
@@ -53,9 +59,19 @@ class ReplayOnArm : public testing::Test {
     const Outcome arm = RunProgram(emulator_, arguments, 200s);
     ASSERT_EQ(arm.code, 0) << arm.err;
     EXPECT_NE(arm.out.find(" on neon\n"), std::string::npos) << arm.out;
-    const std::string expected = TextOf(dir_ / "here.csv");
-    EXPECT_GT(expected.size(), 1000U);
-    EXPECT_EQ(TextOf(dir_ / "arm.csv"), expected);
+    const auto expected = RowsOf(TextOf(dir_ / "here.csv")), found = RowsOf(TextOf(dir_ / "arm.csv"));
+    ASSERT_EQ(found.size(), expected.size());
+    ASSERT_GT(expected.size(), 2U);
+    for (std::size_t n = 0; n < expected.size(); ++n) {
+      for (const auto& [name, text] : expected[n]) {
+        SCOPED_TRACE("pack " + std::to_string(n + 1) + ", " + name);
+        const std::string& other = found[n].at(name);
+        if (text == other) continue;
+        const auto sd = expected[n].find(name.substr(0, name.find('_')) + "_sd");
+        const double size = sd != expected[n].end() ? std::stod(sd->second) : std::abs(std::stod(text));
+        EXPECT_NEAR(std::stod(other), std::stod(text), 1e-3 * size);
+      }
+    }
   }
 
   const fs::path emulator_ = OnPath("qemu-aarch64");
@@ -63,7 +79,7 @@ class ReplayOnArm : public testing::Test {
   const ScratchDir dir_;
 };
 
-TEST_F(ReplayOnArm, AContactGivesTheSameEstimatesToTheBit) {
+TEST_F(ReplayOnArm, AContactGivesTheSameEstimates) {
   const Outcome plant = RunProgram(
       Program("armcmc-plant"), {"--scenario", "hunt_crossley_drift", "--duration", "1.5", "--csv", dir_ / "run.csv"});
   ASSERT_EQ(plant.code, 0) << plant.err;
@@ -71,14 +87,14 @@ TEST_F(ReplayOnArm, AContactGivesTheSameEstimatesToTheBit) {
   const std::string draws = "draws = \"chernoff\"";
   config.replace(config.find(draws), draws.size(), "draws = 1000");
   std::ofstream(dir_ / "config.toml") << config;
-  ExpectSameBits({"--config", dir_ / "config.toml", "--data", dir_ / "run.csv"});
+  ExpectSameEstimates({"--config", dir_ / "config.toml", "--data", dir_ / "run.csv"});
 }
 
-TEST_F(ReplayOnArm, APlantFileWithStatesGivesTheSameEstimatesToTheBit) {
+TEST_F(ReplayOnArm, APlantFileWithStatesGivesTheSameEstimates) {
   const Outcome plant =
       RunProgram(Program("armcmc-plant"), {"--model", "pendulum", "--duration", "0.3", "--csv", dir_ / "run.csv"});
   ASSERT_EQ(plant.code, 0) << plant.err;
-  ExpectSameBits({"--model", SourceDir() / "core/plants/pendulum/plant.toml", "--data", dir_ / "run.csv"});
+  ExpectSameEstimates({"--model", SourceDir() / "core/plants/pendulum/plant.toml", "--data", dir_ / "run.csv"});
 }
 
 }  // namespace
