@@ -140,7 +140,30 @@ TEST(ReadmeNumbers, RecordingsAreThoseOfThePageOfTheWorkflow) {
   }
 }
 
-// tools/results writes that page.
+// tools/results writes this page and the next one. V and N, as printed, with one digit more than the README has.
+TEST(ReadmeNumbers, RecordingsAreThoseOfTheirResults) {
+  const std::string results = Page("tools/gap/recordings/RESULTS.md"), readme = Page("README.md");
+  const auto errors = [&](const std::string& recording, const std::string& line) {
+    const std::size_t begin = results.find("recordings/" + recording + ".toml");
+    const std::string part = results.substr(begin, results.find("\n```\n", begin) - begin);
+    std::smatch found;
+    EXPECT_TRUE(std::regex_search(part, found, std::regex(line))) << recording << ": " << line;
+    return std::pair(Number(found[1]), Number(found[2]));
+  };
+  const auto expect = [&](const std::string& row, const std::pair<double, double>& errors, double unit) {
+    const std::vector<std::string> cells = Row(readme, row);
+    EXPECT_NEAR(Number(cells[2]) / (unit * errors.first), 1.0, 0.006) << row;
+    EXPECT_NEAR(Number(cells[3]) / (unit * errors.second), 1.0, 0.015) << row;
+  };
+  const std::string whole = R"(held-out rms error ([0-9.]+) -> ([0-9.]+) )";
+  expect("EMPS servo axis", errors("emps_estimation", whole), 1.0);
+  expect("cascaded tanks", errors("cascaded_tanks", whole), 1.0);
+  expect("Silverbox oscillator, arrow", errors("silverbox_snls80mv", R"(0.3768 to 66.48 s +([0-9.]+) +([0-9.]+))"),
+         1e3);
+  expect("Silverbox oscillator, multisine", errors("silverbox_snls80mv", R"(173.2 to 208.7 s +([0-9.]+) +([0-9.]+))"),
+         1e3);
+}
+
 TEST(ReadmeNumbers, SpeedIsThatOfTheBenchmarksPage) {
   const std::string results = Page("tools/bench/RESULTS.md");
   const std::vector<std::string> plants = {"hunt_crossley", "soft_actuator", "servo_axis", "pendulum", "two_tanks"};
