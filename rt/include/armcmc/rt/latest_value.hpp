@@ -10,14 +10,16 @@ namespace armcmc::rt {
 
 /// Triple buffer of slot numbers: hands the newest complete value from one thread to another.
 ///
-/// The values themselves live wherever the caller keeps kSlots of them. The writer fills write_slot() and calls
-/// Publish(); the reader calls Acquire() and then owns read_slot(). No value is copied, nobody waits,
-/// and the two never work on the same slot.
+/// The values themselves are kept by the caller, in kSlots slots. The writer fills write_slot() and calls Publish();
+/// the reader calls Acquire() and then owns read_slot(). The third slot holds the newest value in between; an atomic
+/// exchange of its number passes the ownership. No value is copied, neither side waits, and they never work on the same
+/// slot.
 class LatestValue {
  public:
+  /// Number of slots that the caller provides.
   static constexpr int kSlots = 3;
 
-  /// Slot that the writer owns.
+  /// Slot owned by the writer. Only for the writer.
   [[nodiscard]] int write_slot() const noexcept { return write_slot_; }
 
   /// Hands write_slot() to the reader and takes another one.
@@ -44,7 +46,7 @@ class LatestValue {
     return true;
   }
 
-  /// Slot that the reader owns.
+  /// Slot owned by the reader. Only for the reader; valid after the first Acquire() that returned true.
   [[nodiscard]] int read_slot() const noexcept { return read_slot_; }
 
  private:

@@ -13,16 +13,20 @@ namespace armcmc::rt {
 /// std::hardware_destructive_interference_size may differ between the files of one program.
 inline constexpr std::size_t kCacheLine = 64;
 
-/// Single-producer single-consumer ring of fixed capacity. Elements are written and read in place:
-/// nothing is copied, nothing is allocated after construction, nobody waits.
+/// Single-producer single-consumer ring of fixed capacity (L. Lamport, 1983). Elements are written and read in place:
+/// nothing is copied, nothing is allocated after construction, and neither side waits for the other.
 ///
-/// Producer: Claim(), fill, Commit(). Consumer: Front(), use, Pop().
-/// @tparam kCapacity  Usable elements, a power of two.
+/// Producer: Claim(), fill, Commit(). Consumer: Front(), use, Pop(). A committed element is visible to the consumer
+/// with everything written before (release / acquire on the indices). The indices count up without wrapping and are
+/// reduced by a mask, so that all kCapacity slots can be used.
+/// @tparam T          Default constructible; objects live as long as the ring and are reused.
+/// @tparam kCapacity  Number of elements, a power of two.
 template <typename T, std::size_t kCapacity>
 class SpscRing {
   static_assert(kCapacity >= 2 && (kCapacity & (kCapacity - 1)) == 0, "capacity must be a power of two");
 
  public:
+  /// Allocates all slots.
   SpscRing() : slots_(std::make_unique<std::array<T, kCapacity>>()) {}
 
   /// The slot to fill next, or nullptr when the ring is full. The same slot until Commit().
@@ -56,6 +60,7 @@ class SpscRing {
     return head_.load(std::memory_order_acquire) - tail;
   }
 
+  /// Number of elements that fit.
   [[nodiscard]] static constexpr std::size_t capacity() noexcept { return kCapacity; }
 
  private:
