@@ -44,7 +44,7 @@ struct LetDescription {
 struct ModeDescription {
   std::string name;
   std::string when;    ///< Empty: always.
-  std::string law;     ///< Of a passive mode empty: 0.
+  std::string law;     ///< An expression; of a passive mode it may be empty: 0.
   std::string target;  ///< What the law explains, of signals; empty: the output.
   bool passive = false;
 };
@@ -55,7 +55,7 @@ struct StateDescription {
   std::string name;
   std::string unit;
   std::string role;
-  std::string rate;
+  std::string rate;         ///< d state/dt, an expression.
   std::string start;        ///< Of signals at the first sample and parameters.
   std::string measured_by;  ///< Signal that each pack starts from; empty: none.
   int substeps = 1;         ///< Of one sample interval.
@@ -86,7 +86,7 @@ struct PlantDescription {
   std::vector<SignalDescription> signals;
   std::vector<ConstantDescription> constants;
   std::vector<ParameterDescription> parameters;
-  std::vector<LetDescription> lets;
+  std::vector<LetDescription> lets;  ///< Each may use those before it.
   std::vector<ModeDescription> modes;
   std::vector<StateDescription> states;
   std::vector<ReportDescription> reports;

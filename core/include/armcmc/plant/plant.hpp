@@ -78,17 +78,19 @@ class Plant {
   [[nodiscard]] std::uint64_t identity() const noexcept { return identity_; }
 
  private:
-  void AddSignals();
-  void AddConstants();
-  void AddParameters();
-  void AddStates();
-  void AddLets();
-  void AddModes();
-  void AddRates();
-  void AddReports();
+  void AddSignals();     ///< Signals and the output, with their units; the fingerprint.
+  void AddConstants();   ///< Numbers with units.
+  void AddParameters();  ///< Priors and bounds; lognormal ones as exp of their symbol.
+  void AddStates();      ///< Names, units and starts; the rates follow, since they may use everything.
+  void AddLets();        ///< In order: each may use those before it.
+  void AddModes();       ///< Conditions, laws and targets.
+  void AddRates();       ///< Rates of the states.
+  void AddReports();     ///< Additional published quantities.
   /// Functions with memory of what is held between samples.
   void UseHeldForms();
+  /// @throws PlantError  for a parameter that influences neither a law nor a state.
   void CheckParametersAreFelt() const;
+  /// Sets fingerprint() and identity().
   void Identify();
   void AddSymbol(const std::string& key, expression::Symbol symbol);
   [[nodiscard]] std::optional<expression::Unit> UnitAt(const std::string& key, const std::string& text) const;
@@ -105,7 +107,7 @@ class Plant {
   PlantDescription description_;
   expression::Graph graph_;
   expression::Scope scope_;
-  std::vector<int> lets_;
+  std::vector<int> lets_;  ///< Nodes of the named subexpressions.
   std::vector<PlantMode> modes_;
   std::vector<PlantState> states_;
   std::vector<int> reports_;

@@ -27,8 +27,8 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no syste
   return static_cast<Nanos>(t.tv_sec) * kNanosPerSecond + static_cast<Nanos>(t.tv_nsec);
 }
 
-/// CLOCK_REALTIME, ns. For the alignment of logs, and to convert the receive stamps of the kernel; never for a
-/// deadline, since it may jump.
+/// CLOCK_REALTIME, ns since 1970. For the alignment of logs, and to convert the receive stamps of the kernel; never for
+/// a deadline, since it may jump.
 /// @rt No system call (vDSO).
 [[nodiscard]] inline Nanos RealtimeNow() noexcept ARMCMC_NONBLOCKING {
   timespec t{};

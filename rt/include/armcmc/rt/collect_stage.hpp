@@ -59,9 +59,11 @@ class CollectStage {
   void Tick(Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
 
  private:
+  /// Copies the counts of the tracker to the counters.
   void PublishSequenceCounts() noexcept ARMCMC_NONBLOCKING;
   /// Counts a pack that failed a check, by its cause, and raises FAULT_BAD_DATA.
   void Reject(RejectCause cause, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
+  /// Raises FAULT_CLOCK_JUMP if the clock of the plant jumped. @param continues  The pack continues the previous one.
   void NoteClock(bool continues, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
   /// Warns once per run if packs do not share the configured number of samples. @param steps  Difference of the pack
   /// numbers.
@@ -69,18 +71,18 @@ class CollectStage {
   /// The plant is back after silent periods: an event, and the flag ends.
   void NoteSilenceOver(std::int64_t seq, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
 
-  Nanos period_ns_, deadline_ns_;
-  int overlap_;
-  PackCodec codec_;
-  SequenceTracker tracker_;
-  ReleaseGrid grid_;
+  Nanos period_ns_, deadline_ns_;  ///< From the settings.
+  int overlap_;                    ///< Packs that share a sample.
+  PackCodec codec_;                ///< Decodes and checks.
+  SequenceTracker tracker_;        ///< Numbers and runs.
+  ReleaseGrid grid_;               ///< Due times.
   CpuTimeMeter cpu_time_;
   PackRing* ring_;
   RecordRing* record_ = nullptr;
   Injection* injection_ = nullptr;
   Counters* counters_;
   EventLog* events_;
-  Nanos next_tick_ns_ = 0;
+  Nanos next_tick_ns_ = 0;          ///< See next_tick_ns().
   Nanos heard_ns_ = 0;              // newest usable pack, or Begin()
   std::int64_t skipped_steps_ = 0;  // grid points of packs that came and were rejected since the last usable one
   std::int64_t silent_in_a_row_ = 0;

@@ -63,13 +63,13 @@ struct Counters {
   struct alignas(64) Collect {
     Counter received, lost, duplicate, reordered, restarts, silent_periods, ring_full;
     Counter foreign, fragments, malformed;
-    std::array<Counter, kNumRejectCauses> rejected;
-    std::atomic<bool> silent{true};  ///< No pack for longer than a period and a half.
+    std::array<Counter, kNumRejectCauses> rejected;  ///< By RejectCause.
+    std::atomic<bool> silent{true};                  ///< No pack for longer than a period and a half.
   } collect;
   /// Packs that were not computed (dropped), whose draws the deadline cut (truncated), and whose posterior was not
   /// finite (numeric).
   struct alignas(64) Adjust {
-    Counter dropped, truncated, numeric;
+    Counter dropped, truncated, numeric;  ///< Packs.
   } adjust;
   /// Finished steps, the number of the newest pack, and estimates that the publisher had no room for.
   struct alignas(64) Execute {
@@ -77,7 +77,7 @@ struct Counters {
   } execute;
   /// Messages sent, and messages that could not be encoded or sent.
   struct alignas(64) Publish {
-    Counter errors, messages;
+    Counter errors, messages;  ///< Messages.
   } publish;
   alignas(64) FaultFlags faults;
   alignas(64) std::array<Counter, kNumStages> heap_calls;  ///< Of each stage thread, after warm-up.

@@ -76,16 +76,16 @@ class Lane {
  private:
   friend class Pipeline;
 
-  StepEngine* engine_;
-  std::string prefix_;
-  Counters counters_;
-  DeadlineMonitor monitor_;
-  std::array<EventLog, 4> events_;  // collect, adjust, execute, publish: one producer each
-  PackRing packs_;
-  ResultHandOver results_;
-  OutputRing outputs_;
-  std::unique_ptr<RecordRing> record_;
-  LcmPublisher publisher_;
+  StepEngine* engine_;                  ///< The computation; belongs to the caller.
+  std::string prefix_;                  ///< Of all channels of this plant.
+  Counters counters_;                   ///< Written by the stages, each in its own group.
+  DeadlineMonitor monitor_;             ///< Stage times and verdicts on deadlines.
+  std::array<EventLog, 4> events_;      // collect, adjust, execute, publish: one producer each
+  PackRing packs_;                      ///< collect -> adjust.
+  ResultHandOver results_;              ///< adjust -> execute.
+  OutputRing outputs_;                  ///< execute -> publish.
+  std::unique_ptr<RecordRing> record_;  ///< collect -> a reader outside; null without record_packs.
+  LcmPublisher publisher_;              ///< Used by the publish thread only.
   CollectStage collect_;
   AdjustStage adjust_;
   ExecuteStage execute_;

@@ -104,11 +104,11 @@ class Pipeline {
 
  private:
   void StartThreads();
-  void StartWitnesses();
+  void StartWitnesses();  ///< One for each CPU that runs a stage.
   /// Tells the meter of every stage which other threads run on its CPU.
   void ShareCpuTimes();
-  void Place();
-  void KeepCpusAwake();
+  void Place();          ///< With one available CPU, puts all stages there; sets DEGRADED_SHARED_CPU.
+  void KeepCpusAwake();  ///< [rt] cpu_idle.
   const ThreadPlacement& StartThread(RtThread* thread, const char* name, const ThreadSettings& settings,
                                      RtThread::Entry entry);
 
@@ -131,8 +131,8 @@ class Pipeline {
   RtSettings settings_;
   PipelineOptions options_;
   std::vector<std::unique_ptr<Lane>> lanes_;
-  EventLog watchdog_events_;
-  LcmReceiver receiver_;
+  EventLog watchdog_events_;  ///< Events of no plant in particular.
+  LcmReceiver receiver_;      ///< One socket for all plants.
   Watchdog watchdog_;
 
   Waiter adjust_waiter_, execute_waiter_, publish_waiter_, warm_waiter_;
@@ -142,7 +142,7 @@ class Pipeline {
   RtThread collect_thread_, adjust_thread_, execute_thread_, publish_thread_;
   std::int32_t degraded_flags_ = 0;
   bool memory_locked_ = false;
-  CpuWakeRequest wake_request_;
+  CpuWakeRequest wake_request_;  ///< Held while the pipeline lives.
 };
 
 /// Names of the DEGRADED_* bits that are set, for people.

@@ -67,13 +67,13 @@ class RtThread {
   [[nodiscard]] int Create(bool fifo, bool pin) noexcept;
   void ReadBack();
 
-  ThreadRequest request_;
+  ThreadRequest request_;  ///< As given to Start().
   ThreadPlacement placement_;
   Entry entry_ = nullptr;
-  void* context_ = nullptr;
-  Waiter ready_;          // thread -> Start(): placement_ is known
-  Waiter go_;             // Start() -> thread
-  bool refused_ = false;  // written before go_
+  void* context_ = nullptr;  ///< Argument of entry_.
+  Waiter ready_;             // thread -> Start(): placement_ is known
+  Waiter go_;                // Start() -> thread
+  bool refused_ = false;     // written before go_
   pthread_t thread_{};
   bool running_ = false;
   std::atomic<Nanos> cpu_time_ns_{0};

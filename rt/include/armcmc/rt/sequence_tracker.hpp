@@ -35,10 +35,10 @@ class SequenceTracker {
 
   /// Totals since the start.
   struct Counts {
-    std::int64_t lost = 0;  ///< Numbers that never came (one that comes late is taken off again).
-    std::int64_t duplicate = 0;
-    std::int64_t reordered = 0;
-    std::int64_t restarts = 0;
+    std::int64_t lost = 0;       ///< Numbers that never came (one that comes late is taken off again).
+    std::int64_t duplicate = 0;  ///< Numbers that came again.
+    std::int64_t reordered = 0;  ///< Packs older than the newest one.
+    std::int64_t restarts = 0;   ///< Runs after the first.
   };
 
   /// Verdict on one pack.

@@ -29,7 +29,8 @@ class SpscRing {
   /// Allocates all slots.
   SpscRing() : slots_(std::make_unique<std::array<T, kCapacity>>()) {}
 
-  /// The slot to fill next, or nullptr when the ring is full. The same slot until Commit().
+  /// The slot to fill next. The same slot until Commit().
+  /// @return null if the ring is full: the producer decides what is lost.
   /// @rt Wait-free.
   [[nodiscard]] T* Claim() noexcept ARMCMC_NONBLOCKING {
     const std::size_t head = head_.load(std::memory_order_relaxed);
@@ -42,7 +43,9 @@ class SpscRing {
     head_.store(head_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
 
-  /// The oldest element, or nullptr when the ring is empty. @rt Wait-free.
+  /// The oldest element. The same element until Pop().
+  /// @return null if the ring is empty.
+  /// @rt Wait-free.
   [[nodiscard]] T* Front() noexcept ARMCMC_NONBLOCKING {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (head_.load(std::memory_order_acquire) == tail) return nullptr;
@@ -54,7 +57,8 @@ class SpscRing {
     tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
 
-  /// Elements in the ring; exact for the two users, a snapshot for anybody else.
+  /// Number of committed elements that were not popped: exact for producer and consumer, a snapshot for other threads.
+  /// @rt Wait-free.
   [[nodiscard]] std::size_t size() const noexcept ARMCMC_NONBLOCKING {
     const std::size_t tail = tail_.load(std::memory_order_acquire);
     return head_.load(std::memory_order_acquire) - tail;
@@ -66,7 +70,8 @@ class SpscRing {
  private:
   alignas(kCacheLine) std::atomic<std::size_t> head_{0};  // written by the producer
   alignas(kCacheLine) std::atomic<std::size_t> tail_{0};  // written by the consumer
-  alignas(kCacheLine) std::unique_ptr<std::array<T, kCapacity>> slots_;
+  alignas(
+      kCacheLine) std::unique_ptr<std::array<T, kCapacity>> slots_;  ///< On the heap, so that the ring can be a member.
 };
 
 }  // namespace armcmc::rt

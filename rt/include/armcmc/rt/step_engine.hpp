@@ -59,10 +59,11 @@ class StepEngine {
   virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
-/// The packs that an estimator takes. Its name lives as long as the estimator.
+/// Format of the packs that an estimator takes. The name in it lives as long as the estimator.
 [[nodiscard]] PackFormat PackFormatOf(const Estimator& estimator) noexcept ARMCMC_NONBLOCKING;
 
-/// The estimator of core as a StepEngine: one recursion, or as many as packs overlap.
+/// The estimator of core as a StepEngine: one recursion, or as many interleaved ones as packs overlap. All results and
+/// scratch memory are allocated at construction.
 class EstimatorEngine final : public StepEngine {
  public:
   /// @throws std::invalid_argument from the settings. Allocates all memory.
@@ -92,12 +93,12 @@ class EstimatorEngine final : public StepEngine {
   [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_.first(); }
 
  private:
-  InterleavedEstimator estimator_;
+  InterleavedEstimator estimator_;  ///< One recursion, or as many as packs overlap.
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
   SnapshotHandOver* snapshots_ = nullptr;
-  bool warm_ = false;    // what the warm-up learns is handed to nobody
-  bool learnt_ = false;  // by the newest Adjust()
-  std::int64_t seq_ = 0;
+  bool warm_ = false;     // what the warm-up learns is handed to nobody
+  bool learnt_ = false;   // by the newest Adjust()
+  std::int64_t seq_ = 0;  ///< Of the newest pack.
   std::vector<std::byte> resumed_adjusted_, resumed_executed_;
 };
 

@@ -68,14 +68,16 @@ class Watchdog {
   [[nodiscard]] Nanos check_period_ns() const noexcept { return check_period_ns_; }
   /// Tolerance of a report.
   [[nodiscard]] Nanos slack_ns() const noexcept { return slack_ns_; }
+  /// CPU of the watchdog thread.
   [[nodiscard]] int cpu() const noexcept { return request_.cpu; }
+  /// The watchdog thread, for its placement and its processor time.
   [[nodiscard]] const RtThread& thread() const noexcept { return thread_; }
 
  private:
   void Run() noexcept;
 
-  Nanos slack_ns_, check_period_ns_;
-  ThreadRequest request_;
+  Nanos slack_ns_, check_period_ns_;  ///< From the period of the packs.
+  ThreadRequest request_;             ///< Priority and CPU of the watchdog thread.
   RtMode mode_;
   EventLog* events_;
   std::array<std::atomic<Nanos>, kNumWatched> due_{};  // 0: not watched

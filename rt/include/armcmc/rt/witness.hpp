@@ -68,13 +68,16 @@ class Witness {
   /// Ends the thread; waits for it.
   void Stop() noexcept;
 
+  /// CPU whose stalls it measures.
   [[nodiscard]] int cpu() const noexcept { return cpu_; }
+  /// Time between its wake-ups, ns.
   [[nodiscard]] Nanos period_ns() const noexcept { return period_ns_; }
   /// Whether the thread runs with its priority and on its CPU. Otherwise a late wake-up is no evidence of a stall of
   /// the machine.
   [[nodiscard]] bool trustworthy() const noexcept { return thread_.placement().fifo && thread_.placement().pinned; }
   /// The newest wake-ups. Any time, from any thread.
   [[nodiscard]] const WakeUpRing& wake_ups() const noexcept { return wake_ups_; }
+  /// Policy, priority and CPU, read back from the kernel.
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return thread_.placement(); }
   [[nodiscard]] const RtThread& thread() const noexcept { return thread_; }
   /// Longest delay since the last call, ns. @rt Wait-free.
@@ -87,13 +90,13 @@ class Witness {
  private:
   void Run() noexcept ARMCMC_NONBLOCKING;
 
-  int cpu_;
+  int cpu_;  ///< Where it runs.
   Nanos period_ns_;
-  WakeUpRing wake_ups_;
-  LogHistogram delays_;
+  WakeUpRing wake_ups_;  ///< The newest wake-ups.
+  LogHistogram delays_;  ///< ns.
   std::atomic<Nanos> worst_ns_{0};
   std::atomic<bool> stop_{false};
-  RtThread thread_;
+  RtThread thread_;  ///< Above every stage.
 };
 
 }  // namespace armcmc::rt
