@@ -42,8 +42,10 @@ class EffectRows {
   /// @rt No heap, no lock, no throw. O(samples).
   [[nodiscard]] virtual bool Prepare(const DataPack& pack, CompiledPack* out) noexcept ARMCMC_NONBLOCKING = 0;
   /// Fills the data of one mode, as the sampler scores them.
-  /// @param pack  As given to Prepare(). @param rows  As filled by Prepare(); must outlive `data`.
+  /// @param pack  As given to Prepare().
+  /// @param rows  As filled by Prepare(); must outlive `data`.
   /// @param mode  Index of a mode.
+  /// @param[out] data  Samples of the pack in that mode.
   /// @rt No heap, no lock, no throw. O(samples).
   virtual void Fill(const DataPack& pack, const CompiledPack& rows, int mode,
                     ModeData* data) const noexcept ARMCMC_NONBLOCKING = 0;

@@ -30,7 +30,9 @@ class Graph {
  public:
   /// Node of a number.
   [[nodiscard]] int Number(double value);
-  /// Node of a symbol. @param index  Among the symbols of its kind.
+  /// Node of a symbol.
+  /// @param kind   What it stands for.
+  /// @param index  Among the symbols of its kind.
   [[nodiscard]] int Symbol(SymbolKind kind, int index);
   /// A node for op(a, b, c), or a simpler one of the same value.
   [[nodiscard]] int Make(Op op, int a = -1, int b = -1, int c = -1);

@@ -66,7 +66,9 @@ class Plant {
   [[nodiscard]] const std::vector<int>& reports() const noexcept { return reports_; }
   /// Index of the output among the signals.
   [[nodiscard]] int output() const noexcept { return output_; }
-  /// Node of a signal, a parameter or a state. @param index  Among those of its kind, in the order of the file.
+  /// Node of a signal, a parameter or a state.
+  /// @param kind   kSignal, kParameter or kState.
+  /// @param index  Among those of its kind, in the order of the file.
   [[nodiscard]] int NodeOf(expression::SymbolKind kind, int index) const;
   /// Indices of the signals with a role, such as "velocity", in the order of the file.
   [[nodiscard]] std::vector<int> SignalsWithRole(std::string_view role) const;

@@ -39,8 +39,10 @@ class RecentMinimum {
 ///
 /// or start + budget if start is already beyond deadline - reserve. Such a pack has missed its deadline; it gets the
 /// whole budget, because the next estimate needs what it teaches.
-/// @param start_ns    Start of adjust, CLOCK_MONOTONIC.
-/// @param budget_ns   [timing] adjust_budget_ms. @param reserve_ns  Time that execute needs.
+/// @param start_ns     Start of adjust, CLOCK_MONOTONIC.
+/// @param deadline_ns  Deadline of the step, CLOCK_MONOTONIC.
+/// @param budget_ns    [timing] adjust_budget_ms.
+/// @param reserve_ns   Time that execute needs.
 [[nodiscard]] constexpr Nanos AdjustDeadline(Nanos start_ns, Nanos deadline_ns, Nanos budget_ns,
                                              Nanos reserve_ns) noexcept {
   const Nanos latest = deadline_ns - reserve_ns;
@@ -48,7 +50,9 @@ class RecentMinimum {
 }
 
 /// Deadline of one of several plants that wait for the same thread: start + (deadline - start) / waiting.
-/// @param waiting  Plants that wait, this one included; values below 1 count as 1.
+/// @param start_ns     Start of adjust, CLOCK_MONOTONIC.
+/// @param deadline_ns  Time until which all of them are to be done.
+/// @param waiting      Plants that wait, this one included; values below 1 count as 1.
 [[nodiscard]] constexpr Nanos FairDeadline(Nanos start_ns, Nanos deadline_ns, int waiting) noexcept {
   return start_ns + (deadline_ns - start_ns) / std::max(waiting, 1);
 }

@@ -28,6 +28,8 @@ class CollectStage {
   /// @param settings  Period, deadline and overlap of the packs.
   /// @param format    Plant and message type that are accepted; all others are rejected and counted.
   /// @param ring      Output for adjust. If it is full, the pack is dropped and counted.
+  /// @param counters  This stage writes only its own group.
+  /// @param events    Of this stage.
   CollectStage(const RtSettings& settings, const PackFormat& format, PackRing* ring, Counters* counters,
                EventLog* events) noexcept;
 

@@ -18,7 +18,10 @@ namespace armcmc::rt {
 
 /// Fills estimate_t, the channel EST_ESTIMATE, from the output of a step. Sets every field; parameters and modes beyond
 /// those of the plant are zero. Units are those of the plant, see estimate_t.
-/// @param utime  CLOCK_REALTIME in microseconds, for the alignment of logs.
+/// @param output   The finished step.
+/// @param engine   Names and units.
+/// @param utime    CLOCK_REALTIME in microseconds, for the alignment of logs.
+/// @param[out] message  All fields.
 /// @rt No heap, no lock, no throw.
 void FillEstimate(const StepOutput& output, const StepEngine& engine, std::int64_t utime,
                   estimate_t* message) noexcept ARMCMC_NONBLOCKING;

@@ -43,7 +43,9 @@ class StepEngine {
   [[nodiscard]] virtual std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING = 0;
 
   /// Computes the posterior after `pack` into a slot, and stops before the deadline with fewer draws if necessary.
+  /// @param pack         Checked by collect.
   /// @param deadline_ns  Absolute, on `clock`.
+  /// @param clock        Monotonic.
   /// @param slot         In [0, LatestValue::kSlots); owned by adjust.
   /// @return kOk, kTruncated, kHeld, or an error after which the previous posterior is kept.
   /// @rt No heap, no lock, no throw. O(draws).

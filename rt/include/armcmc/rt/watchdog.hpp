@@ -37,7 +37,9 @@ class Watchdog {
   Watchdog& operator=(const Watchdog&) = delete;
 
   /// The calling thread will report again within at_most_ns from now_ns; the slack is added.
-  /// @param now_ns  CLOCK_MONOTONIC.
+  /// @param watched     Which thread calls.
+  /// @param now_ns      CLOCK_MONOTONIC.
+  /// @param at_most_ns  Duration.
   /// @rt Wait-free.
   void Promise(Watched watched, Nanos now_ns, Nanos at_most_ns) noexcept ARMCMC_NONBLOCKING {
     due_[static_cast<std::size_t>(watched)].store(now_ns + at_most_ns + slack_ns_, std::memory_order_relaxed);

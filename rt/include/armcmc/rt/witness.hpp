@@ -63,6 +63,7 @@ class Witness {
 
   /// Starts the thread.
   /// @param priority  SCHED_FIFO; above every stage.
+  /// @param mode      What to do without the privileges.
   /// @throws PrivilegeError  in kEnforce without the privileges.
   void Start(int priority, RtMode mode);
   /// Ends the thread; waits for it.
