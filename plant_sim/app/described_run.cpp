@@ -4,6 +4,7 @@
 #include <armcmc/support/csv.hpp>
 #include <armcmc/support/pack_length.hpp>
 #include <armcmc/support/plant_library.hpp>
+#include <armcmc/support/printable.hpp>
 #include <armcmc/support/program.hpp>
 #include <cmath>
 #include <cstddef>
@@ -34,7 +35,7 @@ void SayWhatIsUsual(const DescribedPlant& plant, const DescribedScenario& scenar
     moves += text;
   }
   std::fprintf(stderr, "armcmc-plant: no scenario: the truth is the mean of the priors; multisines: %s\n",
-               moves.c_str());
+               support::Printable(moves, 500).c_str());
 }
 
 /// The noise of a plant file is that of what its law explains, which need not be the output.
@@ -46,7 +47,7 @@ void LeaveOutNoiseOfTargets(const DescribedPlant& plant, DescribedScenario* scen
   std::fprintf(stderr,
                "armcmc-plant: %s explains a target, whose noise says nothing about %s: none is added; give "
                "[noise]\n",
-               plant.name.c_str(), plant.output.c_str());
+               support::Printable(plant.name).c_str(), support::Printable(plant.output).c_str());
 }
 
 SampleRuns Simulate(const DescribedPlant& plant, const DescribedScenario& scenario) {
@@ -139,7 +140,8 @@ int RunDescribed(const fs::path& plant_file, const DescribedRequest& request, co
   if (packs.stride == 0) packs.stride = scenario.pack_stride;
   if (request.live) return PlayRuns(runs, plant.name, samples, request.speed, packs);
   if (!options.log_path.empty()) WriteDescribedLog(runs, samples, scenario.seed, packs);
-  std::printf("%s: %zu samples written to %s\n", plant.name.c_str(), runs.num_rows(), options.csv_path.c_str());
+  std::printf("%s: %zu samples written to %s\n", support::Printable(plant.name).c_str(), runs.num_rows(),
+              support::Escaped(options.csv_path).c_str());
   return 0;
 }
 

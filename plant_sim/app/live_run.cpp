@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <armcmc/support/printable.hpp>
 #include <armcmc/support/progress.hpp>
 #include <cmath>
 #include <cstdio>
@@ -33,7 +34,8 @@ constexpr std::int64_t kPoll = 10'000'000;  // ns, between two looks at what cam
 
 /// A line on stderr, with a progress line wiped first.
 void Say(const std::string& text) {
-  std::fprintf(stderr, "%sarmcmc-plant: %s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", text.c_str());
+  std::fprintf(stderr, "%sarmcmc-plant: %s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "",
+               support::ErrorLine(text).c_str());
 }
 
 std::string Seconds(std::int64_t ns) {
@@ -146,7 +148,7 @@ int RunLive(const Scenario& scenario, const PlantOptions& options) {
   Publisher publisher(scenario, options.seed, observer.result().run_id, options.prefix, options.faults, &bus,
                       ring.get());
 
-  std::printf("%s: %lld packs of %d samples every %g ms on %s, seed %llu\n", scenario.name.c_str(),
+  std::printf("%s: %lld packs of %d samples every %g ms on %s, seed %llu\n", support::Printable(scenario.name).c_str(),
               scenario.num_packs(), scenario.pack_samples, scenario.pack_period_s() * 1e3, options.lcm_url.c_str(),
               static_cast<unsigned long long>(options.seed));
   std::fflush(stdout);

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <armcmc/support/printable.hpp>
 #include <armcmc/support/program.hpp>
 #include <armcmc/support/shared_files.hpp>
 #include <cctype>
@@ -108,7 +109,7 @@ void Hide(const CLI::App& app, const HideOptions& hide, std::uint64_t seed, Scen
   if (hide.sealed_path.empty()) return;
   if (!asked && scenario->hidden.empty()) throw InputError("--sealed: nothing is hidden; give --hide-effect");
   const std::string hash = WriteSealedFile(*scenario, seed, hide.sealed_path);
-  std::printf("sealed %s: SHA-256 %s\n", hide.sealed_path.c_str(), hash.c_str());
+  std::printf("sealed %s: SHA-256 %s\n", armcmc::support::Escaped(hide.sealed_path).c_str(), hash.c_str());
 }
 
 /// LCM reads a channel name as a regular expression when subscribing: only characters that mean themselves.

@@ -1,6 +1,7 @@
 #include "offline_run.hpp"
 
 #include <algorithm>
+#include <armcmc/support/printable.hpp>
 #include <armcmc/support/progress.hpp>
 #include <cstdint>
 #include <cstdio>
@@ -40,8 +41,8 @@ int RunOffline(const Scenario& scenario, const PlantOptions& options) {
   }
   csv.Close();
   if (!options.log_path.empty()) WriteLog(scenario, options);
-  std::printf("%s: samples 0 to %lld (%lld packs of %d) written to %s\n", scenario.name.c_str(), last,
-              scenario.num_packs(), scenario.pack_samples, options.csv_path.c_str());
+  std::printf("%s: samples 0 to %lld (%lld packs of %d) written to %s\n", support::Printable(scenario.name).c_str(),
+              last, scenario.num_packs(), scenario.pack_samples, support::Escaped(options.csv_path).c_str());
   return 0;
 }
 

@@ -1,5 +1,6 @@
 #include "play_runs.hpp"
 
+#include <armcmc/support/printable.hpp>
 #include <armcmc/support/program.hpp>
 #include <armcmc/support/progress.hpp>
 #include <cstdio>
@@ -43,8 +44,9 @@ int PlayRuns(const SampleRuns& runs, const std::string& title, int samples_per_p
   if (!options.log_path.empty()) log.emplace(options.log_path);
   DescribedPackSender sender(options.prefix, &bus, log ? &*log : nullptr);
 
-  std::printf("%s: %s of %d samples of %s, one every %g ms, on %s\n", title.c_str(), Counted(planned, "pack").c_str(),
-              samples_per_pack, runs.plant.c_str(), builder.pack_period_s() / speed * 1e3, options.lcm_url.c_str());
+  std::printf("%s: %s of %d samples of %s, one every %g ms, on %s\n", support::Printable(title).c_str(),
+              Counted(planned, "pack").c_str(), samples_per_pack, support::Printable(runs.plant).c_str(),
+              builder.pack_period_s() / speed * 1e3, options.lcm_url.c_str());
   std::fflush(stdout);
   PlaybackResult result;
   {

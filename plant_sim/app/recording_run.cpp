@@ -1,6 +1,7 @@
 #include "recording_run.hpp"
 
 #include <armcmc/support/pack_length.hpp>
+#include <armcmc/support/printable.hpp>
 #include <armcmc/support/recording.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -14,7 +15,8 @@ namespace armcmc::plant_sim {
 
 int RunRecording(const std::string& path, const std::string& data_dir, double speed, const PlantOptions& options) {
   support::Recording recording = support::ReadRecording(path, data_dir);
-  for (const std::string& note : recording.notes) std::fprintf(stderr, "armcmc-plant: %s\n", note.c_str());
+  for (const std::string& note : recording.notes)
+    std::fprintf(stderr, "armcmc-plant: %s\n", support::ErrorLine(note).c_str());
   SampleRuns runs;
   runs.plant = recording.plant;
   runs.fingerprint = recording.fingerprint;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -56,6 +57,34 @@ TEST(Layout, NothingIsLeftToDo) {
     }
   }
   EXPECT_GT(files, 20);
+}
+
+// They are the reference of the library: equation, shapes, units, errors, real-time class and source.
+TEST(Layout, FourTenthsOfTheLinesOfInstalledHeadersAreDocumentation) {
+  const std::regex header(R"(include/armcmc/[a-z_/]+\.hpp)"), comment(R"(\s*//.*|.*///<.*)"), blank(R"(\s*)");
+  double lines = 0.0, documented = 0.0;
+  int headers = 0;
+  for (const char* part : {"core", "rt"}) {
+    std::ifstream cmake(SourceDir() / part / "CMakeLists.txt");
+    const std::string text{std::istreambuf_iterator<char>(cmake), std::istreambuf_iterator<char>()};
+    const std::size_t begin = text.find("FILE_SET HEADERS");
+    ASSERT_NE(begin, std::string::npos) << part;
+    const std::string list = text.substr(begin, text.find(')', begin) - begin);
+    for (std::sregex_iterator it(list.begin(), list.end(), header), end; it != end; ++it, ++headers) {
+      std::ifstream file(SourceDir() / part / it->str());
+      double own = 0.0, own_documented = 0.0;
+      for (std::string line; std::getline(file, line);) {
+        if (std::regex_match(line, blank)) continue;
+        own += 1.0;
+        own_documented += std::regex_match(line, comment) ? 1.0 : 0.0;
+      }
+      EXPECT_GE(own_documented / own, 0.25) << part << '/' << it->str();
+      lines += own;
+      documented += own_documented;
+    }
+  }
+  EXPECT_GT(headers, 60);
+  EXPECT_GE(documented / lines, 0.40);
 }
 
 }  // namespace

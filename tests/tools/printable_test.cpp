@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -41,6 +44,45 @@ TEST(Printable, CutsBetweenCharacters) {
   EXPECT_EQ(Printable("abcdef", 6), "abcdef");
   EXPECT_EQ(Printable("äöüß", 2), "äö...");
   EXPECT_EQ(Printable(std::string(10'000, 'x')), std::string(60, 'x') + "...");
+}
+
+TEST(Printable, ErrorsAreOneLineWithLongWordsCutInTheMiddle) {
+  EXPECT_EQ(ErrorLine("a\nb\x1b \n"), "a b\\x1b");
+  const std::string path = std::string(280, 'p') + "/data.csv";
+  EXPECT_EQ(ErrorLine(path + ": missing"), path + ": missing") << "a path of common length";
+  EXPECT_EQ(ErrorLine("no " + std::string(10'000, 'x') + "y: missing"),
+            "no " + std::string(100, 'x') + "..." + std::string(58, 'x') + "y: missing");
+  std::string umlauts;
+  for (int i = 0; i < 400; ++i) umlauts += "ä";
+  std::string head, tail;
+  for (int i = 0; i < 100; ++i) head += "ä";
+  for (int i = 0; i < 60; ++i) tail += "ä";
+  EXPECT_EQ(ErrorLine(umlauts), head + "..." + tail) << "cut between characters";
+  std::string words;
+  for (int i = 0; i < 5000; ++i) words += "x ";
+  EXPECT_EQ(ErrorLine(words).size(), 2003U);
+}
+
+TEST(Printable, WhatAProgramPrintsIsEscapedButForLineBreaksAndTabs) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  {
+    const HarmlessOutput harmless;
+    std::cout << "a\x1b[2J\tµ\n" << '\x1b' << std::setw(4) << "\xff" << std::flush;
+    std::cerr << std::string("n\0", 2) << "\xC2\x9B" << '\n';
+  }
+  std::cout << "\x1b after";
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "a\\x1b[2J\tµ\n\\x1b   \\xff\x1b after");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "n\\x00\\xc2\\x9b\n");
+}
+
+/// Text that a terminal only shows, in lines of bounded length.
+void ExpectShowable(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LT(line.size(), 2500U) << line.substr(0, 200);
+    EXPECT_EQ(Escaped(line), line);
+  }
 }
 
 /// One line of what may be shown, of at most some hundred bytes for each word that it repeats.
@@ -95,6 +137,81 @@ TEST(Printable, KeysAndTextsOfABrokenTomlAreShownAndCut) {
   expect("p", "k*q", "[\"" + std::string(200, 'x') + "\\u0007\"]\nq = 1\n", "broken.toml:");
   expect("p", "k*u", "\x1b[2J\n", "broken.toml:5:1: ");
   expect("p", "k*u", "\xff = 1\n", "invalid utf-8 sequence");
+}
+
+// One word of each kind of file, and of the command line, is what no program expects: whatever the program does with
+// it, the terminal only shows it.
+TEST(Printable, NoKindOfFileAndNoArgumentReachesTheTerminalRaw) {
+  const ScratchDir dir;
+  const std::string plant =
+      "schema = 1\nname = \"motor\"\noutput = \"w\"\nlaw = \"k*u\"\n[signals]\nu = { unit = \"V\" }\nw = { unit = "
+      "\"rad/s\" }\n[parameters]\nk = { unit = \"rad/(s V)\", mean = 1, sd = 1 }\n[noise]\nstd = 0.1\n";
+  std::ofstream(dir / "motor.toml") << plant;
+  std::ofstream csv(dir / "motor.csv");
+  csv << "t,u,w\n";
+  for (int i = 0; i < 300; ++i) csv << 0.001 * i << ',' << i % 7 << ',' << i % 7 << '\n';
+  csv.close();
+  const auto changed = [](std::string text, const std::string& word, const std::string& with) {
+    return text.replace(text.find(word), word.size(), with);
+  };
+  struct Raw {
+    std::string in_toml;  // as a TOML string spells it
+    std::string bytes;
+  };
+  const std::vector<Raw> raws{{"\\u001b]0;owned\\u0007", "\x1b]0;owned\a"},
+                              {"\\u009b2J", "\xC2\x9B\x32J"},
+                              {"a\\u0000b", "a\x01\x7f"},
+                              {"\xff\xfe", "\xff\xfe\xC3"},
+                              {std::string(10'000, 'x'), std::string(10'000, 'x')}};
+  int runs = 0;
+  const auto run = [&](const char* program, std::vector<std::string> arguments) {
+    for (std::string& argument : arguments)
+      if (argument.rfind("@", 0) == 0) argument = dir / argument.substr(1);
+    const Outcome outcome = RunProgram(Program(program), arguments);
+    SCOPED_TRACE(std::string(program) + " " + Printable(arguments.front()) + " " + std::to_string(runs++));
+    EXPECT_THAT(outcome.code, testing::AnyOf(0, 2, 1));
+    ExpectShowable(outcome.out);
+    ExpectShowable(outcome.err);
+  };
+  const auto write = [&](const std::string& text) { std::ofstream(dir / "broken.toml", std::ios::binary) << text; };
+  for (const Raw& raw : raws) {
+    const std::string quoted = '"' + raw.in_toml + '"';
+    for (const char* word : {"\"motor\"", "\"w\"", "\"k*u\"", "\"V\"", "\"rad/(s V)\"", "u =", "k =", "sd", "0.1"}) {
+      const std::string found(word);
+      write(changed(plant, found, found == "u =" || found == "k =" ? quoted + " =" : quoted));
+      run("armcmc-model", {"check", "@broken.toml"});
+      run("armcmc-plant", {"--model", "@broken.toml", "--duration", "0.2", "--csv", "@out.csv"});
+    }
+    const std::string recording =
+        "schema = 1\nmodel = \"motor.toml\"\nfile = \"motor.csv\"\n[columns]\nt = { column = \"t\" }\nu = { column "
+        "= \"u\" }\nw = { column = \"w\" }\n[derivatives]\nbandwidth_hz = 4\nfiltered_with = [\"u\"]\n";
+    for (const char* word : {"\"motor.toml\"", "\"motor.csv\"", "\"t\"", "\"w\"", "[\"u\"]", "4"}) {
+      write(changed(recording, word, *word == '[' ? '[' + quoted + ']' : quoted));
+      run("armcmc-replay", {"--recording", "@broken.toml", "--out", "@out.csv"});
+    }
+    const std::string scenario =
+        "schema = 1\nrate_hz = 1000\nduration_s = 0.2\n[truth]\nk = 2\n[inputs]\nu = { kind = \"sine\", amplitude = 1, "
+        "frequency_hz = 5 }\n[noise]\nlaw = \"gaussian\"\nstd = 0.5\n[[hidden]]\nslot = \"output\"\nvalue = \"u\"\n";
+    for (const char* word : {"\"sine\"", "\"gaussian\"", "\"output\"", "\"u\"", "1000"}) {
+      write(changed(scenario, word, quoted));
+      run("armcmc-plant", {"--model", "@motor.toml", "--scenario", "@broken.toml", "--csv", "@out.csv"});
+    }
+    write("schema = 1\nmethod = " + quoted + "\n[model]\nname = \"hunt_crossley\"\n");
+    run("armcmc-replay", {"--config", "@broken.toml", "--data", "@motor.csv", "--out", "@out.csv"});
+    write("schema = 1\n[model]\nname = " + quoted + '\n');
+    run("armcmc-replay", {"--config", "@broken.toml", "--data", "@motor.csv", "--out", "@out.csv"});
+    std::ofstream(dir / "broken.csv", std::ios::binary) << "t,u,w\n0,1,1\n0.001," << raw.bytes << ",1\n0.002,1,1\n";
+    run("armcmc-replay", {"--model", "@motor.toml", "--data", "@broken.csv", "--out", "@out.csv"});
+    std::ofstream(dir / "broken.csv", std::ios::binary) << "t,u," << raw.bytes << "\n0,1,1\n0.001,1,1\n";
+    run("armcmc-replay", {"--model", "@motor.toml", "--data", "@broken.csv", "--out", "@out.csv"});
+    run("armcmc-replay", {"--model", "@motor.toml", "--data", "@motor.csv", "--out", '@' + raw.bytes.substr(0, 200)});
+    for (const char* option : {"--model", "--scenario", "--duration", "--inject", "--hide-effect", "--csv"})
+      run("armcmc-plant", {option, raw.bytes, "--lcm-url", raw.bytes});
+    run("armcmc-model", {raw.bytes});
+    run("armcmc-model", {"check", raw.bytes});
+    run("armcmc-model", {"check", "@motor.toml", "--with", raw.bytes});
+  }
+  EXPECT_GT(runs, 150);
 }
 
 }  // namespace

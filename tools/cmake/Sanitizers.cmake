@@ -25,7 +25,7 @@ if(ARMCMC_RTSAN)
   add_compile_definitions(ARMCMC_RTSAN=1)
 endif()
 # The libraries that are counted compile with ${ARMCMC_COVERAGE_OPTIONS}: clang's source-based line coverage.
-option(ARMCMC_COVERAGE "Count the lines of core, rt and tools/gap that tests run (clang)" OFF)
+option(ARMCMC_COVERAGE "Count the lines of core, rt, tools/gap and tools/ladder that tests run (clang)" OFF)
 set(ARMCMC_COVERAGE_OPTIONS "")
 if(ARMCMC_COVERAGE)
   set(ARMCMC_COVERAGE_OPTIONS -fprofile-instr-generate -fcoverage-mapping)

@@ -17,13 +17,14 @@ struct ModeDraws {
   bool known = false;    ///< The data have said something: the posterior is narrower than the prior.
   bool updated = false;  ///< By this pack: the draws below belong to it.
   Decision decision = Decision::kHold;
-  int num_samples = 0;
+  int num_samples = 0;  ///< Samples of the pack in this mode.
   double zeta = 0.0, zeta_threshold = 0.0, lambda = 0.0;
   int k_min = 0;
-  int draws = 0;    ///< Candidates scored, which is the length of the chain.
-  int burn_in = 0;  ///< Iterations thrown away: half, or the pilot where that is longer.
-  bool truncated = false;
-  double acceptance = 0.0, kish_ess = 0.0, log_evidence = 0.0, p_changed = 0.0;
+  int draws = 0;           ///< Candidates scored, which is the length of the chain.
+  int burn_in = 0;         ///< Iterations thrown away: half, or the pilot where that is longer.
+  bool truncated = false;  ///< The deadline cut the number of draws.
+  double acceptance = 0.0, kish_ess = 0.0, log_evidence = 0.0,
+         p_changed = 0.0;   ///< Of the chain; Kish size of the weights; nats; probability.
   double p_drifted = 0.0;   ///< Posterior probability that the parameters drift; 1 - p_changed - p_drifted: they stay.
   double drift_rate = 0.0;  ///< Expected before the pack, prior standard deviations per s.
   /// Of a mode that this pack says nothing about: how many times wider each parameter's posterior has become since it
@@ -32,7 +33,7 @@ struct ModeDraws {
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
   bool point_is_mode = false;               ///< mode_u is the point estimate whatever the decision (least squares).
-  int dim = 0;
+  int dim = 0;                              ///< Sampled parameters of the mode.
   // Structure of arrays, `draws` entries each.
   std::array<double*, kMaxParams> u{};  ///< Standardised coordinates.
   double* weight = nullptr;             ///< Importance weights, sum 1.

@@ -14,15 +14,16 @@ namespace armcmc {
 class PlantProgram;
 struct CompiledPlant;
 
-/// One parameter of a model with its built-in prior.
+/// A parameter of a model with its built-in prior, a normal distribution truncated to the bounds.
 struct ParameterInfo {
+  /// As in messages and plant files; static storage, or as long as the plant.
   std::string_view name;
   std::string_view unit;
   double mean, sd;      ///< Normal prior before truncation.
   double lower, upper;  ///< Bounds.
 };
 
-/// A quantity that is published: a parameter, or a linear function of the parameters.
+/// A published quantity: a parameter, or a function of the parameters.
 struct ReportedInfo {
   std::string_view name;
   std::string_view unit;

@@ -68,6 +68,17 @@ TEST_F(ArmcmcSpy, ExplainsItself) {
   }
 }
 
+TEST_F(ArmcmcSpy, RepeatsNothingThatATerminalActsOn) {
+  for (const std::string raw : {"--\x1b[2J", "--\xff", "--\xC2\x9B", "--a\nb"}) {
+    EXPECT_EQ(Run({raw}).err,
+              "armcmc-spy: (a word with bytes that are not shown) is not an option (see armcmc-spy --help)\n");
+    EXPECT_THAT(Run({"--lcm-url", raw}).err,
+                StartsWith("armcmc-spy: --lcm-url (a word with bytes that are not shown): "));
+  }
+  EXPECT_EQ(Run({"--\\033[2J"}).err, "armcmc-spy: --\\033[2J is not an option (see armcmc-spy --help)\n");
+  EXPECT_THAT(Run({"--lcm-url", std::string(9000, 'x')}).err, StartsWith("armcmc-spy: --lcm-url (a word of 9000 char"));
+}
+
 TEST_F(ArmcmcSpy, SaysWhichPackageIsMissing) {
   const auto expect = [this](const std::string& words) {
     const Outcome o = Run({});

@@ -73,6 +73,8 @@ TEST_F(LadderProgram, NamesWhatIsHiddenAndWritesAModelThatLacksNothing) {
   const Outcome run = Gap({"--recording", dir_ / "recording.toml"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("+ coulomb_friction"));
+  EXPECT_THAT(run.out,
+              testing::ContainsRegex("held-out segment +before +after +samples\n[0-9.]+ to 5\\.9[0-9]* s +[0-9.]+ "));
   const Json result = Result();
   EXPECT_EQ(result["verdict"], "named");
   EXPECT_EQ(result["schema"], 1);

@@ -92,5 +92,6 @@ int main(int argc, char** argv) {
   CLI::App app{"Measures the time of the estimator's step and the quality of its draws."};
   Arguments arguments;
   Declare(&app, &arguments);
-  return armcmc::support::RunProgram(app, "armcmc-bench", argc, argv, [&] { return Run(app, arguments, argv[0]); });
+  return armcmc::support::RunProgram(
+      app, "armcmc-bench", argc, argv, [&] { return Run(app, arguments, argv[0]); }, armcmc::support::Output::kColours);
 }

@@ -166,7 +166,7 @@ std::string Summary(const Result& result) {
   return out.str();
 }
 
-/// The ladder, rung by rung.
+/// The ladder, rung by rung; the error of each held-out segment, where there are several.
 std::string LadderText(const Result& result) {
   std::ostringstream out;
   char line[240];
@@ -179,6 +179,17 @@ std::string LadderText(const Result& result) {
     for (const std::string& name : rung.effects) names += (names.empty() ? "+ " : " or ") + name;
     std::snprintf(line, sizeof(line), "%-44s %12.4g %7.1f %% %12.2f%s\n", names.c_str(), rung.heldout_error,
                   100.0 * rung.closed_fraction, rung.probability, rung.provisional ? "  (few events)" : "");
+    out << line;
+  }
+  if (!result.gap.stretches.empty()) {
+    std::snprintf(line, sizeof(line), "%-44s %12s %9s %12s\n", "held-out segment", "before", "after", "samples");
+    out << line;
+  }
+  for (const StretchFit& s : result.gap.stretches) {
+    char when[48];
+    std::snprintf(when, sizeof(when), "%.4g to %.4g s", s.from_s, s.until_s);
+    std::snprintf(line, sizeof(line), "%-44s %12.4g %9.4g %12lld\n", when, s.rmse_before, s.rmse_after,
+                  static_cast<long long>(s.samples));
     out << line;
   }
   return out.str();

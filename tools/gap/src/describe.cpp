@@ -43,8 +43,8 @@ std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePt
   return effects;
 }
 
-/// Two effects of one family that data cannot tell apart may both act, and share between them what either would do
-/// alone: a latency may be part delay, part lag.
+/// Two effects of one family that the data cannot distinguish may both act, and share what either would explain alone:
+/// a latency may be part delay, part lag.
 std::vector<std::vector<std::string>> BothOfAFamily(const Finding& finding) {
   std::vector<std::vector<std::string>> both;
   for (auto a = finding.set.begin(); a != finding.set.end(); ++a)

@@ -20,7 +20,7 @@ Whitener NoiseLeftBy(const Fitter& fitter, const Remainder& remainder) {
   return FitNoise(fitter.whitener().Colour(remainder.unexplained));
 }
 
-/// The model as it is, with the effects that it has.
+/// The model without additions, with the effects that it already has.
 Fitted FitModel(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const DiagnoseOptions& options) {
   Fitted fit = fitter.Fit({}, fitter.equation().Start(fitter.signals()), kBaseSteps);
   for (const auto& [effect, when] : options.known) {
@@ -84,12 +84,12 @@ CandidatePtr CountedFrom(const Candidate& base, const Candidate& own_base, const
   return counted;
 }
 
-/// The looks are two models of the same data, as probable as each other: what is said is the mean of what they say.
+/// The two analyses are models of the same data with equal prior probability: their results are averaged.
 void MeanProbabilities(const Finding& other, Finding* finding) {
   std::map<std::vector<std::string>, double> mean;
   for (const CandidatePtr& candidate : finding->tried) mean[candidate->names()] += 0.5 * candidate->probability;
   for (const CandidatePtr& candidate : other.tried) mean[candidate->names()] += 0.5 * candidate->probability;
-  // Of a verdict of none the weighing of weak effects is what its candidates' probabilities belong to.
+  // If the verdict is none, the probabilities of the candidates are those of the weak effects.
   const double other_missing = other.verdict == Verdict::kNone ? 1.0 - other.p_none : other.p_missing;
   const double unnamed = 0.5 * (finding->p_missing * finding->p_unnamed + other_missing * other.p_unnamed);
   finding->p_missing = 0.5 * (finding->p_missing + other_missing);

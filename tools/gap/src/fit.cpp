@@ -17,9 +17,9 @@ constexpr double kTolerance = 1e-6;  // relative decrease of the squares that en
 constexpr int kMaxDampings = 6;
 constexpr double kLeastDamping = 1e-6;
 constexpr double kSameMinimum = 25.0;     // squared standard deviations from a minimum that was found before
-constexpr int kStepsForHope = 2;          // before which a tangent says little of how far down it goes
+constexpr int kStepsForHope = 2;          // steps before the expected decrease is judged
 constexpr double kHope = 4.0;             // times what the tangent promises, short of which a descent is given up
-constexpr double kSmallAmplitude = 1e-3;  // where an amplitude starts that its bounds would hold at zero
+constexpr double kSmallAmplitude = 1e-3;  // start of an amplitude that is zero at its bound
 constexpr std::size_t kRefinedStarts = 2;
 
 void Clamp(const std::vector<Coordinate>& coordinates, Vector* theta) {
@@ -135,7 +135,7 @@ double Fitted::CostOfLeaving(Eigen::Index coordinate) const {
 
 bool Fitted::on_edge() const {
   constexpr double kNear = 1e-3;   // of the range
-  constexpr double kSilent = 0.1;  // nats; less says that the data do not care where the coordinate is
+  constexpr double kSilent = 0.1;  // nats; below this the data do not determine the coordinate
   constexpr double kChance = 2.0;  // two standard deviations: so far a state at the start may stray by noise
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const Coordinate& c = coordinates[i];

@@ -17,7 +17,7 @@ ARMCMC_FOR_WIDER_LANES void AddProducts(const double* x, Eigen::Index stride, Ei
   using Lanes __attribute__((vector_size(kLanes * sizeof(double)))) = double;
   for (Eigen::Index j = 0; j < columns; j += 2)
     for (Eigen::Index i = j; i < columns; i += 2) {
-      // Beside the last of an odd number of columns stands itself.
+      // The last of an odd number of columns is paired with itself.
       const Eigen::Index next_i = std::min(i + 1, columns - 1), next_j = std::min(j + 1, columns - 1);
       const double* const from[4] = {x + i * stride, x + next_i * stride, x + j * stride, x + next_j * stride};
       Lanes sums[4] = {};

@@ -237,7 +237,7 @@ Prediction Evaluate(const Equation& equation, const Signals& signals, const Hypo
   const bool plain =
       input.shift.size() == 0 && input.gain.size() == 0 && input.drive.size() == 0 && input.forces.empty();
   const bool remembers = AnyIn(terms, Slot::kMemory);
-  // What nobody asks for is not even made, where only this file would fill it.
+  // Outputs that are not requested are not computed.
   const bool law_alone = plain && memo != nullptr;
   const bool no_slopes = law_alone && wanted.NoneBelow(static_cast<int>(theta.size())) && !AnyIn(terms, Slot::kStatics);
   const bool no_elastic_slopes = !remembers || (law_alone && wanted.NoneBelow(num_base));

@@ -9,13 +9,13 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr double kSame = 0.02;       // relative: closer than that, nobody repeats an experiment
+constexpr double kSame = 0.02;       // relative difference up to which two experiments count as the same
 constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth
 constexpr double kDecides = 10.0;    // nats; what a proposed experiment is to bring, too
 constexpr double kNearPromise = 0.5;
 constexpr int kJointSteps = 30;
 
-/// A member of the first recording's set with what the second says of it.
+/// A member of the first recording's set, with its evidence in the second.
 struct Asked {
   CandidatePtr candidate;
   double log_predictive = 0.0;  ///< log p(second | first), up to what all members share.
@@ -157,8 +157,8 @@ void Join(const Equation& equation, const Recording& recording, const Diagnosis&
   finding.gap = std::max(finding.gap, 2.0 * gain / rows);
   finding.set.clear();
   double total = 0.0;
-  // A lead beyond all that the best leaves unexplained is no error of its formula; nor is one that comes near to what
-  // the difference of the predictions promises, D on average if the best is true and -D if the other is.
+  // A lead larger than all that the best one leaves unexplained cannot be due to an error of its formula; nor can one
+  // close to its expectation, which is D if the best one is true and -D if the other is.
   const auto margin = [&](const Asked& one) {
     const Vector apart =
         look->fitter->whitener().Apply(Vector(asked.front().candidate->fit.predicted - one.candidate->fit.predicted));

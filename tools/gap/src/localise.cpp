@@ -96,7 +96,7 @@ class Tree {
   std::vector<Leaf> leaves_;
 };
 
-/// Shares of an excess that a region holds when it is shifted in time, the end joined to the start.
+/// Shares of an excess in a region that is shifted cyclically in time.
 class Shifted {
  public:
   explicit Shifted(const Vector& excess) : total_(std::max(excess.sum(), 1e-300)), twice_(2 * excess.size()) {

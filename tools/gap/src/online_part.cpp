@@ -5,7 +5,7 @@
 namespace armcmc::gap {
 namespace {
 
-/// Terms that the verdict holds: the carrier's best, and what the other equations name.
+/// Terms of the verdict: the best ones of the carrier, and those named in the other equations.
 std::vector<Term> Found(const PlantDiagnosis& plant) {
   std::vector<Term> found = plant.carrying().diagnosis.finding.best->added();
   for (const EquationDiagnosis* other : plant.Others()) {
@@ -30,7 +30,7 @@ OnlinePart OnlinePartOf(const PlantDiagnosis& plant) {
   });
   const std::vector<Term> found = Found(plant);
   if (online != plant.equations.end()) {
-    // The fit that found everything is the fit, if it is this equation's and can run as it is.
+    // The fit of the search is used if it is of this equation and needs no change.
     const CandidatePtr& best = plant.carrying().diagnosis.finding.best;
     const bool as_it_is = &*online == &plant.carrying() && best->exact() && best->added().size() == found.size();
     part.fit = as_it_is ? best->fit : online->diagnosis.finding.base->fit;

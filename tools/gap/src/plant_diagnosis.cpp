@@ -36,7 +36,7 @@ std::optional<double> Evidence(const EquationDiagnosis& asked, const std::string
   return std::nullopt;
 }
 
-/// Multiplies the odds of one candidate against all others that are told of.
+/// Multiplies the odds of one candidate against all other reported ones.
 void Weigh(const CandidatePtr& candidate, double log_odds, Finding* finding) {
   double rest = finding->p_missing * finding->p_unnamed;
   for (const CandidatePtr& other : finding->tried) rest += other == candidate ? 0.0 : other->probability;
@@ -87,7 +87,7 @@ void Consult(PlantDiagnosis* plant) {
   if (finding.set.size() == 1) finding.verdict = Verdict::kNamed;
 }
 
-/// Where several equations have a gap and can name the same effects, those are what is missing in all of them.
+/// If several equations have a gap and can name the same effects, only effects named in all of them are missing.
 void KeepShared(PlantDiagnosis* plant) {
   EquationDiagnosis& carrier = plant->equations[plant->carrier];
   Finding& finding = carrier.diagnosis.finding;
@@ -99,7 +99,7 @@ void KeepShared(PlantDiagnosis* plant) {
                       [&](const CandidatePtr& theirs) { return theirs->names() == mine->names(); }))
         shared.push_back(mine);
     if (shared.empty()) continue;
-    // What one equation alone would allow is not what is missing in both.
+    // An effect that only one equation allows is not missing in both.
     double lost = 0.0;
     for (const CandidatePtr& mine : finding.set) {
       if (std::find(shared.begin(), shared.end(), mine) != shared.end()) continue;

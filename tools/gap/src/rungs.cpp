@@ -87,7 +87,7 @@ void TellRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis
     result->ladder.back().probability = together;
     told = next->names();
   }
-  // Whether anything more is there may be what is open: then the ladder ends with what is sure.
+  // If it is open whether anything more is missing, the ladder ends with the certain effects.
   if (Without(finding.best->names(), told).empty()) return;
   Names last;
   for (const CandidatePtr& candidate : finding.set) {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxGated = 4;  // gated hypotheses that are fitted, by what the scan promises
 constexpr std::size_t kJudged = 6;
 constexpr double kUnnamedAtLeast = 0.5;  // where the verdict is that
-constexpr double kLawMayFeign = 1.5;     // gap up to which a law that is not quite its formula is asked, too
+constexpr double kLawMayFeign = 1.5;     // gap up to which a model error of the law is considered as well
 
 bool Holds(const Fitted& fit, const std::string& effect) {
   return std::any_of(fit.hypothesis.terms.begin(), fit.hypothesis.terms.end(),
@@ -169,7 +169,7 @@ void Search::ShareOnset(int min_active, Candidates* gated) const {
   std::vector<Candidates> found(forms.size());
   support::InParallel(forms.size(), [&](std::size_t i) {
     const EffectForm& form = *forms[i];
-    // Its shape as it is from that time on finds its own time.
+    // Starts from the shape of the effect with that onset.
     const Fitted shape = fitter_->Add(base_->fit, {&form, {When::Kind::kFrom, first.when.time_s}});
     for (const GateCandidate& gate :
          ScanGates(*fitter_, base_->fit, form, Templates(*fitter_, base_->fit, form, &shape), min_active))
@@ -276,7 +276,7 @@ Finding Search::Run(bool pairs) const {
       if (all_earned && (Adequate(pair, gap) || StandsOut(pair, beside))) good.push_back(pair);
     }
     DropUnsure(&good);
-    // What leaves least tells the noise best.
+    // The best fit gives the best estimate of the noise.
     top = good.empty() ? two.front() : good.front();
   }
   // A name is not given to what physics outside the catalogue explains better, or as well with one effect less.

@@ -1,5 +1,5 @@
-// What a model is granted beside an effect: an error of the law itself, or physics without a name. It is not claimed,
-// and taken back before anything is told.
+// Grants: a model error of the law, or unnamed physics, that is fitted together with an effect. A grant is never
+// reported, and removed before the result is written.
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr std::size_t kBesideGrant = 6;  // effects that are fitted beside a grant, by what they promise
+constexpr std::size_t kBesideGrant = 6;  // effects that are fitted with a grant, most promising first
 
 }  // namespace
 
@@ -67,14 +67,14 @@ void Search::DropUnsure(Candidates* good) const {
     const std::vector<std::string> families = all->families(), asked = some->families();
     return std::includes(families.begin(), families.end(), asked.begin(), asked.end());
   };
-  // What stands in for a second effect is not needed where that effect, by name, does better.
+  // A grant that stands in for a second effect is not needed if that effect explains more.
   const Candidates all = *good;
   std::erase_if(*good, [&](const CandidatePtr& granted) {
     return granted->granted && std::any_of(all.begin(), all.end(), [&](const CandidatePtr& c) {
              return !c->granted && holds(c, granted) && Better(c->fit, granted->fit);
            });
   });
-  // Where other physics does as well beside the same grant, the grant did the work.
+  // If other physics does as well with the same grant, the gain is due to the grant.
   const bool sure = std::all_of(good->begin(), good->end(), [&](const CandidatePtr& granted) {
     return !granted->granted ||
            std::all_of(good->begin(), good->end(), [&](const CandidatePtr& c) { return holds(c, granted); });

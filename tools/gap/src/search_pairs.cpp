@@ -1,4 +1,4 @@
-// Two effects at once: which, by which formulas, and from when on.
+// Pairs of effects: which, by which formulas, and with which onset.
 
 #include <algorithm>
 #include <set>
@@ -11,7 +11,7 @@ namespace armcmc::gap {
 namespace {
 
 constexpr std::size_t kPairBeam = 4;      // singles that get partners
-constexpr std::size_t kRefinedPairs = 3;  // pairs whose formulas and gates are tried anew
+constexpr std::size_t kRefinedPairs = 3;  // pairs whose formulas and gates are refined
 
 bool GatedBy(const Term& term) { return term.when.kind != When::Kind::kAlways; }
 
@@ -45,12 +45,12 @@ CandidatePtr Search::Ungated(const CandidatePtr& pair) const {
 
 CandidatePtr Search::Refined(const CandidatePtr& pair) const {
   CandidatePtr best = pair;
-  // Two gates may hold each other up: a bias and a drift that cancel half-way seem to end there, both of them.
+  // Two gates may depend on each other: a bias and a drift that cancel half-way both seem to end there.
   if (!pair->always()) {
     const CandidatePtr ungated = Ungated(pair);
     if (ungated->names() == pair->names() && !Better(pair->fit, ungated->fit)) best = ungated;
   }
-  // Each member anew, given the other: any formula of the same effect, any gate.
+  // Refines each member, given the other: any formula of the same effect, any gate.
   for (std::size_t member = pair->num_known; member < pair->fit.hypothesis.terms.size(); ++member) {
     Hypothesis others;
     std::vector<double> theta;

@@ -1,4 +1,4 @@
-// What the scores of a search amount to: formulas, few events, rivals without a name, probabilities, doubt.
+// From the scores of a search to a verdict: formulas, few events, unnamed rivals, probabilities, doubt.
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
 }
 
 void Search::PreferCatalogue(Candidates* good) {
-  // Where the catalogue's own formulas do, others are not needed. One that acts at times only, which are fitted, too,
-  // is no simpler than another formula that always acts; nor is one that needs a grant.
+  // Variants are not needed if the catalogue's main formula is sufficient. An effect with fitted times is no simpler
+  // than another formula that always acts; nor is one that needs a grant.
   const auto exact = [](const CandidatePtr& c) { return c->exact() && !c->granted; };
   const auto simple = [&](const CandidatePtr& c) { return exact(c) && c->always(); };
   if (std::none_of(good->begin(), good->end(), exact)) return;
@@ -24,7 +24,7 @@ void Search::PreferCatalogue(Candidates* good) {
 }
 
 bool Search::Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const {
-  // Physics that does as well by itself is simpler than a grant and an effect, as it is simpler than two effects.
+  // Unnamed physics that does as well alone is simpler than a grant with an effect, as it is simpler than two effects.
   if (named->added().size() > 1 || named->granted) return !Better(named->fit, unlisted->fit);
   const Vector lead = unlisted->fit.heldout - named->fit.heldout;
   return lead.sum() > limits_.tie_nats && bootstrap_->ProbabilityAbove(lead, 0.0) > limits_.p_outdone;
@@ -89,7 +89,7 @@ void Search::DoubtNothing(const Candidates& singles, Finding* finding) const {
   finding->best = *std::max_element(singles.begin(), singles.end(),
                                     [](const auto& a, const auto& b) { return a->probability < b->probability; });
   finding->p_missing = 1.0 - finding->p_none;
-  // Every effect of the catalogue was asked about these events, and none makes them ordinary.
+  // Every effect of the catalogue was tried on these events, and none explains them.
   finding->p_unnamed = 1.0;
   for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
   (void)Judge(finding->best);
@@ -123,15 +123,15 @@ void Search::Doubt(Finding* finding) const {
 }
 
 void Search::AssignProbabilities(Finding* finding) const {
-  // One candidate a name; differences that do not decide a verdict do not decide a probability either.
+  // One candidate for each name; differences too small for a verdict do not affect the probabilities either.
   constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth
   constexpr std::size_t kCompared = 12;
   for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
   Candidates compared = finding->set;
   for (const CandidatePtr& candidate : OnePerName(finding->tried)) {
     if (compared.size() >= kCompared) break;
-    // On such a bound a formula is another effect's: it is no rival to a name that does as well. One that does better
-    // says that the name is not the whole truth.
+    // At such a bound the formula is that of another effect, so it is no rival to a name that does as well. If it does
+    // better, the named formula is incomplete.
     if (!finding->set.empty() && candidate->fit.on_edge() &&
         candidate->fit.score() < finding->best->fit.score() + limits_.tie_nats)
       continue;

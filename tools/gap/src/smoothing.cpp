@@ -48,10 +48,10 @@ Vector SavitzkyGolay(const Vector& series, int window, int derivative) {
 }
 
 int WidestWindow(const Vector& series, int widest) {
-  // Fourth differences know nothing of a smooth motion: noise of variance s^2 gives them 70 s^2.
+  // Fourth differences of a smooth motion vanish; those of noise of variance s^2 have the variance 70 s^2.
   constexpr double kGain = 70.0;
-  constexpr double kAllowed = 2.0;      // times the noise that a window may remove
-  constexpr double kNegligible = 1e-6;  // of the variance of the series, that may go as well
+  constexpr double kAllowed = 2.0;      // variance that a window may remove, relative to the noise
+  constexpr double kNegligible = 1e-6;  // share of the variance of the series that may be removed in any case
   const Eigen::Index n = series.size();
   if (n < 2 * widest) return 1;
   const Vector fourth = series.segment(0, n - 4) - 4.0 * series.segment(1, n - 4) + 6.0 * series.segment(2, n - 4) -

@@ -1,4 +1,4 @@
-// What data that name nothing still say: how probable an effect is that is too weak to be named.
+// Probability that an effect is present which is too weak to be named.
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace armcmc::gap {
 namespace {
 
-/// Columns of an effect's amplitudes, whitened, that the coordinates before them cannot imitate.
+/// Whitened columns of an effect's amplitudes, orthogonal to the coordinates before them.
 Matrix AmplitudeColumns(const Fitted& fit, const EffectForm& form) {
   const Eigen::Index first = fit.theta.size() - form.size();
   const Matrix basis = OrthonormalBasis(fit.whitened_jacobian.leftCols(first));
@@ -48,7 +48,7 @@ double Search::LogOdds(const CandidatePtr& candidate) const {
   const Matrix columns = AmplitudeColumns(fit, form);
   const Vector strengths = columns.colwise().squaredNorm();
   if (!(strengths.minCoeff() > 0.0)) return evidence;
-  // The prior of the amplitudes taken back: what is left is the likelihood at the best amplitudes.
+  // Without the prior of the amplitudes, the likelihood at the best amplitudes remains.
   Matrix information = columns.transpose() * columns / s2;
   const Eigen::Index first = fit.theta.size() - form.size();
   double likelihood = evidence;
@@ -72,7 +72,7 @@ double Search::Ratio(const CandidatePtr& candidate) const {
 }
 
 double Search::WeighNothing(const Candidates& singles) const {
-  // A family counts once, however many members it has.
+  // Each family counts once, whatever its number of members.
   std::map<std::string, std::vector<std::pair<CandidatePtr, double>>> families;
   for (const CandidatePtr& single : singles)
     if (single->exact() && single->added().back().when.kind == When::Kind::kAlways)
@@ -81,7 +81,7 @@ double Search::WeighNothing(const Candidates& singles) const {
   const auto weight = [&](std::size_t members) {
     return -std::log(static_cast<double>(members) * static_cast<double>(families.size()));
   };
-  std::vector<double> logs{0.0};  // nothing, as probable beforehand as something
+  std::vector<double> logs{0.0};  // no effect, with the prior probability of all effects together
   for (const auto& [family, members] : families)
     for (const auto& member : members) logs.push_back(member.second + weight(members.size()));
   const double total = LogSumExp(Eigen::Map<const Vector>(logs.data(), static_cast<Eigen::Index>(logs.size())));

@@ -16,8 +16,8 @@ using expression::SymbolKind;
 using Reading = std::set<std::pair<SymbolKind, int>>;  ///< Signals, states, time.
 using Equations = std::map<std::size_t, Reading>;
 
-/// What the action of an effect depends on, by equation: d equation / d each of its parameters. Nothing where it
-/// remembers.
+/// Quantities on which the derivatives of each equation with respect to the parameters of an effect depend. Empty if
+/// the effect has memory.
 std::optional<Equations> ActionOf(const Candidate& effect) {
   Graph graph = effect.plant->graph();
   std::vector<int> nodes;
@@ -44,7 +44,7 @@ std::optional<Equations> ActionOf(const Candidate& effect) {
   return equations;
 }
 
-/// Whether a name is in the formulas of an effect.
+/// Whether a name occurs in the formulas of an effect.
 bool Says(const EffectForm& form, const std::string& name) {
   const std::regex whole("\\b" + name + "\\b");
   const auto says = [&whole](const std::string& text) { return std::regex_search(text, whole); };
@@ -66,7 +66,7 @@ bool Reads(const Candidate& effect, const std::string& name) {
   const EffectForm& form = effect.form();
   if (name == "t") return Says(form, name);
   return std::any_of(form.needs.begin(), form.needs.end(), [&](const EffectNeed& need) {
-    // A state may be needed for its rate alone, to which the effect is added.
+    // A state may be needed only because the effect is added to its rate.
     return need.kind != "parameter" && effect.binding.symbols.at(need.name) == name && Says(form, need.name);
   });
 }

@@ -4,17 +4,17 @@
 
 namespace armcmc::ladder {
 
-/// Whether what two effects do is a function of one signal, state or time, the same one, in the same equations: curves
-/// of another shape, but of one thing.
+/// Whether two effects are functions of the same signal, state or time, in the same equations; the functions may have
+/// different shapes.
 [[nodiscard]] bool AreCurvesOfOneThing(const Candidate& a, const Candidate& b);
 
-/// Whether an effect depends on a signal or a state, or time where the name is "t".
+/// Whether an effect depends on the signal or state `name`, or, for "t", on time.
 [[nodiscard]] bool Reads(const Candidate& effect, const std::string& name);
 
-/// Whether it depends on the past: by a state of its own, or a function that remembers.
+/// Whether it has memory: a state of its own, or a function such as delay().
 [[nodiscard]] bool Remembers(const Candidate& effect);
 
-/// Whether it acts on the whole law, and so follows whatever that does.
+/// Whether it acts on the law as a whole, and so on everything that the law contains.
 [[nodiscard]] bool ActsOnLaw(const Candidate& effect);
 
 }  // namespace armcmc::ladder

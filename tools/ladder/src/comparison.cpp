@@ -14,13 +14,13 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-/// Whether a group holds so much of what shows an effect that its absence says nothing: without it the fit gains less
-/// than half of what it gains with it.
+/// Whether a group contains so much of the evidence for an effect that leaving it out is not informative: the fit
+/// without it gains less than half of what the fit with it gains.
 bool HoldsTheEvidence(const Contender& c, const Trial& base, std::size_t group) {
   return 1.0 - c.trial.rest[group] / (base.rest[group] + 1e-300) < 0.5 * c.closed;
 }
 
-/// Of the rows of all folds together.
+/// Over the rows of all folds.
 double FoldSquares(const View& view, const std::vector<double>& squares) {
   double sum = 0.0;
   for (std::size_t g = 0; g < squares.size(); ++g)
@@ -28,11 +28,11 @@ double FoldSquares(const View& view, const std::vector<double>& squares) {
   return sum;
 }
 
-/// Whether errors are forgotten within a tenth of the period: noise that neighbouring samples share. What is missing
-/// from a law repeats with the motion.
+/// Whether the errors decorrelate within a tenth of the period, as noise shared by neighbouring samples does. A missing
+/// part of a law repeats with the motion.
 ///
-/// Mean square of the autocorrelation over lags of 0.1 to 0.6 periods, against what it has for noise of the same
-/// correlation at short lags: 1/n times 1 + 2 sum r^2.
+/// The mean square of the autocorrelation over lags of 0.1 to 0.6 periods is compared with its value for noise of the
+/// same correlation at short lags: 1/n times 1 + 2 sum r^2.
 bool ForgottenSoon(const View& view, const Trial& trial) {
   constexpr double kFirst = 0.1, kLast = 0.6, kShare = 0.01;
   constexpr int kLags = 40;

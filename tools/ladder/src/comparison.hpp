@@ -4,26 +4,26 @@
 
 namespace armcmc::ladder {
 
-inline constexpr double kLeastGain = 0.1;   // of the squared error: what a name has to take
-inline constexpr double kLargerPart = 0.5;  // of it: what the first name of a family leaves at most
-inline constexpr double kFarBetter = 2.0;   // times less than a simple one leaves: what a larger one has to show
+inline constexpr double kLeastGain = 0.1;   // share of the squared error that a named effect must remove
+inline constexpr double kLargerPart = 0.5;  // share that the first effect of a family may leave
+inline constexpr double kFarBetter = 2.0;   // factor by which a larger effect must beat a simpler one
 
-/// What a contender leaves on rows left out, over what its base leaves.
-/// @param beside  Both with the flexible function beside them.
+/// Error of a contender on left-out rows, relative to its base model.
+/// @param beside  With the flexible function added to both.
 [[nodiscard]] Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool beside);
 
 /// "leaves 4.5 times less squared error on data left out"
 [[nodiscard]] std::string LeavesLess(double times);
 
-/// Better wherever it is looked for.
+/// Whether `a` has less error than `b` in folds, blocks and regions.
 [[nodiscard]] bool BetterEverywhere(const Contender& a, const Contender& b);
 
-/// Share of the squared error that is left which a flexible function takes, in folds.
+/// Share of the remaining squared error that a flexible function removes, from the folds.
 [[nodiscard]] double FlexibleGain(const View& view, const Trial& trial);
 
-/// Whether a trial leaves more than noise: what a flexible function takes, or errors that are larger than neighbouring
-/// samples differ; by little where they are forgotten within a tenth of the period.
-/// @param floor  Standard deviation of the noise; 0: nobody knows.
+/// Whether a trial leaves more than noise: a flexible function reduces the error, or the error exceeds the noise. An
+/// excess of a few percent is accepted if the errors decorrelate within a tenth of the period.
+/// @param floor  Standard deviation of the noise; 0: unknown.
 [[nodiscard]] bool LeavesMore(const View& view, const Trial& trial, double floor);
 
 }  // namespace armcmc::ladder

@@ -17,16 +17,16 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kBumps = 8;
-constexpr std::size_t kFitted = 4;    // of those that act differently
-constexpr double kAlike = 0.02;       // of the square of what one takes away: the other takes it as well
-constexpr double kAsMuch = 0.9;       // of what an effect explains
-constexpr double kAsWell = 1.5;       // times what the best one leaves
-constexpr double kOff = 0.1;          // of the square of what an effect leaves: as well copied as one can ask
-constexpr double kOutermost = 0.001;  // of the rows, where a state or signal seldom is
+constexpr std::size_t kFitted = 4;    // number of curves, each with a different action
+constexpr double kAlike = 0.02;       // share of squared explanation in which two curves with the same action differ
+constexpr double kAsMuch = 0.9;       // share of what an effect explains
+constexpr double kAsWell = 1.5;       // times the error of the best curve
+constexpr double kOff = 0.1;          // share of the squared error that an effect leaves: accepted error of its copy
+constexpr double kOutermost = 0.001;  // share of rows at the ends of a range that are ignored
 
-/// @param x     Name of what the curve follows; "t" is time, "law" what the law says.
-/// @param unit  Of the curve.
-/// @param size  Of its coefficients.
+/// @param x     Quantity that the curve follows; "t" is time, "law" the value of the law.
+/// @param unit  Unit of the curve.
+/// @param size  Prior scale of its coefficients.
 EffectForm Along(const std::string& x, const std::string& unit, const std::string& size, EffectTerm term,
                  std::vector<EffectNeed> needs) {
   const bool time = x == "t";
@@ -34,7 +34,7 @@ EffectForm Along(const std::string& x, const std::string& unit, const std::strin
   const std::string of_x = time ? "s" : scale, low = time ? "start" : "low_" + scale;
   const std::string spacing = (time ? "record/" : "range_" + scale + '/') + std::to_string(kBumps - 1);
   EffectForm form;
-  form.variant = true;  // all forms side by side
+  form.variant = true;  // all forms are tried
   form.needs = std::move(needs);
   form.constants.push_back({"w", of_x, "2.4*" + spacing});
   for (int k = 0; k < kBumps; ++k) {
@@ -64,7 +64,7 @@ EffectNeed Used(const std::string& name, const std::string& kind) {
   return need;
 }
 
-/// The sizes with the ranges that signals and states really pass through, without the outermost rows.
+/// The scales of the data with the ranges of signals and states, without the outermost rows.
 DataScales WithRanges(DataScales scales, const std::vector<Feature>& features, const std::vector<Index>& rows) {
   for (const Feature& feature : features) {
     std::vector<double> sorted;
@@ -80,7 +80,7 @@ DataScales WithRanges(DataScales scales, const std::vector<Feature>& features, c
   return scales;
 }
 
-/// What is left of y when columns have taken what they can; columns without size are let be.
+/// Residual of y after a least-squares fit of the columns; columns of zero norm are skipped.
 /// @param pull  [column] Precision of a prior about 0.
 VectorXd LeftOf(const VectorXd& y, const Eigen::MatrixXd& columns, const VectorXd& pull) {
   const VectorXd size = (columns.colwise().squaredNorm().transpose() + pull).cwiseMax(1e-300).cwiseSqrt();
@@ -91,11 +91,11 @@ VectorXd LeftOf(const VectorXd& y, const Eigen::MatrixXd& columns, const VectorX
   return y - scaled * matrix.ldlt().solve(scaled.transpose() * y);
 }
 
-/// Name of the signal or state that a curve follows; "t" is time, "law" what the law says.
+/// Name of the signal or state that a curve follows; "t" is time, "law" the value of the law.
 std::string FollowedBy(const Contender& curve) {
   const EffectForm& form = curve.candidate.form();
   if (form.terms.front().slot == "law") return "law";
-  // A need beside the parameter is what is followed.
+  // The need that is not the parameter is the quantity followed.
   const bool over_time = form.needs.size() == (form.terms.front().slot == "parameter" ? 1 : 0);
   return over_time ? "t" : curve.candidate.binding.symbols.at(form.needs.back().name);
 }
@@ -137,7 +137,7 @@ Curves::Curves(const std::shared_ptr<const Plant>& plant, const Dataset& data, c
 
 std::vector<Candidate> Curves::MostPromising() const {
   const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.looked_at);
-  std::vector<std::string> notes;  // what does not fit a limit is no rival
+  std::vector<std::string> notes;  // curves beyond a limit of plants are no rivals
   std::vector<Candidate> all = Candidates(plant_->description(), entries_, scales, &notes);
   const Dataset quick = QuickPart(*plant_, data_, base_.model->target() - base_.fit.prediction);
   const Index own = base_.fit.theta.size();
@@ -164,7 +164,7 @@ std::vector<Candidate> Curves::MostPromising() const {
       if (!model.Linearise(theta, &prediction, &jacobian)) return;
       const double variance = square / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
       left[i] = LeftOf(error, jacobian(rows, Eigen::all), variance * identify::PriorPrecision(model));
-    } catch (const PlantError&) {  // needs more than there is room for
+    } catch (const PlantError&) {  // beyond the limits of a plant
     }
   });
   std::vector<std::size_t> order;
@@ -197,7 +197,7 @@ void Curves::FitThem() {
       if (c.trial.fit.valid) c.trial = Refine(c.candidate.plant, data_, c.trial.fit.theta);
       c.refined = c.trial.fit.valid;
       c.closed = c.refined ? 1.0 - std::pow(c.trial.fit.error_sd / base_.fit.error_sd, 2) : 0.0;
-    } catch (const PlantError&) {  // needs more than there is room for
+    } catch (const PlantError&) {  // beyond the limits of a plant
     }
   });
   std::stable_sort(fitted_->begin(), fitted_->end(),
@@ -205,7 +205,7 @@ void Curves::FitThem() {
 }
 
 bool Curves::Holds(const Contender& curve, const Contender& c) const {
-  // What does not remember and explains more speaks against what does.
+  // A curve without memory that explains more rules out an effect with memory.
   if (Remembers(c.candidate)) return false;
   if (AreCurvesOfOneThing(c.candidate, curve.candidate)) return true;
   if (!Reads(c.candidate, FollowedBy(curve)) && !ActsOnLaw(c.candidate)) return false;
@@ -248,18 +248,18 @@ std::string Curves::Best() {
 std::optional<Rival> Curves::RivalOf(const Contender& c, bool smaller_part) {
   if (!fitted_) FitThem();
   if (fitted_->empty()) return std::nullopt;
-  // The best one and what does as well: several that act alike are the rule, and one that holds it is enough.
+  // The best curve and those nearly as good: often several act alike, and one that represents the effect is enough.
   const double left = kAsWell * (1.0 - fitted_->front().closed);
   std::optional<Rival> rival;
   for (Contender& curve : *fitted_) {
-    // What is not far better where it was fitted is not where it was not.
+    // A curve that is not far better on the fitted rows is not far better on left-out rows either.
     if (!curve.refined || 1.0 - curve.closed > left || 1.0 - c.closed < kFarBetter * (1.0 - curve.closed)) continue;
-    // The same physics with a better formula. But one curve is simpler than two effects.
+    // The curve is the same physics with a better formula. But one curve is simpler than two effects.
     if (!smaller_part && Holds(curve, c)) return std::nullopt;
     if (rival) continue;
     Judge(&curve);
     const double times = c.alone.folds / std::max(curve.alone.folds, 1e-12);
-    // Nobody asks a curve how it goes on where it has not been seen; but it may not lead astray there.
+    // A curve need not be better where it extrapolates, but it must not be worse.
     if (times < kFarBetter || curve.alone.blocks > c.alone.blocks || curve.alone.regions > 1.0) continue;
     rival = Rival{AsIf(curve), LeavesLess(times) + ", and has another shape"};
   }

@@ -7,7 +7,7 @@
 namespace armcmc::ladder {
 namespace {
 
-/// First row behind the run that begins at runs[r].
+/// First row after the run that begins at runs[r].
 std::size_t EndOfRun(const identify::Series& series, std::size_t r) {
   return r + 1 < series.runs.size() ? series.runs[r + 1] : series.num_rows();
 }
@@ -64,7 +64,7 @@ Dataset Windows(const Dataset& data, const Eigen::VectorXd& error, std::size_t l
   const identify::Series& all = *data.series;
   if (all.num_rows() <= rows) return data;
   const std::size_t places = (all.num_rows() + length - 1) / length, count = std::max<std::size_t>(rows / length, 2);
-  // Where nothing is known of errors, all of them all over the data.
+  // Without errors, all segments are spread over the data.
   const std::size_t even = error.size() > 0 ? count / 2 : count;
   std::vector<double> energy(places, 0.0);
   for (std::size_t n = 0; n < all.num_rows() && error.size() > 0; ++n)
@@ -105,7 +105,7 @@ DataScales ScalesOf(const Dataset& data, const PlantDescription& plant, double n
   for (std::size_t n = 0; n < series.num_rows(); ++n) {
     if (data.training[n] == 0) continue;
     for (std::size_t s = 0; s < columns.size(); ++s) columns[s].push_back(series.signals[s][n]);
-    // Time may begin anew in every run; sizes ask how much of it there is.
+    // Time may restart in every run; its scale is the total duration.
     times.push_back(series.t.front() + series.dt * static_cast<double>(times.size()));
   }
   DataScales scales = MeasuredScales(plant, columns, times);

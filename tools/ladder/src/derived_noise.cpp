@@ -9,7 +9,7 @@
 namespace armcmc::ladder {
 namespace {
 
-/// With a Gaussian kernel of that many samples, cut at three of them and at the borders of a run.
+/// Smooths with a Gaussian kernel of that standard deviation in samples, cut at three of them and at the ends of a run.
 std::vector<double> SmoothedOver(const std::vector<double>& value, const std::vector<std::size_t>& runs, double sd) {
   const auto reach = static_cast<std::ptrdiff_t>(std::ceil(3.0 * sd));
   std::vector<double> out(value.size());
@@ -18,7 +18,7 @@ std::vector<double> SmoothedOver(const std::vector<double>& value, const std::ve
     const auto to = static_cast<std::ptrdiff_t>(r + 1 < runs.size() ? runs[r + 1] : value.size());
     for (std::ptrdiff_t n = from; n < to; ++n) {
       double sum = 0.0, weights = 0.0;
-      const std::ptrdiff_t side = std::min({reach, n - from, to - 1 - n});  // as far to one side as to the other
+      const std::ptrdiff_t side = std::min({reach, n - from, to - 1 - n});  // symmetric
       for (std::ptrdiff_t k = -side; k <= side; ++k) {
         const double weight = std::exp(-0.5 * static_cast<double>(k * k) / (sd * sd));
         sum += weight * value[static_cast<std::size_t>(n + k)];

@@ -7,28 +7,30 @@
 
 namespace armcmc::ladder {
 
-/// Noise of signals that are rates of others: an effect that smooths them seems to explain what is only their noise.
+/// Noise of derived signals (rates of other signals) as a rival: an effect that smooths them seems to explain what is
+/// only their noise.
 ///
-/// The rival is the model as it is on signals that are smoothed, forward and back alike, over several widths. Fitted
-/// when it is first asked for.
+/// The rival is the unextended model on signals smoothed symmetrically in time, with several kernel widths. It is
+/// fitted at the first call that needs it.
 class DerivedNoise {
  public:
-  /// All outlive it.
+  /// The arguments must outlive this.
   DerivedNoise(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, const Trial& base)
       : plant_(plant), data_(data), view_(view), base_(base) {}
 
-  /// Nothing where smoother signals explain nothing, or less than the contender, which explains as much beside them.
+  /// Empty if smoother signals explain nothing, or less than a contender that explains as much with the smoother
+  /// signals.
   /// @pre c.trial.judged.
   [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
 
  private:
   struct Smoothed {
-    double sd;  ///< Of the kernel, s.
+    double sd;  ///< Standard deviation of the smoothing kernel, s.
     Dataset data;
     Contender contender;
   };
   void FitIt();
-  /// Whether an effect gains at least half as much where those signals are smoother.
+  /// Whether an effect keeps at least half of its gain on the smoothed signals.
   [[nodiscard]] bool GainsThere(const Contender& c) const;
 
   const std::shared_ptr<const Plant>& plant_;

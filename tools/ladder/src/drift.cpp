@@ -12,9 +12,9 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Rows of a stretch, and of those before it in its run.
+/// Rows of a segment, and the rows before it in the same run.
 struct Stretch {
-  std::size_t begin = 0, from = 0, to = 0;  // [begin, from) is seen, [from, to) counts
+  std::size_t begin = 0, from = 0, to = 0;  // [begin, from) gives the history, [from, to) is fitted
 };
 
 std::vector<Stretch> StretchesOf(const identify::Series& series) {
@@ -51,22 +51,22 @@ Dataset Cut(const identify::Series& all, const Stretch& stretch) {
   return data;
 }
 
-/// Probability of a chi-square of at least `value`, by Wilson and Hilferty.
+/// Survival function of the chi-square distribution, by the Wilson-Hilferty approximation.
 double ChiSquareTail(double value, double degrees) {
   const double share = 2.0 / (9.0 * degrees);
   return 0.5 * std::erfc((std::cbrt(value / degrees) - (1.0 - share)) / std::sqrt(2.0 * share));
 }
 
-/// Every parameter of one plant over the stretches.
+/// Values of all parameters of a plant on the segments.
 struct Followed {
   std::vector<ParameterDescription> parameters;
   std::vector<gap::Steadiness> steadiness;
 };
 
-/// @param fit  Of the plant with nothing held.
+/// @param fit  Fit of the plant with all parameters free.
 Followed Follow(const Dataset& data, const std::vector<Stretch>& stretches, const PlantDescription& description,
                 const Trial& fit) {
-  constexpr double kTold = 0.8;  // of the prior's standard deviation: wider, and the stretch says nothing
+  constexpr double kTold = 0.8;  // of the prior's standard deviation: a wider band does not determine the parameter
   const auto plant = std::make_shared<const Plant>(description);
   Followed out;
   std::vector<std::vector<double>> value, sd;
@@ -131,7 +131,7 @@ void JudgeSteadiness(const std::vector<double>& value, const std::vector<double>
   const double degrees = static_cast<double>(value.size()) - 1.0;
   out->p_value = ChiSquareTail(chi, degrees);
   out->constant = out->p_value >= kRare;
-  // Weights of all stretches together say how wide a band is on the whole.
+  // The width of the overall band follows from the sum of the weights.
   const double usual = static_cast<double>(value.size()) / weights;
   out->moves_by = std::sqrt(std::max(0.0, chi / degrees - 1.0) * usual);
 }

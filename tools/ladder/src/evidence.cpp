@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 struct Term {
   std::string expression;
-  VectorXd value;  ///< [row that counts]
+  VectorXd value;  ///< [examined row]
 };
 
 std::vector<Term> Library(const std::vector<Feature>& features, const std::vector<Index>& rows) {
@@ -35,7 +35,7 @@ std::vector<Term> Library(const std::vector<Feature>& features, const std::vecto
   return terms;
 }
 
-/// Rows of every other of twenty stretches.
+/// Rows of every other one of twenty segments.
 std::vector<Index> Half(Index size, Index which) {
   constexpr Index kStretches = 20;
   std::vector<Index> half;
@@ -44,7 +44,7 @@ std::vector<Index> Half(Index size, Index which) {
   return half;
 }
 
-/// Squared error of each half, predicted by a sum that was fitted to the other.
+/// Squared error of each half, with the sum fitted to the other half.
 double CrossSquare(const Eigen::MatrixXd& columns, const VectorXd& error) {
   double square = 0.0;
   for (const Index which : {Index{0}, Index{1}}) {

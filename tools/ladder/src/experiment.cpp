@@ -15,10 +15,10 @@ namespace armcmc::ladder {
 namespace {
 
 constexpr std::array kPaceLadder = {0.25, 0.5, 1.0, 2.0, 4.0};
-constexpr double kMostSpeed = 4.0;     // times the recording's
-constexpr double kWorthItsWear = 1.1;  // times the decisions of a motion half as fast, that a quicker one must bring
-constexpr double kNeedsNoMore = 0.9;   // expected share of decisions that needs no quicker motion
-constexpr double kAsWorthy = 0.98;     // of the best: a slower and simpler one is taken
+constexpr double kMostSpeed = 4.0;     // relative to the recording
+constexpr double kWorthItsWear = 1.1;  // required gain of a motion over one half as fast
+constexpr double kNeedsNoMore = 0.9;   // expected share of decided pairs at which no faster motion is tried
+constexpr double kAsWorthy = 0.98;     // of the best score: a slower and simpler motion is preferred
 constexpr std::size_t kRefittedMotions = 4;
 
 std::string Short(int digits, double value) {
@@ -30,15 +30,15 @@ std::string Short(int digits, double value) {
 struct Proposed {
   Motion motion;
   Prospect prospect;
-  double worth = 0.0;  ///< Share of decisions, less for a quicker motion.
-  double speed = 0.0;  ///< Times that of the recording.
+  double worth = 0.0;  ///< Score: share of decided pairs, reduced for faster motions.
+  double speed = 0.0;  ///< Relative to the recording.
 };
 
 double Worth(const Prospect& prospect, double pace) {
   return prospect.decided / std::pow(kWorthItsWear, std::max(0.0, std::log2(pace)));
 }
 
-/// By worth; those that are next to the best as they come, slow and simple ones first.
+/// Sorts by score; motions within 2 % of the best keep their order, slow and simple ones first.
 void PutBestFirst(std::vector<Proposed>* all) {
   double best = 0.0;
   for (const Proposed& one : *all) best = std::max(best, kAsWorthy * one.worth);
@@ -47,7 +47,7 @@ void PutBestFirst(std::vector<Proposed>* all) {
   });
 }
 
-/// Greatest change from sample to sample, over that of the recording.
+/// Largest change from sample to sample, relative to that of the recording.
 double SpeedOf(const std::vector<double>& value, double dt, double recorded) {
   double most = 0.0;
   for (std::size_t n = 1; n < value.size(); ++n) most = std::max(most, std::fabs(value[n] - value[n - 1]) / dt);
@@ -58,7 +58,7 @@ class Search {
  public:
   Search(const Dataset& data, const Tied& tied, const PlantDescription& plant)
       : tied_(tied), plant_(plant), dt_(data.series->dt), ranges_(RangesOf(data, plant)) {
-    // A plant that is simulated takes as long for a row as another for several.
+    // A row of a simulated plant costs as much as several of another.
     const std::size_t most = IsSimulated(plant) ? 3000 : 8000;
     constexpr std::size_t kFewestRows = 1000;
     rows_ = std::clamp(data.series->num_rows(), kFewestRows, most);
@@ -114,7 +114,7 @@ class Search {
   double dt_;
   std::vector<InputRange> ranges_;
   std::size_t rows_ = 0;
-  std::vector<double> rest_;  ///< [signal] As the recording begins.
+  std::vector<double> rest_;  ///< [signal] Values at the beginning of the recording.
 };
 
 std::string NameOf(const Tied& tied, std::size_t i) {
@@ -149,8 +149,7 @@ std::string WordsOf(const Proposed& best, const Tied& tied, const PlantDescripti
   return "To separate them: " + move + ". " + evidence + enough;
 }
 
-/// A value of every parameter that the plant has of its own, as a scenario's truth; of one that modes have of their own
-/// a list.
+/// Values of the parameters of the plant itself, as the truth of a scenario; a list if each mode has its own.
 std::string TruthText(const Contender& contender, const PlantDescription& plant) {
   const identify::TrajectoryModel& model = *contender.trial.model;
   const auto fitted = [&](const std::string& name) -> std::optional<double> {

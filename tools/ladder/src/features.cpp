@@ -12,7 +12,7 @@ bool Moves(const Eigen::VectorXd& value) {
   return value.allFinite() && value.maxCoeff() - value.minCoeff() > 1e-9 * value.cwiseAbs().maxCoeff();
 }
 
-/// Low-passed within runs, so that a function of it knows the recent past.
+/// Low-pass filter within each run, which gives a function of it the recent past.
 Eigen::VectorXd Past(const Dataset& data, const Eigen::VectorXd& value, double tau) {
   const double keep = std::exp(-data.series->dt / tau);
   Eigen::VectorXd past(value.size());
@@ -69,7 +69,7 @@ Eigen::MatrixXd FlexibleFeatures(const Dataset& data, const std::vector<Feature>
   Eigen::MatrixXd out(static_cast<Eigen::Index>(looked_at.size()), count);
   for (Eigen::Index c = 0; c < count; ++c) {
     Eigen::VectorXd phase = Eigen::VectorXd::Constant(out.rows(), 2.0 * std::numbers::pi * uniform());
-    // Few quantities at a time: a function of eight at once is noise.
+    // Few quantities in each basis function: a random function of eight at once fits noise.
     const double reach = std::sqrt(2.0 / std::max<double>(2.0, static_cast<double>(standard.size())));
     for (const Eigen::VectorXd& x : standard) phase += reach * normal() * x;
     out.col(c) = std::sqrt(2.0 / count) * phase.array().cos();

@@ -18,8 +18,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Angular frequency, up to `highest`, at which errors have most power: of samples at times t, which lie on a grid of
-/// dt but not all of it.
+/// Angular frequency, up to `highest`, at which the errors have most power. The samples at times t lie on a grid of dt
+/// with gaps.
 double StrongestInTime(const VectorXd& error, const VectorXd& t, double dt, double highest) {
   const double first = t.minCoeff();
   const auto places = static_cast<std::size_t>(std::llround((t.maxCoeff() - first) / dt)) + 1;
@@ -28,7 +28,7 @@ double StrongestInTime(const VectorXd& error, const VectorXd& t, double dt, doub
   std::vector<std::complex<double>> spectrum;
   Eigen::FFT<double>().fwd(spectrum, wave);
   const double step = 2.0 * std::numbers::pi / (static_cast<double>(wave.size()) * dt);
-  const auto slowest = static_cast<std::size_t>(wave.size() / places);  // one turn
+  const auto slowest = static_cast<std::size_t>(wave.size() / places);  // one period
   const auto last = std::min(wave.size() / 2, static_cast<std::size_t>(highest / step) + 1);
   std::size_t strongest = slowest;
   for (std::size_t k = slowest; k < last; ++k)
@@ -36,12 +36,12 @@ double StrongestInTime(const VectorXd& error, const VectorXd& t, double dt, doub
   return step * static_cast<double>(strongest);
 }
 
-/// The same along any x, by a plain periodogram.
+/// The same along any quantity x, by a plain periodogram.
 double StrongestAlong(const VectorXd& error, const VectorXd& x, double highest) {
   constexpr double kMost = 4000.0;
   const double range = x.maxCoeff() - x.minCoeff();
   double strongest = 2.0 * std::numbers::pi / range, power = 0.0;
-  // Waves of one more half turn over the range each: turned on by the slowest one.
+  // Each wave has half a period more over the range than the last: multiplied by the slowest one.
   const Eigen::ArrayXd phase = std::numbers::pi / range * x.array();
   const Eigen::ArrayXd turn_cos = phase.cos(), turn_sin = phase.sin();
   Eigen::ArrayXd cosine = turn_cos, sine = turn_sin, turned(x.size());
@@ -59,7 +59,7 @@ double StrongestAlong(const VectorXd& error, const VectorXd& x, double highest) 
   return strongest;
 }
 
-/// What a frequency is taken along; empty where that is not measured.
+/// The quantity along which a frequency is defined; empty if it is not measured.
 VectorXd Along(const identify::TrajectoryModel& model, const VectorXd& theta, const std::string& name) {
   const auto size = static_cast<Index>(model.num_rows());
   if (name.empty()) return Eigen::Map<const VectorXd>(model.series().t.data(), size);
@@ -72,7 +72,7 @@ VectorXd Along(const identify::TrajectoryModel& model, const VectorXd& theta, co
   return {};
 }
 
-/// One step of all parameters but `held`, which stays.
+/// One Gauss-Newton step of all parameters except `held`.
 void StepOfOthers(const identify::TrajectoryModel& model, const std::vector<Index>& rows, Index held, VectorXd* theta) {
   VectorXd prediction;
   Eigen::MatrixXd jacobian;

@@ -9,10 +9,10 @@
 
 namespace armcmc::ladder {
 
-/// Adds starts at the frequency where the error of the first one has most power, with the amplitudes that it has there:
-/// a fit finds a frequency only from next to it, and without an amplitude nothing but its prior would tell it where to
-/// go.
-/// @param starts  Of the model's parameters; one at least.
+/// Adds starts at the frequency at which the residual of the first start has most power, with the amplitudes found
+/// there. A fit converges to a frequency only from nearby, and with zero amplitude only the prior would act on the
+/// frequency.
+/// @param starts  Parameter vectors of the model; at least one.
 void AddFrequencies(const identify::TrajectoryModel& model, const Dataset& data,
                     const std::vector<Frequency>& frequencies, std::vector<Eigen::VectorXd>* starts);
 

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Ljung-Box over its degrees of freedom.
+/// Ljung-Box statistic, divided by its degrees of freedom.
 double Whiteness(const VectorXd& e) {
   constexpr Index kLags = 25;
   const VectorXd x = e.array() - e.mean();
@@ -29,7 +29,7 @@ double Whiteness(const VectorXd& e) {
   return n * (n + 2.0) * sum / static_cast<double>(kLags);
 }
 
-/// Every so many rows, so that a page stays small; not a number where a run begins, so that no line crosses.
+/// Thins a curve to limit the size of the page; NaN at the beginning of a run breaks the line.
 gap::Curve Over(const Dataset& data, const VectorXd& value, std::size_t most) {
   gap::Curve curve;
   const std::size_t every = std::max<std::size_t>(1, data.series->num_rows() / most);
@@ -43,7 +43,7 @@ gap::Curve Over(const Dataset& data, const VectorXd& value, std::size_t most) {
   return curve;
 }
 
-/// Mean error in twentieths of a feature's values, with the band of two standard errors over stretches.
+/// Mean error in twenty bins of a feature, with bands of two standard errors over segments.
 gap::Curve Binned(const VectorXd& error, const VectorXd& feature, std::vector<Index> rows) {
   constexpr std::size_t kBins = 20;
   gap::Curve curve;
@@ -117,7 +117,7 @@ std::vector<gap::StretchFit> StretchesOf(const Dataset& data, const std::vector<
   if (before.error.size() == 0 || after.error.size() == 0) return stretches;
   const auto kept_apart = [&data](Index n) { return data.held_out[static_cast<std::size_t>(n)] != 0; };
   for (std::size_t from = 0, to = 0; from < rows.size(); from = to) {
-    // Rows in which no mode acts do not end a stretch.
+    // Rows on which no mode acts do not end a segment.
     for (to = from + 1; to < rows.size(); ++to) {
       Index between = rows[to - 1] + 1;
       while (between < rows[to] && kept_apart(between)) ++between;
@@ -174,7 +174,7 @@ gap::Figures FiguresOf(const Dataset& data, const WholeRun& before, const WholeR
     figures.predicted_after = Over(data, after->prediction, kPoints);
     figures.residual_after = Over(data, after->error, kPoints);
   }
-  // One stretch at the end can be tinted; other splits are told in words.
+  // A single segment at the end can be shaded; other splits are described in words.
   const auto first = std::find(data.held_out.begin(), data.held_out.end(), std::uint8_t{1});
   const bool tail = std::find(first, data.held_out.end(), std::uint8_t{0}) == data.held_out.end();
   figures.diagnosis_end_s =

@@ -11,32 +11,33 @@
 
 namespace armcmc::ladder {
 
-/// A fitted plant over a whole recording.
+/// Prediction of a fitted plant over a whole recording.
 struct WholeRun {
   std::shared_ptr<const identify::TrajectoryModel> model;
-  Eigen::VectorXd prediction, error;  ///< [row]; empty where the law is not finite.
+  Eigen::VectorXd prediction, error;  ///< [row]; empty if the law is not finite.
 };
 
 [[nodiscard]] WholeRun RunWhole(const Dataset& data, const Trial& trial);
 
-/// Errors on `rows`. @param sd  Standard deviation that the fit claims.
+/// Errors on `rows`. @param sd  Standard deviation of the error according to the fit.
 [[nodiscard]] gap::Fit FitOn(const WholeRun& run, const std::vector<Eigen::Index>& rows, double sd);
 
-/// Rows that are kept apart and where a mode acts.
+/// Held-out rows on which a mode acts.
 [[nodiscard]] std::vector<Eigen::Index> HeldOutRows(const Dataset& data, const WholeRun& run);
 
-/// Errors on each stretch of them that hangs together, where there are several and not too many.
+/// Errors on each contiguous held-out segment; empty if there is only one, or more than 20.
 [[nodiscard]] std::vector<gap::StretchFit> StretchesOf(const Dataset& data, const std::vector<Eigen::Index>& rows,
                                                        const WholeRun& before, const WholeRun& after);
 
-/// Fills the interval of the fraction that is closed on `rows`: bootstrap over stretches of time.
+/// Sets the 95 % interval of the closed fraction on `rows`, by a bootstrap over blocks of time.
 void CloseInterval(const std::vector<Eigen::Index>& rows, const WholeRun& before, const WholeRun& after,
                    std::uint64_t seed, gap::GapSummary* gap);
 
-/// Rows behind the beginning of every run in which a start of states that nobody measured still shows.
+/// Removes from the training rows those at the beginning of every run on which unmeasured initial states still have an
+/// influence.
 void LeaveOutStarts(const Trial& trial, Dataset* data);
 
-/// Curves of the report. `after` may be null.
+/// Curves of the report. @param after  May be null.
 [[nodiscard]] gap::Figures FiguresOf(const Dataset& data, const WholeRun& before, const WholeRun* after,
                                      const std::vector<Feature>& features, const SignalDescription& output);
 

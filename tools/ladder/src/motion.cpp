@@ -36,7 +36,7 @@ std::string Fill(std::string_view text, int digits, std::initializer_list<double
   }
   return out;
 }
-/// As an expression, and in a sentence.
+/// A shape as an expression and as a phrase.
 std::string Text(std::string_view text, std::initializer_list<double> numbers) { return Fill(text, 9, numbers); }
 std::string Words(std::string_view text, std::initializer_list<double> numbers) { return Fill(text, 2, numbers); }
 
@@ -46,30 +46,30 @@ double Quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// What a program is written for.
+/// Arguments of a shape.
 struct Frame {
   double low, high;   ///< Unit of the input.
-  double hz;          ///< Of a stroke to and fro.
-  double duration_s;  ///< Of the experiment.
-  double rise_s;      ///< Of a step: half of it.
+  double hz;          ///< Strokes per second.
+  double duration_s;  ///< Duration of the experiment.
+  double rise_s;      ///< Half the rise time of a step.
 };
 
-/// The shape, which goes from -1 to 1, over the range.
+/// Scales a shape from [-1, 1] to the range.
 std::string Over(const Frame& f, const std::string& shape) {
   return Text("# + #*", {0.5 * (f.low + f.high), 0.5 * (f.high - f.low)}) + "(" + shape + ")";
 }
 
-/// Strokes at constant speed that are round at their ends, as drives make them.
+/// Strokes at constant speed with rounded reversals, as drives make them.
 std::string Strokes(const std::string& phase) { return "0.72968*asin(0.98*sin(" + phase + "))"; }
 
 std::string Steady(double hz) { return Text("#*t", {kTurn * hz}); }
 
-/// A phase whose frequency grows from the beginning to the end.
+/// Phase of a sweep with rising frequency.
 std::string Growing(double from_hz, double to_hz, double duration_s) {
   return Text("#*t + #*t^2", {kTurn * from_hz, 0.5 * kTurn * (to_hz - from_hz) / duration_s});
 }
 
-constexpr double kSlowest = 0.25, kFastest = 2.0;  // of a sweep, times the pace
+constexpr double kSlowest = 0.25, kFastest = 2.0;  // frequencies of a sweep, relative to the pace
 
 std::string ConstantSpeed(const Frame& f) { return Over(f, Strokes(Steady(f.hz))); }
 std::string ConstantSpeedWords(const Frame& f) {
@@ -145,7 +145,7 @@ constexpr std::array<Program, 8> kPrograms = {{{"strokes", ConstantSpeed, Consta
                                                {"sines", Sines, SinesWords},
                                                {"one_way_quick", OneWayQuick, OneWayQuickWords}}};
 
-/// Input that a signal is the derivative of, and of which order; the signal itself where it is none.
+/// The input of which a signal is a derivative, and the order; the signal itself if it is none.
 std::pair<std::size_t, std::size_t> RootOf(const PlantDescription& plant, std::size_t signal) {
   std::size_t order = 0;
   for (; !plant.signals[signal].derivative_of.empty() && order < plant.signals.size(); ++order)
@@ -157,7 +157,7 @@ std::pair<std::size_t, std::size_t> RootOf(const PlantDescription& plant, std::s
   return {signal, order};
 }
 
-/// A program and its derivatives by t.
+/// An expression and its derivatives with respect to t.
 std::optional<expression::FeatureProgram> WithDerivatives(const std::string& text, std::size_t orders) {
   expression::Scope scope;
   scope.Add({.name = "t", .kind = SymbolKind::kTime, .unit = {}, .range = {}});
@@ -172,7 +172,7 @@ std::optional<expression::FeatureProgram> WithDerivatives(const std::string& tex
   }
 }
 
-/// How often the values pass from below `low` to above `high`, each run for itself.
+/// Number of passages from below `low` to above `high`, counted in each run.
 std::size_t Passes(const Dataset& data, const std::vector<double>& value, double low, double high) {
   std::size_t passes = 0, run = 0;
   bool below = false;
@@ -213,7 +213,7 @@ std::vector<InputRange> RangesOf(const Dataset& data, const PlantDescription& pl
     std::vector<double> value, speed;
     for (std::size_t n = 0; n < column.size(); ++n)
       if (data.training[n] != 0) value.push_back(column[n]);
-    // The recorded derivative where there is one: differences of neighbouring samples hold their noise.
+    // The recorded derivative is preferred, since differences of neighbouring samples contain noise.
     const std::vector<double>* rate = nullptr;
     for (std::size_t d = 0; d < plant.signals.size(); ++d)
       if (plant.signals[d].derivative_of == plant.signals[s].name) rate = &series.signals[d];

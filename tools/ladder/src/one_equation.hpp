@@ -10,22 +10,23 @@
 
 namespace armcmc::ladder {
 
-/// Climbs, and tells what was found. @param[out] data  The recording, without rows that unknown starts decide.
-/// @throws support::InputError where there is nothing to compare.
+/// Runs the ladder on one equation and fills the result.
+/// @param[out] data  The recording, without the rows that depend on unmeasured initial states.
+/// @throws support::InputError  if there is nothing to compare.
 [[nodiscard]] Diagnosis DiagnoseEquation(const DiagnosisRequest& request, Dataset* data);
 
-/// Fills the result, for people and for programs, from the ladder.
+/// Fills the result from the ladder.
 void Tell(const DiagnosisRequest& request, const Dataset& data, Diagnosis* diagnosis);
 
-/// What the estimator makes of the plant before and after: models, drift, predictions.
+/// Adds what the estimator does with the plant before and after: models, drift, predictions.
 void FollowUp(const DiagnosisRequest& request, const Dataset& data, Diagnosis* diagnosis);
 
-/// Rungs that name something.
+/// Number of rungs on which something is named.
 [[nodiscard]] std::size_t NumNamed(const Ladder& ladder);
 
 [[nodiscard]] std::string JoinedWords(const std::vector<std::string>& words, const char* between);
 
-/// Progress from `from` to `to` of the whole.
+/// Maps the progress of a part to the interval from `from` to `to` of the whole.
 [[nodiscard]] std::function<void(const std::string& step, double share)> PartOf(
     const std::function<void(const std::string& step, double share)>& progress, double from, double to);
 

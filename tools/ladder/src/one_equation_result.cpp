@@ -25,7 +25,7 @@ std::string Number(double value) {
   return text;
 }
 
-/// The fit as people read it: of a lognormal parameter the median and its standard deviation.
+/// Estimates for the report: for a lognormal parameter the median and its standard deviation.
 std::vector<ParameterEstimate> Estimates(const Trial& trial, const std::vector<std::uint8_t>& rows) {
   const VectorXd sd = identify::StandardDeviations(*trial.model, rows, trial.fit);
   std::vector<ParameterEstimate> out;
@@ -44,14 +44,14 @@ std::string InWords(std::string name) {
   return name;
 }
 
-/// Names that were added up to a rung, not counting it.
+/// Names added before a rung.
 std::vector<std::string> NamesBefore(const Ladder& ladder, std::size_t rung) {
   std::vector<std::string> names;
   for (std::size_t r = 0; r < rung; ++r) names.push_back(NameOf(ladder.rungs[r].leader()));
   return names;
 }
 
-/// Everything that the diagnosis is made from, beside the result that it fills.
+/// Writes the result from the ladder.
 class Teller {
  public:
   Teller(const DiagnosisRequest& request, const Dataset& data, const Ladder& ladder, gap::Result* result)
@@ -132,7 +132,7 @@ class Teller {
     result_.notes.push_back("noise floor: " + from);
   }
 
-  /// Whether a model that explains what it was fitted to errs on the rows kept apart far beyond the noise.
+  /// Whether the errors on the held-out rows are far above the noise, although the model explains the training rows.
   bool KeptApartContradict() {
     const gap::GapSummary& gap = result_.gap;
     if (!ladder_.complete || HeldOutRows(data_, before_).empty()) return false;
@@ -152,7 +152,7 @@ class Teller {
       for (const std::size_t i : rung.named) told.effects.push_back(NameOf(rung.contenders[i]));
       const WholeRun run = RunWhole(data_, leader.trial);
       told.heldout_error = FitOn(run, rows_, leader.trial.fit.error_sd).rmse;
-      if (!std::isfinite(told.heldout_error)) {  // that of the last model that does not run away
+      if (!std::isfinite(told.heldout_error)) {  // that of the last model that does not diverge
         told.heldout_error = result_.ladder.empty() ? result_.gap.before.rmse : result_.ladder.back().heldout_error;
         result_.notes.push_back(leader.candidate.entry->name +
                                 " alone diverges on held-out data: named because of what follows");
@@ -266,7 +266,7 @@ class Teller {
     }
     if (tie != nullptr) {
       const auto begin = std::chrono::steady_clock::now();
-      // A signal that one equation reads is what another decides: it cannot be moved as one likes.
+      // With two equations, a signal that one reads may result from the other, so it cannot be prescribed.
       if (request_.equation.empty())
         result_.separate_by = SeparatingMotion(data_, *tie, request_.plant->plant.description());
       result_.seconds.emplace_back("experiment",
@@ -296,7 +296,7 @@ class Teller {
            (complete_ ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf());
   }
 
-  /// Of what is left, where something is known that no catalogue has.
+  /// The rival of the last rung, which describes the remaining misfit.
   [[nodiscard]] std::string ActsAsIf() const {
     const bool known =
         !ladder_.rungs.empty() && ladder_.rungs.back().named.empty() && !ladder_.rungs.back().as_if.empty();
@@ -309,7 +309,7 @@ class Teller {
     return base > 0.0 ? (result_.gap.before.rmse * result_.gap.before.rmse - rmse * rmse) / base : 0.0;
   }
 
-  /// Of what the laws explain.
+  /// Unit of the quantity that the laws explain.
   [[nodiscard]] std::string OutputUnit() const {
     const Plant& plant = request_.plant->plant;
     const PlantDescription& description = plant.description();
@@ -319,17 +319,17 @@ class Teller {
     return description.signals[static_cast<std::size_t>(plant.output())].unit;
   }
 
-  static constexpr double kShared = 1.2;        ///< Times the differences' floor.
-  static constexpr double kContradicted = 1.5;  ///< Times the noise (rms), on rows that no model was fitted to.
+  static constexpr double kShared = 1.2;        ///< Times the noise floor from differences.
+  static constexpr double kContradicted = 1.5;  ///< Times the noise (rms), on held-out rows.
 
   const DiagnosisRequest& request_;
   const Dataset& data_;
   const Ladder& ladder_;
   gap::Result& result_;
   std::vector<std::uint8_t> training_;
-  bool complete_ = false;  ///< Nothing is left to explain, on the rows kept apart neither.
+  bool complete_ = false;  ///< Nothing is left to explain, on the held-out rows as well.
   WholeRun before_, after_;
-  std::vector<Index> rows_;  ///< That errors are told of.
+  std::vector<Index> rows_;  ///< Rows of the reported errors.
 };
 
 }  // namespace

@@ -16,10 +16,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using expression::SymbolKind;
 
-constexpr std::size_t kComparedEffects = 3;  // more ties are resolved by a second experiment
-constexpr double kLeastProbability = 0.1;    // of an effect, however improbable
-constexpr double kMuchTheSame = 0.05;  // share of what is missing that tells two effects apart, where no law is exact
-constexpr double kOutputReach = 2.0;   // of the recorded output
+constexpr std::size_t kComparedEffects = 3;  // larger ties need a second experiment
+constexpr double kLeastProbability = 0.1;    // lower bound of the weight of an effect
+constexpr double kMuchTheSame =
+    0.05;  // share of the missing part by which two effects must differ, since no law is exact
+constexpr double kOutputReach = 2.0;  // relative to the recorded range of the output
 
 std::shared_ptr<const Plant> Copy(const Plant& plant) { return std::make_shared<const Plant>(plant.description()); }
 
@@ -52,7 +53,7 @@ std::string Tied::NotMade() const {
   const std::vector<std::size_t> inputs = InputsOf(described);
   std::vector<bool> made(described.signals.size(), false);
   for (const std::size_t s : inputs) made[s] = true;
-  // Derivatives of what is made are made; each round finds the next order.
+  // Derivatives of prescribed signals are prescribed too; each pass adds the next order.
   for (std::size_t round = 0; round < made.size(); ++round)
     for (std::size_t s = 0; s < made.size(); ++s)
       for (std::size_t of = 0; of < made.size(); ++of)
@@ -64,7 +65,7 @@ std::string Tied::NotMade() const {
       bool read = false;
       for (const PlantMode& mode : plant->modes()) {
         read = read || reads(mode.when) || reads(mode.law);
-        // What another target than the output would be, nobody simulates.
+        // A target other than the output is not simulated.
         if (!mode.passive && mode.target != plant->NodeOf(SymbolKind::kSignal, plant->output()))
           return "what the law explains";
       }
@@ -83,7 +84,8 @@ std::optional<Tied::Made> Tied::Make(const std::shared_ptr<identify::Series>& se
     made.jacobian.emplace_back();
     if (!made.models[i]->Linearise(theta_[i], &made.prediction[i], &made.jacobian[i])) return std::nullopt;
     if ((made.prediction[i].array() - middle_).abs().maxCoeff() > kOutputReach * reach_) return std::nullopt;
-    // What begins with the output begins with that of the plant as it is, and of a simulated one where that begins.
+    // A state that starts at the output starts at the output of the base model; for a simulated plant, at its first
+    // value.
     if (i == 0 && !IsSimulated(plants_[i]->description()))
       std::copy(made.prediction[0].begin(), made.prediction[0].end(), output.begin());
   }

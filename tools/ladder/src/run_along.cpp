@@ -10,13 +10,13 @@
 namespace armcmc::ladder {
 namespace {
 
-/// Draws a pack, so that long recordings do not take longer than is worth it.
+/// Draws for each pack, limited so that long recordings remain affordable.
 int DrawsFor(std::size_t rows) {
   constexpr double kWork = 4e7;  // rows times draws
   return static_cast<int>(std::clamp(kWork / static_cast<double>(rows), 300.0, 4000.0));
 }
 
-/// The first part of every run, so that there are no more rows than that.
+/// The first part of every run, to limit the total number of rows.
 std::shared_ptr<const support::Recording> FirstPart(const std::shared_ptr<const support::Recording>& all) {
   constexpr double kMostRows = 5e4;
   const double share = kMostRows / static_cast<double>(all->num_rows());
@@ -39,7 +39,7 @@ std::shared_ptr<const support::Recording> FirstPart(const std::shared_ptr<const 
   return part;
 }
 
-/// As live, and of a long recording the longest packs.
+/// Settings as live; long recordings use the longest packs.
 int SamplesPerPack(const support::Recording& recording) {
   constexpr std::size_t kMostPacks = 600;
   const int usual = support::SuitablePackLength(recording.dt, kMaxPackSamples);
@@ -60,7 +60,7 @@ bool Predicted(const replay::Course& course, std::size_t n) {
   return std::isfinite(course.error[n]) && std::isfinite(course.half_width[n]);
 }
 
-/// @param both  Null: there is one course alone.
+/// @param both  Null if there is only one model.
 gap::OneStepScore Score(const replay::Course& course, const replay::Course* both, const support::Recording& recording,
                         bool apart) {
   gap::OneStepScore score;
@@ -73,7 +73,7 @@ gap::OneStepScore Score(const replay::Course& course, const replay::Course* both
     inside += std::fabs(course.error[n]) <= course.half_width[n] ? 1.0 : 0.0;
     width += course.half_width[n];
   }
-  const auto samples = static_cast<double>(score.samples);  // of none: not a number
+  const auto samples = static_cast<double>(score.samples);  // none: NaN
   score.rmse = std::sqrt(square / samples);
   score.coverage95 = inside / samples;
   score.half_width = width / samples;
@@ -125,7 +125,7 @@ gap::RunAlong RunAlong(const std::shared_ptr<const support::Recording>& whole, c
     run.after_apart = Score(second, &first, *recording, true);
     run.error_after = ErrorCurve(second, *recording);
   } catch (const std::exception& error) {
-    // The diagnosis stands, whether or not this recording makes packs.
+    // The diagnosis is valid even if this recording contains no complete pack.
     run = {};
     run.why_not = error.what();
   }

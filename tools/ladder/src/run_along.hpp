@@ -10,9 +10,9 @@
 
 namespace armcmc::ladder {
 
-/// Lets the estimator go over a recording with the plant as it came and with what was named, and notes how well it
-/// predicts one pack ahead. Of a recording of more than 50 000 rows the first part of every run.
-/// @param after  Null: nothing was named.
+/// Runs the estimator over a recording, with the original plant and with the named effects, and measures its
+/// predictions one pack ahead. Of a recording with more than 50 000 rows, only the first part of every run is used.
+/// @param after  Null if nothing was named.
 [[nodiscard]] gap::RunAlong RunAlong(const std::shared_ptr<const support::Recording>& whole, const TunedPlant& before,
                                      const TunedPlant* after, std::uint64_t seed,
                                      const std::function<void(double share)>& progress);

@@ -8,34 +8,36 @@
 
 namespace armcmc::ladder {
 
-/// Fits everything quickly, what is worth it on all rows, and compares what may be named with the base.
-/// @param floor  Standard deviation of the noise: where the quick part shows nothing more, though all rows do, it is
-///               all of them.
-/// @param notes  Gets why an effect could not be tried.
+/// Fits all candidates to a subset, refits the promising ones to all rows, and compares those that may be named with
+/// the base model.
+/// @param floor  Standard deviation of the noise. If only noise remains on the subset but not on all rows, all rows are
+///   used.
+/// @param notes  Receives the reason if an effect could not be tried.
 void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor, Rung* rung,
             std::vector<std::string>* notes);
 
-/// A better fit of the model so far than it has, from where effects that explain most have its parameters: what runs
-/// freely may be caught far from its best, and every effect that takes part in the search would seem to be missing.
-/// @return not valid where there is none.
+/// A better fit of the base model, started from the parameters that it has in the best contenders. A simulated plant
+/// may be stuck far from its optimum; every effect that helps it out would then seem to be missing.
+/// @return an invalid trial if there is none.
 [[nodiscard]] Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Rung& rung);
 
-/// Fills gain_share and win_share from bootstrap samples of the short stretches.
+/// Sets gain_share and win_share, by a bootstrap over the short segments.
 void Bootstrap(Rung* rung);
 
-/// Decides what has earned a name.
-/// @param families  That were named before: more of the same is looked for in finer parts.
-/// @param before    Share of the error that the rung before leaves, where its name is still open; else 1.
+/// Applies rule 1 of Climb() to every contender.
+/// @param families  Families named before, in which smaller effects may follow.
+/// @param before    Share of the error that the previous rung leaves, if its name is still open; otherwise 1.
 void Judge(const View& view, double floor, const std::set<std::string>& families, double before, Rung* rung);
 
-/// Chooses among those that have earned it and are not ruled out; nothing where there are none.
-/// @param open  Also what takes the smaller part only.
+/// Applies rules 2 and 3 of Climb() to the contenders that passed rule 1 and are not ruled out; names nothing if there
+/// are none.
+/// @param open  Also accept effects that remove less than half of the error.
 void Name(const View& view, double floor, bool open, Rung* rung);
 
-/// Whether one of them lists the other among those that act alike.
+/// Whether one of them lists the other as `kin`.
 [[nodiscard]] bool AreKin(const EffectEntry& a, const EffectEntry& b);
 
-/// Best first.
+/// Sorts the contenders, best first.
 void Sort(Rung* rung);
 
 }  // namespace armcmc::ladder

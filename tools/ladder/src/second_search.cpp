@@ -14,7 +14,7 @@
 namespace armcmc::ladder {
 namespace {
 
-constexpr double kKeptApart = 0.3;  // of the rows, at the end
+constexpr double kKeptApart = 0.3;  // share of rows at the end
 
 bool HasEverySignal(const gap::Recording& data, const PlantDescription& plant) {
   return std::all_of(plant.signals.begin(), plant.signals.end(), [&](const SignalDescription& signal) {
@@ -43,7 +43,7 @@ support::Recording Described(const gap::Recording& data, const Plant& plant) {
   return recording;
 }
 
-/// Effects by the names that the compiled plant has for them.
+/// Translates the names of effects to those of the compiled plant.
 class OwnNames {
  public:
   OwnNames(const ModelInfo& plant, const std::vector<EffectEntry>& entries) : plant_(plant), entries_(entries) {}
@@ -56,7 +56,7 @@ class OwnNames {
   void Put(std::vector<std::string>* names) const {
     for (std::string& name : *names) Put(&name);
   }
-  /// In a sentence, where names are words.
+  /// In a sentence, in which names are written as words.
   void PutInto(std::string* sentence) const {
     for (const EffectEntry& entry : entries_) {
       const std::string from = InWords(entry.name), to = InWords(NameOf(entry));
@@ -87,7 +87,7 @@ std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request) {
   if (!request.diagnose.pairs || !request.diagnose.known.empty()) return std::nullopt;
   const ModelInfo& model = *CompiledModels()[static_cast<std::size_t>(FindModel(BuiltinSettings(request.model).model))];
   const support::PlantFile plant = support::ReadPlantFile(support::FindPlantFile(std::string(model.name)));
-  // Where the law explains something else than what the plant predicts there are other equations, which it lacks.
+  // If the law explains a target other than the output, the plant file lacks the other equations.
   const PlantDescription& description = plant.plant.description();
   if (!description.predicts.empty() || !HasEverySignal(request.data, description)) return std::nullopt;
 
@@ -99,8 +99,7 @@ std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request) {
   if (request.progress) again.progress = request.progress;
   Diagnosis diagnosis = Diagnose(again);
   gap::Result& result = diagnosis.result;
-  // What the exact search leaves open and few events show, several effects explain, or the rows kept apart contradict
-  // would be a guess.
+  // A name given by few events, a tie, or one that the held-out rows contradict would be a guess.
   if (result.ladder.empty() || result.ladder.front().provisional || result.ladder.front().effects.size() > 1)
     return std::nullopt;
   if (diagnosis.ladder.complete && !result.complete) return std::nullopt;

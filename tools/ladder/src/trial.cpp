@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kRidge = 1.0;
 
-/// Values of the first signal with the parameter's unit that moves, sorted; empty: there is none.
+/// Sorted values of the first non-constant signal with the unit of the parameter; empty if there is none.
 std::vector<double> PlacesOf(const identify::TrajectoryModel& model, const Dataset& data,
                              const ParameterDescription& parameter) {
   const PlantDescription& plant = model.plant().description();
@@ -31,7 +31,7 @@ std::vector<double> PlacesOf(const identify::TrajectoryModel& model, const Datas
   return {};
 }
 
-/// Law and flexible function together, about fits that leave one group out each.
+/// Law and flexible function fitted together, linearised about fits that leave out one group each.
 class Beside {
  public:
   Beside(const identify::TrajectoryModel& model, const View& view)
@@ -40,7 +40,7 @@ class Beside {
         precision_(identify::PriorPrecision(model)),
         centre_(model.Start()) {}
 
-  /// Squared error of a group when all others were fitted.
+  /// Squared error on a left-out group.
   /// @param theta, error, jacobian  Of the law alone, fitted without the group.
   [[nodiscard]] double Square(const VectorXd& theta, const VectorXd& error, const Eigen::MatrixXd& jacobian,
                               const RowGroup& group) const {
@@ -76,7 +76,7 @@ class Beside {
   VectorXd precision_, centre_;
 };
 
-/// The output about its mean: where there is something to explain.
+/// The deviation of the output from its mean: stands in for a residual before the first fit.
 Eigen::VectorXd Deviation(const Dataset& data, const Plant& plant) {
   const std::vector<double>& output = data.series->signals[static_cast<std::size_t>(plant.output())];
   const Eigen::VectorXd value =
@@ -115,7 +115,7 @@ std::vector<Eigen::VectorXd> Starts(const identify::TrajectoryModel& model, cons
 }
 
 bool IsSimulated(const PlantDescription& plant) {
-  // States that an effect brings along have no role.
+  // States of added effects have no role.
   return std::any_of(plant.states.begin(), plant.states.end(),
                      [](const StateDescription& s) { return !s.role.empty(); });
 }
@@ -144,7 +144,7 @@ Trial Try(const std::shared_ptr<const Plant>& plant, const Dataset& data, const 
 }
 
 Dataset Compared(const Plant& plant, const Dataset& data, std::size_t most_simulated) {
-  constexpr std::size_t kMost = 20'000, kWindow = 1000;  // long enough for what remembers
+  constexpr std::size_t kMost = 20'000, kWindow = 1000;  // long enough for a law with memory
   return IsSimulated(plant.description()) ? Beginnings(data, most_simulated) : Windows(data, {}, kWindow, kMost);
 }
 

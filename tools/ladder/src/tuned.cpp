@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The plant with what is known as constants, and, where they are asked for, priors about the fit for the rest.
+/// The plant with the known parameters as constants and, if requested, priors centred on the fit for the others.
 PlantDescription About(const PlantDescription& plant, const Trial& trial, const VectorXd& sd,
                        const std::vector<bool>& known, bool about_fit) {
   constexpr double kWider = 3.0;
@@ -23,7 +23,7 @@ PlantDescription About(const PlantDescription& plant, const Trial& trial, const 
     const double value = trial.model->Shown(d, trial.fit.theta[d]);
     const auto at = std::find_if(tuned.parameters.begin(), tuned.parameters.end(),
                                  [&](const ParameterDescription& p) { return p.name == name; });
-    if (at == tuned.parameters.end()) continue;  // each mode has one of its own
+    if (at == tuned.parameters.end()) continue;  // each mode has its own copy
     if (known[static_cast<std::size_t>(d)]) {
       tuned.constants.push_back({name, value, at->unit});
       tuned.parameters.erase(at);
@@ -36,7 +36,7 @@ PlantDescription About(const PlantDescription& plant, const Trial& trial, const 
   return tuned;
 }
 
-/// What the estimator runs. @return why it does not; empty: it does.
+/// Compiles the plant for the estimator. @return the reason if it cannot run it; empty if it can.
 std::string Compile(const PlantDescription& plant, std::shared_ptr<const PlantProgram>* program) {
   try {
     auto made = std::make_shared<const PlantProgram>(std::make_shared<const Plant>(plant));
@@ -52,11 +52,11 @@ std::string Compile(const PlantDescription& plant, std::shared_ptr<const PlantPr
 
 TunedPlant Tuned(const PlantDescription& plant, std::size_t own, const Trial& trial,
                  const std::vector<std::uint8_t>& rows) {
-  constexpr double kUntold = 0.25;  // of the prior's standard deviation
-  constexpr double kPressed = 0.1;  // of what the data leave open: on a bound
+  constexpr double kUntold = 0.25;  // of the prior's standard deviation: wider is not determined
+  constexpr double kPressed = 0.1;  // of the posterior standard deviation: closer to a bound counts as at the bound
   const Widths widths(trial, rows);
   const VectorXd prior = trial.model->Spread();
-  // Of the fitted parameters those of the plant itself come first, also where modes have their own.
+  // The plant's own parameters come first among the fitted ones, including the copies of each mode.
   const auto size = static_cast<std::size_t>(trial.fit.theta.size());
   const std::size_t first = size - std::min(size, plant.parameters.size() - std::min(own, plant.parameters.size()));
   std::vector<bool> known(size, false);

@@ -4,7 +4,7 @@
 
 namespace armcmc::ladder {
 
-/// Diagnose() for a plant that `predicts` its output beside what its modes explain.
+/// Diagnose() for a plant that `predicts` its output in addition to the target of its modes.
 [[nodiscard]] Diagnosis DiagnoseBoth(const DiagnosisRequest& request);
 
 }  // namespace armcmc::ladder

@@ -10,7 +10,7 @@ namespace {
 constexpr int kBlocks = 8, kFolds = 5, kStretchesOfFold = 8;
 constexpr double kTail = 0.15;
 
-/// Long stretches of time, none across the border of a run; and folds of short ones.
+/// Long blocks of time within a run, and folds of short segments.
 void AddBlocks(View* view) {
   const std::vector<std::size_t>& runs = view->data.series->runs;
   const std::size_t size = view->looked_at.size();
@@ -35,7 +35,7 @@ void AddBlocks(View* view) {
   view->groups.insert(view->groups.end(), folds.begin(), folds.end());
 }
 
-/// The rows with the lowest and the highest values of every feature.
+/// Regions: the rows with the lowest and the highest values of every feature.
 void AddRegions(const std::vector<Feature>& features, View* view) {
   for (const Feature& feature : features) {
     std::vector<double> sorted;
@@ -50,7 +50,7 @@ void AddRegions(const std::vector<Feature>& features, View* view) {
       if (value < low) lowest.rows.push_back(static_cast<Eigen::Index>(k));
       if (value > high) highest.rows.push_back(static_cast<Eigen::Index>(k));
     }
-    // Where many rows have one value there may be none beyond it.
+    // If many rows share a value, there may be none beyond it.
     for (RowGroup* group : {&lowest, &highest})
       if (group->rows.size() >= std::max<std::size_t>(at / 4, 1)) view->groups.push_back(std::move(*group));
   }

@@ -107,8 +107,8 @@ std::string EstimatorText(const Plant& plant) {
 
 std::string PlantText(const Plant& plant) {
   const PlantDescription& description = plant.description();
-  std::string text = description.name + ": " + support::Escaped(description.title) + "\n\n" + SignalsText(plant) +
-                     '\n' + ParametersText(plant) + '\n' + ModesText(plant);
+  std::string text = description.name + ": " + support::Printable(description.title, 200) + "\n\n" +
+                     SignalsText(plant) + '\n' + ParametersText(plant) + '\n' + ModesText(plant);
   if (!description.constants.empty() || !description.lets.empty()) text += '\n' + LetsText(plant);
   if (!description.states.empty()) text += '\n' + StatesText(plant);
   if (!description.predicts.empty())

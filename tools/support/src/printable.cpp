@@ -1,6 +1,9 @@
 #include "armcmc/support/printable.hpp"
 
+#include <algorithm>
+#include <iostream>
 #include <limits>
+#include <streambuf>
 
 namespace armcmc::support {
 namespace {
@@ -24,12 +27,12 @@ std::size_t ShownBytes(std::string_view text) {
   return is_control || is_overlong || is_no_character ? 0 : size;
 }
 
-std::string Shown(std::string_view text, std::size_t most) {
+std::string Shown(std::string_view text, std::size_t most, std::string_view as_they_are = "") {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string shown;
   for (std::size_t count = 0; !text.empty(); ++count) {
     if (count == most) return shown + "...";
-    const std::size_t size = ShownBytes(text);
+    const std::size_t size = as_they_are.find(text.front()) != std::string_view::npos ? 1 : ShownBytes(text);
     if (size == 0) {
       const unsigned byte = ByteAt(text, 0);
       shown += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
@@ -41,10 +44,79 @@ std::string Shown(std::string_view text, std::size_t most) {
   return shown;
 }
 
+/// The first `most` characters of text that is escaped.
+std::string_view First(std::string_view text, std::size_t most) {
+  std::size_t bytes = 0;
+  for (std::size_t count = 0; count < most && bytes < text.size(); ++count) bytes += ShownBytes(text.substr(bytes));
+  return text.substr(0, bytes);
+}
+
+/// The last `most` characters.
+std::string_view Last(std::string_view text, std::size_t most) {
+  std::size_t at = text.size();
+  for (std::size_t count = 0; count < most && at > 0; ++count) do
+      --at;
+    while (at > 0 && (ByteAt(text, at) & 0xC0U) == 0x80U);
+  return text.substr(at);
+}
+
 }  // namespace
 
 std::string Escaped(std::string_view text) { return Shown(text, kAll); }
 
 std::string Printable(std::string_view text, std::size_t most) { return Shown(text, most); }
+
+std::string ErrorLine(std::string_view text) {
+  constexpr std::size_t kLongWord = 300, kHead = 100, kTail = 60, kMost = 2000;
+  std::string one_line(text);
+  std::replace(one_line.begin(), one_line.end(), '\n', ' ');
+  const std::string escaped = Escaped(one_line);
+  std::string line;
+  for (std::string_view left = escaped; !left.empty();) {
+    const std::size_t end = std::min(left.find(' '), left.size());
+    const std::string_view word = left.substr(0, end);
+    if (word.size() <= kLongWord) {
+      line += word;
+    } else {
+      line.append(First(word, kHead)).append("...").append(Last(word, kTail));
+    }
+    left.remove_prefix(end);
+    for (; !left.empty() && left.front() == ' '; left.remove_prefix(1)) line += ' ';
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line.size() <= kMost ? line : std::string(First(line, kMost)) + "...";
+}
+
+class HarmlessOutput::Filter : public std::streambuf {
+ public:
+  explicit Filter(std::ostream* stream) : stream_(stream), below_(stream->rdbuf(this)) {}
+  ~Filter() override { stream_->rdbuf(below_); }
+  Filter(const Filter&) = delete;
+  Filter& operator=(const Filter&) = delete;
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    const std::string shown = Shown({text, static_cast<std::size_t>(size)}, kAll, "\n\t");
+    const auto bytes = static_cast<std::streamsize>(shown.size());
+    return below_->sputn(shown.data(), bytes) == bytes ? size : 0;
+  }
+  // A single character: part of one of several bytes, which no stream operator splits, passes.
+  int_type overflow(int_type c) override {
+    if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
+    const char byte = traits_type::to_char_type(c);
+    if ((static_cast<unsigned char>(byte) & 0x80U) != 0) return below_->sputc(byte);
+    return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+  }
+  int sync() override { return below_->pubsync(); }
+
+ private:
+  std::ostream* stream_;
+  std::streambuf* below_;
+};
+
+HarmlessOutput::HarmlessOutput()
+    : out_(std::make_unique<Filter>(&std::cout)), err_(std::make_unique<Filter>(&std::cerr)) {}
+
+HarmlessOutput::~HarmlessOutput() = default;
 
 }  // namespace armcmc::support

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <optional>
 
 #include "armcmc/support/printable.hpp"
 #include "armcmc/support/strict_toml.hpp"
@@ -11,12 +12,8 @@
 namespace armcmc::support {
 namespace {
 
-int Complain(const std::string& name, std::string what, int code) {
-  // One line that a terminal only shows, whatever the message repeats of a file.
-  for (char& c : what)
-    if (c == '\n') c = ' ';
-  while (!what.empty() && what.back() == ' ') what.pop_back();
-  std::cerr << name << ": " << Escaped(what) << '\n';
+int Complain(const std::string& name, const std::string& what, int code) {
+  std::cerr << name << ": " << ErrorLine(what) << '\n';
   return code;
 }
 
@@ -24,7 +21,8 @@ int Complain(const std::string& name, std::string what, int code) {
 
 std::string Version() { return ARMCMC_VERSION; }
 
-int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, const std::function<int()>& body) {
+int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, const std::function<int()>& body,
+               Output output) {
   app.name(name);
   app.set_version_flag("--version", name + " " + Version(), "Print the version and exit");
   try {
@@ -35,6 +33,8 @@ int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, co
     return Complain(name, std::string(error.what()) + " (see " + name + " --help)", kExitBadInput);
   }
   try {
+    std::optional<HarmlessOutput> harmless;
+    if (output == Output::kText) harmless.emplace();
     const int code = body();
     // A full disk or a closed pipe shows only now.
     if (!std::cout.flush()) return Complain(name, "cannot write to standard output", kExitFailure);

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <utility>
+
+#include "armcmc/support/printable.hpp"
 
 namespace armcmc::support {
 namespace {
@@ -18,8 +19,8 @@ int TerminalWidth() {
 
 }  // namespace
 
-Progress::Progress(std::string title)
-    : title_(std::move(title)),
+Progress::Progress(const std::string& title)
+    : title_(Printable(title)),
       on_terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       last_drawn_(start_) {}
@@ -33,7 +34,7 @@ void Progress::Wipe() {
 
 void Progress::Note(const std::string& line) {
   Wipe();
-  std::fprintf(stderr, "%s: %s\n", title_.c_str(), line.c_str());
+  std::fprintf(stderr, "%s: %s\n", title_.c_str(), ErrorLine(line).c_str());
 }
 
 std::string Progress::Line(const std::string& title, double share, double remaining_s, int width) {

@@ -10,6 +10,11 @@
 #include "armcmc/support/printable.hpp"
 
 namespace armcmc::support {
+namespace {
+
+constexpr std::size_t kLongestCell = 200;  // characters
+
+}  // namespace
 
 TextTable::TextTable(std::vector<std::string> header, Content content) : content_(content) {
   rows_.push_back(std::move(header));
@@ -17,7 +22,7 @@ TextTable::TextTable(std::vector<std::string> header, Content content) : content
 
 void TextTable::AddRow(std::vector<std::string> cells) {
   if (cells.size() > rows_.front().size()) throw std::invalid_argument("more cells than the table has columns");
-  for (std::string& cell : cells) cell = Escaped(cell);
+  for (std::string& cell : cells) cell = Printable(cell, kLongestCell);
   cells.resize(rows_.front().size());
   rows_.push_back(std::move(cells));
 }

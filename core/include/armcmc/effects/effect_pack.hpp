@@ -7,10 +7,11 @@
 
 namespace armcmc {
 
-/// One pack with what the model of its plant needs; that of the other kind of plant is unused.
+/// One pack in the form that the model of its plant needs. Depending on the kind of plant, one of the two members is
+/// used. It is allocated at set-up and refilled for every pack, without a heap call.
 struct EffectPack {
   std::unique_ptr<CompiledPack> compiled;  ///< Of a compiled plant with effects, else null; see Composition.
-  PlantPack described;
+  PlantPack described;                     ///< Of a plant described by a file; see PlantProgram.
 };
 
 }  // namespace armcmc

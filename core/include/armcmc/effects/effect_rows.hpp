@@ -9,7 +9,8 @@
 
 namespace armcmc {
 
-/// One pack as the scoring kernels of a compiled plant with effects read it: what it holds is the plant's own affair.
+/// One pack as the scoring kernels of a compiled plant with effects read it. Its content is defined by the plant; this
+/// base class only gives it an owner.
 struct CompiledPack {
   CompiledPack() = default;
   CompiledPack(const CompiledPack&) = delete;
@@ -17,7 +18,8 @@ struct CompiledPack {
   virtual ~CompiledPack() = default;
 };
 
-/// Packs of a compiled plant with its effects, and the memory that the effects carry from pack to pack.
+/// Turns packs of a compiled plant into what the kernels score, with the effects added to the law, and keeps the memory
+/// that effects carry from pack to pack (delays, hysteresis). Not shared between threads.
 class EffectRows {
  public:
   EffectRows() = default;
@@ -25,22 +27,29 @@ class EffectRows {
   EffectRows& operator=(const EffectRows&) = delete;
   virtual ~EffectRows() = default;
 
-  /// Room for one pack. Allocates.
+  /// Allocates the memory of one pack, for Prepare(). At set-up.
   [[nodiscard]] virtual std::unique_ptr<CompiledPack> MakePack() const = 0;
   /// Unit of what is regressed with effects; empty: that of the law alone.
   [[nodiscard]] virtual std::string_view target_unit() const noexcept { return {}; }
 
-  /// All that the effects do is to add amplitude x feature to the law.
+  /// Whether every effect only adds amplitude x feature to the law, so that the law stays linear in the amplitudes.
   [[nodiscard]] virtual bool additive_only() const noexcept { return false; }
 
-  /// Fills `out`, which MakePack() made, from a pack and the memory of those before; then remembers this one.
-  /// @return false when a number is not finite: nothing is remembered.
-  /// @pre pack.Validate() == kOk. @rt No heap, no lock, no throw. O(samples).
+  /// Fills `out` from a pack and the memory of earlier ones; then remembers this pack.
+  /// @param pack  Checked: pack.Validate() == kOk.
+  /// @param out   Made by MakePack() of the same object.
+  /// @return false if a value is not finite; then nothing is remembered.
+  /// @rt No heap, no lock, no throw. O(samples).
   [[nodiscard]] virtual bool Prepare(const DataPack& pack, CompiledPack* out) noexcept ARMCMC_NONBLOCKING = 0;
-  /// What the sampler scores of one mode. `rows` must outlive `data`. @rt As Prepare().
+  /// Fills the data of one mode, as the sampler scores them.
+  /// @param pack  As given to Prepare().
+  /// @param rows  As filled by Prepare(); must outlive `data`.
+  /// @param mode  Index of a mode.
+  /// @param[out] data  Samples of the pack in that mode.
+  /// @rt No heap, no lock, no throw. O(samples).
   virtual void Fill(const DataPack& pack, const CompiledPack& rows, int mode,
                     ModeData* data) const noexcept ARMCMC_NONBLOCKING = 0;
-  /// Forgets the packs before.
+  /// Clears the memory of earlier packs, as at the start of a run. @rt No heap, no lock, no throw.
   virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 

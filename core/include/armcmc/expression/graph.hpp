@@ -11,7 +11,7 @@
 
 namespace armcmc::expression {
 
-/// One value of a plant. Values that are computed alike are one node.
+/// One value of a plant. Equal computations share a node.
 struct GraphNode {
   Op op = Op::kNumber;
   /// Of a function with memory the third one, whatever it is, says that the first is held between samples.
@@ -28,7 +28,11 @@ struct GraphNode {
 /// shared. Nodes stand behind their arguments.
 class Graph {
  public:
+  /// Node of a number.
   [[nodiscard]] int Number(double value);
+  /// Node of a symbol.
+  /// @param kind   What it stands for.
+  /// @param index  Among the symbols of its kind.
   [[nodiscard]] int Symbol(SymbolKind kind, int index);
   /// A node for op(a, b, c), or a simpler one of the same value.
   [[nodiscard]] int Make(Op op, int a = -1, int b = -1, int c = -1);
@@ -47,11 +51,13 @@ class Graph {
   /// The node with symbols replaced, memory functions included: symbol -> node.
   [[nodiscard]] int Substitute(int node, const std::map<int, int>& by);
 
+  /// A node. @throws std::out_of_range.
   [[nodiscard]] const GraphNode& at(int node) const { return nodes_.at(static_cast<std::size_t>(node)); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(nodes_.size()); }
+  /// Whether a node is a literal number.
   [[nodiscard]] bool IsNumber(int node) const { return at(node).op == Op::kNumber; }
   [[nodiscard]] bool IsNumber(int node, double value) const { return IsNumber(node) && at(node).value == value; }
-  /// True where `node` needs `other`.
+  /// Whether `node` is computed from `other`, directly or not.
   [[nodiscard]] bool DependsOn(int node, int other) const;
 
  private:

@@ -7,39 +7,40 @@
 
 namespace armcmc::expression {
 
-/// What a node of an expression does. The same list serves the text, the graph and the tape.
+/// The operations of an expression. Text (Syntax), graph (Graph) and compiled program (Tape) share this list. Arguments
+/// a, b, c are in the order in which they are written; conditions are numbers, 0 or 1.
 enum class Op : std::uint8_t {
-  kNumber,
-  kSymbol,
+  kNumber,  ///< A literal.
+  kSymbol,  ///< A signal, parameter, state, constant or time.
   kAdd,
   kSubtract,
   kMultiply,
   kDivide,
-  kPower,
-  kNegate,
-  kLess,
-  kLessEqual,
-  kEqual,
-  kNotEqual,
-  kAnd,
-  kOr,
+  kPower,      ///< a ^ b.
+  kNegate,     ///< -a.
+  kLess,       ///< a < b; a > b is written with the arguments exchanged.
+  kLessEqual,  ///< a <= b.
+  kEqual,      ///< a == b.
+  kNotEqual,   ///< a != b.
+  kAnd,        ///< Both conditions hold.
+  kOr,         ///< At least one condition holds.
   kNot,
   kAbs,
   kSign,  ///< -1, 0, 1.
   kSqrt,
   kExp,
-  kLog,
+  kLog,  ///< Natural logarithm.
   kLog2,
   kLog10,
-  kSin,
+  kSin,  ///< Argument in rad, as for all angles.
   kCos,
   kTan,
   kAsin,
   kAcos,
-  kAtan,
+  kAtan,  ///< Result in rad, as of kAsin and kAcos.
   kTanh,
-  kMin,
-  kMax,
+  kMin,    ///< The smaller of a and b.
+  kMax,    ///< The larger of a and b.
   kClamp,  ///< clamp(x, lower, upper).
   kStep,   ///< 1 from 0 on, 0 below.
   kIf,     ///< if(condition, then, else).
@@ -53,16 +54,19 @@ enum class Op : std::uint8_t {
   kPast,  ///< Value of a line of kept samples, b samples before place a of it.
 };
 
+/// Largest number of arguments of an operation.
 inline constexpr int kMaxArguments = 3;
 
+/// Properties of an operation, for parser, checker and messages.
 struct OpInfo {
   std::string_view name;  ///< Of a function as it is written, of an operator its sign.
-  int arguments;
-  bool function;   ///< Written name(arguments).
-  bool condition;  ///< True or false: 1 or 0 where a number is asked for.
-  bool memory;     ///< Depends on the samples before.
+  int arguments;          ///< Number of arguments, 0 to kMaxArguments.
+  bool function;          ///< Written name(arguments).
+  bool condition;         ///< True or false: 1 or 0 where a number is asked for.
+  bool memory;            ///< Depends on the samples before.
 };
 
+/// Properties of all operations, in the order of Op.
 inline constexpr std::array<OpInfo, 40> kOps{{
     {"number", 0, false, false, false}, {"name", 0, false, false, false},   {"+", 2, false, false, false},
     {"-", 2, false, false, false},      {"*", 2, false, false, false},      {"/", 2, false, false, false},
@@ -81,6 +85,7 @@ inline constexpr std::array<OpInfo, 40> kOps{{
 }};
 static_assert(kOps.size() == static_cast<std::size_t>(Op::kPast) + 1);
 
+/// Properties of an operation. @rt No heap, no lock, no throw. O(1).
 [[nodiscard]] constexpr const OpInfo& InfoOf(Op op) noexcept { return kOps[static_cast<std::size_t>(op)]; }
 
 }  // namespace armcmc::expression

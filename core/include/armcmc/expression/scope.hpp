@@ -28,6 +28,7 @@ struct Interval {
   double upper = std::numeric_limits<double>::infinity();
 };
 
+/// A name with what the checker knows about its value.
 struct Symbol {
   std::string name;
   SymbolKind kind = SymbolKind::kSignal;
@@ -45,6 +46,7 @@ class Scope {
  public:
   /// @pre No symbol of that name yet.
   void Add(Symbol symbol) { symbols_.push_back(std::move(symbol)); }
+  /// The symbol of a name; null if there is none. O(symbols).
   [[nodiscard]] const Symbol* Find(std::string_view name) const noexcept {
     for (const Symbol& symbol : symbols_)
       if (symbol.name == name) return &symbol;
@@ -52,6 +54,7 @@ class Scope {
   }
   [[nodiscard]] std::vector<Symbol>& symbols() noexcept { return symbols_; }
   [[nodiscard]] const std::vector<Symbol>& symbols() const noexcept { return symbols_; }
+  /// All names, in the order in which they were added.
   [[nodiscard]] std::vector<std::string> Names() const;
 
  private:

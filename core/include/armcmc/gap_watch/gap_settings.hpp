@@ -4,6 +4,7 @@ namespace armcmc {
 
 /// The watch for a persistent gap between model and data; see gap_watch.hpp.
 struct GapWatchSettings {
+  /// Whether the watch runs: [gap_watch] enabled.
   bool enabled = true;
   /// Bound on the probability of a false alarm in one hour of data, in (0, 1). Over T hours it is at most max(1, T)
   /// times this.

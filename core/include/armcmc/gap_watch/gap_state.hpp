@@ -10,8 +10,9 @@
 
 namespace armcmc {
 
-/// Name of a check by value, since those of a described plant live no longer than its estimator. What is longer than
-/// the room is cut.
+/// Name of a check, stored by value, because the names of a described plant live only as long as its estimator. Names
+/// longer than 48 bytes are cut.
+/// @rt No heap, no lock, no throw.
 class GapCheckText {
  public:
   GapCheckText& operator=(std::string_view text) noexcept ARMCMC_NONBLOCKING {
@@ -27,7 +28,8 @@ class GapCheckText {
   std::size_t size_ = 0;
 };
 
-/// What the gap watch has found so far.
+/// State of the gap watch after a pack: whether the data contradict the model beyond the noise, and where. Published in
+/// estimator_status_t.
 struct GapState {
   bool watched = false;         ///< The watch is on.
   bool suspected = false;       ///< The alarm: the model is missing something. Stays until Estimator::Reset().

@@ -7,9 +7,9 @@
 
 namespace armcmc {
 
-/// What a signal does between two samples while states are integrated with it.
+/// Course of a signal between two samples, for the integration of states: `between` in a plant file.
 enum class Between : std::uint8_t {
-  kLinear,
+  kLinear,  ///< Straight line between the samples; the default.
   kHeld,    ///< Stays what the last sample says: a command that a computer gives.
   kSmooth,  ///< The cubic through the four samples around; at an end of what is known the parabola through three.
 };
@@ -19,11 +19,16 @@ enum class Between : std::uint8_t {
   return word == "held" ? Between::kHeld : word == "smooth" ? Between::kSmooth : Between::kLinear;
 }
 
-/// Value in an interval.
-/// @param between         What the signal does in it.
-/// @param from, to        Samples at its ends.
-/// @param earlier, later  The sample before `from` and the one after `to`; null: not known.
-/// @param part            Where in the interval: 0 at `from`, 1 at `to`.
+/// Value of a signal between two samples. With s the position in the interval, y_0 = from and y_1 = to:
+///
+///   held    y_0
+///   linear  y_0 + s (y_1 - y_0)
+///   smooth  the polynomial through the available samples y_-1, y_0, y_1, y_2, in Newton's form
+///
+/// @param between         Course of the signal.
+/// @param from, to        Samples at the ends of the interval.
+/// @param earlier, later  The sample before `from` and the one after `to`; null if unknown.
+/// @param part            s, in [0, 1].
 /// @rt No heap, no lock, no throw. O(1).
 [[nodiscard]] inline double ValueBetween(Between between, const double* earlier, double from, double to,
                                          const double* later, double part) noexcept ARMCMC_NONBLOCKING {

@@ -15,12 +15,14 @@ struct SignalDescription {
   std::string between = {};   ///< What it does between samples, for states: "linear" (or empty), "held" or "smooth".
 };
 
+/// A named number of the plant: [constants].
 struct ConstantDescription {
   std::string name;
   double value = 0.0;
   std::string unit;  ///< Empty: fits everywhere.
 };
 
+/// A parameter with its prior, truncated to [lower, upper]: [parameters].
 struct ParameterDescription {
   std::string name;
   std::string unit;
@@ -32,46 +34,49 @@ struct ParameterDescription {
   bool per_mode = false;  ///< Each mode has a value of its own.
 };
 
-/// A named subexpression.
+/// A named subexpression: [let]. It may use those defined before it.
 struct LetDescription {
   std::string name;
   std::string text;
 };
 
-/// One way in which the plant acts. The first whose `when` holds does.
+/// A mode of the plant: [[mode]]. At every sample, the first mode whose condition holds acts.
 struct ModeDescription {
   std::string name;
   std::string when;    ///< Empty: always.
-  std::string law;     ///< Of a passive mode empty: 0.
+  std::string law;     ///< An expression; of a passive mode it may be empty: 0.
   std::string target;  ///< What the law explains, of signals; empty: the output.
   bool passive = false;
 };
 
-/// Integrated with the inputs by the classical Runge-Kutta method of order 4.
+/// A state: [states]. Integrated with the inputs by the classical Runge-Kutta method of order 4, in `substeps` equal
+/// steps for each sample interval.
 struct StateDescription {
   std::string name;
   std::string unit;
   std::string role;
-  std::string rate;
+  std::string rate;         ///< d state/dt, an expression.
   std::string start;        ///< Of signals at the first sample and parameters.
   std::string measured_by;  ///< Signal that each pack starts from; empty: none.
   int substeps = 1;         ///< Of one sample interval.
 };
 
-/// A further quantity to publish.
+/// An additional published quantity, computed from parameters and constants: [report].
 struct ReportDescription {
   std::string name;
   std::string unit;
   std::string value;
 };
 
+/// Measurement noise of the quantity that the law explains: [noise].
 struct NoiseDescription {
   std::string law = "gaussian";  ///< "gaussian", "student_t", "laplace" or "mixture".
   double std = 1.0;              ///< Unit of what is explained.
-  bool estimate = false;
+  bool estimate = false;         ///< Sample the standard deviation together with the parameters.
 };
 
-/// What a plant file says, before anything is understood. Lists are in the order of the file.
+/// The content of a plant file, before any check of its meaning; see core/plants/README.md for the format. Lists are in
+/// the order of the file. Plant checks it.
 struct PlantDescription {
   std::string name;
   std::string title;
@@ -81,7 +86,7 @@ struct PlantDescription {
   std::vector<SignalDescription> signals;
   std::vector<ConstantDescription> constants;
   std::vector<ParameterDescription> parameters;
-  std::vector<LetDescription> lets;
+  std::vector<LetDescription> lets;  ///< Each may use those before it.
   std::vector<ModeDescription> modes;
   std::vector<StateDescription> states;
   std::vector<ReportDescription> reports;

@@ -49,14 +49,19 @@ class PlantProgram {
   PlantProgram(const PlantProgram&) = delete;  // info() points into it
   PlantProgram& operator=(const PlantProgram&) = delete;
 
+  /// The plant that was compiled.
   [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
+  /// Whether a pack continues the previous one: functions with memory, or lines of kept samples.
   [[nodiscard]] bool has_memory() const noexcept { return features_.has_memory() || num_lines_ > 0; }
+  /// Integration of the states; empty if there are none.
   [[nodiscard]] const PlantStates& states() const noexcept { return states_; }
+  /// What the estimator needs to know; points into this object.
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
   /// Of a sampled mode, and how many quantities of a sample they read.
   [[nodiscard]] const std::vector<expression::Tape>& laws(int mode) const {
     return modes_[static_cast<std::size_t>(mode)].laws;
   }
+  /// Number of values of each sample that the laws read.
   [[nodiscard]] int num_scalars() const noexcept { return num_scalars_; }
   /// The parameter's prior as it is sampled: of a lognormal one that of the logarithm.
   [[nodiscard]] const std::vector<ParameterDescription>& sampled() const noexcept { return sampled_; }
@@ -105,7 +110,7 @@ class PlantProgram {
     bool law_is_output = true;
     LinearPart linear{};
   };
-  /// Of every mode of the plant, in the order of its file: where its parts stand among the features.
+  /// For every mode of the plant, in the order of its file: the positions of its parts among the features.
   struct Outputs {
     int when = -1;  ///< -1: always.
     int target = 0;

@@ -15,10 +15,13 @@
 
 namespace armcmc::rt {
 
-/// Shortest of the last durations of a stage: what it takes when nothing disturbs it.
+/// Minimum of the last 8 durations of a stage, ns: its duration without disturbances. O(1) to add, O(8) to read; one
+/// thread.
 class RecentMinimum {
  public:
+  /// Adds a duration; the oldest one is dropped.
   void Add(Nanos duration_ns) noexcept ARMCMC_NONBLOCKING { recent_ns_[next_++ % kWindow] = duration_ns; }
+  /// The minimum; 0 before the first duration.
   [[nodiscard]] Nanos Get() const noexcept ARMCMC_NONBLOCKING {
     const std::size_t n = std::min(next_, kWindow);
     return n == 0 ? 0 : *std::min_element(recent_ns_.begin(), recent_ns_.begin() + static_cast<std::ptrdiff_t>(n));
@@ -30,25 +33,39 @@ class RecentMinimum {
   std::size_t next_ = 0;
 };
 
-/// Absolute time before which adjust has to stop.
+/// Absolute time at which adjust has to stop:
 ///
-/// The budget counts from the start of adjust and leaves the execute reserve before the deadline. A pack for which
-/// not even that is left has missed its deadline already; it gets the whole budget, since what it teaches is
-/// needed for the next one.
+///   min(start + budget, deadline - reserve),
+///
+/// or start + budget if start is already beyond deadline - reserve. Such a pack has missed its deadline; it gets the
+/// whole budget, because the next estimate needs what it teaches.
+/// @param start_ns     Start of adjust, CLOCK_MONOTONIC.
+/// @param deadline_ns  Deadline of the step, CLOCK_MONOTONIC.
+/// @param budget_ns    [timing] adjust_budget_ms.
+/// @param reserve_ns   Time that execute needs.
 [[nodiscard]] constexpr Nanos AdjustDeadline(Nanos start_ns, Nanos deadline_ns, Nanos budget_ns,
                                              Nanos reserve_ns) noexcept {
   const Nanos latest = deadline_ns - reserve_ns;
   return start_ns >= latest ? start_ns + budget_ns : std::min(start_ns + budget_ns, latest);
 }
 
-/// The part of the time up to a deadline that falls to one of so many plants that wait for it.
+/// Deadline of one of several plants that wait for the same thread: start + (deadline - start) / waiting.
+/// @param start_ns     Start of adjust, CLOCK_MONOTONIC.
+/// @param deadline_ns  Time until which all of them are to be done.
+/// @param waiting      Plants that wait, this one included; values below 1 count as 1.
 [[nodiscard]] constexpr Nanos FairDeadline(Nanos start_ns, Nanos deadline_ns, int waiting) noexcept {
   return start_ns + (deadline_ns - start_ns) / std::max(waiting, 1);
 }
 
-/// Second stage: the draws. Writes straight into the result slot that it hands over.
+/// Second stage: draws from the new posterior, directly into the result slot that is handed to execute.
 class AdjustStage {
  public:
+  /// Set-up thread; all arguments except the settings must outlive the stage.
+  /// @param settings  Deadline, budget and reserve.
+  /// @param engine    Runs Adjust() and Remember().
+  /// @param ring      Packs from collect. @param results  Slots for execute.
+  /// @param monitor   Told of packs that are dropped.
+  /// @param counters, events  Written by this stage only in its own group.
   AdjustStage(const RtSettings& settings, StepEngine* engine, PackRing* ring, ResultHandOver* results,
               DeadlineMonitor* monitor, Counters* counters, EventLog* events) noexcept;
 
@@ -66,6 +83,7 @@ class AdjustStage {
   /// @rt As Step(), bounded by the draws.
   void Remember() noexcept ARMCMC_NONBLOCKING;
 
+  /// Processor time of the stage; the pipeline reports each wake-up of the thread to it.
   [[nodiscard]] CpuTimeMeter* cpu_time() noexcept { return &cpu_time_; }
 
  private:

@@ -11,6 +11,7 @@
 
 namespace armcmc::rt {
 
+/// Units of time in ns.
 inline constexpr Nanos kNanosPerSecond = 1'000'000'000;
 inline constexpr Nanos kNanosPerMilli = 1'000'000;
 inline constexpr Nanos kNanosPerMicro = 1'000;
@@ -26,7 +27,9 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no syste
   return static_cast<Nanos>(t.tv_sec) * kNanosPerSecond + static_cast<Nanos>(t.tv_nsec);
 }
 
-/// CLOCK_REALTIME, ns. Used for log alignment and to age kernel receive stamps, never for a deadline.
+/// CLOCK_REALTIME, ns since 1970. For the alignment of logs, and to convert the receive stamps of the kernel; never for
+/// a deadline, since it may jump.
+/// @rt No system call (vDSO).
 [[nodiscard]] inline Nanos RealtimeNow() noexcept ARMCMC_NONBLOCKING {
   timespec t{};
   clock_gettime(CLOCK_REALTIME, &t);
@@ -35,21 +38,27 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no syste
 
 ARMCMC_TRUST_NONBLOCKING_END
 
-/// CLOCK_REALTIME in microseconds: the `utime` of LCM messages.
+/// CLOCK_REALTIME in microseconds: the `utime` of LCM messages. It may jump when the clock of the machine is set.
+/// @rt No system call (vDSO).
 [[nodiscard]] inline std::int64_t RealtimeMicros() noexcept ARMCMC_NONBLOCKING {
   return RealtimeNow() / kNanosPerMicro;
 }
 
-/// The monotonic clock in the form that core takes.
+/// The monotonic clock in the form that the functions of core take. Core has no clock of its own: tests pass a fake
+/// one, a replay one that never reaches a deadline.
+/// @rt No heap, no lock, no throw.
 [[nodiscard]] inline ClockRef MonotonicClock() noexcept ARMCMC_NONBLOCKING {
   return {[](const void*) noexcept ARMCMC_NONBLOCKING -> Nanos { return MonotonicNow(); }, nullptr};
 }
 
+/// An absolute time in ns >= 0 as a timespec.
 [[nodiscard]] constexpr timespec ToTimespec(Nanos t_ns) noexcept {
   return {static_cast<time_t>(t_ns / kNanosPerSecond), static_cast<long>(t_ns % kNanosPerSecond)};
 }
 
-/// Sleeps until an absolute time of CLOCK_MONOTONIC. Blocks.
+/// Sleeps until an absolute time of CLOCK_MONOTONIC; returns at once if it has passed. Signals do not end the sleep.
+/// Blocks: called by a thread between two steps, never inside one.
+/// @param t_ns  CLOCK_MONOTONIC, ns, >= 0.
 ///
 /// Not std::this_thread::sleep_until: libstdc++ 12 makes a relative sleep of it, so that a preemption between
 /// the clock read and the call is added to the wake-up.

@@ -10,6 +10,7 @@ namespace armcmc::rt {
 /// Documentation/power/pm_qos_interface.
 class CpuWakeRequest {
  public:
+  /// Device of the kernel.
   static constexpr char kDevice[] = "/dev/cpu_dma_latency";
 
   CpuWakeRequest() = default;
@@ -21,6 +22,7 @@ class CpuWakeRequest {
   /// @return false with errno set when the kernel does not have the device or does not grant it.
   /// @rt Not real-time: opens and writes a file. Call it before the threads start.
   bool Hold(const char* device = kDevice) noexcept;
+  /// Whether the request is in effect. @rt No system call.
   [[nodiscard]] bool held() const noexcept { return file_ >= 0; }
 
  private:

@@ -8,7 +8,8 @@
 
 namespace armcmc::rt {
 
-/// Something an operator wants to know. The two numbers belong to the kind.
+/// Events for the operator, printed by a thread outside the real-time part. The meaning of the numbers a and b depends
+/// on the kind.
 enum class EventKind : std::uint8_t {
   kWaitingForPlant,  ///< No pack yet.
   kPlantFirstSeen,   ///< a: pack number.
@@ -28,8 +29,10 @@ enum class EventKind : std::uint8_t {
   kInjected,         ///< a: pack number, b: amount; `detail` is the InjectionKind.
   kOverlapDiffers,   ///< a: samples from pack to pack, b: what PackFormat::overlap says. Once in a run of the plant.
 };
+/// Number of kinds.
 inline constexpr int kNumEventKinds = 17;
 
+/// One event, of fixed size, without text.
 struct Event {
   Nanos t_ns = 0;  ///< CLOCK_MONOTONIC.
   EventKind kind = EventKind::kWaitingForPlant;
@@ -40,7 +43,7 @@ struct Event {
 /// Fixed ring of events from one thread to the one that prints. A full ring drops the event and counts it.
 class EventLog {
  public:
-  /// @rt Wait-free.
+  /// Adds an event; counts it as dropped if the ring is full. By the thread that owns the log. @rt Wait-free.
   void Add(const Event& event) noexcept ARMCMC_NONBLOCKING {
     Event* slot = ring_.Claim();
     if (slot == nullptr) {
@@ -51,7 +54,7 @@ class EventLog {
     ring_.Commit();
   }
 
-  /// @return false when there is none.
+  /// Takes the oldest event. By the thread that prints. @return false if there is none.
   [[nodiscard]] bool Take(Event* event) noexcept {
     const Event* front = ring_.Front();
     if (front == nullptr) return false;
@@ -60,6 +63,7 @@ class EventLog {
     return true;
   }
 
+  /// Number of dropped events. Any thread, any time.
   [[nodiscard]] std::int64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:

@@ -13,20 +13,34 @@
 
 namespace armcmc::rt {
 
-/// Third stage: summarises the newest result, predicts the output, and judges the step against its deadline.
+/// Third stage: summarises the newest result of adjust, predicts the output, and judges the step against its deadline.
+///
+/// Estimate, intervals and prediction come from StepEngine::Execute(). The deadline is judged here, when the estimate
+/// is complete in memory: publishing is measured separately (PublicationLatency). A missed step is attributed to a
+/// cause by the DeadlineMonitor.
 class ExecuteStage {
  public:
+  /// Constructed on the set-up thread; the arguments must outlive the stage. Allocates the spare output.
+  /// @param engine   Runs Execute() on the slots that adjust handed over.
+  /// @param results  Input: newest result, with the times of its step.
+  /// @param outputs  Output for the publish stage. If the ring is full, the step is finished and counted
+  ///   (Counters::Execute::unpublished), but not published.
+  /// @param monitor  Judges every step.
+  /// @param counters, events  Written by this stage only in its own group.
   ExecuteStage(StepEngine* engine, ResultHandOver* results, OutputRing* outputs, DeadlineMonitor* monitor,
                Counters* counters, EventLog* events);
 
-  /// @return true when a step was finished; false when there is no new result.
-  /// @rt No heap, no lock, no throw, no system call but those of the CPU time meter. O(draws).
+  /// Finishes one step.
+  /// @return true if a step was finished; false if there is no new result.
+  /// @rt No heap, no lock, no throw, no system call except those of the CPU time meter. O(draws).
   [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
 
+  /// Processor time of the stage; the pipeline reports each wake-up of the thread to it.
   [[nodiscard]] CpuTimeMeter* cpu_time() noexcept { return &cpu_time_; }
 
-  /// Draws and effective sample size of every posterior that was updated. @pre the stage has ended.
+  /// Number of draws of every posterior that was updated. @pre the stage has ended.
   [[nodiscard]] const LogHistogram& draws() const noexcept { return draws_; }
+  /// Effective sample size of the chain of every posterior that was updated. @pre the stage has ended.
   [[nodiscard]] const LogHistogram& ess() const noexcept { return ess_; }
 
  private:

@@ -13,37 +13,43 @@
 
 namespace armcmc::rt {
 
-/// collect -> adjust: packs, written once into their slot. The ring holds what comes during a long stall, and the
-/// adjust stage decides what is still worth computing.
+/// collect -> adjust: a pack and the times of its step so far. It is written once, into the slot of the ring where
+/// adjust reads it.
 struct PackSlot {
   DataPack pack;
   StepTimes times;
 };
+/// The ring holds the packs of a long stall; which of them are still worth computing is decided by adjust. When it is
+/// full, the newest pack is dropped and counted.
 inline constexpr std::size_t kPackRingCapacity = 128;
 using PackRing = SpscRing<PackSlot, kPackRingCapacity>;
 
-/// What travels with an adjusted pack.
+/// What accompanies a pack from adjust to the message: identity, outcome and times.
 struct StepInfo {
-  std::int64_t seq = 0, run_id = 0;
-  Status status = Status::kOk;  ///< Of adjust.
+  std::int64_t seq = 0, run_id = 0;  ///< Of the pack.
+  Status status = Status::kOk;       ///< Of adjust.
   StepTimes times;
 };
 
-/// adjust -> execute: the newest complete result. info[slot] belongs to the engine's result slot of the same number.
+/// adjust -> execute: the newest complete result. Draws are not copied: the slots belong to the StepEngine, and
+/// info[slot] describes its result of the same number. If adjust finishes again before execute takes a result, the
+/// newer one replaces it, and the older one counts as not executed.
 struct ResultHandOver {
   LatestValue latest;
   std::array<StepInfo, LatestValue::kSlots> info;
 };
 
-/// execute -> publish.
+/// execute -> publish: a finished step, with the verdict on its deadline.
 struct StepOutput {
   StepInfo info;
   MissCause miss = MissCause::kNone;
   Estimate estimate;
 };
-/// collect -> whoever keeps the data, outside the real-time threads. Full: the newest pack is not kept.
+/// collect -> a reader outside the real-time threads, such as the gap log. When the ring is full, the newest pack is
+/// not recorded.
 inline constexpr std::size_t kRecordRingCapacity = 256;
 using RecordRing = SpscRing<DataPack, kRecordRingCapacity>;
+/// Capacity of the ring from execute to publish: so many steps may wait while sending blocks.
 inline constexpr std::size_t kOutputRingCapacity = 16;
 using OutputRing = SpscRing<StepOutput, kOutputRingCapacity>;
 

@@ -12,34 +12,39 @@
 
 namespace armcmc::rt {
 
-/// Faults that the process makes itself, on purpose, to test what becomes of them. Never in service.
+/// Faults that the process injects into itself, to test how it detects them and recovers. For test runs only.
 enum class InjectionKind : std::uint8_t {
   kOverrunCollect,  ///< The stage computes for so many ms more.
-  kOverrunAdjust,
-  kOverrunExecute,
-  kHangCollect,  ///< The stage stands still for so many ms.
-  kHangAdjust,
-  kHangExecute,
-  kSqueeze,   ///< Adjust gets no time: the draws are cut at once.
-  kCollapse,  ///< The posterior is driven into a wrong point, many times.
-  kPublish,   ///< The next so many publications are not sent.
+  kOverrunAdjust,   ///< The same for adjust.
+  kOverrunExecute,  ///< The same for execute.
+  kHangCollect,     ///< The stage stands still for so many ms.
+  kHangAdjust,      ///< The same for adjust.
+  kHangExecute,     ///< The same for execute.
+  kSqueeze,         ///< Adjust gets no time: the draws are cut at once.
+  kCollapse,        ///< The posterior is driven into a wrong point, many times.
+  kPublish,         ///< The next so many publications are not sent.
 };
+/// Number of kinds.
 inline constexpr std::size_t kNumInjectionKinds = 9;
+/// Name of a kind as in a plan, "hang_adjust".
 [[nodiscard]] std::string_view ToString(InjectionKind kind) noexcept;
 
+/// One entry of a plan: what happens, at which pack, and how long or how often.
 struct InjectionItem {
   InjectionKind kind = InjectionKind::kSqueeze;
   std::int64_t pack = 0;    ///< Number of the pack at which it happens, >= 1; in every run of the plant again.
   std::int64_t amount = 0;  ///< ms of overruns and hangs, [1, 60000]; messages of kPublish, [1, 1000]; else 0.
 };
 
-/// From `hang_adjust@60:300,squeeze@70`: `kind@pack`, with an amount where the kind has one.
-/// @throws std::invalid_argument naming the item that is not understood and what is allowed.
+/// Parses a plan such as `hang_adjust@60:300,squeeze@70`: `kind@pack`, with `:amount` for the kinds that have one.
+/// @throws std::invalid_argument  naming the item that is not understood, and what is allowed.
 [[nodiscard]] std::vector<InjectionItem> ParseInjections(const std::string& list);
 
-/// Carries a plan out. Each stage asks at its own hook; an empty plan does nothing.
+/// Carries out a plan. Each stage asks at its own hook whether a fault is due; with an empty plan the hooks do nothing.
+/// Every kind is asked for by one thread only.
 class Injection {
  public:
+  /// @param plan  From ParseInjections().
   explicit Injection(std::vector<InjectionItem> plan) : plan_(std::move(plan)) {}
 
   /// Where the stages' events go: collect, adjust, execute, publish. Before the threads start.
@@ -47,9 +52,11 @@ class Injection {
 
   /// Overruns and hangs of a stage. Blocks or spins as long as the plan says: that is what it is for.
   void Disturb(Stage stage, std::int64_t pack) noexcept ARMCMC_NONBLOCKING;
+  /// Whether the draws of this pack are to be cut at once. By adjust. @rt No heap, no lock, no throw. O(plan).
   [[nodiscard]] bool Squeezes(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
     return Take(InjectionKind::kSqueeze, pack, 1) != nullptr;
   }
+  /// Whether the posterior is to be driven into a wrong point after this pack. By adjust. @rt As Squeezes().
   [[nodiscard]] bool Collapses(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
     return Take(InjectionKind::kCollapse, pack, 1) != nullptr;
   }

@@ -10,19 +10,21 @@ namespace armcmc::rt {
 
 /// Triple buffer of slot numbers: hands the newest complete value from one thread to another.
 ///
-/// The values themselves live wherever the caller keeps kSlots of them. The writer fills write_slot() and calls
-/// Publish(); the reader calls Acquire() and then owns read_slot(). No value is copied, nobody waits,
-/// and the two never work on the same slot.
+/// The values themselves are kept by the caller, in kSlots slots. The writer fills write_slot() and calls Publish();
+/// the reader calls Acquire() and then owns read_slot(). The third slot holds the newest value in between; an atomic
+/// exchange of its number passes the ownership. No value is copied, neither side waits, and they never work on the same
+/// slot.
 class LatestValue {
  public:
+  /// Number of slots that the caller provides.
   static constexpr int kSlots = 3;
 
-  /// Slot that the writer owns.
+  /// Slot owned by the writer. Only for the writer.
   [[nodiscard]] int write_slot() const noexcept { return write_slot_; }
 
-  /// Hands write_slot() to the reader and takes another one.
-  /// @return true when the value handed over before had not been read: it is lost, and it is what the new
-  ///         write_slot() still holds.
+  /// Hands write_slot() to the reader and takes another slot. What was written to the slot before is visible to the
+  /// reader (acquire / release).
+  /// @return true if the previous value had not been read: it is lost, and the new write_slot() still contains it.
   /// @rt Wait-free.
   [[nodiscard]] bool Publish() noexcept ARMCMC_NONBLOCKING {
     const std::uint8_t mine = static_cast<std::uint8_t>(write_slot_ | kFresh);
@@ -36,7 +38,9 @@ class LatestValue {
     return (shared_.load(std::memory_order_relaxed) & kFresh) != 0;
   }
 
-  /// Takes the newest value. @return false when nothing was published since the last call. @rt Wait-free.
+  /// Takes the newest value: read_slot() is then its slot, until the next call that returns true.
+  /// @return false if nothing was published since the last call; read_slot() stays.
+  /// @rt Wait-free.
   [[nodiscard]] bool Acquire() noexcept ARMCMC_NONBLOCKING {
     if ((shared_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     const std::uint8_t mine = static_cast<std::uint8_t>(read_slot_);
@@ -44,11 +48,13 @@ class LatestValue {
     return true;
   }
 
-  /// Slot that the reader owns.
+  /// Slot owned by the reader. Only for the reader; valid after the first Acquire() that returned true.
   [[nodiscard]] int read_slot() const noexcept { return read_slot_; }
 
  private:
+  /// Bit of shared_: its slot has not been read.
   static constexpr std::uint8_t kFresh = 0x80;
+  /// Bits of shared_ that hold the slot number.
   static constexpr std::uint8_t kSlotMask = 0x03;
 
   alignas(kCacheLine) std::atomic<std::uint8_t> shared_{1};

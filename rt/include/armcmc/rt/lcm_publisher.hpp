@@ -17,23 +17,34 @@
 
 namespace armcmc::rt {
 
-/// Publishes the estimator's messages through liblcm, encoded into a buffer of its own: no heap after the first
-/// call. Blocking system calls: for the publisher thread, never for a stage. One thread uses it.
+/// Publishes the messages of one plant through liblcm.
+///
+/// Each message is encoded into a buffer that belongs to the publisher, so that there is no heap call after the first
+/// message of each type (liblcm's own publish() would allocate each time). Sending is a blocking system call: for the
+/// publish thread, never for a stage with a deadline. Used by one thread.
 class LcmPublisher {
  public:
-  /// @throws std::runtime_error with the remedy when the machine has no multicast route.
+  /// Opens the socket.
+  /// @param url     Bus, for example udpm://239.255.76.67:7667?ttl=0.
+  /// @param prefix  Put before EST_ESTIMATE, EST_POSTERIOR, EST_CHANGE and EST_STATUS; may be empty.
+  /// @throws std::runtime_error  with the remedy, if the machine has no multicast route.
   LcmPublisher(const LcmUrl& url, const std::string& prefix);
 
-  // Each returns false when the message could not be encoded or sent.
+  /// Sends a message on its channel.
+  /// @return false if it could not be encoded (larger than 16 384 bytes) or sent; the caller counts that.
+  /// @rt No heap, no throw. Blocks in the socket.
   [[nodiscard]] bool Publish(const estimate_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(estimate_channel_, message);
   }
+  /// Marginal distributions, on EST_POSTERIOR; otherwise as above.
   [[nodiscard]] bool Publish(const posterior_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(posterior_channel_, message);
   }
+  /// Probabilities of change and drift rates, on EST_CHANGE; otherwise as above.
   [[nodiscard]] bool Publish(const change_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(change_channel_, message);
   }
+  /// Status, on EST_STATUS; otherwise as above.
   [[nodiscard]] bool Publish(const estimator_status_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(status_channel_, message);
   }

@@ -10,8 +10,10 @@ namespace armcmc::rt {
 
 /// Longest channel name of LCM is 63 characters; the longest of ours is EST_POSTERIOR.
 inline constexpr std::size_t kMaxChannelLength = 63;
+/// Longest prefix of a configuration, in characters.
 inline constexpr std::size_t kMaxPrefixLength = 48;
 
+/// Channels of the estimator, without prefix.
 inline constexpr char kEstimateChannel[] = "EST_ESTIMATE";
 inline constexpr char kPosteriorChannel[] = "EST_POSTERIOR";
 inline constexpr char kChangeChannel[] = "EST_CHANGE";

@@ -9,9 +9,11 @@
 
 namespace armcmc::rt {
 
-/// Why a deadline was missed. Values equal estimator_status_t.MISS_*.
+/// Cause of a missed deadline. The values are those of estimator_status_t.MISS_*.
 enum class MissCause : std::uint8_t { kNone = 0, kOwn = 1, kMachine = 2, kLateData = 3 };
-inline constexpr std::size_t kNumMissCauses = 4;
+/// Number of values, kNone included.
+inline constexpr std::size_t kNumMissCauses = 4;  ///< Number of values.
+/// Name for reports, "late data".
 [[nodiscard]] std::string_view ToString(MissCause cause) noexcept ARMCMC_NONBLOCKING;
 
 /// Exactly one cause per miss: the one without which the step would have met its deadline.

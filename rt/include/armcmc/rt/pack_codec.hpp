@@ -28,15 +28,19 @@ enum class RejectCause : std::uint8_t {
   kAllZero,         ///< Two samples or more and every value exactly zero: a dead sensor, no measurement.
   kOverlap,         ///< n_samples is no multiple of PackFormat::overlap.
 };
+/// Number of values, kNone included.
 inline constexpr std::size_t kNumRejectCauses = 11;
 
 /// The three groups in which estimator_status_t counts them.
 enum class RejectGroup : std::uint8_t { kSize = 0, kType = 1, kValue = 2 };
 
+/// Name of a cause for events and reports, "sample count".
 [[nodiscard]] std::string_view ToString(RejectCause cause) noexcept ARMCMC_NONBLOCKING;
+/// Group in which a cause is counted. @pre cause != kNone.
 [[nodiscard]] RejectGroup GroupOf(RejectCause cause) noexcept ARMCMC_NONBLOCKING;
 
-/// Decodes and checks packs from the bus.
+/// Decodes and checks packs from the bus: data_pack_t or data_pack_v2_t, depending on the format. Every value is
+/// checked before it is used; a pack with any defect is rejected as a whole.
 class PackCodec {
  public:
   static constexpr double kMaxSampleInterval = 10.0;  ///< s
@@ -51,8 +55,9 @@ class PackCodec {
   /// @rt No heap, no lock, no throw. O(n_samples x n_inputs) after a decode of fixed size.
   [[nodiscard]] RejectCause Decode(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING;
 
-  /// true when the last message was a pack of ours, whatever was wrong with its values: its number may be looked at.
+  /// Whether the last message was a pack of this plant, even if its values were rejected; its number may then be used.
   [[nodiscard]] bool decoded() const noexcept { return decoded_; }
+  /// Header of the last message. @pre decoded(). Values are unchecked unless Decode() returned kNone.
   [[nodiscard]] std::int64_t seq() const noexcept { return described() ? described_.seq : message_.seq; }
   [[nodiscard]] std::int64_t run_id() const noexcept { return described() ? described_.run_id : message_.run_id; }
   [[nodiscard]] std::int64_t t_last_ns() const noexcept {

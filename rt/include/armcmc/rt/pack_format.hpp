@@ -7,16 +7,16 @@
 
 namespace armcmc::rt {
 
-/// What the packs of a plant look like on the bus: data_pack_t of a compiled plant, data_pack_v2_t of one that a file
-/// describes.
+/// Format of the packs of a plant on the bus: data_pack_t for a compiled plant, data_pack_v2_t for one that a file
+/// describes. A pack whose plant, name, fingerprint or number of inputs differs is rejected.
 struct PackFormat {
   PlantNumber plant = PlantNumber::kNone;
-  int num_inputs = 0;
+  int num_inputs = 0;             ///< Signals besides the output, in the order of the plant.
   std::string_view name = {};     ///< Of a described plant; outlives whoever is given the format.
   std::uint64_t fingerprint = 0;  ///< Of a described plant's signals.
   int overlap = 1;                ///< EstimatorSettings::overlap, of which the number of samples is a multiple.
 
-  /// The channel behind the prefix.
+  /// Name of the channel, without the prefix.
   [[nodiscard]] const char* channel() const noexcept {
     return plant == PlantNumber::kDescribed ? "PLANT_PACK_V2" : "PLANT_PACK";
   }

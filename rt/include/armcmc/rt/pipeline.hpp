@@ -25,6 +25,7 @@ namespace armcmc::rt {
 /// Heap calls of the calling thread so far; see allocation_counter.hpp.
 using HeapProbe = std::uint64_t (*)() noexcept ARMCMC_NONBLOCKING;
 
+/// Options of a run that are not settings of the estimator.
 struct PipelineOptions {
   std::int64_t max_steps = 0;      ///< Stop after so many steps of every plant; 0: never.
   HeapProbe heap_probe = nullptr;  ///< nullptr: heap calls of the stages are not counted.
@@ -44,6 +45,7 @@ struct PipelineOptions {
 /// plants share it.
 class Pipeline {
  public:
+  /// Largest number of plants.
   static constexpr std::size_t kMaxLanes = 16;
 
   /// Opens the bus and builds everything; no thread runs yet.
@@ -53,7 +55,7 @@ class Pipeline {
   /// @throws std::invalid_argument from settings.Validate() and for the plants, std::runtime_error when there is no
   /// multicast route.
   Pipeline(const RtSettings& settings, const std::vector<LanePlant>& plants, const PipelineOptions& options);
-  /// Of one plant, whose prefix is that of the settings.
+  /// As above, for one plant, with the prefix of the settings.
   Pipeline(const RtSettings& settings, StepEngine* engine, const PipelineOptions& options)
       : Pipeline(settings, {{engine, settings.prefix, false}}, options) {}
   ~Pipeline();
@@ -65,13 +67,14 @@ class Pipeline {
   void Start();
   /// Ends the pipeline within one step. Async-signal-safe, from any thread.
   void RequestStop() noexcept ARMCMC_NONBLOCKING;
-  /// true after RequestStop() or when max_steps are done.
+  /// Whether RequestStop() was called or max_steps are done. Any time, from any thread.
   [[nodiscard]] bool stopping() const noexcept { return stop_.load(std::memory_order_acquire); }
   /// Waits for all threads; finished steps are published first. Follows RequestStop().
   void Join() noexcept;
 
+  /// Number of plants.
   [[nodiscard]] std::size_t num_lanes() const noexcept { return lanes_.size(); }
-  /// In the order of the plants.
+  /// The lane of a plant, in the order in which the plants were given. @pre i < num_lanes().
   [[nodiscard]] Lane& lane(std::size_t i = 0) noexcept { return *lanes_[i]; }
   [[nodiscard]] const Lane& lane(std::size_t i = 0) const noexcept { return *lanes_[i]; }
   /// Takes one event that is of no lane; by one thread only. @return false when there is none.
@@ -79,25 +82,33 @@ class Pipeline {
 
   /// false while a thread hangs. Any time.
   [[nodiscard]] bool AllAlive() const noexcept { return watchdog_.hung() == 0; }
+  /// Hangs so far. Any time.
   [[nodiscard]] const Watchdog& watchdog() const noexcept { return watchdog_; }
+  /// Injected faults; null in service.
   [[nodiscard]] const Injection* injection() const noexcept { return options_.injection; }
 
-  // What a report needs beside the lanes; witnesses after Join().
+  /// The settings as given.
   [[nodiscard]] const RtSettings& settings() const noexcept { return settings_; }
+  /// The witness threads, one for each CPU that runs stages; their histograms after Join().
   [[nodiscard]] const std::vector<std::unique_ptr<Witness>>& witnesses() const noexcept { return witnesses_; }
+  /// Policy, priority and CPU of every thread, read back from the kernel. After Start().
   [[nodiscard]] std::vector<ThreadPlacement> placements() const;
+  /// DEGRADED_* bits: requested real-time measures that are not in effect. After Start().
   [[nodiscard]] std::int32_t degraded_flags() const noexcept { return degraded_flags_; }
+  /// Whether idle CPUs are kept from sleeping ([rt] cpu_idle).
   [[nodiscard]] bool cpus_kept_awake() const noexcept { return wake_request_.held(); }
+  /// Whether mlockall() succeeded.
   [[nodiscard]] bool memory_locked() const noexcept { return memory_locked_; }
+  /// Whether heap calls of the stages are counted, which needs a probe.
   [[nodiscard]] bool heap_calls_counted() const noexcept { return options_.heap_probe != nullptr; }
 
  private:
   void StartThreads();
-  void StartWitnesses();
+  void StartWitnesses();  ///< One for each CPU that runs a stage.
   /// Tells the meter of every stage which other threads run on its CPU.
   void ShareCpuTimes();
-  void Place();
-  void KeepCpusAwake();
+  void Place();          ///< With one available CPU, puts all stages there; sets DEGRADED_SHARED_CPU.
+  void KeepCpusAwake();  ///< [rt] cpu_idle.
   const ThreadPlacement& StartThread(RtThread* thread, const char* name, const ThreadSettings& settings,
                                      RtThread::Entry entry);
 
@@ -113,14 +124,15 @@ class Pipeline {
   void ExecuteLoop() noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool AllStepsDone() const noexcept ARMCMC_NONBLOCKING;
   void PublishLoop() noexcept ARMCMC_NONBLOCKING;
+  /// Updates the counter of a stage. @param baseline  Heap calls of its thread at the end of the warm-up.
   void CountHeapCalls(Stage stage, std::uint64_t baseline) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] std::uint64_t HeapCalls() const noexcept ARMCMC_NONBLOCKING;
 
   RtSettings settings_;
   PipelineOptions options_;
   std::vector<std::unique_ptr<Lane>> lanes_;
-  EventLog watchdog_events_;
-  LcmReceiver receiver_;
+  EventLog watchdog_events_;  ///< Events of no plant in particular.
+  LcmReceiver receiver_;      ///< One socket for all plants.
   Watchdog watchdog_;
 
   Waiter adjust_waiter_, execute_waiter_, publish_waiter_, warm_waiter_;
@@ -130,7 +142,7 @@ class Pipeline {
   RtThread collect_thread_, adjust_thread_, execute_thread_, publish_thread_;
   std::int32_t degraded_flags_ = 0;
   bool memory_locked_ = false;
-  CpuWakeRequest wake_request_;
+  CpuWakeRequest wake_request_;  ///< Held while the pipeline lives.
 };
 
 /// Names of the DEGRADED_* bits that are set, for people.

@@ -14,10 +14,10 @@ class PrivilegeError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What to do on this machine to be granted FIFO priorities and locked memory.
+/// Instructions for this machine to grant FIFO priorities and locked memory, for error messages. Several lines.
 [[nodiscard]] std::string PrivilegeRemedy();
 
-/// What to do on this machine to be allowed to keep the CPUs awake; see CpuWakeRequest.
+/// Instructions for this machine to allow keeping the CPUs awake; see CpuWakeRequest. One line or more.
 [[nodiscard]] std::string CpuWakeRemedy();
 
 /// Keeps the heap from returning memory, from mapping new arenas, and (lock_memory) all pages in memory.
@@ -29,7 +29,7 @@ bool SetUpProcessMemory(const RtSettings& settings);
 /// Touches every page that is left of the stack of the calling thread (not for the main thread, whose stack grows).
 void PrefaultStack() noexcept;
 
-/// CPUs that this process may run on, ascending.
+/// CPUs on which this process may run, ascending: its affinity mask.
 [[nodiscard]] std::vector<int> AvailableCpus();
 
 }  // namespace armcmc::rt

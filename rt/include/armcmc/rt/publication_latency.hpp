@@ -17,15 +17,18 @@ namespace armcmc::rt {
 /// One writer, the publishing thread; readers only after it has ended.
 class PublicationLatency {
  public:
+  /// Largest age that is counted, ns.
   static constexpr Nanos kMostAge = 10'000'000'000;
 
-  /// @rt O(1).
+  /// Adds one publication. @param t_last_ns  Clock of the plant. @param arrival_ns, published_ns  CLOCK_MONOTONIC. @rt
+  /// O(1).
   void Add(Nanos t_last_ns, Nanos arrival_ns, Nanos published_ns) noexcept ARMCMC_NONBLOCKING {
     from_arrival_.Add(published_ns - arrival_ns);
     // t_last is whatever a message says: no difference that could overflow.
     if (t_last_ns <= published_ns && t_last_ns >= published_ns - kMostAge) from_sample_.Add(published_ns - t_last_ns);
   }
 
+  /// Ages since the arrival of the pack, ns.
   [[nodiscard]] const LogHistogram& from_arrival() const noexcept { return from_arrival_; }
   [[nodiscard]] const LogHistogram& from_sample() const noexcept { return from_sample_; }
 

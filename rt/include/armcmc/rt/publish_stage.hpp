@@ -17,9 +17,17 @@
 
 namespace armcmc::rt {
 
-/// Turns outputs into messages and sends them. Runs on the thread with the lowest priority, since sending blocks.
+/// Turns outputs of execute into messages and sends them. It runs on the thread with the lowest priority of the
+/// pipeline, since sending blocks; a slow bus delays messages, never an estimate.
 class PublishStage {
  public:
+  /// Set-up thread; the arguments must outlive the stage.
+  /// @param settings   Periods and thread settings that the status repeats.
+  /// @param engine     Names of modes and parameters.
+  /// @param outputs    Finished steps, from execute.
+  /// @param publisher  Used by this stage only.
+  /// @param monitor    Deadlines and stage times for the status.
+  /// @param counters, events  Read for the status; this stage writes only its own group.
   PublishStage(const RtSettings& settings, const StepEngine* engine, OutputRing* outputs, LcmPublisher* publisher,
                const DeadlineMonitor* monitor, Counters* counters, EventLog* events) noexcept
       : settings_(settings),
@@ -30,27 +38,31 @@ class PublishStage {
         counters_(counters),
         events_(events) {}
 
-  /// Set before the thread starts; nullptr: no faults on purpose.
+  /// Injected faults of publication; null: none. Before the thread starts.
   void SetInjection(Injection* injection) noexcept { injection_ = injection; }
-  /// Any time.
+  /// DEGRADED_* bits for the following status messages: real-time measures that are not in effect. Any thread, any
+  /// time.
   void SetDegraded(std::int32_t flags) noexcept { degraded_flags_.store(flags, std::memory_order_relaxed); }
 
-  /// What the next status says of the machine: the worst delay of a witness, and whether a thread hung.
+  /// Adds evidence about the machine to the next status: the longest delay of a witness thread in ns, and whether the
+  /// watchdog found a stage that hangs. By the publish thread.
   void Note(Nanos witness_worst_ns, bool hung) noexcept ARMCMC_NONBLOCKING {
     witness_worst_ns_ = std::max(witness_worst_ns_, witness_worst_ns);
     hung_ = hung_ || hung;
   }
 
-  /// Sends the messages of all finished steps. @return their number, at most kOutputRingCapacity.
+  /// Sends estimate, posterior, change and status of all finished steps, oldest first.
+  /// @return their number, at most kOutputRingCapacity.
+  /// @rt No heap, no throw. Blocks in the socket.
   int PublishSteps() noexcept ARMCMC_NONBLOCKING;
-  /// Sends a status without a step: nothing came, or nothing was finished.
+  /// Sends a status without a step: no pack came in this period, or none was finished. @rt As PublishSteps().
   void PublishIdleStatus() noexcept ARMCMC_NONBLOCKING;
 
   /// Number of the pack at which the gap watch raised its alarm; 0: it has not.
   [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return gap_alarm_; }
-  /// The newest estimate that was published. @pre the thread has ended.
+  /// The newest published estimate. @pre the thread has ended.
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return last_; }
-  /// Of all estimates that were published. @pre the thread has ended.
+  /// Time from release to the sent message, over all published estimates. @pre the thread has ended.
   [[nodiscard]] const PublicationLatency& latency() const noexcept { return latency_; }
 
  private:
@@ -61,6 +73,7 @@ class PublishStage {
   void Send(const Message& message, std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
     CountSent((injection_ == nullptr || !injection_->FailsPublication(pack)) && publisher_->Publish(message));
   }
+  /// Counts a message, or an error and FAULT_PUBLISH.
   void CountSent(bool sent) noexcept ARMCMC_NONBLOCKING;
 
   const RtSettings& settings_;

@@ -14,17 +14,17 @@
 
 namespace armcmc::rt {
 
-/// What a thread is to run as.
+/// Requested properties of a thread.
 struct ThreadRequest {
-  const char* name = "";  ///< At most 15 characters; shown by ps and top.
-  int priority = 0;       ///< SCHED_FIFO.
-  int cpu = -1;           ///< Pinned there; -1 leaves the affinity alone.
-  std::size_t stack_bytes = 2U << 20U;
+  const char* name = "";                ///< At most 15 characters; shown by ps and top.
+  int priority = 0;                     ///< SCHED_FIFO.
+  int cpu = -1;                         ///< Pinned there; -1 leaves the affinity alone.
+  std::size_t stack_bytes = 2U << 20U;  ///< Size of the stack, which is touched before the thread starts to work.
 };
 
-/// What it runs as, read back from the kernel inside the thread.
+/// Actual properties, read back from the kernel inside the thread.
 struct ThreadPlacement {
-  std::string name;
+  std::string name;     ///< As requested.
   bool fifo = false;    ///< SCHED_FIFO at the requested priority.
   bool pinned = false;  ///< On exactly the requested CPU.
   int priority = 0;     ///< 0 under SCHED_OTHER.
@@ -34,7 +34,9 @@ struct ThreadPlacement {
 /// A pinned SCHED_FIFO thread with a small, prefaulted stack.
 class RtThread {
  public:
+  /// Function of the thread; its return ends the thread.
   using Entry = void (*)(void* context) noexcept;
+  /// No limit for NoteCpuTime().
   static constexpr Nanos kNoLimit = std::numeric_limits<Nanos>::max();
   static constexpr Nanos kShortTurnNs = 100'000;  ///< Of a thread that only looks at the clock and at a few numbers.
 
@@ -47,7 +49,9 @@ class RtThread {
   /// Signals are those of the caller. Without the privileges: throws in kEnforce, else runs without them.
   /// @throws PrivilegeError (kEnforce), std::runtime_error when no thread can be made at all.
   const ThreadPlacement& Start(const ThreadRequest& request, RtMode mode, Entry entry, void* context);
+  /// Waits until the entry function has returned. Without a thread, nothing.
   void Join() noexcept;
+  /// Placement as read back by Start().
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return placement_; }
 
   /// Says how much CPU time the thread has had, for cpu_time_ns(). By the thread itself, before it waits.
@@ -63,13 +67,13 @@ class RtThread {
   [[nodiscard]] int Create(bool fifo, bool pin) noexcept;
   void ReadBack();
 
-  ThreadRequest request_;
+  ThreadRequest request_;  ///< As given to Start().
   ThreadPlacement placement_;
   Entry entry_ = nullptr;
-  void* context_ = nullptr;
-  Waiter ready_;          // thread -> Start(): placement_ is known
-  Waiter go_;             // Start() -> thread
-  bool refused_ = false;  // written before go_
+  void* context_ = nullptr;  ///< Argument of entry_.
+  Waiter ready_;             // thread -> Start(): placement_ is known
+  Waiter go_;                // Start() -> thread
+  bool refused_ = false;     // written before go_
   pthread_t thread_{};
   bool running_ = false;
   std::atomic<Nanos> cpu_time_ns_{0};

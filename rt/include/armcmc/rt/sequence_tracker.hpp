@@ -6,7 +6,7 @@
 
 namespace armcmc::rt {
 
-/// What the pack number says about a pack.
+/// What the number of a pack says about it.
 enum class SequenceVerdict : std::uint8_t {
   kFirst,      ///< First pack ever: use it.
   kNext,       ///< The next one, or a later one after a gap: use it.
@@ -15,6 +15,7 @@ enum class SequenceVerdict : std::uint8_t {
   kReordered,  ///< Older than the newest, or of a run that is over: skip it.
 };
 
+/// Whether a pack with this verdict is to be used.
 [[nodiscard]] constexpr bool IsUsable(SequenceVerdict verdict) noexcept {
   return verdict == SequenceVerdict::kFirst || verdict == SequenceVerdict::kNext ||
          verdict == SequenceVerdict::kRestart;
@@ -27,24 +28,29 @@ enum class SequenceVerdict : std::uint8_t {
 /// more than kMaxGap in either direction. A pack of the run before the present one is late, not a restart.
 class SequenceTracker {
  public:
+  /// A jump of more than this in either direction is a restart.
   static constexpr std::int64_t kMaxGap = 100'000;
+  /// So many old packs in a row that count up by one are a restart.
   static constexpr int kRestartRun = 5;
 
+  /// Totals since the start.
   struct Counts {
-    std::int64_t lost = 0;  ///< Numbers that never came (one that comes late is taken off again).
-    std::int64_t duplicate = 0;
-    std::int64_t reordered = 0;
-    std::int64_t restarts = 0;
+    std::int64_t lost = 0;       ///< Numbers that never came (one that comes late is taken off again).
+    std::int64_t duplicate = 0;  ///< Numbers that came again.
+    std::int64_t reordered = 0;  ///< Packs older than the newest one.
+    std::int64_t restarts = 0;   ///< Runs after the first.
   };
 
+  /// Verdict on one pack.
   struct Result {
     SequenceVerdict verdict = SequenceVerdict::kFirst;
     std::int64_t steps = 1;  ///< Pack numbers advanced since the newest, >= 1 for kNext.
   };
 
-  /// @param seq     >= 1.
-  /// @param run_id  Of the plant; another one begins a new count.
-  /// @rt O(1).
+  /// Judges the next pack and updates the counts.
+  /// @param seq     Number of the pack, >= 1.
+  /// @param run_id  Run of the plant that sent it; another one starts a new count.
+  /// @rt No heap, no lock, no throw. O(1).
   Result OnPack(std::int64_t seq, std::int64_t run_id) noexcept ARMCMC_NONBLOCKING;
 
   /// Notes the number of a pack that arrived but cannot be used, so that it is not counted as lost. Only a number

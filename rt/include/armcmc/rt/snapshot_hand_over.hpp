@@ -12,7 +12,7 @@
 
 namespace armcmc::rt {
 
-/// What one stage carries from pack to pack, on its way to the thread that writes it to the disk.
+/// State that one stage carries from pack to pack, as bytes for the thread that writes them to the disk.
 struct SnapshotPart {
   std::int64_t seq = 0;          ///< Pack after which it was taken.
   std::size_t size = 0;          ///< Used bytes.
@@ -20,10 +20,11 @@ struct SnapshotPart {
   [[nodiscard]] std::span<const std::byte> used() const noexcept { return {bytes.data(), size}; }
 };
 
-/// Newest snapshot of one stage: the stage writes it after every step, another thread takes the newest whole one.
-/// Nobody waits for anybody.
+/// Newest snapshot of one stage. The stage writes it after every step; another thread takes the newest complete one.
+/// Triple buffer (LatestValue): neither side waits, and a snapshot that is not taken in time is replaced.
 class SnapshotChannel {
  public:
+  /// @param bytes  Size of a snapshot, Estimator::kSnapshotBytes. Allocates three buffers.
   explicit SnapshotChannel(std::size_t bytes) {
     for (SnapshotPart& part : parts_) part.bytes.resize(bytes);
   }
@@ -50,13 +51,16 @@ class SnapshotChannel {
   std::array<SnapshotPart, LatestValue::kSlots> parts_;
 };
 
-/// Both stages that learn, and each recursion where packs overlap: a pack changes what one of them knows.
+/// Channels of the two stages that carry state, adjust (posterior) and execute (gap watch), for each recursion where
+/// packs overlap: a pack changes what one of them knows. The newest parts of a recursion may be one step apart.
 class SnapshotHandOver {
  public:
   struct Recursion {
     explicit Recursion(std::size_t bytes) : adjusted(bytes), executed(bytes) {}
     SnapshotChannel adjusted, executed;
   };
+  /// @param bytes       Size of each snapshot.
+  /// @param recursions  At least 1.
   explicit SnapshotHandOver(std::size_t bytes, int recursions = 1) {
     for (int j = 0; j < recursions; ++j) recursions_.emplace_back(bytes);
   }

@@ -7,12 +7,11 @@
 
 namespace armcmc::rt {
 
-/// How much earlier something would have come, ns >= 0, if packs had not been late, if the machine had not stood still,
-/// or if neither had happened.
+/// How much earlier an event would have come, ns >= 0, on three hypothetical time lines.
 struct Earlier {
-  Nanos without_lateness = 0;
-  Nanos without_stalls = 0;
-  Nanos without_both = 0;
+  Nanos without_lateness = 0;  ///< If no pack had been late.
+  Nanos without_stalls = 0;    ///< If the machine had not stalled.
+  Nanos without_both = 0;      ///< If neither had happened; at least the larger of the two.
 };
 
 /// One piece of work of a stage, CLOCK_MONOTONIC.

@@ -22,36 +22,50 @@ namespace armcmc::rt {
 
 /// The computation that the pipeline drives: adjust and execute on results that it keeps in LatestValue::kSlots slots.
 ///
-/// The pipeline knows results by their slot number only, so that draws are never copied. Adjust() and Execute() run at
-/// the same time on two threads, on different slots.
+/// The pipeline refers to results by their slot number, so that draws are never copied. Adjust() and Execute() run at
+/// the same time on two threads, on different slots; an implementation keeps what they share immutable. EstimatorEngine
+/// is the implementation for service; tests use fake ones.
 class StepEngine {
  public:
   virtual ~StepEngine() = default;
 
-  /// What it computes from. Its name lives as long as the engine.
+  /// Type, plant and number of signals of the packs that it takes. The name in it lives as long as the engine.
   [[nodiscard]] virtual PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING = 0;
+  /// Plant number of its packs.
   [[nodiscard]] PlantNumber plant() const noexcept ARMCMC_NONBLOCKING { return pack_format().plant; }
+  /// Number of modes, 1 to kMaxModes.
   [[nodiscard]] virtual int num_modes() const noexcept ARMCMC_NONBLOCKING = 0;
+  /// Number of reported quantities of a mode, 1 to kMaxReported.
   [[nodiscard]] virtual int num_reported() const noexcept ARMCMC_NONBLOCKING = 0;
+  /// Name and unit of a reported quantity. @param index  In [0, num_reported()).
   [[nodiscard]] virtual ReportedQuantity reported(int index) const noexcept ARMCMC_NONBLOCKING = 0;
+  /// Name of a mode. @param mode  In [0, num_modes()).
   [[nodiscard]] virtual std::string_view mode_name(int mode) const noexcept ARMCMC_NONBLOCKING = 0;
 
-  /// Computes the posterior after `pack` into a slot; stops before deadline_ns. @rt No heap, no lock, no throw.
+  /// Computes the posterior after `pack` into a slot, and stops before the deadline with fewer draws if necessary.
+  /// @param pack         Checked by collect.
+  /// @param deadline_ns  Absolute, on `clock`.
+  /// @param clock        Monotonic.
+  /// @param slot         In [0, LatestValue::kSlots); owned by adjust.
+  /// @return kOk, kTruncated, kHeld, or an error after which the previous posterior is kept.
+  /// @rt No heap, no lock, no throw. O(draws).
   virtual Status Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock,
                         int slot) noexcept ARMCMC_NONBLOCKING = 0;
-  /// What of the newest Adjust() only the next one needs: its slot is handed over first. Called by the thread of
-  /// Adjust(), before that slot is written again. @rt No heap, no lock, no throw.
+  /// Work of the newest Adjust() that only the next one needs, done after its slot was handed over. Called by the
+  /// thread of Adjust(), before that slot is written again.
+  /// @rt No heap, no lock, no throw. O(draws).
   virtual void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING = 0;
-  /// Summarises a slot. @rt No heap, no lock, no throw.
+  /// Summarises a slot: estimate, intervals, prediction, gap watch. @rt No heap, no lock, no throw. O(draws).
   virtual void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING = 0;
-  /// Comes back to what it was at the start. Ends the warm-up.
+  /// Returns to the initial state. Ends the warm-up, whose packs must not leave a trace.
   virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
-/// The packs that an estimator takes. Its name lives as long as the estimator.
+/// Format of the packs that an estimator takes. The name in it lives as long as the estimator.
 [[nodiscard]] PackFormat PackFormatOf(const Estimator& estimator) noexcept ARMCMC_NONBLOCKING;
 
-/// The estimator of core as a StepEngine: one recursion, or as many as packs overlap.
+/// The estimator of core as a StepEngine: one recursion, or as many interleaved ones as packs overlap. All results and
+/// scratch memory are allocated at construction.
 class EstimatorEngine final : public StepEngine {
  public:
   /// @throws std::invalid_argument from the settings. Allocates all memory.
@@ -84,12 +98,12 @@ class EstimatorEngine final : public StepEngine {
  private:
   [[nodiscard]] bool RestoreResumed() noexcept ARMCMC_NONBLOCKING;
 
-  InterleavedEstimator estimator_;
+  InterleavedEstimator estimator_;  ///< One recursion, or as many as packs overlap.
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
   SnapshotHandOver* snapshots_ = nullptr;
-  bool warm_ = false;    // what the warm-up learns is handed to nobody
-  bool learnt_ = false;  // by the newest Adjust()
-  std::int64_t seq_ = 0;
+  bool warm_ = false;     // what the warm-up learns is handed to nobody
+  bool learnt_ = false;   // by the newest Adjust()
+  std::int64_t seq_ = 0;  ///< Of the newest pack.
   std::vector<std::vector<std::byte>> resumed_adjusted_, resumed_executed_;  // by recursion
 };
 

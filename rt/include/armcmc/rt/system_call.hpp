@@ -11,11 +11,22 @@
 
 namespace armcmc::rt {
 
-/// Says that the rest of the scope makes a system call on purpose, on a thread where everything else is checked to make
-/// none: the wait for the next release or pack, the wake-up of another thread, reading the socket, sending a message.
+/// Marks the rest of a scope as an intended system call, on a thread on which everything else is checked to make none:
+/// the wait for the next release or pack, the wake-up of another thread, reading the socket, sending a message.
 ///
-/// For RealtimeSanitizer it is an exception as long as the object lives; without it, it is nothing. Used inside
-/// ARMCMC_TRUST_NONBLOCKING_BEGIN .. END, in the function that makes the call and nowhere above it.
+/// In a build with RealtimeSanitizer (preset rtsan), the checks of the current thread are suspended while the object
+/// lives; in other builds it does nothing. Use it in the function that makes the call, as late as possible, between
+/// ARMCMC_TRUST_NONBLOCKING_BEGIN and END, which give the compile-time check the same exception:
+///
+///   ARMCMC_TRUST_NONBLOCKING_BEGIN
+///   void Wake() noexcept ARMCMC_NONBLOCKING {
+///     const SystemCall wake;
+///     sem_post(&semaphore_);
+///   }
+///   ARMCMC_TRUST_NONBLOCKING_END
+///
+/// Objects nest. Source: the interface of RealtimeSanitizer, <sanitizer/rtsan_interface.h>, clang 20 and later.
+/// @rt No heap, no lock, no throw; no code without the sanitizer.
 class [[nodiscard]] SystemCall {
  public:
 #if defined(ARMCMC_RTSAN_RUNS)

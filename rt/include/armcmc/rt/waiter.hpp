@@ -11,19 +11,23 @@ namespace armcmc::rt {
 
 /// Wakes one thread from another; the wait is bounded by an absolute time of CLOCK_MONOTONIC.
 ///
-/// A POSIX semaphore: Post() takes no lock, may be called from a signal handler, and enters the
-/// kernel only when somebody waits. Threads call it in their loop, never inside a stage function.
+/// A POSIX semaphore (sem_clockwait of glibc 2.30 and later): Post() takes no lock, may be called from a signal
+/// handler, and enters the kernel only if a thread waits. Threads call it in their loop, never inside a stage function.
 class Waiter {
  public:
+  /// Initialises the semaphore. @throws std::system_error  if that fails.
   Waiter();
   ~Waiter();
   Waiter(const Waiter&) = delete;
   Waiter& operator=(const Waiter&) = delete;
 
-  /// Wakes the waiting thread, or lets its next wait return at once.
+  /// Wakes the waiting thread, or lets its next wait return at once. Posts are counted: each ends one wait. @rt One
+  /// system call, only if a thread waits.
   void Post() noexcept ARMCMC_NONBLOCKING;
 
-  /// Blocks until a Post() or until the time is reached. @return true for a Post().
+  /// Blocks until a Post() or until a time is reached; signals do not end the wait.
+  /// @param t_ns  CLOCK_MONOTONIC, ns.
+  /// @return true for a Post(), false at the time.
   [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING;
 
   /// When the first Post() since the last call came, 0 if none did. By the thread that waits.

@@ -13,58 +13,73 @@
 
 namespace armcmc::rt {
 
-/// The threads that are watched.
+/// The watched threads: the stages and the publisher.
 enum class Watched : std::uint8_t { kCollect = 0, kAdjust = 1, kExecute = 2, kPublish = 3 };
 inline constexpr std::size_t kNumWatched = 4;
+/// Name of a watched thread for events and reports, "adjust".
 [[nodiscard]] std::string_view ToString(Watched watched) noexcept;
 
 /// Detects a thread that hangs, at most one period after its next report was due.
 ///
 /// Before it waits and before it works, every watched thread announces when it will report next. A report that is
-/// overdue at two consecutive checks, the second of them on time, is a hang. A process that was suspended as a whole,
-/// or a machine that stalled, delays the checks as well and is therefore not a hang.
+/// overdue at two consecutive checks, the second of which is on time, is a hang: an event, and FAULT_STAGE_HUNG in the
+/// next status. If the whole process was suspended, or the machine stalled, the check itself is late, and this does not
+/// count. What the process does about a hang is decided by its owner, see [rt.watchdog] on_hang.
 class Watchdog {
  public:
-  static constexpr Nanos kShortestSlack = 5'000'000;  ///< What a machine takes now and then to wake a thread.
+  /// Smallest tolerance of a report, ns: the time that a machine occasionally takes to wake a thread.
+  static constexpr Nanos kShortestSlack = 5'000'000;
 
+  /// @param settings  Period, priorities and CPUs. @param events  Receives a line for each hang; must outlive this.
   Watchdog(const RtSettings& settings, EventLog* events) noexcept;
   ~Watchdog() { Stop(); }
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// The calling thread will be heard of again after at most so long; the slack comes on top. @rt Wait-free.
+  /// The calling thread will report again within at_most_ns from now_ns; the slack is added.
+  /// @param watched     Which thread calls.
+  /// @param now_ns      CLOCK_MONOTONIC.
+  /// @param at_most_ns  Duration.
+  /// @rt Wait-free.
   void Promise(Watched watched, Nanos now_ns, Nanos at_most_ns) noexcept ARMCMC_NONBLOCKING {
     due_[static_cast<std::size_t>(watched)].store(now_ns + at_most_ns + slack_ns_, std::memory_order_relaxed);
   }
-  /// The thread ends: nothing more is expected of it.
+  /// The calling thread ends, or pauses: no further report is expected. @rt Wait-free.
   void Dismiss(Watched watched) noexcept ARMCMC_NONBLOCKING {
     due_[static_cast<std::size_t>(watched)].store(0, std::memory_order_relaxed);
   }
 
-  /// One check at now_ns that was due at due_ns. By one thread. @rt Wait-free.
+  /// One check. Called by the watchdog thread; public for tests with a fake clock.
+  /// @param due_ns, now_ns  When the check was due, and when it runs; CLOCK_MONOTONIC.
+  /// @rt Wait-free.
   void Check(Nanos due_ns, Nanos now_ns) noexcept ARMCMC_NONBLOCKING;
 
-  /// Starts the thread that checks, above every stage, on the CPU of collect.
-  /// @throws PrivilegeError in kEnforce.
+  /// Starts the thread that checks, with a priority above every stage, on the CPU of collect.
+  /// @throws PrivilegeError  in kEnforce without the privileges.
   const ThreadPlacement& Start();
+  /// Ends the thread; waits for it.
   void Stop() noexcept;
 
-  /// Threads that hang now, a bit for each of Watched. Any time.
+  /// Threads that hang now: bit i is Watched i. Any time, from any thread.
   [[nodiscard]] std::uint32_t hung() const noexcept { return hung_.load(std::memory_order_acquire); }
-  /// Hangs seen so far.
+  /// Number of hangs since the start. Any time.
   [[nodiscard]] std::int64_t hangs() const noexcept { return hangs_.load(std::memory_order_relaxed); }
-  /// FAULT_STAGE_HUNG when a thread hung since the last call. @rt Wait-free.
+  /// Whether a thread hangs, or has since the last call: FAULT_STAGE_HUNG. @rt Wait-free.
   [[nodiscard]] bool TakeHung() noexcept { return unread_.exchange(false, std::memory_order_acq_rel) || hung() != 0; }
+  /// Time between checks.
   [[nodiscard]] Nanos check_period_ns() const noexcept { return check_period_ns_; }
+  /// Tolerance of a report.
   [[nodiscard]] Nanos slack_ns() const noexcept { return slack_ns_; }
+  /// CPU of the watchdog thread.
   [[nodiscard]] int cpu() const noexcept { return request_.cpu; }
+  /// The watchdog thread, for its placement and its processor time.
   [[nodiscard]] const RtThread& thread() const noexcept { return thread_; }
 
  private:
   void Run() noexcept;
 
-  Nanos slack_ns_, check_period_ns_;
-  ThreadRequest request_;
+  Nanos slack_ns_, check_period_ns_;  ///< From the period of the packs.
+  ThreadRequest request_;             ///< Priority and CPU of the watchdog thread.
   RtMode mode_;
   EventLog* events_;
   std::array<std::atomic<Nanos>, kNumWatched> due_{};  // 0: not watched

@@ -57,37 +57,47 @@ class Witness {
     return std::clamp<Nanos>(deadline_ns / 40, 250'000, 1'000'000);
   }
 
+  /// @param cpu  CPU whose stalls are measured. @param period_ns  Time between wake-ups, see PeriodFor().
   Witness(int cpu, Nanos period_ns) noexcept : cpu_(cpu), period_ns_(period_ns) {}
   ~Witness() { Stop(); }
 
-  /// @throws PrivilegeError in kEnforce.
+  /// Starts the thread.
+  /// @param priority  SCHED_FIFO; above every stage.
+  /// @param mode      What to do without the privileges.
+  /// @throws PrivilegeError  in kEnforce without the privileges.
   void Start(int priority, RtMode mode);
+  /// Ends the thread; waits for it.
   void Stop() noexcept;
 
+  /// CPU whose stalls it measures.
   [[nodiscard]] int cpu() const noexcept { return cpu_; }
+  /// Time between its wake-ups, ns.
   [[nodiscard]] Nanos period_ns() const noexcept { return period_ns_; }
-  /// Without its priority or its CPU a late wake-up proves nothing.
+  /// Whether the thread runs with its priority and on its CPU. Otherwise a late wake-up is no evidence of a stall of
+  /// the machine.
   [[nodiscard]] bool trustworthy() const noexcept { return thread_.placement().fifo && thread_.placement().pinned; }
+  /// The newest wake-ups. Any time, from any thread.
   [[nodiscard]] const WakeUpRing& wake_ups() const noexcept { return wake_ups_; }
+  /// Policy, priority and CPU, read back from the kernel.
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return thread_.placement(); }
   [[nodiscard]] const RtThread& thread() const noexcept { return thread_; }
-  /// Worst delay since the last call, ns.
+  /// Longest delay since the last call, ns. @rt Wait-free.
   [[nodiscard]] Nanos TakeWorst() noexcept ARMCMC_NONBLOCKING {
     return worst_ns_.exchange(0, std::memory_order_relaxed);
   }
-  /// Every delay. @pre stopped.
+  /// Delays of all wake-ups, ns. @pre stopped.
   [[nodiscard]] const LogHistogram& delays() const noexcept { return delays_; }
 
  private:
   void Run() noexcept ARMCMC_NONBLOCKING;
 
-  int cpu_;
+  int cpu_;  ///< Where it runs.
   Nanos period_ns_;
-  WakeUpRing wake_ups_;
-  LogHistogram delays_;
+  WakeUpRing wake_ups_;  ///< The newest wake-ups.
+  LogHistogram delays_;  ///< ns.
   std::atomic<Nanos> worst_ns_{0};
   std::atomic<bool> stop_{false};
-  RtThread thread_;
+  RtThread thread_;  ///< Above every stage.
 };
 
 }  // namespace armcmc::rt

@@ -10,29 +10,30 @@
 
 namespace armcmc::ladder {
 
-/// A parameter that is a number of radians per unit of something.
+/// A parameter that is an angular frequency: radians per unit of a signal, a state or time.
 struct Frequency {
-  std::size_t parameter;  ///< Among those that are fitted; its logarithm is.
+  std::size_t parameter;  ///< Index among the fitted parameters, which hold its logarithm.
   std::string along;      ///< Signal or state; empty: time.
 };
 
-/// A plant with one more effect.
+/// A plant extended by an effect.
 struct Candidate {
-  const EffectEntry* entry = nullptr;  ///< Of the entries that were asked for.
+  const EffectEntry* entry = nullptr;  ///< Catalogue entry.
   EffectBinding binding;
   std::shared_ptr<const Plant> plant;
-  std::size_t first_parameter = 0;  ///< Of the effect, among the plant's.
+  std::size_t first_parameter = 0;  ///< Index of the effect's first parameter in the plant.
 
   [[nodiscard]] const EffectForm& form() const { return entry->forms[binding.form]; }
-  /// The same among those that are fitted, of which each active mode may have its own.
+  /// Index of the first parameter of the effect among the fitted ones; each active mode may have its own copy.
   [[nodiscard]] std::size_t first_fitted() const;
-  /// Those of the effect: positive ones with the unit "1/s", or one over that of something it needs.
+  /// The frequencies among the parameters of the effect: positive parameters with the unit "1/s", or the inverse of the
+  /// unit of a quantity that it needs.
   [[nodiscard]] std::vector<Frequency> Frequencies() const;
 };
 
-/// Every way in which one more effect of `entries` fits the plant; what does not fit a plant's limits is left out and
-/// noted.
-/// @param entries  Outlive the candidates.
+/// Every way in which an effect of `entries` can be added to the plant. Those beyond the limits of a plant are skipped,
+/// with a note.
+/// @param entries  Must outlive the candidates.
 [[nodiscard]] std::vector<Candidate> Candidates(const PlantDescription& plant, const std::vector<EffectEntry>& entries,
                                                 const DataScales& scales, std::vector<std::string>* notes);
 

@@ -11,35 +11,36 @@
 
 namespace armcmc::ladder {
 
-/// A recording and which of its rows may be looked at.
+/// A recording, with the roles of its rows.
 struct Dataset {
   std::shared_ptr<const identify::Series> series;  ///< All rows.
-  std::vector<std::uint8_t> training;              ///< [row] 1: models are fitted to it.
-  std::vector<std::uint8_t> held_out;              ///< [row] 1: kept apart to the end.
+  std::vector<std::uint8_t> training;              ///< [row] 1: used for fitting.
+  std::vector<std::uint8_t> held_out;              ///< [row] 1: held out until the end.
 
   [[nodiscard]] std::size_t num_training() const;
 };
 
-/// All rows, with what the recording keeps apart.
+/// All rows of a recording, with its held-out rows marked.
 [[nodiscard]] Dataset DatasetOf(const support::Recording& recording);
 
-/// What is left of each run up to its last training row, and of that `rows` at most: the beginning of every run, in
-/// proportion to its length. Nothing is held out in it.
+/// The beginning of every run, in proportion to its length up to its last training row, `rows` rows at most in total.
+/// Nothing is held out.
 [[nodiscard]] Dataset Beginnings(const Dataset& data, std::size_t rows);
 
-/// Short stretches, each a run of its own: half of them all over the data, half where errors are largest.
-/// @param error   [row] Of a model, unit of what is explained; empty: all over the data.
-/// @param length  Rows of a stretch; neighbours are joined. About `rows` together.
+/// Short segments, each a run of its own: half of them spread over the data, half where the errors are largest.
+/// @param error   [row] Error of a model, unit of the explained quantity; empty: all segments are spread over the data.
+/// @param length  Rows of a segment; adjacent segments are joined.
+/// @param rows    Approximate total number of rows.
 [[nodiscard]] Dataset Windows(const Dataset& data, const Eigen::VectorXd& error, std::size_t length, std::size_t rows);
 
-/// Sizes of the training rows, for the priors of effects.
-/// @param noise  Standard deviation, unit of what is explained.
+/// Typical sizes of the signals on the training rows, which scale the priors of effects.
+/// @param noise  Standard deviation of the noise, unit of the explained quantity.
 [[nodiscard]] DataScales ScalesOf(const Dataset& data, const PlantDescription& plant, double noise);
 
-/// Standard deviation of what changes from sample to sample: of third differences of the target, which a smooth signal
-/// does not have (each has the variance 20 s^2 for independent errors s). Too large where the signal itself is not
-/// smooth at the sampling rate, too small where it was filtered.
-/// @param target  [row] What the law explains.
+/// Standard deviation of the noise, estimated from third differences of the target. A smooth signal has none; those of
+/// independent errors with standard deviation s have the variance 20 s^2. Too large if the signal itself is not smooth
+/// at the sampling rate, too small if it was filtered.
+/// @param target  [row] Quantity that the law explains.
 /// @param active  [row] 1: a mode acts.
 [[nodiscard]] double NoiseFloor(const Dataset& data, const Eigen::VectorXd& target,
                                 const std::vector<std::uint8_t>& active);

@@ -13,32 +13,31 @@
 
 namespace armcmc::ladder {
 
-/// What is to be diagnosed.
+/// Input of Diagnose().
 struct DiagnosisRequest {
   support::Recording recording;
   const support::PlantFile* plant = nullptr;
-  std::vector<std::string> without;  ///< Effects that are not to be tried.
-  std::uint64_t seed = 1;            ///< Of the estimator that goes over the recording.
-  std::string equation;              ///< Name of the plant's equation that this is; empty: it has one.
+  std::vector<std::string> without;  ///< Effects to exclude.
+  std::uint64_t seed = 1;            ///< Seed of the estimator that runs over the recording.
+  std::string equation;              ///< Name of the equation, if the plant has two; else empty.
   std::function<void(const std::string& step, double share)> progress;
 };
 
-/// What was found, and the plant with it.
+/// Output of Diagnose().
 struct Diagnosis {
   gap::Result result;
   Ladder ladder;
-  TunedPlant before;  ///< As it came, its priors about the fit.
-  TunedPlant after;   ///< With what was named.
+  TunedPlant before;  ///< The plant without additions, with priors centred on the fit.
+  TunedPlant after;   ///< The plant with the named effects.
 };
 
-/// Compares a described plant with a recording, names what is missing, and shows the gap on the rows that the recording
-/// keeps apart.
+/// Compares a plant file with a recording, names the missing effects, and measures the gap on the held-out rows.
 ///
-/// Where the modes of the plant explain a target and it `predicts` the output, both equations are diagnosed, each by
-/// itself (see equations.hpp). The result is that of the equation that lacks something: of two the one whose effect has
-/// a name, then the one with the larger gap. A sensor that both read shows in both: what both name is what is missing,
-/// and where one leaves it open, the other is asked at the value that the first found.
-/// @throws support::InputError where there is nothing to compare.
+/// If the modes of the plant explain a target and it `predicts` the output, both equations are diagnosed separately
+/// (see equations.hpp). The result is that of the equation with the gap: the one in which an effect is named, otherwise
+/// the one with the larger gap. An error of a sensor that both equations read shows in both, so only what both name is
+/// named; if one of them leaves it open, it is tested there at the value found in the other.
+/// @throws support::InputError  if there is nothing to compare.
 [[nodiscard]] Diagnosis Diagnose(const DiagnosisRequest& request);
 
 }  // namespace armcmc::ladder

@@ -9,22 +9,21 @@
 
 namespace armcmc::ladder {
 
-/// Parameters over a recording: the law fitted anew to each of about ten stretches, with the priors of the plant's
-/// file.
+/// Constancy of the parameters: the law is refitted to each of about ten segments, with the priors of the plant file.
 ///
-/// The fit to a stretch is that to all rows, moved; its band is 1.96 standard deviations of the posterior with errors
-/// that go together counted once. A parameter that stays has values that differ as their bands say: the sum of squares
-/// about their weighted mean, each over its variance, has the chi-square law. A plant that remembers also sees the rows
-/// before a stretch, which do not count. Stretches that say nothing of a parameter are left out. (The estimator itself
-/// would not tell: it learns from a tenth of a second at a time, and where real data contradict the model, it begins
-/// anew from its prior, so that a slow drift is hidden behind its own movement.)
-/// @param data  All rows count, also those that are kept apart.
+/// The fit to a segment starts from the fit to all rows. Its band is 1.96 posterior standard deviations, with the
+/// number of rows reduced by the autocorrelation of the errors. If a parameter is constant, the weighted sum of squares
+/// of its values about their weighted mean, each divided by its variance, has a chi-square distribution. A law with
+/// memory also sees the rows before a segment, which are not fitted. Segments that do not determine a parameter are
+/// skipped. (The estimator is not suitable for this test: it learns from a tenth of a second at a time and restarts
+/// from its prior when real data contradict the model, so its own variation hides a slow drift.)
+/// @param data  All rows are used, including held-out ones.
 [[nodiscard]] std::vector<gap::ParameterDrift> DriftOver(const Dataset& data, const TunedPlant& before,
                                                          const Trial& base, const TunedPlant* after,
                                                          const Trial& final_trial);
 
-/// Fills what is told of the stretches from their values.
-/// @param value, sd  [stretch] In the coordinates in which it is sampled.
+/// Mean, band, movement and verdict of a parameter from its values on the segments.
+/// @param value, sd  [segment] Value and standard deviation, in the coordinates in which the parameter is sampled.
 void JudgeSteadiness(const std::vector<double>& value, const std::vector<double>& sd, gap::Steadiness* out);
 
 }  // namespace armcmc::ladder

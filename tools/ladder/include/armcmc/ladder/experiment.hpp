@@ -7,23 +7,25 @@
 
 namespace armcmc::ladder {
 
-/// The motion that would decide a tie, for any plant whose inputs move by themselves.
+/// The motion that best separates tied effects, for any plant whose inputs can be moved freely.
 ///
-/// Motions of a small library are written for every input that the recording moved: within its range, up to four times
-/// as fast, and such that the output goes at most twice as far. For each, and for each ordered pair of the tied
-/// effects, the first is simulated as it was fitted and the other refitted to that; what stays is the evidence
+/// The motions of a small library are written for every input that the recording moved: within its range, up to four
+/// times as fast, and with at most twice the range of the output. For each motion and each ordered pair (i, j) of tied
+/// effects, effect i is simulated as fitted and model j is refitted to that simulation. The remaining misfit is the
+/// expected evidence
 ///
 ///   D = min_theta |y_i - y_j(theta)|^2 / (2 f s^2)   nats,
 ///
-/// s the error that the best of them leaves in the recording, noise or law, and f how many neighbouring errors go
-/// together. The motion wins that decides most pairs, D / (D + 10) each, times how much of what the plant lacks the
-/// other cannot take over, weighted by the probabilities of both; a quicker one must bring a tenth more.
+/// where s is the error that the best model leaves in the recording (noise or model error), and f the number of
+/// neighbouring samples that share an error. The score of a motion is the sum over the pairs of D / (D + 10), times the
+/// share of effect i that model j cannot absorb, weighted with the probabilities of both effects. A faster motion is
+/// preferred only if its score is 10 % higher.
 ///
-/// @param data   The recording: all its rows tell how long and how fast.
+/// @param data   The recording; all its rows determine range and speed.
 /// @param rung   A tie.
-/// @param plant  As a simulation knows it, without any of the tied effects.
-/// @return words, nats, course; `scenario_text` for the plant's simulation, where a motion brings enough. Words alone
-///   where a law reads what depends on the motion.
+/// @param plant  The plant without any of the tied effects.
+/// @return words, nats, course, and `scenario_text` for the simulator if a motion gives enough evidence. Words alone if
+///   a law reads a signal that results from the motion.
 [[nodiscard]] gap::Experiment SeparatingMotion(const Dataset& data, const Rung& rung, const PlantDescription& plant);
 
 }  // namespace armcmc::ladder

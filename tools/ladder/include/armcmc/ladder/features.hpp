@@ -9,19 +9,22 @@
 
 namespace armcmc::ladder {
 
-/// A quantity that an error may depend on.
+/// A quantity on which the residual may depend.
 struct Feature {
   std::string name;
   std::string unit;
   Eigen::VectorXd value;  ///< [row]
 };
 
-/// What there is to depend on: signals but the output, states of the plant at `theta`, and time. What stands still is
-/// left out.
+/// The features of a plant: its signals except the output, its states at `theta`, and time, without those that are
+/// constant.
 [[nodiscard]] std::vector<Feature> FeaturesOf(const identify::TrajectoryModel& model, const Eigen::VectorXd& theta);
 
-/// A flexible function of the features and of their recent past: `count` random Fourier features
-/// sqrt(2 / count) cos(w'x + b) of standardised quantities, w ~ N(0, 1), the same at every call.
+/// Basis of a flexible function of the features and their recent past: `count` random Fourier features sqrt(2 / count)
+/// cos(w'x + b) of the standardised quantities, w ~ N(0, 1), b ~ U(0, 2 pi), with a fixed seed (Rahimi and Recht,
+/// 2007).
+/// @param looked_at  Rows of the result. @param period  s, of the motion: sets the delays of the past values.
+/// @return [looked_at][count].
 [[nodiscard]] Eigen::MatrixXd FlexibleFeatures(const Dataset& data, const std::vector<Feature>& features,
                                                const std::vector<Eigen::Index>& looked_at, double period, int count);
 

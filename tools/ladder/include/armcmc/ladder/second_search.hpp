@@ -8,21 +8,21 @@
 
 namespace armcmc::ladder {
 
-/// What the ladder found, and the recording that it read.
+/// Result of the ladder, and the recording it was applied to.
 struct SecondSearch {
   support::Recording recording;
   Diagnosis diagnosis;
 };
 
-/// Where the search of a compiled plant leaves a gap without a name: the same samples judged by the ladder, with the
-/// plant's description and the effects that serve every plant. That search asks for an exact law beside one or two
-/// effects of its own catalogue; the ladder names what is there beside a law that is off, and knows other effects.
-/// Effects keep the names that the compiled plant has for them.
-/// @param request  What the search was asked. The ladder keeps the end of `request.data` apart, as the search does.
-/// @return empty where the ladder begins with no name, with one for few events or with several, where it explains all
-///         rows but those kept apart, or where it is not asked: another recording is to be judged with it, the model
-///         has effects already, only one is looked for, the run is to stop before the end, or the plant's file does not
-///         read the columns of the data.
+/// Applies the ladder to a compiled plant whose own search left the gap unnamed: the same samples, with the plant's
+/// file and the effects that fit any plant. The plant's own search assumes an exact law with one or two effects of its
+/// own catalogue; the ladder allows for an inexact law and knows other effects. Effects keep the names that the
+/// compiled plant gives them.
+/// @param request  Request of the first search. The ladder holds out the end of `request.data`, as that search does.
+/// @return empty if the first rung of the ladder names nothing, several effects, or one that acts in too few events; if
+///   it explains all rows except the held-out ones; or if the ladder does not apply: with an earlier or held-out
+///   recording, a model that already has effects, a search for single effects only, a run that stops before the last
+///   step, or a plant file that does not read the columns of the data.
 [[nodiscard]] std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request);
 
 }  // namespace armcmc::ladder

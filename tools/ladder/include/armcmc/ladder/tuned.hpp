@@ -11,27 +11,28 @@
 
 namespace armcmc::ladder {
 
-/// A plant as the estimator can go on with it.
+/// A plant with priors from a fit, for the estimator.
 struct TunedPlant {
   PlantDescription plant;
-  PlantDescription loose;                       ///< The same with the priors that it had.
-  std::vector<std::string> held;                ///< Parameters that are constants now.
-  std::shared_ptr<const PlantProgram> program;  ///< Null: the estimator cannot run it,
-  std::string why_not;                          ///< because of this.
+  PlantDescription loose;                       ///< The same plant with its original priors.
+  std::vector<std::string> held;                ///< Parameters that became constants.
+  std::shared_ptr<const PlantProgram> program;  ///< Null if the estimator cannot run it.
+  std::string why_not;                          ///< The reason.
 };
 
-/// The plant with its priors about a fit: means there, standard deviations of three times what these data leave open,
-/// since the next run is another one; never wider than the file's. (Where real data contradict a model in one pack, the
-/// estimator begins anew from its prior. From ten times as wide a one it predicts the next pack up to three times
+/// The plant with priors centred on a fit: the standard deviations are three times those of the posterior, because the
+/// next run differs from this one, but never larger than in the file. (If real data contradict the model in one pack,
+/// the estimator restarts from its prior. With a prior ten times as wide it predicts the next pack up to three times
 /// worse.)
 ///
-/// A parameter of an effect is held at the fit, as a constant, where the data leave it more than a quarter as wide as
-/// its prior, the widest first and the others looked at again without it: an estimator that has to learn from one pack
-/// at a time would let those that the data cannot tell apart wander about. So are further ones where there are more
-/// than the estimator samples. And so is any parameter that the fit presses against a bound, where what the data say of
-/// it has another shape than a prior about the fit.
-/// @param own   Parameters that the plant had before any effect, which come first and are held on a bound only.
-/// @param rows  [row] 1: the fit was made to it.
+/// A parameter of an effect becomes a constant if its posterior is more than a quarter as wide as its prior; the widest
+/// is fixed first, and the others are then tested again. An estimator that learns from one pack at a time would let
+/// such parameters wander along the directions that the data do not determine. Further parameters become constants if
+/// there are more than the estimator samples, and so does any parameter at a bound, where the posterior does not have
+/// the shape of a prior centred on the fit.
+/// @param own   Number of parameters that the plant had before any effect. They come first, and are fixed only at a
+///   bound.
+/// @param rows  [row] 1: the row was fitted.
 [[nodiscard]] TunedPlant Tuned(const PlantDescription& plant, std::size_t own, const Trial& trial,
                                const std::vector<std::uint8_t>& rows);
 

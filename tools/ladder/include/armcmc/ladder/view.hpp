@@ -9,10 +9,10 @@
 
 namespace armcmc::ladder {
 
-/// Why rows are left out together.
+/// Kind of cross-validation group.
 enum class GroupKind {
-  kFold,    ///< A fifth of short stretches of time, all over the data: interpolation.
-  kBlock,   ///< One long stretch of time.
+  kFold,    ///< A fifth of the short segments, spread over the data: interpolation.
+  kBlock,   ///< One long interval of time.
   kRegion,  ///< The lowest or the highest values of a quantity: extrapolation.
 };
 
@@ -23,19 +23,19 @@ struct RowGroup {
   std::vector<Eigen::Index> rows;  ///< Indices into View::looked_at.
 };
 
-/// The view of the data in which models are compared: the same rows, groups and flexible function for all of them.
+/// Rows, groups and flexible function with which all models of a rung are compared.
 struct View {
   Dataset data;                         ///< Training rows only.
-  double period = 0.0;                  ///< s, in which the output goes to and fro.
-  std::vector<Eigen::Index> looked_at;  ///< Training rows where a mode acts, thinned to a few thousand.
+  double period = 0.0;                  ///< s, dominant period of the output.
+  std::vector<Eigen::Index> looked_at;  ///< Training rows on which a mode acts, thinned to a few thousand.
   std::vector<RowGroup> groups;
-  std::vector<int> stretch;  ///< [looked at] Short stretch that the row belongs to.
+  std::vector<int> stretch;  ///< [looked_at] Short segment to which the row belongs.
   int num_stretches = 0;
-  Eigen::MatrixXd flexible;  ///< [looked at][feature] See FlexibleFeatures().
+  Eigen::MatrixXd flexible;  ///< [looked_at][feature] See FlexibleFeatures().
 };
 
-/// The view through a base model that has been fitted.
-/// @param period  s, in which the output goes to and fro.
+/// Makes the groups from the features of a fitted base model.
+/// @param period  s, dominant period of the output.
 [[nodiscard]] View MakeView(const Dataset& data, const identify::TrajectoryModel& base, const Eigen::VectorXd& theta,
                             double period);
 

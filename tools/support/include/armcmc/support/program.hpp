@@ -23,12 +23,20 @@ class InputError : public std::runtime_error {
 /// Version of the product, "0.1.0".
 [[nodiscard]] std::string Version();
 
+/// What a program writes to standard output and standard error through the C++ streams.
+enum class Output {
+  kText,     ///< Text, in which control characters are escaped (HarmlessOutput): names of a file, paths.
+  kColours,  ///< Also escape sequences of its own; the program escapes what it repeats.
+};
+
 /// Runs a program: parses the command line (--help and --version included), then calls body.
 ///
 /// ConfigError, InputError, CLI errors and std::invalid_argument become one line on stderr,
-/// "NAME: what", and kExitBadInput; any other exception one line and kExitFailure.
-/// @param app   Options are added by the caller; --version and the program's name are added here.
-/// @param body  Its value is the exit code.
-int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, const std::function<int()>& body);
+/// "NAME: what" as ErrorLine() makes it, and kExitBadInput; any other exception one line and kExitFailure.
+/// @param app     Options are added by the caller; --version and the program's name are added here.
+/// @param body    Its value is the exit code.
+/// @param output  What it may print.
+int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, const std::function<int()>& body,
+               Output output = Output::kText);
 
 }  // namespace armcmc::support

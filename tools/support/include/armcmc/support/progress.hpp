@@ -9,7 +9,7 @@ namespace armcmc::support {
 /// second and wiped at the end.
 class Progress {
  public:
-  explicit Progress(std::string title);
+  explicit Progress(const std::string& title);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
