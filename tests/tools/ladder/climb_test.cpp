@@ -203,6 +203,33 @@ TEST(Climb, ASpringThatStiffensIsNotMadeOfPlays) {
   EXPECT_THAT(NamesOf(with.rungs[0]), ElementsAre("cubic_stiffness"));
 }
 
+TEST(Climb, ASpringThatActsThroughPlayIsNamed) {
+  // Play in front of the spring alone; mass and damper follow the position itself.
+  constexpr double kHalf = 0.015;  // m
+  double driven = 0.0;
+  const Dataset data = test::AxisData([&](const AxisSample& s) {
+    driven = std::clamp(driven, s.q - kHalf, s.q + kHalf);
+    return 1500.0 * driven;
+  });
+  PlantDescription plant = test::AxisPlant();
+  plant.law = "M*a + Fv*v + kq*q + off";
+  plant.parameters.push_back({"kq", "N/m", "normal", 1000.0, 1000.0, 0.0, 20000.0});
+  const Ladder ladder = ClimbWith({"backlash", "coulomb_friction", "presliding_friction", "hysteresis",
+                                   "viscous_friction", "cubic_stiffness", "sensor_lag"},
+                                  data, plant);
+  ASSERT_EQ(ladder.rungs.size(), 2u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("backlash"));
+  EXPECT_NEAR(ladder.final_trial.fit.theta[3], 1500.0, 60.0);
+}
+
+TEST(Climb, ASpringStiffensAboutAPlaceOfItsOwn) {
+  const Ladder ladder =
+      ClimbWith({"cubic_stiffness", "quadratic_stiffness", "cogging", "output_drift", "baseline_tilt"},
+                test::AxisData([](const AxisSample& s) { return 60000.0 * std::pow(s.q - 0.05, 3); }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cubic_stiffness"));
+  EXPECT_TRUE(ladder.complete);
+}
+
 TEST(Climb, WhatDataKeptApartDoNotShowIsWithdrawn) {
   // A drift that ends where the held-out rows begin.
   Dataset data = test::AxisData([](const AxisSample& s) { return s.t < 14.0 ? 0.9 * s.t : 0.0; });
