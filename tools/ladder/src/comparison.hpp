@@ -5,7 +5,7 @@
 namespace armcmc::ladder {
 
 inline constexpr double kLeastGain = 0.1;   // of the squared error: what a name has to take
-inline constexpr double kLargerPart = 0.5;  // of it: what the first name of a family leaves at most
+inline constexpr double kLargerPart = 0.5;  // of what is no noise in it: what the first name of a family leaves at most
 inline constexpr double kFarBetter = 2.0;   // times less than a simple one leaves: what a larger one has to show
 
 /// What a contender leaves on rows left out, over what its base leaves.
