@@ -241,6 +241,36 @@ TEST(Climb, WhatDoesTheSameWithMoreIsNoTie) {
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
 }
 
+TEST(Climb, TheNoiseOfTheSampleThatAnIntegratorBeginsWithIsNoOffset) {
+  // A cart whose place is measured: it begins at the first sample, and what this is off stays to the end.
+  PlantDescription plant;
+  plant.name = "cart";
+  plant.output = "y";
+  plant.law = "x";
+  plant.signals = {{"u", "V", "drive", ""}, {"y", "m", "position", ""}};
+  plant.parameters = {{"K", "m/(s^2 V)", "normal", 2.0, 1.0, 0.01, 20.0}, {"b", "1/s", "normal", 2.0, 2.0, 0.0, 50.0}};
+  plant.states = {{"x", "m", "position", "v", "y", "", 1}, {"v", "m/s", "velocity", "K*u - b*v", "0", "", 1}};
+  plant.noise.std = 0.02;
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    double x = 0.0, v = 0.0;
+    const Dataset data =
+        test::DataOf({.rows = 1500,
+                      .noise = 0.02,
+                      .seed = seed,
+                      .drive = [](double t) { return 4.0 * std::sin(1.3 * t) + 3.0 * std::sin(2.9 * t); },
+                      .advance =
+                          [&](double u, double step) {
+                            v += step * (1.5 * u - 1.2 * v);
+                            x += step * v;
+                          },
+                      .shown = [&] { return x; }});
+    const Ladder ladder = ClimbWith({"output_bias", "output_drift", "coulomb_friction", "drag"}, data, plant);
+    EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << seed;
+    EXPECT_TRUE(ladder.complete) << seed;
+    EXPECT_NEAR(ladder.base.fit.error_sd, 0.02, 0.002) << seed;
+  }
+}
+
 TEST(Climb, NoiseIsNoPartOfWhatIsUnexplained) {
   // A hum as large as the noise takes less than half of the squared error, and most of what is not noise in it.
   const Ladder ladder = ClimbWith({"periodic_disturbance", "coulomb_friction", "cubic_stiffness", "drag"},

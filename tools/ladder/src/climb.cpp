@@ -10,6 +10,7 @@
 #include "comparison.hpp"
 #include "curves.hpp"
 #include "derived_noise.hpp"
+#include "free_starts.hpp"
 #include "held_out.hpp"
 #include "rung.hpp"
 
@@ -199,6 +200,14 @@ Ladder Climb(const ClimbRequest& request) {
   ladder.noise_floor = request.known_noise > 0.0
                            ? request.known_noise
                            : request.noise_over_differences * NoiseFloor(data, SmoothBut(base), base.model->active());
+  if (std::shared_ptr<const Plant> freed = WithFreeStarts(base, data, ladder.noise_floor)) {
+    Eigen::VectorXd theta = identify::TrajectoryModel(freed, data.series).Start();
+    theta.head(base.fit.theta.size()) = base.fit.theta;
+    if (Trial free = Refine(freed, data, theta); free.fit.valid) {
+      ladder.plant = std::move(freed);
+      base = std::move(free);
+    }
+  }
   ladder.base = base;
   std::set<std::string> families;
   int again = 2;  // rungs that begin anew from a better fit
