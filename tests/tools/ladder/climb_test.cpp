@@ -241,6 +241,31 @@ TEST(Climb, WhatDoesTheSameWithMoreIsNoTie) {
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
 }
 
+TEST(Climb, AConstantThatIsOffIsNoEffect) {
+  // A body that cools in a room which is half a degree warmer than the plant says, and not a thermometer that is off.
+  PlantDescription plant;
+  plant.name = "body";
+  plant.output = "y";
+  plant.law = "T";
+  plant.signals = {{"P", "W", "drive", ""}, {"y", "K", "temperature", ""}};
+  plant.constants = {{"room", 21.5, "K"}};
+  plant.parameters = {{"C", "J/K", "lognormal", 50.0, 1.0}, {"h", "W/K", "normal", 1.0, 1.0, 0.01, 50.0}};
+  plant.states = {{"T", "K", "temperature", "(P - h*(T - room))/C", "y", "", 1}};
+  plant.noise.std = 0.1;
+  double body = 30.0;
+  const Dataset data =
+      test::DataOf({.rows = 1500,
+                    .noise = 0.1,
+                    .seed = 6,
+                    .drive = [](double t) { return 40.0 * std::max(0.0, std::sin(0.02 * t)); },
+                    .advance = [&](double u, double step) { body += step * (u - 1.1 * (body - 22.0)) / 45.0; },
+                    .shown = [&] { return body; },
+                    .dt = 1.0});
+  const Ladder ladder = ClimbWith({"output_bias", "output_drift"}, data, plant);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.rungs[0].as_if, ::testing::HasSubstr("room were 2"));
+}
+
 TEST(Climb, TheNoiseOfTheSampleThatAnIntegratorBeginsWithIsNoOffset) {
   // A cart whose place is measured: it begins at the first sample, and what this is off stays to the end.
   PlantDescription plant;

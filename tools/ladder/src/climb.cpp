@@ -8,6 +8,7 @@
 #include <set>
 
 #include "comparison.hpp"
+#include "constants.hpp"
 #include "curves.hpp"
 #include "derived_noise.hpp"
 #include "free_starts.hpp"
@@ -53,14 +54,16 @@ struct Before {
 
 /// What else may explain what an effect seems to.
 struct Rivals {
+  Constants constants;
   DerivedNoise noise;
   Curves curves;
   Before before;
 
-  /// @param exact  It leaves noise alone, so that no curve has another shape. Noise may still be what it explains, or
-  ///               an error of what was named before.
+  /// @param exact  It leaves noise alone, so that no curve has another shape. A constant may still be off, or noise be
+  ///               what it explains, or an error of what was named before.
   [[nodiscard]] std::optional<Rival> Of(const Contender& c, bool exact, bool smaller_part) {
-    std::optional<Rival> rival = noise.RivalOf(c);
+    std::optional<Rival> rival = constants.RivalOf(c);
+    if (!rival) rival = noise.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
     if (rival || !before.Dwarfs(c)) return rival;
     if (const Candidate* like = before.Like(c))
@@ -240,7 +243,10 @@ Ladder Climb(const ClimbRequest& request) {
                     ladder.view,
                     floor,
                     open,
-                    {{ladder.plant, data, ladder.view, base}, {ladder.plant, data, ladder.view, base, scales}, {}}};
+                    {{request.plant->description(), ladder.plant, data, ladder.view, base, scales},
+                     {ladder.plant, data, ladder.view, base},
+                     {ladder.plant, data, ladder.view, base, scales},
+                     {}}};
     Before& before = hearing.rivals.before;
     for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
     before.explained = std::pow(ladder.base.fit.error_sd / base.fit.error_sd, 2) - 1.0;

@@ -104,6 +104,7 @@ struct ClimbRequest {
 ///    less on smoother signals, of those that are rates of others: their noise is what is unexplained. And an effect of
 ///    another family that is less than a third of what was named before is ruled out where it acts like that, or by a
 ///    curve that explains as much and follows what that reads.
+///    And so it is where a constant of the plant explains as much with another value, up to 5 % away.
 /// 5. Confirmed. What is named is withdrawn where the rows kept apart do not show half of its gain, or cannot be
 ///    predicted with it, unless they can with the next one, too; and where a
 ///    later rung names it again in the same place and it is an effect of which two are pieces of a curve that is none
