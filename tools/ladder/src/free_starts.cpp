@@ -42,10 +42,10 @@ std::shared_ptr<const Plant> WithFreeStarts(const Trial& trial, const Dataset& d
   const DataScales scales = ScalesOf(data, own, noise);
   const auto begin_so = std::count_if(own.states.begin(), own.states.end(),
                                       [&](const StateDescription& state) { return state.start == own.output; });
-  const double most_of_run = begin_so > 1 ? kMostGuessed : kMostOfRun;
   std::set<std::string> felt;
   for (const StateDescription& state : own.states) {
-    if (state.start != own.output) continue;
+    const bool number = !state.start.empty() && state.start.find_first_not_of("0123456789.+-eE") == std::string::npos;
+    if (state.start != own.output && !number) continue;
     const identify::TrajectoryModel model(std::make_shared<const Plant>(Freed(own, {state.name}, scales)), data.series);
     Eigen::VectorXd theta = model.Start(), prediction;
     theta.head(trial.fit.theta.size()) = trial.fit.theta;
@@ -59,6 +59,7 @@ std::shared_ptr<const Plant> WithFreeStarts(const Trial& trial, const Dataset& d
     const double most = *std::max_element(change.begin(), change.end());
     std::size_t rows = change.size();
     while (rows > 0 && !(change[rows - 1] > kForgotten * most)) --rows;
+    const double most_of_run = !number && begin_so > 1 ? kMostGuessed : kMostOfRun;
     if (static_cast<double>(rows) > most_of_run * static_cast<double>(change.size())) felt.insert(state.name);
   }
   return felt.empty() ? nullptr : std::make_shared<const Plant>(Freed(own, felt, scales));
