@@ -33,8 +33,9 @@ const LetDescription* LetThatEndsWith(const PlantDescription& plant, const std::
   return nullptr;
 }
 
-/// Name of the constant that stands for a signal; added where it is not there. Drives are at their most: at rest a
-/// valve has no flow that two targets could be compared by.
+/// Name of the constant that stands for a signal; added where it is not there. Drives are at their most, and so is what
+/// goes to and fro: at rest a valve has no flow, and a rate is next to none in the mean, that two targets could be
+/// compared by.
 std::string ReferenceTo(const SignalDescription& signal, const DataScales& scales, PlantDescription* plant) {
   std::string name = Joined({kReference, signal.name});
   const auto is_it = [&name](const ConstantDescription& c) { return c.name == name; };
@@ -42,7 +43,8 @@ std::string ReferenceTo(const SignalDescription& signal, const DataScales& scale
   const auto found = scales.quantity.find(signal.name);
   const QuantityScale scale = found == scales.quantity.end() ? QuantityScale{} : found->second;
   const double most = std::fabs(scale.high) < std::fabs(scale.low) ? scale.low : scale.high;
-  plant->constants.push_back({name, ShortNumber(signal.role == "drive" ? most : scale.mean), signal.unit});
+  const bool to_and_fro = signal.role == "drive" || (scale.low < 0.0 && std::fabs(scale.mean) < scale.rms);
+  plant->constants.push_back({name, ShortNumber(to_and_fro ? most : scale.mean), signal.unit});
   return name;
 }
 

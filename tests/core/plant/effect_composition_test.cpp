@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "armcmc/expression/error.hpp"
@@ -251,6 +253,22 @@ TEST(EffectComposition, LeavesATargetAsItIsReadAndMovesTheLaw) {
       EXPECT_EQ(one.text, "u*(source - p)");
     }
   }
+}
+
+TEST(EffectComposition, ComparesTargetsThatGoToAndFroWhereTheyAreAtTheirMost) {
+  // At its mean a rate is next to nothing, and an effect that adds to it would leave no error, whatever the law says.
+  PlantDescription plant = Filled();
+  plant.modes = {{"always", "", "k*u*head", "r"}};
+  plant.parameters[0].unit = "1/s";
+  EffectEntry loss = OnInput("r", "signal", "r + c*p");
+  loss.forms[0].parameters[0].unit = "r/p";
+  loss.forms[0].needs.push_back(Need("p", "signal", ""));
+  loss.forms[0].needs[0].rate_of = "p";
+  const PlantDescription composed = Added(plant, loss);
+  const auto place = std::find_if(composed.constants.begin(), composed.constants.end(),
+                                  [](const ConstantDescription& c) { return c.name == "target_at_r"; });
+  ASSERT_NE(place, composed.constants.end());
+  EXPECT_GT(std::abs(place->value), 0.0);
 }
 
 TEST(EffectComposition, TakesNoLetOfThePlantForItsOwn) {

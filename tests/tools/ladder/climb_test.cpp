@@ -203,6 +203,116 @@ TEST(Climb, ASpringThatStiffensIsNotMadeOfPlays) {
   EXPECT_THAT(NamesOf(with.rungs[0]), ElementsAre("cubic_stiffness"));
 }
 
+TEST(Climb, ASpringThatActsThroughPlayIsNamed) {
+  // Play in front of the spring alone; mass and damper follow the position itself.
+  constexpr double kHalf = 0.015;  // m
+  double driven = 0.0;
+  const Dataset data = test::AxisData([&](const AxisSample& s) {
+    driven = std::clamp(driven, s.q - kHalf, s.q + kHalf);
+    return 1500.0 * driven;
+  });
+  PlantDescription plant = test::AxisPlant();
+  plant.law = "M*a + Fv*v + kq*q + off";
+  plant.parameters.push_back({"kq", "N/m", "normal", 1000.0, 1000.0, 0.0, 20000.0});
+  const Ladder ladder = ClimbWith({"backlash", "coulomb_friction", "presliding_friction", "hysteresis",
+                                   "viscous_friction", "cubic_stiffness", "sensor_lag"},
+                                  data, plant);
+  ASSERT_EQ(ladder.rungs.size(), 2u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("backlash"));
+  EXPECT_NEAR(ladder.final_trial.fit.theta[3], 1500.0, 60.0);
+}
+
+TEST(Climb, ASpringStiffensAboutAPlaceOfItsOwn) {
+  const Ladder ladder =
+      ClimbWith({"cubic_stiffness", "quadratic_stiffness", "cogging", "output_drift", "baseline_tilt"},
+                test::AxisData([](const AxisSample& s) { return 60000.0 * std::pow(s.q - 0.05, 3); }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cubic_stiffness"));
+  EXPECT_TRUE(ladder.complete);
+}
+
+TEST(Climb, WhatDoesTheSameWithMoreIsNoTie) {
+  // Beside a constant of the law an offset of one stroke is dry friction, and so is adhesion that reaches far.
+  PlantDescription plant = test::AxisPlant();
+  plant.law = "M*a + Fv*v + kq*q + off";
+  plant.parameters.push_back({"kq", "N/m", "normal", 1000.0, 1000.0, 0.0, 20000.0});
+  const Ladder ladder =
+      ClimbWith({"coulomb_friction", "stroke_offset", "adhesion"},
+                test::AxisData([](const AxisSample& s) { return 400.0 * s.q + 20.0 * std::tanh(s.v / 0.02); }), plant);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
+}
+
+TEST(Climb, AConstantThatIsOffIsNoEffect) {
+  // A body that cools in a room which is half a degree warmer than the plant says, and not a thermometer that is off.
+  PlantDescription plant;
+  plant.name = "body";
+  plant.output = "y";
+  plant.law = "T";
+  plant.signals = {{"P", "W", "drive", ""}, {"y", "K", "temperature", ""}};
+  plant.constants = {{"room", 21.5, "K"}};
+  plant.parameters = {{"C", "J/K", "lognormal", 50.0, 1.0}, {"h", "W/K", "normal", 1.0, 1.0, 0.01, 50.0}};
+  plant.states = {{"T", "K", "temperature", "(P - h*(T - room))/C", "y", "", 1}};
+  plant.noise.std = 0.1;
+  double body = 30.0;
+  const Dataset data =
+      test::DataOf({.rows = 1500,
+                    .noise = 0.1,
+                    .seed = 6,
+                    .drive = [](double t) { return 40.0 * std::max(0.0, std::sin(0.02 * t)); },
+                    .advance = [&](double u, double step) { body += step * (u - 1.1 * (body - 22.0)) / 45.0; },
+                    .shown = [&] { return body; },
+                    .dt = 1.0});
+  const Ladder ladder = ClimbWith({"output_bias", "output_drift"}, data, plant);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.rungs[0].as_if, ::testing::HasSubstr("room were 2"));
+}
+
+TEST(Climb, TheNoiseOfTheSampleThatAnIntegratorBeginsWithIsNoOffset) {
+  // A cart whose place is measured: it begins at the first sample, and what this is off stays to the end.
+  PlantDescription plant;
+  plant.name = "cart";
+  plant.output = "y";
+  plant.law = "x";
+  plant.signals = {{"u", "V", "drive", ""}, {"y", "m", "position", ""}};
+  plant.parameters = {{"K", "m/(s^2 V)", "normal", 2.0, 1.0, 0.01, 20.0}, {"b", "1/s", "normal", 2.0, 2.0, 0.0, 50.0}};
+  plant.states = {{"x", "m", "position", "v", "y", "", 1}, {"v", "m/s", "velocity", "K*u - b*v", "0", "", 1}};
+  plant.noise.std = 0.02;
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    double x = 0.0, v = seed > 2 ? 1.5 : 0.0;  // it may come in at a speed, though the plant says that it rests
+    const Dataset data =
+        test::DataOf({.rows = 1500,
+                      .noise = 0.02,
+                      .seed = seed,
+                      .drive = [](double t) { return 4.0 * std::sin(1.3 * t) + 3.0 * std::sin(2.9 * t); },
+                      .advance =
+                          [&](double u, double step) {
+                            v += step * (1.5 * u - 1.2 * v);
+                            x += step * v;
+                          },
+                      .shown = [&] { return x; }});
+    const Ladder ladder = ClimbWith({"output_bias", "output_drift", "coulomb_friction", "drag"}, data, plant);
+    EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << seed;
+    EXPECT_TRUE(ladder.complete) << seed;
+    EXPECT_NEAR(ladder.base.fit.error_sd, 0.02, 0.002) << seed;
+  }
+}
+
+TEST(Climb, NoiseIsNoPartOfWhatIsUnexplained) {
+  // A hum as large as the noise takes less than half of the squared error, and most of what is not noise in it.
+  const Ladder ladder = ClimbWith({"periodic_disturbance", "coulomb_friction", "cubic_stiffness", "drag"},
+                                  test::AxisData([](const AxisSample& s) {
+                                    return 2.8 * std::sin(23.7 * s.t) + 1.2 * std::sin(60.0 * s.q + 4.0 * s.v);
+                                  }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("periodic_disturbance"));
+  EXPECT_GT(ladder.rungs[0].leader().alone.folds, 0.5);
+}
+
+TEST(Climb, AFrictionThatNeverSlidesIsNotNamed) {
+  // A spring, which presliding friction is as long as it does not slide: its level says nothing.
+  const Ladder ladder =
+      ClimbWith({"presliding_friction"}, test::AxisData([](const AxisSample& s) { return 400.0 * s.q; }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+}
+
 TEST(Climb, WhatDataKeptApartDoNotShowIsWithdrawn) {
   // A drift that ends where the held-out rows begin.
   Dataset data = test::AxisData([](const AxisSample& s) { return s.t < 14.0 ? 0.9 * s.t : 0.0; });

@@ -31,6 +31,7 @@ constexpr double kUnseenRatio = 0.15;    // gap over noise on the sealed data, b
 constexpr double kLeastCoverage = 0.85;  // of the 95 % bands on the sealed data, and
 constexpr double kMostWhiteness = 5.0;   // Ljung-Box over its degrees of freedom there, for a model that holds
 constexpr double kWorse = 1.005;         // times the error of the model before, that a named effect must not exceed
+constexpr double kSeen = 16.0;  // noise variances by which two models differ on the sealed data: these can judge
 
 /// Time of each step, and what is told of it.
 class Clock {
@@ -74,6 +75,15 @@ const Fitted* Control(const Finding& finding) {
   return nullptr;
 }
 
+/// Whether sealed data speak against an effect that is too small for a share of the gap to mean anything: a model that
+/// differs there from the one before by as many noise variances gains as many if it is right, and loses as many if it
+/// is not, give or take twice the root.
+bool SealedDataSpeakAgainst(const HeldOut& heldout, const Fitted& before, const Fitted& after, double variance) {
+  const Trial first = heldout.Try(before), second = heldout.Try(after);
+  const double seen = (first.whitened - second.whitened).squaredNorm() / variance;
+  return seen > kSeen && second.whitened.squaredNorm() >= first.whitened.squaredNorm();
+}
+
 /// Sealed data may take a name back, never give one: a hypothesis that does not hold on them is another formula of the
 /// same effects, or no name at all.
 void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds& limits, Diagnosis* diagnosis,
@@ -85,7 +95,12 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
   };
   const auto holds = [&](const CandidatePtr& c) {
     const GapSummary gap = closed(c);
-    if (gap.gap_ratio < kUnseenRatio) return gap.after.rmse < kWorse * gap.before.rmse;
+    if (gap.gap_ratio < kUnseenRatio) {
+      const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
+      const Fitted& after = c->granted ? c->granted->with : c->fit;
+      return gap.after.rmse < kWorse * gap.before.rmse &&
+             !SealedDataSpeakAgainst(heldout, before, after, diagnosis->look->fitter->whitener().s2);
+    }
     // What is granted bends to the first part; on the rest it errs, and the effect beside it is judged by what it adds.
     if (c->granted) return gap.closed_low > 0.0 && gap.closed_fraction > limits.at_least_closed;
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;

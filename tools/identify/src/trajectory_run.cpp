@@ -190,9 +190,14 @@ Eigen::Index TrajectoryModel::RowsToForget(const Eigen::VectorXd& theta, double 
   // Lane 0 as it is, lane s + 1 with another start of state s.
   std::vector<Lanes> offset(num_states_, Lanes{});
   const Eigen::MatrixXd states = num_states_ > 0 ? States(theta) : Eigen::MatrixXd();
+  const PlantDescription& described = plant_->description();
+  const bool several =
+      std::count_if(described.states.begin(), described.states.end(),
+                    [&](const StateDescription& state) { return state.start == described.output; }) > 1;
   bool any = false;
   for (std::size_t s = 0; s < num_states_; ++s) {
-    if (!plant_->graph().IsNumber(plant_->states()[s].start)) continue;
+    const bool guessed = several && described.states[s].start == described.output;
+    if (!guessed && !plant_->graph().IsNumber(plant_->states()[s].start)) continue;
     const double rms =
         std::sqrt(states.col(static_cast<Eigen::Index>(s)).squaredNorm() / static_cast<double>(num_rows()));
     offset[s][s + 1] = rms;

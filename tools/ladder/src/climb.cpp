@@ -8,8 +8,10 @@
 #include <set>
 
 #include "comparison.hpp"
+#include "constants.hpp"
 #include "curves.hpp"
 #include "derived_noise.hpp"
+#include "free_starts.hpp"
 #include "held_out.hpp"
 #include "rung.hpp"
 
@@ -52,14 +54,16 @@ struct Before {
 
 /// What else may explain what an effect seems to.
 struct Rivals {
+  Constants constants;
   DerivedNoise noise;
   Curves curves;
   Before before;
 
-  /// @param exact  It leaves noise alone, so that no curve has another shape. Noise may still be what it explains, or
-  ///               an error of what was named before.
+  /// @param exact  It leaves noise alone, so that no curve has another shape. A constant may still be off, or noise be
+  ///               what it explains, or an error of what was named before.
   [[nodiscard]] std::optional<Rival> Of(const Contender& c, bool exact, bool smaller_part) {
-    std::optional<Rival> rival = noise.RivalOf(c);
+    std::optional<Rival> rival = constants.RivalOf(c);
+    if (!rival) rival = noise.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
     if (rival || !before.Dwarfs(c)) return rival;
     if (const Candidate* like = before.Like(c))
@@ -199,6 +203,14 @@ Ladder Climb(const ClimbRequest& request) {
   ladder.noise_floor = request.known_noise > 0.0
                            ? request.known_noise
                            : request.noise_over_differences * NoiseFloor(data, SmoothBut(base), base.model->active());
+  if (std::shared_ptr<const Plant> freed = WithFreeStarts(base, data, ladder.noise_floor)) {
+    Eigen::VectorXd theta = identify::TrajectoryModel(freed, data.series).Start();
+    theta.head(base.fit.theta.size()) = base.fit.theta;
+    if (Trial free = Refine(freed, data, theta); free.fit.valid) {
+      ladder.plant = std::move(freed);
+      base = std::move(free);
+    }
+  }
   ladder.base = base;
   std::set<std::string> families;
   int again = 2;  // rungs that begin anew from a better fit
@@ -231,7 +243,10 @@ Ladder Climb(const ClimbRequest& request) {
                     ladder.view,
                     floor,
                     open,
-                    {{ladder.plant, data, ladder.view, base}, {ladder.plant, data, ladder.view, base, scales}, {}}};
+                    {{request.plant->description(), ladder.plant, data, ladder.view, base, scales},
+                     {ladder.plant, data, ladder.view, base},
+                     {ladder.plant, data, ladder.view, base, scales},
+                     {}}};
     Before& before = hearing.rivals.before;
     for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
     before.explained = std::pow(ladder.base.fit.error_sd / base.fit.error_sd, 2) - 1.0;

@@ -5,7 +5,7 @@
 namespace armcmc::ladder {
 
 inline constexpr double kLeastGain = 0.1;   // share of the squared error that a named effect must remove
-inline constexpr double kLargerPart = 0.5;  // share that the first effect of a family may leave
+inline constexpr double kLargerPart = 0.5;  // share, beside the noise, that the first effect of a family may leave
 inline constexpr double kFarBetter = 2.0;   // factor by which a larger effect must beat a simpler one
 
 /// Error of a contender on left-out rows, relative to its base model.

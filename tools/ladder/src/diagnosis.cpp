@@ -10,6 +10,7 @@
 #include "armcmc/ladder/drift.hpp"
 #include "armcmc/support/plant_effects.hpp"
 #include "armcmc/support/program.hpp"
+#include "free_starts.hpp"
 #include "held_out.hpp"
 #include "one_equation.hpp"
 #include "run_along.hpp"
@@ -51,9 +52,11 @@ Diagnosis DiagnoseEquation(const DiagnosisRequest& request, Dataset* data) {
 
 void FollowUp(const DiagnosisRequest& request, const Dataset& data, Diagnosis* diagnosis) {
   const Ladder& ladder = diagnosis->ladder;
-  const std::size_t own = request.plant->plant.description().parameters.size();
-  diagnosis->before = Tuned(request.plant->plant.description(), own, ladder.base, ladder.view.data.training);
-  diagnosis->after = Tuned(ladder.plant->description(), own, ladder.final_trial, ladder.view.data.training);
+  const PlantDescription& plant = request.plant->plant.description();
+  const std::size_t own = plant.parameters.size();
+  diagnosis->before = Tuned(plant, own, ladder.base, ladder.view.data.training);
+  diagnosis->after =
+      Tuned(WithOwnStarts(ladder.plant->description(), plant), own, ladder.final_trial, ladder.view.data.training);
   const bool named = NumNamed(ladder) > 0;
   if (named && !diagnosis->after.held.empty())
     diagnosis->result.notes.push_back(

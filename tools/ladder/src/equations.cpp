@@ -4,6 +4,7 @@
 #include <set>
 
 #include "armcmc/expression/syntax.hpp"
+#include "free_starts.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -52,16 +53,6 @@ PlantDescription Pruned(PlantDescription plant) {
 double SizeOf(const std::string& name, const DataScales& scales) {
   const auto found = scales.quantity.find(name);
   return found == scales.quantity.end() ? 1.0 : found->second.rms;
-}
-
-/// The start is known up to an error about 0.
-void FreeStart(StateDescription* state, double sd, PlantDescription* plant) {
-  ParameterDescription error;
-  error.name = state->name + "_start";
-  error.unit = state->unit;
-  error.sd = sd;
-  state->start = "(" + state->start + ") + " + error.name;
-  plant->parameters.push_back(std::move(error));
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ constexpr double kBeside = 0.95;       // squared error that a name reaches wher
 constexpr double kFarBeside = 0.8;     // or in one, losing in none, where few events show it or bending feigns it
 constexpr double kLeavesAsMuch = 1.5;  // times what the named one leaves: kin that are not excluded
 constexpr double kLoses = 1.1;         // squared error in regions that says: it is not that
+constexpr double kSame = 0.02;         // of the square of what one adds: the other adds the same
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
 
@@ -73,6 +74,12 @@ bool IsTold(const View& view, const Contender& c) {
   return !any;
 }
 
+/// Of the squared error of a model what is noise: as neighbouring samples tell it, but no more than a flexible function
+/// leaves.
+double NoiseIn(const View& view, const Trial& trial, double floor) {
+  return std::min(floor * floor, Square(trial) * std::clamp(1.0 - FlexibleGain(view, trial), 0.0, 1.0));
+}
+
 /// One where amplitudes alone are sought, which vanish at 0 and in which laws are linear; more where a shape is.
 std::size_t StartsFor(const Contender& c) {
   constexpr std::size_t kOfShape = 8;
@@ -104,6 +111,27 @@ void ForEachSample(const Rung& rung, const std::vector<std::size_t>& among, See 
     for (std::size_t k = 0; k < among.size(); ++k) squares[k] = total(rung.contenders[among[k]].trial.stretches);
     see(total(rung.base.stretches), squares);
   }
+}
+
+/// Signals and states that an effect needs.
+std::set<std::string> NeededBy(const Contender& c) {
+  std::set<std::string> names;
+  for (const EffectNeed& need : c.candidate.form().needs) names.insert(c.candidate.binding.symbols.at(need.name));
+  return names;
+}
+
+/// Whether an effect does the same as another one in the same slot and needs more for it: parameters, or quantities.
+/// Adhesion that reaches farther than the motion is an offset of one stroke, and this, where the law has a constant, is
+/// dry friction.
+bool IsTheSameWithMore(const View& view, const Trial& base, const Contender& c, const Contender& simple) {
+  if (c.candidate.form().terms.front().slot != simple.candidate.form().terms.front().slot) return false;
+  const std::set<std::string> needs = NeededBy(c), fewer = NeededBy(simple);
+  if (fewer.empty() || !std::includes(needs.begin(), needs.end(), fewer.begin(), fewer.end())) return false;
+  const int parameters = NumParameters(c), least = NumParameters(simple);
+  if (parameters < least || (parameters == least && needs.size() == fewer.size())) return false;
+  const Eigen::VectorXd apart = (c.trial.fit.prediction - simple.trial.fit.prediction)(view.looked_at);
+  const Eigen::VectorXd added = (simple.trial.fit.prediction - base.fit.prediction)(view.looked_at);
+  return apart.squaredNorm() < kSame * added.squaredNorm();
 }
 
 /// Share of bootstrap samples in which the first of those named is the best of them.
@@ -243,8 +271,9 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
     const bool gains = c.alone.folds < 1.0 - kLeastGain && c.gain_share >= (families.empty() ? kLikely : kSure);
     // A law that is a little off everywhere can be bent by many effects, each a little. What is really missing takes
     // the larger part of what is unexplained, or leaves nothing.
-    c.larger_part = before * c.alone.folds < kLargerPart || families.contains(c.candidate.entry->family) ||
-                    !LeavesMore(view, c.trial, floor);
+    const double noise = before * NoiseIn(view, c.trial, floor) / Square(rung->base);
+    c.larger_part = before * c.alone.folds - noise < kLargerPart * (1.0 - noise) ||
+                    families.contains(c.candidate.entry->family) || !LeavesMore(view, c.trial, floor);
     const bool elsewhere = c.alone.blocks < 1.0 && c.alone.regions < kLoses;
     const std::array<double, 3> bent{c.beside.folds, c.beside.blocks, c.beside.regions};
     const auto below = [&](double limit) {
@@ -298,6 +327,11 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     if ((!equal && !larger && !kin) || !families.insert(family).second) continue;
     rung->named.push_back(i);
   }
+  const std::vector<std::size_t> tied = rung->named;
+  std::erase_if(rung->named, [&](std::size_t i) {
+    return std::any_of(tied.begin(), tied.end(),
+                       [&](std::size_t k) { return IsTheSameWithMore(view, rung->base, all[i], all[k]); });
+  });
   // Which of them it is, is open, and nothing follows that would refine it: of each its best form, the one that
   // predicts best first.
   if (rung->named.size() > 1)

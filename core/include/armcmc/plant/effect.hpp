@@ -53,7 +53,8 @@ struct EffectConstant {
 ///
 /// What a mode explains instead of the output, its target T, is made of signals alone and stays so. Where an input or a
 /// constant in it is replaced, which makes T' of it, the law explains T with T - (T' - law) S: the error is that of law
-/// against T'. S is T / T' at one place, inputs with the role "drive" at their most and other signals at their mean:
+/// against T'. S is T / T' at one place, inputs with the role "drive", and signals that vary by more than their mean,
+/// at their most, other signals at their mean:
 /// without it an effect that makes T' small would leave a small error with a law that is small. Such a mode goes on to
 /// be chosen by what was measured.
 struct EffectTerm {

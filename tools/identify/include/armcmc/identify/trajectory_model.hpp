@@ -66,8 +66,9 @@ class TrajectoryModel {
   [[nodiscard]] bool Linearise(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian,
                                const std::vector<Eigen::Index>* only = nullptr) const;
   /// Rows behind the beginning of a run after which a wrong start of the states that begin with a mere number has at
-  /// most `share` of its largest effect on the law; a start that is off by the state's rms. 0: there are no such
-  /// states. The length of the first run: never.
+  /// most `share` of its largest effect on the law; a start that is off by the state's rms. Where several states begin
+  /// with the measured output, which is one of them at most, also of those. 0: there are no such states. The length of
+  /// the first run: never.
   [[nodiscard]] Eigen::Index RowsToForget(const Eigen::VectorXd& theta, double share) const;
   /// [row][state] of a parameter vector; not finite where it diverges.
   [[nodiscard]] Eigen::MatrixXd States(const Eigen::VectorXd& theta) const;

@@ -87,7 +87,7 @@ struct ClimbRequest {
 ///    - does not increase the error when long blocks or whole regions are left out;
 ///    - gains also in combination with a flexible function: 5 % in two of the three kinds of groups, or 20 % in one
 ///    without losing in the others;
-///    - removes more than half of the unexplained error, alone or together with the next effect, unless its family has
+///    - removes more than half of the error that is not noise, alone or together with the next effect, unless its family has
 ///    already been named or only noise remains; and one of its amplitudes is more than two standard deviations from
 ///    zero.
 /// 2. Simplest first. Among the candidates that close at least 95 % of what the best one closes, those with the fewest
@@ -105,7 +105,8 @@ struct ClimbRequest {
 ///    curve reproduces the effect's prediction up to a tenth of the squared error that the effect leaves; but never an
 ///    effect that needs the next one to remove half of the error, because one curve is simpler than two effects. An
 ///    effect is also ruled out if the unextended model leaves less error on smoother versions of the derived signals,
-///    because then the misfit is their noise. And an effect of another family that is smaller than a third of those
+///    because then the misfit is their noise, or if another value of a constant of the plant, up to 5 % away, explains
+///    as much. And an effect of another family that is smaller than a third of those
 ///    named before is ruled out if it acts like one of them, or if a curve of a quantity that one of them reads
 ///    explains as much.
 /// 5. Confirmation. A name is withdrawn if the held-out rows do not show half of its gain, or if the model diverges on
