@@ -29,12 +29,12 @@ SnapshotSaver::SnapshotSaver(std::string path, Snapshot start, rt::SnapshotHandO
                              OnFailure on_failure)
     : path_(std::move(path)),
       snapshot_(std::move(start)),
+      adjusted_(rt::SplitParts(snapshot_.adjusted, parts->size())),
+      executed_(rt::SplitParts(snapshot_.executed, parts->size())),
       resumed_from_(snapshot_.seq),
       parts_(parts),
       say_(std::move(say)),
-      on_failure_(std::move(on_failure)),
-      adjusted_(rt::SplitParts(snapshot_.adjusted, parts->size())),
-      executed_(rt::SplitParts(snapshot_.executed, parts->size())) {
+      on_failure_(std::move(on_failure)) {
   adjusted_.resize(static_cast<std::size_t>(parts->size()));  // empty where there is nothing to go on from
   executed_.resize(static_cast<std::size_t>(parts->size()));
 }
