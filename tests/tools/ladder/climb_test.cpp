@@ -230,17 +230,6 @@ TEST(Climb, ASpringStiffensAboutAPlaceOfItsOwn) {
   EXPECT_TRUE(ladder.complete);
 }
 
-TEST(Climb, WhatDoesTheSameWithMoreIsNoTie) {
-  // Beside a constant of the law an offset of one stroke is dry friction, and so is adhesion that reaches far.
-  PlantDescription plant = test::AxisPlant();
-  plant.law = "M*a + Fv*v + kq*q + off";
-  plant.parameters.push_back({"kq", "N/m", "normal", 1000.0, 1000.0, 0.0, 20000.0});
-  const Ladder ladder =
-      ClimbWith({"coulomb_friction", "stroke_offset", "adhesion"},
-                test::AxisData([](const AxisSample& s) { return 400.0 * s.q + 20.0 * std::tanh(s.v / 0.02); }), plant);
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
-}
-
 TEST(Climb, AConstantThatIsOffIsNoEffect) {
   // A body that cools in a room which is half a degree warmer than the plant says, and not a thermometer that is off.
   PlantDescription plant;
@@ -294,23 +283,6 @@ TEST(Climb, TheNoiseOfTheSampleThatAnIntegratorBeginsWithIsNoOffset) {
     EXPECT_TRUE(ladder.complete) << seed;
     EXPECT_NEAR(ladder.base.fit.error_sd, 0.02, 0.002) << seed;
   }
-}
-
-TEST(Climb, NoiseIsNoPartOfWhatIsUnexplained) {
-  // A hum as large as the noise takes less than half of the squared error, and most of what is not noise in it.
-  const Ladder ladder = ClimbWith({"periodic_disturbance", "coulomb_friction", "cubic_stiffness", "drag"},
-                                  test::AxisData([](const AxisSample& s) {
-                                    return 2.8 * std::sin(23.7 * s.t) + 1.2 * std::sin(60.0 * s.q + 4.0 * s.v);
-                                  }));
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("periodic_disturbance"));
-  EXPECT_GT(ladder.rungs[0].leader().alone.folds, 0.5);
-}
-
-TEST(Climb, AFrictionThatNeverSlidesIsNotNamed) {
-  // A spring, which presliding friction is as long as it does not slide: its level says nothing.
-  const Ladder ladder =
-      ClimbWith({"presliding_friction"}, test::AxisData([](const AxisSample& s) { return 400.0 * s.q; }));
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
 }
 
 TEST(Climb, WhatDataKeptApartDoNotShowIsWithdrawn) {
