@@ -102,9 +102,9 @@ struct Tape {
   int once = 0;  ///< The first instructions need no sample: they run once a tile.
   int num_parameters = 0;
   int num_states = 0;
-  int num_registers = 0;
-  int num_scalars = 0;
-  int num_results = 0;
+  int num_registers = 0;                               ///< At most kMaxTapeRegisters, parameters and states included.
+  int num_scalars = 0;                                 ///< At most kMaxTapeScalars.
+  int num_results = 0;                                 ///< At most kMaxTapeResults.
   std::array<std::uint8_t, kMaxTapeResults> result{};  ///< Registers.
 
   TapeShape shape = TapeShape::kGeneral;  ///< Of the first result.
@@ -134,6 +134,7 @@ struct TapeScalars {
   int stride = 0;  ///< Scalars of one sample.
   alignas(64) std::array<double, static_cast<std::size_t>(kMaxPackSamples) * kMaxTapeScalars> value;
 
+  /// Scalars of sample n, `stride` of them. @pre 0 <= n < kMaxPackSamples.
   [[nodiscard]] const double* Row(int n) const noexcept { return value.data() + n * stride; }
   [[nodiscard]] double* Row(int n) noexcept { return value.data() + n * stride; }
 };
