@@ -18,7 +18,7 @@ enum class SymbolKind : std::uint8_t {
   kParameter,  ///< Sampled.
   kState,      ///< Integrated from its rate.
   kLet,        ///< Another expression.
-  kGiven,      ///< A number that somebody else works out for every sample; in graphs only.
+  kGiven,      ///< A number that is computed elsewhere for every sample; in graphs only.
   kInterval,   ///< Seconds between samples; in graphs only.
 };
 

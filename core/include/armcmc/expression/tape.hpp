@@ -69,8 +69,8 @@ enum class TapeOp : std::uint8_t {
   kPast,    ///< R = what was kept R a samples before place S b of its line
 };
 
-/// Where R a is the result of the instruction before it stays where arithmetic is done, and where nobody else needs a
-/// result it never reaches a register: in a chain of operations memory is what costs.
+/// If R a is the result of the previous instruction, it is still in a processor register and is not loaded; a result
+/// that no later instruction reads is not stored. In a chain of operations the memory accesses are what costs.
 struct TapeInstruction {
   TapeOp op = TapeOp::kCopy;
   bool loads = false;   ///< R a comes from its register; else it is there already, or there is none.
@@ -110,7 +110,7 @@ struct Tape {
   TapeShape shape = TapeShape::kGeneral;  ///< Of the first result.
   TapeSum factor, rest;                   ///< kLinear: `rest` alone.
   std::uint8_t exponent = 0, log2 = 0;    ///< kPower: parameter and scalar.
-  double largest_exponent = 1e300;        ///< Its magnitude, as far as whoever made the tape knows it.
+  double largest_exponent = 1e300;        ///< Upper bound of its magnitude, if known when the tape is made.
 
   /// Instructions a sample.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(code.size()) - once; }
