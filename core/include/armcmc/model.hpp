@@ -35,7 +35,7 @@ struct ReportedInfo {
 /// Made at set-up and constant from then on, so that all stages may read it at the same time. The arrays are used up to
 /// the number beside them.
 struct ModelInfo {
-  std::string_view name;         ///< As in configurations and messages, "hunt_crossley".
+  std::string_view name;         ///< As in configurations and messages.
   PlantNumber plant;             ///< kDescribed for a plant file.
   std::string_view target_unit;  ///< Unit of what is regressed.
   int num_parameters;            ///< Dimension of theta, 1 to kMaxParams.
