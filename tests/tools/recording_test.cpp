@@ -183,12 +183,12 @@ TEST_F(RecordingFile, KnowsWhatInterpolationDoesToNoise) {
     third += std::pow(y[n] - 3.0 * y[n - 1] + 3.0 * y[n - 2] - y[n - 3], 2) / 20.0;
   }
   const auto count = static_cast<double>(y.size() - 3);
-  EXPECT_LT(r.noise_told, 0.9 * r.noise_kept);
-  EXPECT_NEAR(r.noise_kept, std::sqrt(square / count) / 4.0, 0.02);
-  EXPECT_NEAR(r.noise_told, std::sqrt(third / count) / 4.0, 0.02);
+  EXPECT_LT(r.noise_in_differences, 0.9 * r.noise_in_samples);
+  EXPECT_NEAR(r.noise_in_samples, std::sqrt(square / count) / 4.0, 0.02);
+  EXPECT_NEAR(r.noise_in_differences, std::sqrt(third / count) / 4.0, 0.02);
   WriteCsv(500);
-  EXPECT_EQ(Read().noise_kept, 1.0);
-  EXPECT_EQ(Read().noise_told, 1.0);
+  EXPECT_EQ(Read().noise_in_samples, 1.0);
+  EXPECT_EQ(Read().noise_in_differences, 1.0);
 }
 
 TEST_F(RecordingFile, RowsAreThoseThatAreAskedFor) {

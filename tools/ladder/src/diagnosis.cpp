@@ -36,7 +36,7 @@ Diagnosis DiagnoseEquation(const DiagnosisRequest& request, Dataset* data) {
   }
   climb.data = *data;
   climb.known_noise = request.recording.smoothed_noise;
-  climb.noise_over_differences = request.recording.noise_kept / request.recording.noise_told;
+  climb.noise_over_differences = request.recording.noise_in_samples / request.recording.noise_in_differences;
   // The rows on which the law was judged are judged here as well: a load may come late.
   constexpr std::size_t kSecond = 16'000;
   if (!request.equation.empty()) climb.most_simulated = kSecond;

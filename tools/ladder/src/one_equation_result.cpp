@@ -125,7 +125,7 @@ class Teller {
       result_.gap.noise_floor = differences;
       from = std::string("from differences of neighbouring samples") +
              (request_.recording.smoothed_noise > 0.0 ? " before the filter, "
-              : request_.recording.noise_told < 1.0   ? ", which share noise where they are interpolated, "
+              : request_.recording.noise_in_differences < 1.0   ? ", which share noise where they are interpolated, "
                                                       : ", ") +
              Number(differences);
     }
