@@ -15,8 +15,10 @@
 namespace armcmc::support::recording_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr double kDt = 0.001;
@@ -136,8 +138,13 @@ TEST_F(RecordingFile, AColumnMayBeAnExpression) {
                            "F = \"volt\"\n");
   EXPECT_NEAR(r.signals[0].value[50], -1e-3 * (100.0 * std::sin(2.0 * M_PI * 0.25) + 0.55), 1e-12);
   EXPECT_NEAR(r.signals[3].value[50], 0.55, 1e-12);
-  EXPECT_THAT(ErrorOf("", "[columns]\nt = { value = \"tme_ms\" }\nq = \"pos_mm\"\nF = \"volt\"\n"),
-              HasSubstr("recording.toml:5:16: columns.t.value = \"tme_ms\": unknown name"));
+  EXPECT_THAT(
+      ErrorOf("", "[columns]\nt = { value = \"tme_ms\" }\nq = \"pos_mm\"\nF = \"volt\"\n"),
+      AllOf(HasSubstr("recording.toml:5:16: columns.t.value = \"tme_ms\": unknown name \"tme_ms\" (did you mean "
+                      "time_ms?); columns of "),
+            HasSubstr("that an expression can name: time_ms")));
+  EXPECT_THAT(ErrorOf("", "[columns]\nt = { value = \"tme(time_ms)\" }\nq = \"pos_mm\"\nF = \"volt\"\n"),
+              AllOf(HasSubstr("unknown function \"tme\""), Not(HasSubstr("did you mean"))));
 }
 
 TEST_F(RecordingFile, SegmentsAndGapsAreRuns) {
