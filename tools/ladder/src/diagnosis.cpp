@@ -60,8 +60,7 @@ void FollowUp(const DiagnosisRequest& request, const Dataset& data, Diagnosis* d
   const bool named = NumNamed(ladder) > 0;
   if (named && !diagnosis->after.held.empty())
     diagnosis->result.notes.push_back(
-        "constants in the new model, since these data do not tell them, they lie on a bound, or the estimator "
-        "samples no more: " +
+        "constants in the new model (not determined by these data, at a bound, or more than the estimator samples): " +
         JoinedWords(diagnosis->after.held, ", "));
   const auto seconds = [](auto since) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
