@@ -46,14 +46,16 @@ struct Arguments {
 };
 
 void Declare(CLI::App* app, Arguments* a) {
-  app->add_option("--model", a->model,
-                  "Plant file, or name of a bundled plant; or a model file (.toml) with effects found earlier")
-      ->capture_default_str();
+  auto* model = app->add_option("--model", a->model,
+                                "Plant file, or name of a bundled plant; or a model file (.toml) with effects found "
+                                "earlier")
+                    ->capture_default_str();
   auto* data =
       app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (see armcmc-model check)");
-  auto* recording =
-      app->add_option("--recording", a->recording, "Recording file, which maps the columns of a CSV to the signals")
-          ->excludes(data);
+  auto* recording = app->add_option("--recording", a->recording,
+                                    "Recording file: names the plant, and maps the columns of a CSV to its signals")
+                        ->excludes(data)
+                        ->excludes(model);
   app->add_option("--data-dir", a->data_dir, "Folder of the recording's CSV, if not that of the recording file")
       ->needs(recording);
   app->add_option("--heldout", a->heldout, "Holdout: CSV of another run; default: the last 30 % of --data");
@@ -74,7 +76,8 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--period-ms", a->period_ms, "Length of a pack, to measure the cost of the new model")
       ->check(CLI::Range(1.0, 10'000.0))
       ->capture_default_str();
-  app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows instead of stopping");
+  app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows of --data instead of stopping")
+      ->excludes(recording);
   app->add_flag("--no-pairs", a->no_pairs, "Look for single effects only, which is faster");
   app->footer(
       "Compares a model with measured data, finds where they disagree, names the missing effect, writes a model with\n"
