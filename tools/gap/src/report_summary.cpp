@@ -172,10 +172,10 @@ void AddEffect(const EffectFinding& effect, std::ostream& out) {
 /// Sums and products that the data determine of parameters that they do not determine one by one.
 void AddDetermined(const Result& result, std::ostream& out) {
   if (result.determined.empty()) return;
-  out << "<h3>Parameters that these data do not separate</h3>\n<p class=\"soft\">Some parameters are confounded: if "
-         "one "
-         "of them is larger and others are smaller or larger to match, the prediction is the same. Their values in the "
-         "model are one choice of many. The data determine the following.</p>\n<ul class=\"plain\">\n";
+  out << "<h3>Parameters that these data do not separate</h3>\n<p class=\"soft\">A change of one of them can be "
+         "compensated by others without any effect on the prediction, so that their values in the model are one choice "
+         "of "
+         "many. The data determine these combinations:</p>\n<ul class=\"plain\">\n";
   for (const Combination& c : result.determined) {
     const ParameterEstimate as_one{"", c.unit, c.value, c.sd};
     out << "<li><span class=\"mono\">" << EscapeHtml(c.text) << "</span> = <b>" << MeanText(as_one)

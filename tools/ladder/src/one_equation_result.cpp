@@ -52,11 +52,16 @@ Estimated Estimates(const Trial& trial, const std::vector<std::uint8_t>& rows) {
   return out;
 }
 
+std::string WithSd(double value, double sd, const std::string& unit) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "%.4g ± %.2g %s", value, sd, unit.c_str());
+  return text;
+}
+
 /// "Fc = 20.4 ± 0.1 N", or what Fc is confounded with.
 std::string InRung(const ParameterEstimate& p) {
-  const std::string value = p.name + " = " + Number(p.mean);
-  if (p.confounded_with.empty()) return value + " ± " + Number(p.sd) + " " + p.unit;
-  return value + " " + p.unit + ", confounded with " + JoinedWords(p.confounded_with, ", ");
+  if (p.confounded_with.empty()) return p.name + " = " + WithSd(p.mean, p.sd, p.unit);
+  return p.name + " = " + Number(p.mean) + " " + p.unit + ", confounded with " + JoinedWords(p.confounded_with, ", ");
 }
 
 std::string NameOf(const Contender& c) { return c.candidate.entry->name; }
@@ -183,9 +188,11 @@ class Teller {
       told.probability = rung.probability;
       told.provisional = rung.provisional;
       told.remainder_ratio = leader.trial.fit.error_sd / std::max(result_.gap.noise_floor, 1e-300);
-      const std::vector<ParameterEstimate> all = Estimates(leader.trial, training_).parameters;
-      for (std::size_t d = leader.candidate.first_fitted(); d < all.size(); ++d)
-        told.parameters.push_back(InRung(all[d]));
+      const Estimated all = Estimates(leader.trial, training_);
+      for (std::size_t d = leader.candidate.first_fitted(); d < all.parameters.size(); ++d)
+        told.parameters.push_back(InRung(all.parameters[d]));
+      for (const gap::Combination& c : all.determined)
+        told.parameters.push_back(c.text + " = " + WithSd(c.value, c.sd, c.unit));
       result_.ladder.push_back(told);
       AddFinding(leader, rung);
     }
