@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace armcmc::test::separation_test {
 namespace {
@@ -98,15 +99,23 @@ TEST(Separate, ALogarithmInASumIsTakenAboutTheFit) {
   EXPECT_NEAR(c.sd, 0.2 / 200.0, 1e-5);
 }
 
-TEST(Separate, WhatIsKnownToATenthNeedsNoCombination) {
+TEST(Separate, WhatIsKnownToHalfItsValueNeedsNoCombination) {
   const auto sum = [](double a, double b) {
     return Separate({{"a", "N", a}, {"b", "N", b}}, CovarianceOf(Matrix::Constant(1, 2, 1000.0), 1.0));
   };
   EXPECT_THAT(sum(100.0, 50.0).combinations, IsEmpty());
   // One that is much smaller is not known, and what it is confounded with is said of it alone.
-  const Separation small = sum(100.0, 2.0);
+  const Separation small = sum(100.0, 1.0);
   EXPECT_THAT(small.confounded_with, ElementsAre(IsEmpty(), ElementsAre("a")));
   EXPECT_THAT(small.combinations, SizeIs(1));
+}
+
+TEST(Separate, ASumOfManySaysLessThanTheStandardDeviation) {
+  std::vector<FittedParameter> parameters;
+  for (const char* name : {"a", "b", "c", "d"}) parameters.push_back({name, "V", 1.0});
+  const Separation separation = Separate(parameters, CovarianceOf(Matrix::Constant(1, 4, 50.0), 10.0));
+  EXPECT_THAT(separation.combinations, IsEmpty());
+  EXPECT_THAT(separation.confounded_with, ::testing::Each(IsEmpty()));
 }
 
 TEST(Separate, WhatIsHeldFixedTakesNoPart) {

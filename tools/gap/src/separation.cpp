@@ -12,9 +12,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kConfounded = 5.0;  // standard deviation over that with all others held fixed
-constexpr double kUncertain = 0.1;   // of the value: less is known well enough, whatever it correlates with
-constexpr double kRounding = 0.3;    // of the combination's standard deviation, that rounding one coefficient may add
+constexpr double kConfounded = 5.0;      // standard deviation over that with all others held fixed
+constexpr double kUncertain = 0.5;       // of the value: a smaller standard deviation says enough by itself
+constexpr std::size_t kMostMembers = 3;  // of a combination: a longer one says little
+constexpr double kRounding = 0.3;  // of the combination's standard deviation, that rounding one coefficient may add
 
 /// The covariance of the free parameters in units of their standard deviations with all others held fixed.
 struct Scaled {
@@ -147,7 +148,7 @@ Separation Separate(const std::vector<FittedParameter>& parameters, const Matrix
           Rounded(slope, kRounding * sd / spread);
       group.push_back(held[q]);
     }
-    if (std::none_of(group.begin(), group.end(), uncertain)) continue;
+    if (!uncertain(k) || group.size() < 2 || group.size() > kMostMembers) continue;
     separation.combinations.push_back(
         Combined(parameters, scaled.free[static_cast<std::size_t>(k)], coefficients, covariance));
     std::sort(group.begin(), group.end());

@@ -58,12 +58,6 @@ std::string WithSd(double value, double sd, const std::string& unit) {
   return text;
 }
 
-/// "Fc = 20.4 ± 0.1 N", or what Fc is confounded with.
-std::string InRung(const ParameterEstimate& p) {
-  if (p.confounded_with.empty()) return p.name + " = " + WithSd(p.mean, p.sd, p.unit);
-  return p.name + " = " + Number(p.mean) + " " + p.unit + ", confounded with " + JoinedWords(p.confounded_with, ", ");
-}
-
 std::string NameOf(const Contender& c) { return c.candidate.entry->name; }
 
 std::string InWords(std::string name) {
@@ -190,7 +184,8 @@ class Teller {
       told.remainder_ratio = leader.trial.fit.error_sd / std::max(result_.gap.noise_floor, 1e-300);
       const Estimated all = Estimates(leader.trial, training_);
       for (std::size_t d = leader.candidate.first_fitted(); d < all.parameters.size(); ++d)
-        told.parameters.push_back(InRung(all.parameters[d]));
+        if (const ParameterEstimate& p = all.parameters[d]; p.confounded_with.empty())
+          told.parameters.push_back(p.name + " = " + WithSd(p.mean, p.sd, p.unit));
       for (const gap::Combination& c : all.determined)
         told.parameters.push_back(c.text + " = " + WithSd(c.value, c.sd, c.unit));
       result_.ladder.push_back(told);

@@ -163,7 +163,7 @@ struct MapFigure {
 struct LadderRung {
   /// Names; the first was added. Several that are needed together: "a + b".
   std::vector<std::string> effects;
-  std::vector<std::string> parameters{};  ///< In words: "Fc = 20.4 ± 0.1 N".
+  std::vector<std::string> parameters{};  ///< What the data determine: "Fc = 20.4 ± 0.1 N", "a + b = ..".
   double closed_fraction = 0.0;           ///< Share of the gap closed by all rungs so far, on held-out data.
   double heldout_error = 0.0;             ///< Rms on held-out data, unit of the output.
   double probability = 0.0;               ///< Probability that an effect of this family is present.

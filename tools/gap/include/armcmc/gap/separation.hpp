@@ -33,8 +33,10 @@ struct Separation {
 ///
 /// which no change of theta_Q along the ridge alters. Coefficients are rounded as far as that leaves the combination
 /// determined; value and standard deviation are of the rounded one. Where all its parameters are fitted by logarithms,
-/// it is a product of powers; where some are, it is linearised about the fit. A parameter whose standard deviation is
-/// less than a tenth of its value is not reported, whatever it correlates with.
+/// it is a product of powers; where some are, it is linearised about the fit.
+///
+/// Only combinations of at most three parameters are reported, and only of an i whose standard deviation is more than
+/// half of its value: longer ones say little, and a smaller standard deviation says enough by itself.
 ///
 /// @param parameters  Of one fit.
 /// @param covariance  [parameter][parameter] Of the fitted coordinates. Zero where a parameter was held fixed.
