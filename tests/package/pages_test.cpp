@@ -70,6 +70,11 @@ TEST(Pages, ResultsAreMadeByTheCommandsThatTheyShow) {
   EXPECT_THAT(text,
               HasSubstr("$ armcmc-gap --recording tools/gap/recordings/excerpt/emps_excerpt.toml --out OUT/excerpt\n"));
   EXPECT_THAT(text, HasSubstr("Missing: coulomb friction, then asymmetric friction."));
+  // Friction in both directions, another for each of them, and an offset of the force: two sums are known, and printed.
+  EXPECT_THAT(text, HasSubstr("coulomb_friction Fc = "));
+  EXPECT_THAT(text, HasSubstr(" N, confounded with off, asymmetric_friction_Fp, asymmetric_friction_Fm\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("determined: asymmetric_friction_Fp \\+ off \\+ coulomb_friction_Fc = "
+                                             "[0-9.]+ \\+- 0[.0-9]+ N\n"));
   const Outcome usage = RunProgram(SourceDir() / "tools/results", {"nothing"});
   EXPECT_EQ(usage.code, 2);
 }

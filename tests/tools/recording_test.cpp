@@ -15,8 +15,10 @@
 namespace armcmc::support::recording_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr double kDt = 0.001;
@@ -136,8 +138,13 @@ TEST_F(RecordingFile, AColumnMayBeAnExpression) {
                            "F = \"volt\"\n");
   EXPECT_NEAR(r.signals[0].value[50], -1e-3 * (100.0 * std::sin(2.0 * M_PI * 0.25) + 0.55), 1e-12);
   EXPECT_NEAR(r.signals[3].value[50], 0.55, 1e-12);
-  EXPECT_THAT(ErrorOf("", "[columns]\nt = { value = \"tme_ms\" }\nq = \"pos_mm\"\nF = \"volt\"\n"),
-              HasSubstr("recording.toml:5:16: columns.t.value = \"tme_ms\": unknown name"));
+  EXPECT_THAT(
+      ErrorOf("", "[columns]\nt = { value = \"tme_ms\" }\nq = \"pos_mm\"\nF = \"volt\"\n"),
+      AllOf(HasSubstr("recording.toml:5:16: columns.t.value = \"tme_ms\": unknown name \"tme_ms\" (did you mean "
+                      "time_ms?); columns of "),
+            HasSubstr("that an expression can name: time_ms")));
+  EXPECT_THAT(ErrorOf("", "[columns]\nt = { value = \"tme(time_ms)\" }\nq = \"pos_mm\"\nF = \"volt\"\n"),
+              AllOf(HasSubstr("unknown function \"tme\""), Not(HasSubstr("did you mean"))));
 }
 
 TEST_F(RecordingFile, SegmentsAndGapsAreRuns) {
@@ -183,12 +190,12 @@ TEST_F(RecordingFile, KnowsWhatInterpolationDoesToNoise) {
     third += std::pow(y[n] - 3.0 * y[n - 1] + 3.0 * y[n - 2] - y[n - 3], 2) / 20.0;
   }
   const auto count = static_cast<double>(y.size() - 3);
-  EXPECT_LT(r.noise_told, 0.9 * r.noise_kept);
-  EXPECT_NEAR(r.noise_kept, std::sqrt(square / count) / 4.0, 0.02);
-  EXPECT_NEAR(r.noise_told, std::sqrt(third / count) / 4.0, 0.02);
+  EXPECT_LT(r.noise_in_differences, 0.9 * r.noise_in_samples);
+  EXPECT_NEAR(r.noise_in_samples, std::sqrt(square / count) / 4.0, 0.02);
+  EXPECT_NEAR(r.noise_in_differences, std::sqrt(third / count) / 4.0, 0.02);
   WriteCsv(500);
-  EXPECT_EQ(Read().noise_kept, 1.0);
-  EXPECT_EQ(Read().noise_told, 1.0);
+  EXPECT_EQ(Read().noise_in_samples, 1.0);
+  EXPECT_EQ(Read().noise_in_differences, 1.0);
 }
 
 TEST_F(RecordingFile, RowsAreThoseThatAreAskedFor) {

@@ -53,9 +53,9 @@ TEST(Subprocess, SeveralAtOnceEndEachByItself) {
   for (std::size_t i = 0; i < codes.size(); ++i) EXPECT_EQ(codes[i], static_cast<int>(i));
 }
 
-TEST(ProgramBeside, IsInTheFolderOfThisOne) {
+TEST(SiblingProgram, IsInTheFolderOfThisOne) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
-  EXPECT_EQ(ProgramBeside(self.filename().string()), self);
+  EXPECT_EQ(SiblingProgram(self.filename().string()), self);
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ class SnapshotWriter {
 
   /// Appends an arithmetic value in its own unit; sizeof(T) bytes.
   /// @rt No heap, no lock, no throw. O(1).
+  /// @tparam T  double, or an integer of fixed width; not bool.
   template <class T>
   void Put(const T& value) noexcept ARMCMC_NONBLOCKING {
     PutRow(&value, 1);
@@ -111,8 +112,9 @@ class SnapshotReader {
   }
 
   /// Adds a condition of the caller, such as a positive definite covariance: good() stays false if it does not hold.
+  /// @rt No heap, no lock, no throw. O(1).
   void Require(bool condition) noexcept ARMCMC_NONBLOCKING { good_ = good_ && condition; }
-  /// Whether everything read so far was valid.
+  /// Whether everything read so far was valid. @rt This and the following: no heap, no lock, no throw. O(1).
   [[nodiscard]] bool good() const noexcept { return good_; }
   /// Whether everything was read, and nothing was wrong.
   [[nodiscard]] bool finished() const noexcept { return good_ && at_ == in_.size(); }
@@ -128,6 +130,7 @@ class SnapshotReader {
     at_ += bytes;
   }
 
+  /// The first `at_` bytes have been read.
   std::span<const std::byte> in_;
   std::size_t at_ = 0;
   bool good_ = true;

@@ -22,6 +22,19 @@ TEST(Report, NamedTellsEffectGapAndParameter) {
   EXPECT_FALSE(Holds(html, "not in the catalogue. Nothing"));
 }
 
+TEST(Report, ConfoundedParametersHaveNoIntervalButTheirSumHas) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  EXPECT_FALSE(Holds(ReportHtml(result), "Parameters that these data do not separate"));
+  result.effects[0].parameters = {{"force", "N", 13.319, 16.4, {"pull & push"}}};
+  result.determined = {{"force + pull", {"force", "pull"}, 20.0251, 0.049, "N"}};
+  const std::string html = ReportHtml(result);
+  for (const char* words : {"<b>13.3&nbsp;N</b> <span class=\"soft\">(confounded with pull &amp; push)",
+                            "Parameters that these data do not separate", "force + pull</span> = <b>20.025&nbsp;N</b>",
+                            "(95 %: 19.929 to 20.121)"})
+    EXPECT_TRUE(Holds(html, words)) << words;
+  EXPECT_FALSE(Holds(html, "-18.8"));
+}
+
 TEST(Report, AmbiguousListsTheExplanationsAndTheExperimentThatWouldDecide) {
   const std::string html = ReportHtml(test::ExampleResult(Verdict::kAmbiguous));
   EXPECT_TRUE(Holds(html, "Probability that it is one of these: 97.9 %"));

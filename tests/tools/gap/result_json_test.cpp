@@ -44,6 +44,20 @@ TEST(ResultJson, NamesTheEffect) {
   EXPECT_EQ(effect.at("provisional"), false);
 }
 
+TEST(ResultJson, SaysWhatIsConfoundedAndWhatIsDetermined) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  EXPECT_EQ(ToJson(result).at("determined"), json::array());
+  result.effects[0].parameters[0].confounded_with = {"pull"};
+  result.determined = {{"force + pull", {"force", "pull"}, 20.0, 0.05, "N"}};
+  const json out = ToJson(result);
+  EXPECT_EQ(out.at("effects").at(0).at("parameters").at("force").at("confounded_with"), json::array({"pull"}));
+  EXPECT_EQ(out.at("determined").at(0), (json{{"combination", "force + pull"},
+                                              {"parameters", {"force", "pull"}},
+                                              {"mean", 20.0},
+                                              {"sd", 0.05},
+                                              {"unit", "N"}}));
+}
+
 TEST(ResultJson, SaysWhenAnEffectActs) {
   Result result = test::ExampleResult(Verdict::kNamed);
   const auto when = [&](When::Kind kind) {

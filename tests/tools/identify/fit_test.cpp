@@ -64,7 +64,7 @@ TEST(Fit, OfALinearLawIsRegularisedLeastSquares) {
       normal.ldlt().solve(precision * x.transpose() * y + prior.cwiseProduct(made.model->Start()));
   for (Eigen::Index d = 0; d < 3; ++d) EXPECT_NEAR(fit.theta[d], expected[d], 1e-4 * std::fabs(expected[d]));
   EXPECT_NEAR(fit.error_sd, 1.0, 0.08);
-  const VectorXd sd = StandardDeviations(*made.model, made.rows, fit);
+  const VectorXd sd = Covariance(*made.model, made.rows, fit).diagonal().cwiseSqrt();
   const VectorXd variance = normal.inverse().diagonal();
   for (Eigen::Index d = 0; d < 3; ++d) EXPECT_NEAR(sd[d], std::sqrt(variance[d]), 1e-3 * sd[d]);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,6 +34,26 @@ inline std::vector<std::string> NamesOf(const ladder::Rung& rung) {
   std::vector<std::string> names;
   for (const std::size_t i : rung.named) names.push_back(rung.contenders[i].candidate.entry->name);
   return names;
+}
+
+/// An axis that turns: angle, its rates, torque. 5 kg m^2, 9 N m s, over 5 rad.
+inline ladder::Dataset RotaryData(const std::function<double(double angle)>& hidden) {
+  constexpr double kPerMetre = 30.0;
+  ladder::Dataset data = AxisData([&](const AxisSample& s) { return hidden(kPerMetre * s.q); });
+  auto series = std::make_shared<identify::Series>(*data.series);
+  for (std::size_t s = 0; s < 3; ++s)
+    for (double& value : series->signals[s]) value *= kPerMetre;
+  data.series = std::move(series);
+  return data;
+}
+
+inline PlantDescription RotaryPlant() {
+  PlantDescription plant = AxisPlant();
+  const char* const units[] = {"rad", "rad/s", "rad/s^2", "N m"};
+  for (std::size_t s = 0; s < plant.signals.size(); ++s) plant.signals[s].unit = units[s];
+  plant.signals[3].role = "torque";
+  for (ParameterDescription& p : plant.parameters) p.unit = p.unit == "kg" ? "kg m^2" : p.unit == "N" ? "N m" : "N m s";
+  return plant;
 }
 
 }  // namespace armcmc::test

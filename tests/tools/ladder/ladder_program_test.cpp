@@ -155,6 +155,8 @@ TEST_F(LadderProgram, SaysWhatIsWrongWithAnOrder) {
     EXPECT_THAT(run.err, HasSubstr(words));
   };
   refused({"--model", "servo_axis"}, "--data CSV or --recording FILE");
+  refused({"--recording", "axis.toml", "--model", "servo_axis"}, "--model excludes --recording");
+  refused({"--recording", "axis.toml", "--skip-bad"}, "excludes");
   refused({"--model", "servo_axis", "--data", csv, "--without", "coulomb"},
           "--without: no effect is called \"coulomb\"");
   refused({"--model", "servo_axis", "--data", csv, "--heldout", csv}, "--heldout");

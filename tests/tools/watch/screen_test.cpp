@@ -46,10 +46,10 @@ TEST(Screen, ShowsStagesAgainstTheDeadlineAndTheSampler) {
   EXPECT_THAT(text, Not(HasSubstr("old")));
 }
 
-TEST(Screen, SaysWhatIsBelievedAboutChangeAndHowFastThingsDrift) {
+TEST(Screen, ShowsTheProbabilitiesOfChangeAndTheRatesOfDrift) {
   WatchState state = test::SomeState();
   const std::string text = Render(state, Plain(), 1.1);
-  for (const char* part : {"believed  persisted 25 %   drifted 62.5 %   changed 12.5 %   drifted of late",
+  for (const char* part : {"posterior persisted 25 %   drifted 62.5 %   changed 12.5 %   drifted of late",
                            "drift per s", "         3.5      0.0375 "}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
@@ -59,10 +59,10 @@ TEST(Screen, SaysWhatIsBelievedAboutChangeAndHowFastThingsDrift) {
   state.change->n_modes = 2;
   state.change->known[1] = 1;
   test::SetText("shut", state.change->mode_name[1]);
-  EXPECT_THAT(Render(state, Plain(), 1.1), HasSubstr("believed  contact      persisted 25 %"));
-  EXPECT_THAT(Render(state, Plain(), 1.1), HasSubstr("believed  shut         persisted 0 %"));
+  EXPECT_THAT(Render(state, Plain(), 1.1), HasSubstr("posterior contact      persisted 25 %"));
+  EXPECT_THAT(Render(state, Plain(), 1.1), HasSubstr("posterior shut         persisted 0 %"));
   state.change->known[0] = state.change->known[1] = 0;
-  EXPECT_THAT(Render(state, Plain(), 1.1), Not(HasSubstr("believed")));
+  EXPECT_THAT(Render(state, Plain(), 1.1), Not(HasSubstr("posterior ")));
   EXPECT_THAT(Render(state, Plain(), 1.1), Not(HasSubstr("0.0375")));
   state.change.reset();
   EXPECT_THAT(Render(state, Plain(), 1.1), Not(HasSubstr("drift")));

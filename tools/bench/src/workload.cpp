@@ -37,7 +37,7 @@ std::filesystem::path Simulated(const Plant& plant, const std::filesystem::path&
   } else {
     arguments.insert(arguments.end(), {"--model", plant.model, "--duration", "20"});
   }
-  const support::SubprocessEnd end = support::RunSubprocess(support::ProgramBeside("armcmc-plant"), arguments, folder);
+  const support::SubprocessEnd end = support::RunSubprocess(support::SiblingProgram("armcmc-plant"), arguments, folder);
   if (end.code != 0) throw std::runtime_error("armcmc-plant cannot simulate " + plant.model + ": " + end.errors);
   return csv;
 }

@@ -32,6 +32,7 @@
 #include "budget.hpp"
 #include "followed_drift.hpp"
 #include "gallery_page.hpp"
+#include "printed.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -45,14 +46,16 @@ struct Arguments {
 };
 
 void Declare(CLI::App* app, Arguments* a) {
-  app->add_option("--model", a->model,
-                  "Plant file, or name of a bundled plant; or a model file (.toml) with effects found earlier")
-      ->capture_default_str();
+  auto* model = app->add_option("--model", a->model,
+                                "Plant file, or name of a bundled plant; or a model file (.toml) with effects found "
+                                "earlier")
+                    ->capture_default_str();
   auto* data =
       app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (see armcmc-model check)");
-  auto* recording =
-      app->add_option("--recording", a->recording, "Recording file, which maps the columns of a CSV to the signals")
-          ->excludes(data);
+  auto* recording = app->add_option("--recording", a->recording,
+                                    "Recording file: names the plant, and maps the columns of a CSV to its signals")
+                        ->excludes(data)
+                        ->excludes(model);
   app->add_option("--data-dir", a->data_dir, "Folder of the recording's CSV, if not that of the recording file")
       ->needs(recording);
   app->add_option("--heldout", a->heldout, "Holdout: CSV of another run; default: the last 30 % of --data");
@@ -73,7 +76,8 @@ void Declare(CLI::App* app, Arguments* a) {
   app->add_option("--period-ms", a->period_ms, "Length of a pack, to measure the cost of the new model")
       ->check(CLI::Range(1.0, 10'000.0))
       ->capture_default_str();
-  app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows instead of stopping");
+  app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows of --data instead of stopping")
+      ->excludes(recording);
   app->add_flag("--no-pairs", a->no_pairs, "Look for single effects only, which is faster");
   app->footer(
       "Compares a model with measured data, finds where they disagree, names the missing effect, writes a model with\n"
@@ -142,57 +146,6 @@ void WriteExperiment(const std::filesystem::path& out, Experiment* experiment) {
   if (experiment->scenario_text.empty()) return;
   experiment->scenario_file = "experiment.toml";
   Write(out / experiment->scenario_file, experiment->scenario_text);
-}
-
-std::string Summary(const Result& result) {
-  std::ostringstream out;
-  out << result.sentence << '\n';
-  for (const EffectFinding& effect : result.effects)
-    for (const ParameterEstimate& parameter : effect.parameters) {
-      char line[160];
-      std::snprintf(line, sizeof(line), "  %s %s = %.4g +- %.2g %s\n", effect.name.c_str(), parameter.name.c_str(),
-                    parameter.mean, parameter.sd, parameter.unit.c_str());
-      out << line;
-    }
-  if (result.gap.before.rmse > 0.0) {
-    char line[200];
-    std::snprintf(line, sizeof(line), "held-out rms error %.4g -> %.4g %s, noise floor %.4g, gap closed by %.1f %%\n",
-                  result.gap.before.rmse, result.gap.after.rmse, result.gap.unit.c_str(), result.gap.noise_floor,
-                  100.0 * result.gap.closed_fraction);
-    out << line;
-  }
-  if (!result.separate_by.words.empty()) out << result.separate_by.words << '\n';
-  for (const std::string& note : result.notes) out << "note: " << note << '\n';
-  return out.str();
-}
-
-/// The ladder, rung by rung; the error of each held-out segment, where there are several.
-std::string LadderText(const Result& result) {
-  std::ostringstream out;
-  char line[240];
-  std::snprintf(line, sizeof(line), "%-44s %12s %9s %12s\n", "", "error", "closed", "probability");
-  out << line;
-  std::snprintf(line, sizeof(line), "%-44s %12.4g\n", "base model", result.gap.before.rmse);
-  out << line;
-  for (const LadderRung& rung : result.ladder) {
-    std::string names;
-    for (const std::string& name : rung.effects) names += (names.empty() ? "+ " : " or ") + name;
-    std::snprintf(line, sizeof(line), "%-44s %12.4g %7.1f %% %12.2f%s\n", names.c_str(), rung.heldout_error,
-                  100.0 * rung.closed_fraction, rung.probability, rung.provisional ? "  (few events)" : "");
-    out << line;
-  }
-  if (!result.gap.stretches.empty()) {
-    std::snprintf(line, sizeof(line), "%-44s %12s %9s %12s\n", "held-out segment", "before", "after", "samples");
-    out << line;
-  }
-  for (const StretchFit& s : result.gap.stretches) {
-    char when[48];
-    std::snprintf(when, sizeof(when), "%.4g to %.4g s", s.from_s, s.until_s);
-    std::snprintf(line, sizeof(line), "%-44s %12.4g %9.4g %12lld\n", when, s.rmse_before, s.rmse_after,
-                  static_cast<long long>(s.samples));
-    out << line;
-  }
-  return out.str();
 }
 
 /// The effects of a model file, which the search must not find again.

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "armcmc/gap/separation.hpp"
+
 namespace armcmc::gap {
 namespace {
 
@@ -13,13 +15,34 @@ constexpr std::size_t kListed = 20;     // by their scores,
 constexpr double kWorthListing = 1e-3;  // and all that are as probable
 constexpr double kLikely = 0.5;
 
-std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePtr& candidate, int min_active) {
+/// What the fit determines of its parameters; those of the added effects are called EFFECT_NAME.
+Separation SeparationOf(const Fitted& fit, const std::vector<Term>& added, const Matrix& covariance) {
+  std::vector<FittedParameter> parameters;
+  for (Eigen::Index c = 0; c < fit.theta.size(); ++c) {
+    const Coordinate& coordinate = fit.coordinates[static_cast<std::size_t>(c)];
+    parameters.push_back({coordinate.name, coordinate.unit, coordinate.Value(fit.theta[c]), coordinate.logarithmic});
+  }
+  auto at = parameters.rbegin();
+  for (auto term = added.rbegin(); term != added.rend(); ++term)
+    for (int c = 0; c < term->form->size(); ++c, ++at) at->name.insert(0, term->form->effect + "_");
+  const Vector slopes = Vector::NullaryExpr(fit.theta.size(), [&](Eigen::Index c) {
+    const Coordinate& coordinate = fit.coordinates[static_cast<std::size_t>(c)];
+    return coordinate.logarithmic ? 1.0 : coordinate.Slope(fit.theta[c]);
+  });
+  return Separate(parameters, slopes.asDiagonal() * covariance * slopes.asDiagonal());
+}
+
+/// @param determined  What the fit determines in place of parameters that are confounded is appended.
+std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePtr& candidate, int min_active,
+                                   std::vector<Combination>* determined) {
   const Fitter& fitter = *diagnosis.look->fitter;
   const Matrix covariance = candidate->fit.Covariance(fitter.whitener().s2);
   std::vector<EffectFinding> effects;
   int num_added = 0;
   for (const Term& term : candidate->added()) num_added += term.form->size();
   Eigen::Index at = candidate->fit.theta.size() - num_added;
+  Separation separation = SeparationOf(candidate->fit, candidate->added(), covariance);
+  determined->insert(determined->end(), separation.combinations.begin(), separation.combinations.end());
   for (const Term& term : candidate->added()) {
     EffectFinding effect;
     effect.name = term.form->effect;
@@ -36,7 +59,8 @@ std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePt
       const Coordinate& coordinate = term.form->coordinates[static_cast<std::size_t>(c)];
       effect.parameters.push_back(
           {coordinate.name, coordinate.unit, coordinate.Value(candidate->fit.theta[at]),
-           std::abs(coordinate.Slope(candidate->fit.theta[at])) * std::sqrt(std::max(covariance(at, at), 0.0))});
+           std::abs(coordinate.Slope(candidate->fit.theta[at])) * std::sqrt(std::max(covariance(at, at), 0.0)),
+           std::move(separation.confounded_with[static_cast<std::size_t>(at)])});
     }
     effects.push_back(std::move(effect));
   }
@@ -110,7 +134,7 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
   result->verdict = finding.verdict;
   result->probability_none = finding.verdict == Verdict::kNone ? finding.p_none : 1.0 - finding.p_missing;
   result->probability_unnamed = finding.p_missing * finding.p_unnamed;
-  if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active);
+  if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active, &result->determined);
   if (finding.verdict == Verdict::kAmbiguous) {
     for (const CandidatePtr& candidate : finding.set) result->ambiguous_set.push_back(candidate->names());
     for (std::vector<std::string>& names : BothOfAFamily(finding)) result->ambiguous_set.push_back(std::move(names));
@@ -144,7 +168,7 @@ void DescribeOthers(const PlantDiagnosis& plant, int min_active, Result* result)
     const Finding& finding = other->diagnosis.finding;
     const std::string in = " in the " + other->equation->name();
     if (finding.verdict == Verdict::kNamed && result->verdict == Verdict::kNamed) {
-      for (EffectFinding& effect : Effects(other->diagnosis, finding.best, min_active))
+      for (EffectFinding& effect : Effects(other->diagnosis, finding.best, min_active, &result->determined))
         result->effects.push_back(std::move(effect));
       result->sentence += " Missing" + in + ": " + Joined(Texts(finding.best), " and ") + ".";
       continue;

@@ -9,7 +9,7 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr double kDecisive = 5.0;  // nats by which another equation strikes or confirms an effect
+constexpr double kDecisive = 5.0;  // nats by which another equation rejects or confirms an effect
 constexpr double kMostOdds = 50.0;
 
 bool HasGap(const EquationDiagnosis& one) { return one.diagnosis.finding.verdict != Verdict::kNone; }
@@ -73,8 +73,8 @@ void Consult(PlantDiagnosis* plant) {
         std::erase(finding.set, candidate);
       Weigh(candidate, *evidence, &finding);
       char note[200];
-      std::snprintf(note, sizeof(note), "%s: %s %s by %.0f nats at the value that the %s found",
-                    asked.equation->name().c_str(), *evidence > 0.0 ? "confirms" : "strikes", form.effect.c_str(),
+      std::snprintf(note, sizeof(note), "%s: %s %s by %.0f nats, with the parameters fitted to the %s",
+                    asked.equation->name().c_str(), *evidence > 0.0 ? "confirms" : "rejects", form.effect.c_str(),
                     std::abs(*evidence), carrier.equation->name().c_str());
       plant->notes.emplace_back(note);
     }
@@ -110,7 +110,7 @@ void KeepShared(PlantDiagnosis* plant) {
     finding.set = shared;
     finding.best = shared.front();
     finding.verdict = shared.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;
-    plant->notes.push_back(other.equation->name() + ": has a gap, too, that the same effect explains");
+    plant->notes.push_back(other.equation->name() + ": also has a gap, which the same effect explains");
     other.diagnosis.finding.verdict = Verdict::kNone;
     other.diagnosis.finding.set.clear();
   }

@@ -157,7 +157,7 @@ void AddEffect(const EffectFinding& effect, std::ostream& out) {
   out << "<dl class=\"facts\">\n";
   for (const ParameterEstimate& p : effect.parameters)
     out << "<dt>" << EscapeHtml(p.name) << "</dt><dd><b>" << MeanText(p) << "</b> <span class=\"soft\">("
-        << (p.sd > 0.0 ? "95 %: " : "") << IntervalText(p) << ")</span></dd>\n";
+        << (p.sd > 0.0 && p.confounded_with.empty() ? "95 %: " : "") << IntervalText(p) << ")</span></dd>\n";
   out << "<dt>Acts</dt><dd>" << WhenText(effect.when) << "</dd>\n";
   if (!effect.family.empty()) out << "<dt>Family</dt><dd>" << EscapeHtml(effect.family) << "</dd>\n";
   out << "<dt>Probability</dt><dd>" << PercentText(effect.probability) << "</dd>\n</dl>\n";
@@ -167,6 +167,21 @@ void AddEffect(const EffectFinding& effect, std::ostream& out) {
   if (effect.provisional)
     out << "<p class=\"soft\">Provisional: the effect acts in too few separate events to be validated on data left "
            "out.</p>\n";
+}
+
+/// Sums and products that the data determine of parameters that they do not determine one by one.
+void AddDetermined(const Result& result, std::ostream& out) {
+  if (result.determined.empty()) return;
+  out << "<h3>Parameters that these data do not separate</h3>\n<p class=\"soft\">A change of one of them can be "
+         "compensated by others without any effect on the prediction, so that their values in the model are one choice "
+         "of "
+         "many. The data determine these combinations:</p>\n<ul class=\"plain\">\n";
+  for (const Combination& c : result.determined) {
+    const ParameterEstimate as_one{"", c.unit, c.value, c.sd};
+    out << "<li><span class=\"mono\">" << EscapeHtml(c.text) << "</span> = <b>" << MeanText(as_one)
+        << "</b> <span class=\"soft\">(95 %: " << IntervalText(as_one) << ")</span></li>\n";
+  }
+  out << "</ul>\n";
 }
 
 /// The most probable candidates that were not added.
@@ -211,6 +226,7 @@ void AddEffects(const Result& result, std::ostream& out) {
     out << "<p class=\"soft\">The most probable of the alternatives, so that the model predicts well; the data do not "
            "confirm it.</p>\n";
   for (const EffectFinding& effect : result.effects) AddEffect(effect, out);
+  AddDetermined(result, out);
   AddSparse(result, out);
   if (!result.model_file.empty())
     out << "<p class=\"soft\">The extended model is in <code>" << EscapeHtml(result.model_file)

@@ -135,12 +135,19 @@ std::string WhenText(const When& when) {
 }
 
 std::string MeanText(const ParameterEstimate& p) {
-  return AsPrecise(p.mean, p.sd) + (p.unit.empty() ? "" : "&nbsp;" + EscapeHtml(p.unit));
+  // A confounded parameter is any of many values: three digits tell which one the model has.
+  return (p.confounded_with.empty() ? AsPrecise(p.mean, p.sd) : NumberText(p.mean, 3)) +
+         (p.unit.empty() ? "" : "&nbsp;" + EscapeHtml(p.unit));
 }
 
 std::string IntervalText(const ParameterEstimate& p) {
   if (!std::isfinite(p.sd) || !std::isfinite(p.mean)) return "not known";
   if (p.sd <= 0.0) return "held fixed";
+  if (!p.confounded_with.empty()) {
+    std::string names;
+    for (const std::string& name : p.confounded_with) names += (names.empty() ? "" : ", ") + EscapeHtml(name);
+    return "confounded with " + names;
+  }
   return AsPrecise(p.mean - 1.96 * p.sd, p.sd) + " to " + AsPrecise(p.mean + 1.96 * p.sd, p.sd);
 }
 

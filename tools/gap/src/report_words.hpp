@@ -31,7 +31,8 @@ struct EffectWords {
 
 /// Mean with unit: as many digits as the sd justifies.
 [[nodiscard]] std::string MeanText(const ParameterEstimate& p);
-/// "0.392 to 0.432", the central 95 % of a normal distribution; "held fixed" for sd 0, "not known" without.
+/// "0.392 to 0.432", the central 95 % of a normal distribution; "held fixed" for sd 0, "not known" without;
+/// "confounded with a, b" where those could make up for a change of it.
 [[nodiscard]] std::string IntervalText(const ParameterEstimate& p);
 
 /// Number and unit, escaped.

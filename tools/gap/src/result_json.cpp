@@ -37,7 +37,17 @@ json WhenJson(const When& when) {
 }
 
 json ParameterJson(const ParameterEstimate& p) {
-  return {{"mean", Number(p.mean)}, {"sd", Number(p.sd)}, {"unit", Text(p.unit)}};
+  json out = {{"mean", Number(p.mean)}, {"sd", Number(p.sd)}, {"unit", Text(p.unit)}};
+  if (!p.confounded_with.empty()) out["confounded_with"] = Texts(p.confounded_with);
+  return out;
+}
+
+json CombinationJson(const Combination& c) {
+  return {{"combination", Text(c.text)},
+          {"parameters", Texts(c.parameters)},
+          {"mean", Number(c.value)},
+          {"sd", Number(c.sd)},
+          {"unit", Text(c.unit)}};
 }
 
 json EffectJson(const EffectFinding& e) {
@@ -223,6 +233,7 @@ json ToJson(const Result& result) {
   out["relative_error"] = {{"before", Number(result.relative_before)}, {"after", Number(result.relative_after)}};
   out["gap"] = GapJson(result.gap);
   out["parameters"] = ParametersJson(result.parameters);
+  out["determined"] = List(result.determined, CombinationJson);
   out["drift"] = DriftJson(result.drift);
   out["one_step"] = OneStepJson(result);
   out["budget"] = BudgetJson(result.budget);

@@ -26,14 +26,15 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr double kDiagnosisShare = 0.7;  // of the recording; the rest stays sealed to the end
-constexpr double kUnseenRatio = 0.15;    // gap over noise on the sealed data, below which they can confirm nothing
-constexpr double kLeastCoverage = 0.85;  // of the 95 % bands on the sealed data, and
-constexpr double kMostWhiteness = 5.0;   // Ljung-Box over its degrees of freedom there, for a model that holds
-constexpr double kWorse = 1.005;         // times the error of the model before, that a named effect must not exceed
-constexpr double kSeen = 16.0;  // noise variances by which two models differ on the sealed data: these can judge
+constexpr double kDiagnosisShare = 0.7;  // of the recording is diagnosed; the rest is held out until the end
+constexpr double kUnseenRatio = 0.15;    // gap relative to the noise on held-out data, below which they confirm nothing
+constexpr double kLeastCoverage = 0.85;  // of the 95 % bands on held-out data, for a model that holds; and
+constexpr double kMostWhiteness = 5.0;   // Ljung-Box statistic over its degrees of freedom there
+constexpr double kWorse = 1.005;         // largest ratio of the held-out error with and without a named effect
+constexpr double kComparable =
+    16.0;  // squared difference of two models on held-out data, in noise variances, that suffices to compare them
 
-/// Time of each step, and what is told of it.
+/// Measures the time of each step and reports progress.
 class Clock {
  public:
   Clock(const WorkflowRequest& request, Result* result) : request_(request), result_(result) {}
@@ -57,7 +58,7 @@ class Clock {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// What the fits leave, in the unit of the output.
+/// Standard deviation of the noise, in the unit of the output.
 double NoiseSd(const Diagnosis& diagnosis) {
   const Whitener& whitener = diagnosis.look->fitter->whitener();
   return std::sqrt(whitener.s2 * whitener.Gain());
@@ -75,17 +76,16 @@ const Fitted* Control(const Finding& finding) {
   return nullptr;
 }
 
-/// Whether sealed data speak against an effect that is too small for a share of the gap to mean anything: a model that
-/// differs there from the one before by as many noise variances gains as many if it is right, and loses as many if it
-/// is not, give or take twice the root.
-bool SealedDataSpeakAgainst(const HeldOut& heldout, const Fitted& before, const Fitted& after, double variance) {
+/// Whether held-out data contradict an effect that is so small that the share of the gap means nothing. If two models
+/// differ there by n noise variances, the sum of squares of the right one is smaller by n, give or take 2 sqrt(n).
+bool HeldOutDataContradict(const HeldOut& heldout, const Fitted& before, const Fitted& after, double variance) {
   const Trial first = heldout.Try(before), second = heldout.Try(after);
-  const double seen = (first.whitened - second.whitened).squaredNorm() / variance;
-  return seen > kSeen && second.whitened.squaredNorm() >= first.whitened.squaredNorm();
+  const double difference = (first.whitened - second.whitened).squaredNorm() / variance;
+  return difference > kComparable && second.whitened.squaredNorm() >= first.whitened.squaredNorm();
 }
 
-/// Sealed data may take a name back, never give one: a hypothesis that does not hold on them is another formula of the
-/// same effects, or no name at all.
+/// Held-out data may withdraw a name but never add one: a hypothesis that does not hold on them is replaced by another
+/// formula of the same effects, or withdrawn.
 void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds& limits, Diagnosis* diagnosis,
              Result* result) {
   Finding& finding = diagnosis->finding;
@@ -99,9 +99,10 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
       const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
       const Fitted& after = c->granted ? c->granted->with : c->fit;
       return gap.after.rmse < kWorse * gap.before.rmse &&
-             !SealedDataSpeakAgainst(heldout, before, after, diagnosis->look->fitter->whitener().s2);
+             !HeldOutDataContradict(heldout, before, after, diagnosis->look->fitter->whitener().s2);
     }
-    // What is granted bends to the first part; on the rest it errs, and the effect beside it is judged by what it adds.
+    // The smooth factor is fitted to the first part and errs on the rest, so the effect is judged by what it adds to
+    // it.
     if (c->granted) return gap.closed_low > 0.0 && gap.closed_fraction > limits.at_least_closed;
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
@@ -110,7 +111,7 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
                                     : heldout.ClosedElsewhere(finding.base->fit, c->fit);
     return share > limits.confirmed_elsewhere;
   };
-  // Beside a grant a name is given to what is sure: what stays of such a set, once some of it is struck off, is not.
+  // With such a factor only certain names are given: a set from which a member was rejected is not certain.
   const bool granted = std::any_of(finding.set.begin(), finding.set.end(),
                                    [](const CandidatePtr& member) { return member->granted != nullptr; });
   std::vector<CandidatePtr> kept;
@@ -148,7 +149,7 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     finding.verdict = Verdict::kUnnamed;
     finding.p_unnamed = std::max(finding.p_unnamed, lost);
   } else {
-    // What was struck off goes to those that hold.
+    // The probability of the rejected hypotheses goes to the others.
     for (const CandidatePtr& member : kept) member->probability += lost / static_cast<double>(kept.size());
     finding.verdict = kept.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;
     finding.best = kept.front();
@@ -156,7 +157,7 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
   finding.set = kept;
 }
 
-/// The model that the estimator can run, and notes on what it leaves out or puts differently.
+/// The model for the estimator, with notes on effects that it leaves out or represents by another formula.
 std::optional<EstimatorSettings> Add(const WorkflowRequest& request, const PlantDiagnosis& plant,
                                      const HeldOut& heldout, Result* result) {
   const OnlinePart part = OnlinePartOf(plant);
@@ -185,7 +186,7 @@ std::optional<EstimatorSettings> Add(const WorkflowRequest& request, const Plant
   return AugmentedSettings(request.model, *diagnosis.look->fitter, part.fit, NoiseSd(diagnosis));
 }
 
-/// Rows that are diagnosed, and the recording whose rest shows the gap.
+/// The rows to diagnose, and the recording whose rows from `first_shown` on are held out.
 struct Parts {
   Recording diagnosis, shown;
   Eigen::Index first_shown = 0;
@@ -199,14 +200,14 @@ Parts Divide(const WorkflowRequest& request) {
   return parts;
 }
 
-/// What is shown the gap on, in the equation that carries the diagnosis.
+/// The held-out rows, in the equation that carries the diagnosis.
 HeldOut RestOf(const PlantDiagnosis& plant, const Parts& parts) {
   const EquationDiagnosis& carrying = plant.carrying();
   return {*carrying.equation, *carrying.diagnosis.look, parts.shown, parts.first_shown};
 }
 
-/// Whether the rest of the recording contradicts the model that explains its first part: the 95 % bands hold less than
-/// they should by far, or what the model leaves follows a pattern.
+/// Whether the held-out rows contradict the model that explains the first part: the coverage of its 95 % bands is far
+/// too low, or its residual is far from white.
 bool RestContradicts(const EquationDiagnosis& one, const HeldOut& rest) {
   const Finding& finding = one.diagnosis.finding;
   const CandidatePtr& best = finding.set.empty() ? finding.base : finding.best;
@@ -214,7 +215,7 @@ bool RestContradicts(const EquationDiagnosis& one, const HeldOut& rest) {
   return fit.coverage95 < kLeastCoverage || fit.whiteness > kMostWhiteness;
 }
 
-/// Whether a name is given to so little that the rest of the recording can neither confirm nor contradict it.
+/// Whether the named effect is so small that the held-out rows can neither confirm nor contradict it.
 bool RestCannotConfirm(const EquationDiagnosis& one, const HeldOut& rest) {
   const Diagnosis& diagnosis = one.diagnosis;
   if (diagnosis.finding.set.empty()) return false;
@@ -223,9 +224,9 @@ bool RestCannotConfirm(const EquationDiagnosis& one, const HeldOut& rest) {
              .gap_ratio < kUnseenRatio;
 }
 
-/// Whether all of the recording is worth a second look, which costs as much as the first. In a plant with several
-/// equations always where the first part lacks nothing: a load may come late.
-bool DeservesSecondLook(const WorkflowRequest& request, const HeldOut& rest, const PlantDiagnosis& plant) {
+/// Whether to diagnose the whole recording as well, which costs as much as the first diagnosis. Always for a plant with
+/// several equations if the first part shows no gap, since a load may be picked up late.
+bool NeedsWholeRecording(const WorkflowRequest& request, const HeldOut& rest, const PlantDiagnosis& plant) {
   if (request.heldout || !plant.carrying().suitability.can_name) return false;
   const Finding& first = plant.carrying().diagnosis.finding;
   const bool several = plant.equations.size() > 1;
@@ -234,18 +235,19 @@ bool DeservesSecondLook(const WorkflowRequest& request, const HeldOut& rest, con
          RestCannotConfirm(plant.carrying(), rest);
 }
 
-/// Where the first part of a recording lacks nothing, shows single events that nothing explains, or names what the rest
-/// contradicts or cannot confirm, all of it is looked at: what acts in free motion only needs free motion, a limit a
-/// high force, and chance does not go on for the whole of a recording.
-/// @param rest  The sealed part, as the first look sees it.
-/// @return what that changed, empty: nothing; `plant` is then what all of the recording says.
-std::string LookAtAll(const WorkflowRequest& request, const Parts& parts, const HeldOut& rest, PlantDiagnosis* plant) {
-  if (!DeservesSecondLook(request, rest, *plant)) return {};
+/// Diagnoses the whole recording if its first part shows no gap, shows single events that nothing explains, or suggests
+/// a name that the held-out rows contradict or cannot confirm. An effect may act only in free motion, or only at high
+/// force, which the first part may lack; and a chance correlation does not persist over a whole recording.
+/// @param rest  The held-out rows, under the diagnosis of the first part.
+/// @return a note on the change, and then `plant` is the diagnosis of the whole recording; empty if nothing changes.
+std::string DiagnoseAll(const WorkflowRequest& request, const Parts& parts, const HeldOut& rest,
+                        PlantDiagnosis* plant) {
+  if (!NeedsWholeRecording(request, rest, *plant)) return {};
   PlantDiagnosis whole = DiagnosePlant(request.model, request.data, request.diagnose);
   const Finding& first = plant->carrying().diagnosis.finding;
   const Finding& all = whole.carrying().diagnosis.finding;
   const bool nothing = all.verdict == Verdict::kNone;
-  std::string found = "what is missing shows in the last 30 % of the recording only";
+  std::string found = "the gap occurs in the last 30 % of the recording only";
   if (first.set.empty()) {
     if (first.verdict == Verdict::kNone ? nothing : all.set.empty()) return {};
   } else {
@@ -260,16 +262,16 @@ std::string LookAtAll(const WorkflowRequest& request, const Parts& parts, const 
     if (!other || !RestContradicts(plant->carrying(), rest)) return {};
   }
   *plant = std::move(whole);
-  found += ": nothing could be kept sealed, and the gap is shown on data that were diagnosed, too. ";
+  found += ": no data were held out, and the gap is evaluated on diagnosed data. ";
   return found + "Record another run for --heldout";
 }
 
-/// What an earlier recording left open, judged by both.
+/// Compares the effects that an earlier recording could not separate, on both recordings together.
 /// @return the earlier diagnosis, to which the candidates of `plant` refer.
 PlantDiagnosis JoinEarlier(const WorkflowRequest& request, const Recording& recording, PlantDiagnosis* plant) {
   PlantDiagnosis earlier = DiagnosePlant(request.model, *request.earlier, request.diagnose);
   if (earlier.carrying().diagnosis.finding.set.empty()) {
-    plant->notes.push_back(request.earlier->source + ": names nothing by itself, and is not used");
+    plant->notes.push_back(request.earlier->source + ": not used, since no effect is named on it alone");
     return earlier;
   }
   EquationDiagnosis& same = plant->equations[earlier.carrier];
@@ -297,8 +299,8 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   clock.Begin("compare and name", 0.0);
   PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
   std::optional<HeldOut> rest(RestOf(plant, parts));
-  const std::string second_look = LookAtAll(request, parts, *rest, &plant);
-  if (!second_look.empty()) result.notes.push_back(second_look);
+  const std::string whole_note = DiagnoseAll(request, parts, *rest, &plant);
+  if (!whole_note.empty()) result.notes.push_back(whole_note);
   std::optional<PlantDiagnosis> earlier;
   if (request.earlier) earlier = JoinEarlier(request, parts.diagnosis, &plant);
   const Equation* equation = plant.carrying().equation.get();
@@ -319,7 +321,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
       if (!equation->name().empty()) where.feature = equation->name() + ": " + where.feature;
   }
   if (can_name) result.aliases = Aliases(*equation, look);
-  if (!second_look.empty() || earlier) rest.emplace(RestOf(plant, parts));
+  if (!whole_note.empty() || earlier) rest.emplace(RestOf(plant, parts));
   const HeldOut& heldout = *rest;
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
     clock.Begin("confirm", 0.72);
@@ -338,7 +340,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   const auto mute = std::find_if(plant.equations.begin(), plant.equations.end(),
                                  [](const EquationDiagnosis& one) { return one.suitability.needs_excitation; });
   if (request.until >= Step::kName && mute != plant.equations.end()) {
-    // Silence is not a verdict on the equation: the data could not have shown anything.
+    // No verdict on this equation: these data could not have shown an effect.
     if (result.verdict == Verdict::kNone) result.sentence = "Nothing is named. " + mute->suitability.note + ".";
     result.separate_by = mute->equation->Separate(*mute->diagnosis.look, {});
   }
@@ -366,7 +368,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     const Signals all = equation->PrepareLike(parts.shown, look.signals.window, look.signals);
     result.figures = MakeFigures(*equation, all, look, before, after);
     if (can_name) TellRungs(*equation, heldout, diagnosis, &result);
-    // What another equation lacks, or could not have shown, is left as well.
+    // A gap in another equation, or one that these data could not have shown, remains as well.
     const std::vector<const EquationDiagnosis*> others = plant.Others();
     result.complete = result.complete && mute == plant.equations.end() &&
                       std::all_of(others.begin(), others.end(), [](const EquationDiagnosis* other) {

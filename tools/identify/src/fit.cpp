@@ -325,8 +325,7 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
   return fits;
 }
 
-Eigen::VectorXd StandardDeviations(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
-                                   const FitResult& fit) {
+Eigen::MatrixXd Covariance(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows, const FitResult& fit) {
   const Eigen::Index size = model.num_parameters();
   Eigen::MatrixXd information = PriorPrecision(model).asDiagonal();
   const double precision = 1.0 / (fit.error_sd * fit.error_sd + 1e-300);
@@ -336,7 +335,7 @@ Eigen::VectorXd StandardDeviations(const TrajectoryModel& model, const std::vect
   Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += 1e-12;
   const Eigen::MatrixXd covariance = scaled.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-  return covariance.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseProduct(scale);
+  return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
 }  // namespace armcmc::identify

@@ -36,7 +36,7 @@ Diagnosis DiagnoseEquation(const DiagnosisRequest& request, Dataset* data) {
   }
   climb.data = *data;
   climb.known_noise = request.recording.smoothed_noise;
-  climb.noise_over_differences = request.recording.noise_kept / request.recording.noise_told;
+  climb.noise_over_differences = request.recording.noise_in_samples / request.recording.noise_in_differences;
   // The rows on which the law was judged are judged here as well: a load may come late.
   constexpr std::size_t kSecond = 16'000;
   if (!request.equation.empty()) climb.most_simulated = kSecond;
@@ -60,8 +60,7 @@ void FollowUp(const DiagnosisRequest& request, const Dataset& data, Diagnosis* d
   const bool named = NumNamed(ladder) > 0;
   if (named && !diagnosis->after.held.empty())
     diagnosis->result.notes.push_back(
-        "constants in the new model, since these data do not tell them, they lie on a bound, or the estimator "
-        "samples no more: " +
+        "constants in the new model (not determined by these data, at a bound, or more than the estimator samples): " +
         JoinedWords(diagnosis->after.held, ", "));
   const auto seconds = [](auto since) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();

@@ -17,8 +17,8 @@ void AddNames(const std::string& text, NameSet* names) {
     if (node.op == expression::Op::kSymbol) names->insert(node.name);
 }
 
-/// Everything that laws, targets, conditions and `predicts` depend on: through lets, and through states.
-NameSet Needed(const PlantDescription& plant) {
+/// Names of everything that laws, targets, conditions and `predicts` depend on, directly or through lets and states.
+NameSet Dependencies(const PlantDescription& plant) {
   NameSet names;
   for (const std::string* text : {&plant.law, &plant.predicts}) AddNames(*text, &names);
   for (const ModeDescription& mode : plant.modes)
@@ -36,9 +36,10 @@ NameSet Needed(const PlantDescription& plant) {
   return names;
 }
 
-/// Without what nothing needs; reports are of the whole plant.
+/// The plant without constants, parameters, lets and states that nothing depends on, and without reports, which may
+/// refer to the whole plant.
 PlantDescription Pruned(PlantDescription plant) {
-  const NameSet names = Needed(plant);
+  const NameSet names = Dependencies(plant);
   const auto keep = [&names](auto* list) {
     std::erase_if(*list, [&names](const auto& item) { return !names.contains(item.name); });
   };
@@ -98,7 +99,7 @@ std::optional<PlantDescription> OutputEquation(const PlantDescription& plant,
       mode.target.clear();
     }
     output.law.clear();
-    PlantDescription with_modes = output;  // conditions may need lets and constants
+    PlantDescription with_modes = output;  // conditions may depend on pruned lets and constants
     with_modes.constants = plant.constants;
     with_modes.lets = plant.lets;
     for (std::size_t m = measured.size(); m-- > 0;)

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <set>
 
+#include "armcmc/gap/separation.hpp"
 #include "armcmc/ladder/evidence.hpp"
 #include "armcmc/ladder/experiment.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/sha256.hpp"
 #include "held_out.hpp"
+#include "repeated.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -25,16 +27,35 @@ std::string Number(double value) {
   return text;
 }
 
-/// Estimates for the report: for a lognormal parameter the median and its standard deviation.
-std::vector<ParameterEstimate> Estimates(const Trial& trial, const std::vector<std::uint8_t>& rows) {
-  const VectorXd sd = identify::StandardDeviations(*trial.model, rows, trial.fit);
-  std::vector<ParameterEstimate> out;
+struct Estimated {
+  std::vector<ParameterEstimate> parameters;  ///< Of a lognormal one the median and its standard deviation.
+  std::vector<gap::Combination> determined;
+};
+
+/// Estimates for the report.
+Estimated Estimates(const Trial& trial, const std::vector<std::uint8_t>& rows) {
+  const Eigen::MatrixXd covariance = identify::Covariance(*trial.model, rows, trial.fit);
+  Estimated out;
+  std::vector<gap::FittedParameter> fitted;
   for (Index d = 0; d < trial.fit.theta.size(); ++d) {
     const ParameterDescription& p = trial.model->parameters()[static_cast<std::size_t>(d)];
+    const bool logarithmic = p.prior == "lognormal";
     const double value = trial.model->Shown(d, trial.fit.theta[d]);
-    out.push_back({p.name, p.unit, value, p.prior == "lognormal" ? value * sd[d] : sd[d]});
+    const double sd = std::sqrt(std::max(covariance(d, d), 0.0));
+    fitted.push_back({p.name, p.unit, value, logarithmic});
+    out.parameters.push_back({p.name, p.unit, value, logarithmic ? value * sd : sd});
   }
+  gap::Separation separation = gap::Separate(fitted, covariance);
+  for (std::size_t d = 0; d < fitted.size(); ++d)
+    out.parameters[d].confounded_with = std::move(separation.confounded_with[d]);
+  out.determined = std::move(separation.combinations);
   return out;
+}
+
+std::string WithSd(double value, double sd, const std::string& unit) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "%.4g ± %.2g %s", value, sd, unit.c_str());
+  return text;
 }
 
 std::string NameOf(const Contender& c) { return c.candidate.entry->name; }
@@ -124,9 +145,9 @@ class Teller {
     } else {
       result_.gap.noise_floor = differences;
       from = std::string("from differences of neighbouring samples") +
-             (request_.recording.smoothed_noise > 0.0 ? " before the filter, "
-              : request_.recording.noise_told < 1.0   ? ", which share noise where they are interpolated, "
-                                                      : ", ") +
+             (request_.recording.smoothed_noise > 0.0         ? " before the filter, "
+              : request_.recording.noise_in_differences < 1.0 ? ", which share noise where they are interpolated, "
+                                                              : ", ") +
              Number(differences);
     }
     result_.notes.push_back("noise floor: " + from);
@@ -161,10 +182,12 @@ class Teller {
       told.probability = rung.probability;
       told.provisional = rung.provisional;
       told.remainder_ratio = leader.trial.fit.error_sd / std::max(result_.gap.noise_floor, 1e-300);
-      const std::vector<ParameterEstimate> all = Estimates(leader.trial, training_);
-      for (std::size_t d = leader.candidate.first_fitted(); d < all.size(); ++d)
-        told.parameters.push_back(all[d].name + " = " + Number(all[d].mean) + " ± " + Number(all[d].sd) + " " +
-                                  all[d].unit);
+      const Estimated all = Estimates(leader.trial, training_);
+      for (std::size_t d = leader.candidate.first_fitted(); d < all.parameters.size(); ++d)
+        if (const ParameterEstimate& p = all.parameters[d]; p.confounded_with.empty())
+          told.parameters.push_back(p.name + " = " + WithSd(p.mean, p.sd, p.unit));
+      for (const gap::Combination& c : all.determined)
+        told.parameters.push_back(c.text + " = " + WithSd(c.value, c.sd, c.unit));
       result_.ladder.push_back(told);
       AddFinding(leader, rung);
     }
@@ -178,11 +201,11 @@ class Teller {
     finding.provisional = rung.provisional;
     finding.approximate = leader.candidate.form().variant || !complete_;
     finding.formula_text = leader.candidate.form().terms.front().formula;
-    const std::vector<ParameterEstimate> all = Estimates(ladder_.final_trial, training_);
+    const std::vector<ParameterEstimate> all = Estimates(ladder_.final_trial, training_).parameters;
     const std::vector<EffectParameter>& own = leader.candidate.form().parameters;
     for (std::size_t k = 0; k < own.size(); ++k) {
       const ParameterEstimate& fitted = all.at(leader.candidate.first_fitted() + k);
-      finding.parameters.push_back({own[k].name, fitted.unit, fitted.mean, fitted.sd});
+      finding.parameters.push_back({own[k].name, fitted.unit, fitted.mean, fitted.sd, fitted.confounded_with});
     }
     result_.effects.push_back(std::move(finding));
   }
@@ -207,9 +230,11 @@ class Teller {
   }
 
   void TellParameters() {
-    const std::vector<ParameterEstimate> before = Estimates(ladder_.base, training_);
-    const std::vector<ParameterEstimate> after = Estimates(ladder_.final_trial, training_);
-    for (std::size_t d = 0; d < before.size(); ++d) result_.parameters.push_back({before[d], after[d]});
+    const Estimated before = Estimates(ladder_.base, training_);
+    const Estimated after = Estimates(ladder_.final_trial, training_);
+    for (std::size_t d = 0; d < before.parameters.size(); ++d)
+      result_.parameters.push_back({before.parameters[d], after.parameters[d]});
+    result_.determined = after.determined;
   }
 
   void TellRemainder() {
@@ -293,7 +318,8 @@ class Teller {
     }
     return "Missing" + in + ": " + JoinedWords(rungs, ", then ") + ". With that, " + percent +
            " % of the gap on held-out data is closed" +
-           (complete_ ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf());
+           (complete_ ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf()) +
+           WhyRepeated(ladder_);
   }
 
   /// The rival of the last rung, which describes the remaining misfit.

@@ -53,7 +53,7 @@ replay::Course Follow(const TunedPlant& tuned, const std::shared_ptr<const suppo
   settings.sampler.rule = DrawRule::kFixed;
   settings.sampler.fixed_draws = DrawsFor(recording->num_rows());
   settings.gap_watch.enabled = false;
-  return replay::FollowRecording(settings, recording, SamplesPerPack(*recording), progress);
+  return replay::PredictPackAhead(settings, recording, SamplesPerPack(*recording), progress);
 }
 
 bool Predicted(const replay::Course& course, std::size_t n) {

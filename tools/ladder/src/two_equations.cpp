@@ -25,7 +25,7 @@ using gap::Verdict;
 
 constexpr const char* kLaw = "law";
 
-/// One equation of the plant, as a plant of its own.
+/// One of the two equations, as a plant of its own, with its diagnosis.
 struct Equation {
   support::PlantFile file;
   DiagnosisRequest request;
@@ -34,7 +34,7 @@ struct Equation {
 
   [[nodiscard]] const Ladder& ladder() const { return diagnosis.ladder; }
   [[nodiscard]] const gap::Result& result() const { return diagnosis.result; }
-  [[nodiscard]] bool Lacks() const { return result().verdict != Verdict::kNone; }
+  [[nodiscard]] bool HasGap() const { return result().verdict != Verdict::kNone; }
   [[nodiscard]] bool Names() const { return !result().ladder.empty(); }
 };
 
@@ -52,7 +52,8 @@ void DiagnosePart(Equation* equation, double from, double to) {
   equation->request.progress = progress;
 }
 
-/// Values of one model's parameters where another has some of the same names; the prior's centre elsewhere.
+/// Parameters of a model: values of the fits in `known` for those with the same names, the centre of the prior for the
+/// others.
 Eigen::VectorXd ValuesFrom(const identify::TrajectoryModel& model, const std::vector<const Trial*>& known) {
   Eigen::VectorXd theta = model.Start();
   for (const Trial* trial : known)
@@ -74,13 +75,13 @@ double TrainingError(const identify::TrajectoryModel& model, const Dataset& data
   return std::sqrt(sum / std::max(count, 1.0));
 }
 
-/// The prediction of the output as a plant, or nothing where there is nothing to fit.
+/// The prediction of the output as a plant; empty if it has nothing to fit.
 ///
-/// A signal that a state begins with stands for that state, unless the output is predicted clearly better with the
-/// simulated one, at the values that the law has: then the state only begins there, as a body that starts at the
-/// temperature of the room.
+/// A state that starts at a measured signal is replaced by that signal, unless the simulated state, with the parameters
+/// fitted to the law, predicts the output clearly better. In that case the signal is only its initial value: a body may
+/// start at room temperature without following it.
 std::optional<PlantDescription> PredictionOf(const DiagnosisRequest& whole, const Trial& law) {
-  constexpr double kClearly = 0.8;  // of the error
+  constexpr double kClearly = 0.8;  // ratio of the rms errors
   const PlantDescription& plant = whole.plant->plant.description();
   Dataset data = DatasetOf(whole.recording);
   const auto output = static_cast<std::size_t>(whole.plant->plant.output());
@@ -102,9 +103,9 @@ std::optional<PlantDescription> PredictionOf(const DiagnosisRequest& whole, cons
   return TrainingError(model, data, prediction) < kClearly * fitted.fit.error_sd ? simulated : by_signals;
 }
 
-/// A prediction that errs by more than the output varies has wrong constants or units, and whatever bends it most, as a
-/// limit does, would seem to explain the output: nothing is named in it.
-/// @return what to tell; empty: it is close enough to be judged.
+/// A prediction whose error exceeds the variation of the output has wrong constants or units. Any effect that deforms
+/// it strongly, such as a saturation, would then seem to explain the output, so no effect may be named in it.
+/// @return a note that says so; empty if the prediction is good enough to be diagnosed.
 std::string TooFarOff(const Equation& prediction) {
   Dataset data = DatasetOf(prediction.request.recording);
   const Trial trial = FitAlone(std::make_shared<const Plant>(prediction.file.plant.description()), &data);
@@ -125,13 +126,14 @@ std::string TooFarOff(const Equation& prediction) {
   char text[200];
   std::snprintf(
       text, sizeof(text),
-      " errs by more than the output varies, so nothing is named in it; %.3g times it would be closest: check "
-      "the constants and their units",
+      ": its error exceeds the variation of the output, so no effect is named in it. Multiplied by %.3g it would fit "
+      "best: check the constants and their units",
       both / std::max(of_prediction, 1e-300));
   return prediction.request.equation + text;
 }
 
-/// The contender becomes the only one, or with others one of those, that its ladder names, and the last.
+/// Makes `named`, which are contenders of the first rung, the only effects that the ladder names; later rungs are
+/// dropped.
 void NameOnly(std::vector<std::size_t> named, Equation* equation) {
   Ladder& ladder = equation->diagnosis.ladder;
   Rung& rung = ladder.rungs.front();
@@ -147,10 +149,10 @@ void NameOnly(std::vector<std::size_t> named, Equation* equation) {
   Tell(equation->request, equation->data, &equation->diagnosis);
 }
 
-/// What the first rung names, and what acts there just alike: of those an offset of the output and one of a signal that
-/// the states read.
-std::vector<std::size_t> NamedAndAlike(const Ladder& ladder) {
-  constexpr double kAlike = 1.02;  // times the squared error
+/// Effects that the first rung names. If one of them is an error of a sensor, also other sensor errors that fit equally
+/// well: an offset of the output and an offset of an input of the states may be indistinguishable in this equation.
+std::vector<std::size_t> NamedOrEquivalent(const Ladder& ladder) {
+  constexpr double kAlike = 1.02;  // ratio of the squared errors
   const Rung& rung = ladder.rungs.front();
   std::vector<std::size_t> named = rung.named;
   if (named.empty()) return named;
@@ -177,7 +179,7 @@ bool SameEffect(const Candidate& a, const Candidate& b) {
          a.binding.symbols == b.binding.symbols;
 }
 
-/// The plant with an effect at given values.
+/// The plant with the parameters from index `first` on as constants, at the values of a fit.
 PlantDescription WithValues(PlantDescription plant, const Trial& trial, std::size_t first) {
   std::vector<ParameterDescription> added(plant.parameters.begin() + static_cast<std::ptrdiff_t>(first),
                                           plant.parameters.end());
@@ -191,8 +193,9 @@ PlantDescription WithValues(PlantDescription plant, const Trial& trial, std::siz
   return plant;
 }
 
-/// Log-likelihood ratio of an effect, at the values that another equation found, over its absence; neighbouring errors
-/// counted once in `kTogether`. Empty: it does not act there.
+/// Log-likelihood ratio, in nats, of the presence of an effect with the parameters fitted in another equation. Errors
+/// of neighbouring samples are correlated: kTogether samples count as one. Empty if the effect cannot act in this
+/// equation.
 std::optional<double> Evidence(const Equation& asked, const Contender& found) {
   constexpr double kTogether = 5.0;
   const Trial& base = asked.ladder().base;
@@ -206,7 +209,7 @@ std::optional<double> Evidence(const Equation& asked, const Contender& found) {
     if (!trial.fit.valid) return std::nullopt;
     const auto rows = static_cast<double>(data.num_training());
     return rows / kTogether * std::log(base.fit.error_sd / trial.fit.error_sd);
-  } catch (const PlantError&) {  // has no place there
+  } catch (const PlantError&) {  // it cannot be attached to this equation
     return std::nullopt;
   }
 }
@@ -220,10 +223,10 @@ std::string Names(const Equation& equation, const std::vector<std::size_t>& whic
   return text;
 }
 
-/// Asks an equation that lacks nothing which of several effects it is.
+/// Decides a tie with the other equation, which has no gap: it confirms or rejects each effect by its likelihood ratio.
 void Consult(const Equation& asked, Equation* carrier, std::vector<std::string>* notes) {
   constexpr double kDecisive = 5.0;  // nats
-  std::vector<std::size_t> open = NamedAndAlike(carrier->ladder());
+  std::vector<std::size_t> open = NamedOrEquivalent(carrier->ladder());
   if (open.size() < 2) return;
   const std::size_t before = open.size();
   for (const std::size_t i : std::vector<std::size_t>(open)) {
@@ -231,8 +234,8 @@ void Consult(const Equation& asked, Equation* carrier, std::vector<std::string>*
     const std::optional<double> evidence = Evidence(asked, c);
     if (!evidence || std::abs(*evidence) < kDecisive) continue;
     char text[200];
-    std::snprintf(text, sizeof(text), "%s: %s %s by %.0f nats at the value that the %s found",
-                  asked.request.equation.c_str(), *evidence > 0.0 ? "confirms" : "strikes",
+    std::snprintf(text, sizeof(text), "%s: %s %s by %.0f nats, with the parameters fitted to the %s",
+                  asked.request.equation.c_str(), *evidence > 0.0 ? "confirms" : "rejects",
                   c.candidate.entry->name.c_str(), std::abs(*evidence), carrier->request.equation.c_str());
     notes->emplace_back(text);
     if (*evidence > 0.0) {
@@ -246,11 +249,12 @@ void Consult(const Equation& asked, Equation* carrier, std::vector<std::string>*
     NameOnly(std::move(open), carrier);
 }
 
-/// Where both equations lack something that one effect of a signal explains in both, it is that.
+/// If both equations have a gap and the same effect on a signal explains both, only that effect is named.
 /// @return whether there is such an effect.
 bool KeepShared(const Equation& other, Equation* carrier, std::vector<std::string>* notes) {
   if (!other.Names() || !carrier->Names()) return false;
-  const std::vector<std::size_t> mine = NamedAndAlike(carrier->ladder()), theirs = NamedAndAlike(other.ladder());
+  const std::vector<std::size_t> mine = NamedOrEquivalent(carrier->ladder()),
+                                 theirs = NamedOrEquivalent(other.ladder());
   std::vector<std::size_t> shared;
   for (const std::size_t i : mine)
     for (const std::size_t k : theirs)
@@ -258,20 +262,20 @@ bool KeepShared(const Equation& other, Equation* carrier, std::vector<std::strin
                      other.ladder().rungs.front().contenders[k].candidate))
         shared.push_back(i);
   if (shared.empty()) return false;
-  notes->push_back(other.request.equation + ": has a gap, too, that " + Names(*carrier, shared) + " explains");
+  notes->push_back(other.request.equation + ": also has a gap, which " + Names(*carrier, shared) + " explains");
   if (shared != carrier->ladder().rungs.front().named) NameOnly(std::move(shared), carrier);
   return true;
 }
 
-/// By which the equation is chosen that the result is of.
+/// Rank by which the equation that the result describes is chosen: the verdict first, then the size of the gap.
 double RankOf(const Equation& equation) {
-  if (!equation.Lacks()) return 0.0;
+  if (!equation.HasGap()) return 0.0;
   const gap::Result& result = equation.result();
   const double ratio = result.gap.gap_ratio, by_gap = ratio / (1.0 + ratio);
   return (result.verdict == Verdict::kNamed ? 3.0 : result.verdict == Verdict::kAmbiguous ? 2.0 : 1.0) + by_gap;
 }
 
-/// The whole plant with what an equation named.
+/// The whole plant with the effects that were named in one equation, and their fitted priors.
 PlantDescription WithNamed(PlantDescription plant, const Equation& equation) {
   const Ladder& ladder = equation.ladder();
   const PlantDescription& found = ladder.plant->description();
@@ -290,8 +294,8 @@ PlantDescription WithNamed(PlantDescription plant, const Equation& equation) {
   return plant;
 }
 
-/// Models of the whole plant: effects of the law are estimated, those of the prediction are constants, since packs are
-/// explained by the law.
+/// Sets the models of the whole plant. Parameters of effects in the law are estimated; those of effects in the
+/// prediction are constants, since the estimator learns from the law only.
 void MakeModels(const DiagnosisRequest& whole, const Equation& law, const Equation* prediction, Diagnosis* out) {
   const PlantDescription plant = whole.plant->plant.description();
   const std::size_t own = plant.parameters.size();
@@ -311,15 +315,18 @@ void MakeModels(const DiagnosisRequest& whole, const Equation& law, const Equati
     out->after = std::move(after);
     if (in_prediction)
       out->result.notes.emplace_back(
-          "what is missing in the prediction is a constant in the new model: the estimator learns from the law alone");
+          "the effect in the prediction has constant parameters in the new model: the estimator learns from the law "
+          "only");
   } catch (const PlantError& error) {
-    out->result.notes.push_back(std::string("the new model holds one equation alone: ") + error.what());
+    out->result.notes.push_back(std::string("the new model contains the effects of one equation only: ") +
+                                error.what());
   }
 }
 
-void TellOfOther(const Equation& other, Equation* carrier) {
+/// Adds the result of the other equation: its effects if both are named, otherwise its sentence as a note.
+void AddOther(const Equation& other, Equation* carrier) {
   gap::Result& result = carrier->diagnosis.result;
-  if (!other.Lacks()) return;
+  if (!other.HasGap()) return;
   if (other.result().verdict == Verdict::kNamed && result.verdict == Verdict::kNamed) {
     result.effects.insert(result.effects.end(), other.result().effects.begin(), other.result().effects.end());
     result.sentence += " " + other.result().sentence;
@@ -333,7 +340,7 @@ void TellOfOther(const Equation& other, Equation* carrier) {
 }  // namespace
 
 Diagnosis DiagnoseBoth(const DiagnosisRequest& request) {
-  constexpr double kEach = 0.45;  // of the time, about, each
+  constexpr double kEach = 0.45;  // estimated share of the time for each equation
   const PlantDescription& plant = request.plant->plant.description();
   std::vector<std::unique_ptr<Equation>> equations;
   equations.push_back(MakeEquation(request, LawEquation(plant), kLaw));
@@ -350,20 +357,20 @@ Diagnosis DiagnoseBoth(const DiagnosisRequest& request) {
     }
     DiagnosePart(&last, kEach, 2.0 * kEach);
   } else {
-    notes.push_back("prediction of " + plant.output + ": has no parameter and no state, and is not judged");
+    notes.push_back("prediction of " + plant.output + ": not diagnosed, since it has no parameter and no state");
   }
   const auto chosen = std::max_element(equations.begin(), equations.end(),
                                        [](const auto& a, const auto& b) { return RankOf(*a) < RankOf(*b); });
   Equation* const prediction = equations.size() > 1 ? equations.back().get() : nullptr;
-  // The estimator learns from the law: what both lack is told of there.
+  // The estimator learns from the law, so an effect in both equations is reported for the law.
   const bool shared = prediction != nullptr && KeepShared(*prediction, &law, &notes);
   Equation* const carrier = shared ? &law : chosen->get();
   Equation* const other = prediction == nullptr ? nullptr : carrier == prediction ? &law : prediction;
-  if (other != nullptr && carrier->Names() && !other->Lacks()) Consult(*other, carrier, &notes);
+  if (other != nullptr && carrier->Names() && !other->HasGap()) Consult(*other, carrier, &notes);
   FollowUp(carrier->request, carrier->data, &carrier->diagnosis);
   if (carrier->Names() || (other != nullptr && other->Names()))
     MakeModels(request, law, shared ? nullptr : prediction, &carrier->diagnosis);
-  if (other != nullptr && !shared) TellOfOther(*other, carrier);
+  if (other != nullptr && !shared) AddOther(*other, carrier);
   gap::Result& result = carrier->diagnosis.result;
   result.notes.insert(result.notes.end(), notes.begin(), notes.end());
   return std::move(carrier->diagnosis);

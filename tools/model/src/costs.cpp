@@ -141,7 +141,7 @@ std::string CostText(const std::shared_ptr<const PlantProgram>& program,
   if (!step) return text + "step: not measured, the law has no value for signals about 1; give --data\n";
   return text + "step: " + support::Significant(step->ms, 3) + " ms on this computer for " +
          std::to_string(step->draws) + " draws and " + std::to_string(kSamples) + " samples, " +
-         (recorded ? "over these data\n" : "over made-up signals\n");
+         (recorded ? "over these data\n" : "over synthetic signals\n");
 }
 
 }  // namespace armcmc::model

@@ -120,12 +120,14 @@ void CompleteRecording(Arguments* a) {
 void Complete(Arguments* a) {
   if (!a->recording.empty()) CompleteRecording(a);
   if (!a->data_dir.empty() && a->recording.empty()) throw InputError("--data-dir goes with --recording");
-  if (a->data.empty()) throw InputError(a->config.empty() ? "--config and --data are required" : "--data is required");
+  if (a->data.empty() && a->config.empty() && a->model.empty())
+    throw InputError("--data, and --model or --config, are required: what to estimate from, and what (see --help)");
+  if (a->data.empty()) throw InputError("--data is required: a CSV or an LCM log");
   const bool is_log = a->recording.empty() && IsLcmLog(a->data);
   if (is_log && a->config.empty() && a->model.empty()) a->model = DescribedPlantOf(a->data, a->prefix);
   const bool described = !a->model.empty() && support::DescribedPlant(a->model) != nullptr;
   if (a->config.empty() && !described) {
-    if (!is_log) throw InputError("--config is required for a CSV: which plant is it?");
+    if (!is_log) throw InputError("--model or --config is required for a CSV: which plant is it?");
     a->config = ModelOfLog(a->data, a->prefix).name;
     std::cout << "configuration: " << a->config << ", by the plant of the log\n";
   }

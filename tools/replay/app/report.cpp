@@ -30,10 +30,10 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
   using support::Significant;
   std::ostringstream out;
   const PackCounts counts = source.counts();
-  out << summary.packs << " packs (" << Significant(summary.data_s, 4) << " s), " << summary.held << " of them held, "
-      << summary.modifications << " modifications, " << summary.truncated << " cut; lost " << counts.lost
-      << ", duplicate " << counts.duplicate << ", reordered " << counts.reordered << ", rejected "
-      << counts.rejected + summary.refused << ", unused " << counts.unused << '\n';
+  out << summary.packs << " packs (" << Significant(summary.data_s, 4) << " s), " << summary.held << " uninformative, "
+      << summary.modifications << (summary.modifications == 1 ? " modification, " : " modifications, ")
+      << summary.truncated << " truncated; lost " << counts.lost << ", duplicate " << counts.duplicate << ", reordered "
+      << counts.reordered << ", rejected " << counts.rejected + summary.refused << ", unused " << counts.unused << '\n';
   for (const std::string& note : source.notes()) out << "note: " << note << '\n';
   out << UnsettledText(summary);
 
@@ -117,12 +117,12 @@ void WriteReport(const std::filesystem::path& path, const Estimator& estimator, 
           {"ar_map", q.ar_map}, {"ar_ap", q.ar_ap}, {"sd", q.sd},
           {"q025", q.q025},     {"q975", q.q975},   {"unit", estimator.reported(i).unit}};
     }
-    ordered_json& believed = change[std::string(estimator.mode_name(m))];
-    believed = {{"p_persisted", std::clamp(1.0 - mode.p_drifted - mode.p_changed, 0.0, 1.0)},
-                {"p_drifted", mode.p_drifted},
-                {"p_changed", mode.p_changed}};
+    ordered_json& probabilities = change[std::string(estimator.mode_name(m))];
+    probabilities = {{"p_persisted", std::clamp(1.0 - mode.p_drifted - mode.p_changed, 0.0, 1.0)},
+                     {"p_drifted", mode.p_drifted},
+                     {"p_changed", mode.p_changed}};
     for (int i = 0; i < estimator.num_reported(); ++i)
-      believed["drift_rate_per_s"][std::string(estimator.reported(i).name)] =
+      probabilities["drift_rate_per_s"][std::string(estimator.reported(i).name)] =
           mode.drift_rate[static_cast<std::size_t>(i)];
   }
   report["estimates"] = modes;

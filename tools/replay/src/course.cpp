@@ -32,8 +32,8 @@ double UpperQuantile(const NoiseSettings& noise) {
   return e;
 }
 
-Course FollowRecording(const EstimatorSettings& settings, const std::shared_ptr<const support::Recording>& recording,
-                       int samples_per_pack, const std::function<void(double share)>& progress) {
+Course PredictPackAhead(const EstimatorSettings& settings, const std::shared_ptr<const support::Recording>& recording,
+                        int samples_per_pack, const std::function<void(double share)>& progress) {
   Estimator estimator(settings);
   SourceRequest request;
   request.recording = recording;

@@ -11,6 +11,7 @@
 #include "armcmc/support/plant_file.hpp"
 #include "armcmc/support/plant_library.hpp"
 #include "model_tables.hpp"
+#include "nearest.hpp"
 
 namespace armcmc::support {
 namespace {
@@ -68,7 +69,10 @@ EstimatorSettings Builtin(const std::string& name, const std::string& place) {
   try {
     return BuiltinSettings(name);
   } catch (const std::invalid_argument& error) {
-    throw ConfigError(place + ": " + error.what());
+    const std::vector<std::string> plants = PlantNames();
+    std::string there;
+    for (const std::string& plant : plants) there += (there.empty() ? "; plants are " : ", ") + plant;
+    throw ConfigError(place + ": " + error.what() + there + DidYouMean(name, plants));
   }
 }
 

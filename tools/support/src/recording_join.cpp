@@ -29,8 +29,8 @@ Recording Joined(const Recording& earlier, const Recording& later) {
   const auto both = [share](double first, double second) {
     return std::sqrt(share * first * first + (1.0 - share) * second * second);
   };
-  joined.noise_kept = both(earlier.noise_kept, later.noise_kept);
-  joined.noise_told = both(earlier.noise_told, later.noise_told);
+  joined.noise_in_samples = both(earlier.noise_in_samples, later.noise_in_samples);
+  joined.noise_in_differences = both(earlier.noise_in_differences, later.noise_in_differences);
   joined.notes.push_back("judged together with " + earlier.title + ", " + std::to_string(before) + " rows");
   return joined;
 }

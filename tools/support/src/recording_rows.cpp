@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "armcmc/expression/check.hpp"
@@ -27,6 +28,15 @@ std::string NoColumn(const std::string& column, const fs::path& csv, const std::
          JoinedNames(header) + HeaderHint(header);
 }
 
+/// Which columns an expression could have meant by an unknown name.
+std::string ColumnFor(const std::string& name, const fs::path& csv, const std::vector<std::string>& header) {
+  std::vector<std::string> columns;
+  std::copy_if(header.begin(), header.end(), std::back_inserter(columns),
+               [](const std::string& column) { return expression::IsFreeName(column); });
+  return DidYouMean(name, columns) + "; columns of " + csv.string() +
+         " that an expression can name: " + (columns.empty() ? "none" : JoinedNames(columns));
+}
+
 /// What a source says, with the columns that it reads.
 class Source {
  public:
@@ -38,7 +48,7 @@ class Source {
       return;
     }
     try {
-      Compile(header);
+      Compile(csv, header);
     } catch (const expression::Error& error) {
       throw source.table->ErrorInText(source.key, error.column(), error.what());
     }
@@ -69,7 +79,7 @@ class Source {
   }
 
  private:
-  void Compile(const std::vector<std::string>& header) {
+  void Compile(const fs::path& csv, const std::vector<std::string>& header) {
     const expression::Syntax syntax = expression::Parse(source_.value);
     expression::Scope scope;
     std::set<std::string> named;
@@ -84,7 +94,12 @@ class Source {
       if (named.count(column) > 0) columns_.push_back(column);
       scope.Add(std::move(symbol));
     }
-    const expression::Meaning meaning = Check(syntax, scope);
+    expression::Meaning meaning;
+    try {
+      meaning = Check(syntax, scope);
+    } catch (const expression::UnknownName& error) {
+      throw expression::Error(error.column(), error.what() + ColumnFor(error.name(), csv, header));
+    }
     if (meaning.memory) throw expression::Error(1, "a column is made row by row: no function with memory");
     expression::Graph graph;
     const int node = graph.Lower(syntax, scope, {});
@@ -245,12 +260,18 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
       if (!Contains(numbers, column)) numbers.push_back(column);
   };
   const std::optional<Source> time = file.rate_hz > 0.0 ? std::nullopt : source_of("t");
+  if (!time && file.rate_hz == 0.0 && !file.root)
+    throw ConfigError(NoColumn("t", csv_path, header) + ", expected t and the signals of " + plant.name +
+                      "; a recording file gives the columns of other names");
   if (!time && file.rate_hz == 0.0)
     throw ConfigError(name + ": columns.t: which column is the time? Or say rate_hz = .. where there is none");
   want(time);
   std::vector<std::optional<Source>> signals;
   for (const SignalDescription& signal : plant.signals) {
     signals.push_back(source_of(signal.name));
+    if (!signals.back() && signal.derivative_of.empty() && !file.root)
+      throw ConfigError(NoColumn(signal.name, csv_path, header) + ", expected t and the signals of " + plant.name +
+                        "; a recording file gives the columns of other names");
     if (!signals.back() && signal.derivative_of.empty())
       throw ConfigError(name + ": columns." + signal.name + ": which column is it? " +
                         NoColumn(signal.name, csv_path, header));

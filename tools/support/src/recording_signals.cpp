@@ -48,7 +48,7 @@ class InterpolatedNoise {
   void Add(const std::vector<Place>& places) {
     constexpr std::array<double, 4> kThird{1.0, -3.0, 3.0, -1.0};
     for (std::size_t k = 0; k < places.size(); ++k) {
-      kept_ += std::pow(1.0 - places[k].part, 2) + std::pow(places[k].part, 2);
+      in_samples_ += std::pow(1.0 - places[k].part, 2) + std::pow(places[k].part, 2);
       ++samples_;
       if (k + 1 < kThird.size()) continue;
       std::map<std::size_t, double> weight;  // of a row
@@ -57,15 +57,17 @@ class InterpolatedNoise {
         weight[at.row] += kThird[i] * (1.0 - at.part);
         weight[at.row + 1] += kThird[i] * at.part;
       }
-      for (const auto& [row, w] : weight) told_ += w * w / 20.0;
+      for (const auto& [row, w] : weight) in_differences_ += w * w / 20.0;
       ++differences_;
     }
   }
-  [[nodiscard]] double kept() const { return samples_ > 0.0 ? std::sqrt(kept_ / samples_) : 1.0; }
-  [[nodiscard]] double told() const { return differences_ > 0.0 ? std::sqrt(told_ / differences_) : 1.0; }
+  [[nodiscard]] double in_samples() const { return samples_ > 0.0 ? std::sqrt(in_samples_ / samples_) : 1.0; }
+  [[nodiscard]] double in_differences() const {
+    return differences_ > 0.0 ? std::sqrt(in_differences_ / differences_) : 1.0;
+  }
 
  private:
-  double kept_ = 0.0, told_ = 0.0, samples_ = 0.0, differences_ = 0.0;
+  double in_samples_ = 0.0, in_differences_ = 0.0, samples_ = 0.0, differences_ = 0.0;
 };
 
 /// Interval of the rows [first, last): their mean where they are even, which a median of rounded times is not.
@@ -142,8 +144,8 @@ void Resample(const RecordingRows& rows, Recording* recording) {
     noise.Add(places);
   }
   if (resampled > 0) {
-    recording->noise_kept = noise.kept();
-    recording->noise_told = noise.told();
+    recording->noise_in_samples = noise.in_samples();
+    recording->noise_in_differences = noise.in_differences();
   }
   if (resampled > 0)
     recording->notes.push_back("time is uneven in " + std::to_string(resampled) + " of " + std::to_string(runs.size()) +
@@ -239,7 +241,7 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
       std::vector<double>& value = recording->signals[index_of(signal)].value;
       if (value.empty()) continue;
       if (signal == plant.output)
-        recording->smoothed_noise = Roughness(*recording, value) / recording->noise_told *
+        recording->smoothed_noise = Roughness(*recording, value) / recording->noise_in_differences *
                                     std::sqrt(std::min(1.0, 2.0 * file.bandwidth_hz * recording->dt));
       value = Filtered(*recording, value, file.bandwidth_hz);
       recording->notes.push_back(signal + ": zero-phase low pass, " + ExactNumber(file.bandwidth_hz) + " Hz");

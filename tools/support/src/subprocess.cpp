@@ -28,7 +28,7 @@ std::string Drain(int descriptor) {
 
 }  // namespace
 
-std::filesystem::path ProgramBeside(const std::string& name) {
+std::filesystem::path SiblingProgram(const std::string& name) {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
 }
 

@@ -91,7 +91,7 @@ void FillPack(const Recording& recording, int k, int samples, DataPack* pack) {
 }
 
 std::filesystem::path Simulate(const std::string& scenario, std::uint64_t seed, const std::filesystem::path& folder) {
-  const std::filesystem::path program = support::ProgramBeside("armcmc-plant");
+  const std::filesystem::path program = support::SiblingProgram("armcmc-plant");
   const std::filesystem::path csv =
       std::filesystem::absolute(folder) / (scenario + "-" + std::to_string(seed) + ".csv");
   const support::SubprocessEnd end = support::RunSubprocess(

@@ -88,7 +88,7 @@ std::vector<TextLine> Lines(const WatchState& state, const View& view, double no
     AddParameters(state, view, &lines);
     AddStages(state, view, &lines);
     AddSampler(state, view, &lines);
-    AddBelief(state, view, &lines);
+    AddChangeProbabilities(state, view, &lines);
     AddData(state, &lines);
   }
   TextLine keys;

@@ -84,13 +84,13 @@ void AddStages(const WatchState& state, const View& view, std::vector<TextLine>*
   if (view.rows > kLowScreen) lines->emplace_back();
 }
 
-void AddBelief(const WatchState& state, const View& view, std::vector<TextLine>* lines) {
+void AddChangeProbabilities(const WatchState& state, const View& view, std::vector<TextLine>* lines) {
   if (!state.change) return;
   const change_t& c = *state.change;
   const int modes = std::clamp<int>(c.n_modes, 0, change_t::MAX_MODES);
   for (int m = 0; m < modes; ++m) {
     if (c.known[m] == 0) continue;
-    TextLine line = Begin("believed");
+    TextLine line = Begin("posterior");
     if (modes > 1) line.AddLeft(FieldText(c.mode_name[m], 16), 10);
     Item("persisted", Probability(c.p_persisted[m]), &line);
     Item("drifted", Probability(c.p_drifted[m]), &line);

@@ -14,7 +14,7 @@ void AddParameters(const WatchState& state, const View& view, std::vector<TextLi
 void AddStages(const WatchState& state, const View& view, std::vector<TextLine>* lines);
 void AddSampler(const WatchState& state, const View& view, std::vector<TextLine>* lines);
 /// Whether the parameters persisted, drifted or changed; a line for each mode that is known.
-void AddBelief(const WatchState& state, const View& view, std::vector<TextLine>* lines);
+void AddChangeProbabilities(const WatchState& state, const View& view, std::vector<TextLine>* lines);
 void AddData(const WatchState& state, std::vector<TextLine>* lines);
 
 /// Where the watch for gaps sees the most, in words.

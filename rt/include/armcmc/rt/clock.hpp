@@ -21,7 +21,8 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no syste
     /// CLOCK_MONOTONIC, ns since an arbitrary moment, usually the start of the machine. The only clock that
     /// deadlines, releases and latencies are measured on; it is the same for all processes, so that time stamps of the
     /// plant can be compared with those of the estimator on one machine.
-    /// @rt No system call (vDSO).
+    /// @return ns, >= 0; never less than an earlier value, in any thread.
+    /// @rt No heap, no lock, no throw, no system call (vDSO).
     [[nodiscard]] inline Nanos
     MonotonicNow() noexcept ARMCMC_NONBLOCKING {
   timespec t{};
@@ -30,8 +31,9 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no syste
 }
 
 /// CLOCK_REALTIME, ns since 1970. For the alignment of logs, and to convert the receive stamps of the kernel; never for
-/// a deadline, since it may jump.
-/// @rt No system call (vDSO).
+/// a deadline, since it may jump, also backwards.
+/// @return ns.
+/// @rt No heap, no lock, no throw, no system call (vDSO).
 [[nodiscard]] inline Nanos RealtimeNow() noexcept ARMCMC_NONBLOCKING {
   timespec t{};
   clock_gettime(CLOCK_REALTIME, &t);
@@ -41,7 +43,8 @@ ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no syste
 ARMCMC_TRUST_NONBLOCKING_END
 
 /// CLOCK_REALTIME in microseconds: the `utime` of LCM messages. It may jump when the clock of the machine is set.
-/// @rt No system call (vDSO).
+/// @return us since 1970, rounded down.
+/// @rt As RealtimeNow().
 [[nodiscard]] inline std::int64_t RealtimeMicros() noexcept ARMCMC_NONBLOCKING {
   return RealtimeNow() / kNanosPerMicro;
 }
@@ -58,7 +61,8 @@ ARMCMC_TRUST_NONBLOCKING_END
 
 /// An absolute time as a timespec, for the system calls that take one.
 /// @param t_ns  ns, >= 0: a negative time would give a negative tv_nsec, which the kernel rejects.
-/// @rt No system call. O(1).
+/// @return tv_nsec in [0, 10^9).
+/// @rt No heap, no lock, no throw, no system call. O(1).
 [[nodiscard]] constexpr timespec ToTimespec(Nanos t_ns) noexcept {
   return {static_cast<time_t>(t_ns / kNanosPerSecond), static_cast<long>(t_ns % kNanosPerSecond)};
 }
@@ -69,6 +73,7 @@ ARMCMC_TRUST_NONBLOCKING_END
 ///
 /// Not std::this_thread::sleep_until: libstdc++ 12 makes a relative sleep of it, so that a preemption between
 /// the clock read and the call is added to the wake-up.
+/// @rt No heap, no lock, no throw. Blocks in clock_nanosleep.
 ARMCMC_TRUST_NONBLOCKING_BEGIN  // a thread waits here for its release
     inline void
     SleepUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING {

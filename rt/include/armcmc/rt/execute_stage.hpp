@@ -31,7 +31,9 @@ class ExecuteStage {
   ExecuteStage(StepEngine* engine, ResultHandOver* results, OutputRing* outputs, DeadlineMonitor* monitor,
                Counters* counters, EventLog* events);
 
-  /// Finishes one step.
+  /// Finishes one step: takes the newest result of adjust, if there is one that has not been taken, and skips older
+  /// ones. The output carries start and end of the stage on CLOCK_MONOTONIC, ns, and the cause if the deadline was
+  /// missed.
   /// @return true if a step was finished; false if there is no new result.
   /// @rt No heap, no lock, no throw, no system call except those of the CPU time meter. O(draws).
   [[nodiscard]] bool Step() noexcept ARMCMC_NONBLOCKING;
@@ -56,6 +58,7 @@ class ExecuteStage {
   Counters* counters_;
   EventLog* events_;
   std::unique_ptr<StepOutput> spare_;  // the output when the publisher is so late that its ring is full
+  /// Over the whole run, for the report at its end.
   CpuTimeMeter cpu_time_;
   LogHistogram draws_, ess_;
 };

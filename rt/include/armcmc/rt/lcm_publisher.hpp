@@ -34,22 +34,27 @@ class LcmPublisher {
   ///   cannot open it.
   LcmPublisher(const LcmUrl& url, const std::string& prefix);
 
-  /// Sends a message on its channel.
+  /// Sends the estimate of a pack (parameters in the units of the plant, intervals, prediction) on EST_ESTIMATE.
   /// @param message  Complete: the publisher changes nothing in it, neither time stamps nor numbers.
   /// @return false if it could not be encoded (larger than 16 384 bytes) or sent; the caller counts that.
   /// @rt No heap, no throw. Blocks in the socket.
   [[nodiscard]] bool Publish(const estimate_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(estimate_channel_, message);
   }
-  /// Marginal distributions, on EST_POSTERIOR; otherwise as above. @rt As above.
+  /// Marginal distributions of a pack, as densities on a grid, on EST_POSTERIOR; otherwise as above.
+  /// @return as above. @rt As above.
   [[nodiscard]] bool Publish(const posterior_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(posterior_channel_, message);
   }
-  /// Probabilities of change and drift rates, on EST_CHANGE; otherwise as above.
+  /// Probabilities that the parameters persisted, drifted or changed, and drift rates in units per second, on
+  /// EST_CHANGE; otherwise as above.
+  /// @return as above. @rt As above.
   [[nodiscard]] bool Publish(const change_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(change_channel_, message);
   }
-  /// Status, on EST_STATUS; otherwise as above.
+  /// Status (deadlines, stage times in ns, faults, degradation) on EST_STATUS; otherwise as above. It is sent in every
+  /// period, with or without a pack.
+  /// @return as above. @rt As above.
   [[nodiscard]] bool Publish(const estimator_status_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(status_channel_, message);
   }
@@ -73,6 +78,7 @@ class LcmPublisher {
   }
   ARMCMC_TRUST_NONBLOCKING_END
 
+  /// The bus; open from the constructor to the destructor.
   std::unique_ptr<lcm_t, Destroy> lcm_;
   /// Names of the channels, prefix included; at most kMaxChannelLength characters.
   std::string estimate_channel_, posterior_channel_, change_channel_, status_channel_;

@@ -15,11 +15,16 @@ namespace armcmc::rt {
 /// HdrHistogram (G. Tene).
 ///
 /// A value v < 32 has a bucket of its own. Beyond that the bucket is given by the position of the highest bit and the
-/// five bits after it, so that its width is at most v / 32. Each bucket keeps count and sum: a quantile is the mean of
+/// five bits after it:
+///
+///   shift = floor(log2 v) - 5,   bucket = 32 (shift + 1) + floor(v / 2^shift) - 32,   width = 2^shift <= v / 32.
+///
+/// Each bucket keeps count and sum: a quantile is the mean of
 /// the values in its bucket, within 3.2 % of the exact order statistic, and exact if the bucket holds one value only.
 /// Minimum and maximum are exact.
 ///
-/// Fixed size (about 30 kB), no allocation. One writer; readers only after the writer has finished.
+/// Fixed size (1920 buckets of 16 bytes), no allocation. One writer; readers only after the writer has finished. The
+/// unit is the caller's, one for all values of a histogram.
 /// @code
 /// LogHistogram latency;                              // ns
 /// latency.Add(end_ns - start_ns);                    // in the stage
@@ -28,6 +33,7 @@ namespace armcmc::rt {
 class LogHistogram {
  public:
   /// Counts a value; negative ones count as 0.
+  /// @param value  Any 64-bit integer: none is beyond the last bucket.
   /// @rt No heap, no lock, no throw. O(1).
   void Add(std::int64_t value) noexcept ARMCMC_NONBLOCKING {
     const std::uint64_t v = value > 0 ? static_cast<std::uint64_t>(value) : 0;
@@ -39,7 +45,9 @@ class LogHistogram {
     min_ = std::min(min_, v);
   }
 
-  /// Adds the values of another histogram, as if each had been added here.
+  /// Adds the values of another histogram, as if each had been added here: quantiles are those of all values together,
+  /// with the same error bound.
+  /// @param other  Same unit.
   /// @pre Neither histogram is being written. @rt No heap, no lock, no throw. O(buckets).
   void Merge(const LogHistogram& other) noexcept {
     for (std::size_t i = 0; i < kBuckets; ++i) {
@@ -64,6 +72,7 @@ class LogHistogram {
   /// @pre The writer has finished. @rt No heap, no lock, no throw. O(buckets).
   [[nodiscard]] double Quantile(double q) const noexcept {
     if (count_ == 0) return 0.0;
+    // Ranks count from 1, so that q = 1 is the last value and the smallest q the first one.
     const double rank = std::clamp(std::ceil(q * static_cast<double>(count_)), 1.0, static_cast<double>(count_));
     double seen = 0.0;
     for (const Bucket& bucket : buckets_) {
@@ -95,8 +104,10 @@ class LogHistogram {
     return static_cast<std::size_t>((shift + 1U) * kSub + ((v >> shift) - kSub));
   }
 
-  /// State of the histogram; min_ is the largest integer while it is empty.
+  /// [bucket]
   std::array<Bucket, kBuckets> buckets_{};
+  /// Number of values in all buckets, the largest of them, and the smallest; min_ is the largest integer while there is
+  /// none.
   std::uint64_t count_ = 0;
   std::uint64_t max_ = 0;
   std::uint64_t min_ = ~std::uint64_t{0};

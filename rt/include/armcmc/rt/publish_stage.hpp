@@ -44,15 +44,19 @@ class PublishStage {
         counters_(counters),
         events_(events) {}
 
-  /// Injected faults of publication; null: none. Before the thread starts.
+  /// Faults of publication to inject, by the number of the pack; null: none. Before the thread starts.
   /// @param injection  Outlives the stage.
   void SetInjection(Injection* injection) noexcept { injection_ = injection; }
-  /// DEGRADED_* bits for the following status messages: real-time measures that are not in effect. Any thread, any
-  /// time.
+  /// Sets the DEGRADED_* bits of estimator_status_t for the following status messages: real-time measures that are not
+  /// in effect.
+  /// @param flags  All of them, not only new ones.
+  /// @rt Any thread, any time. No heap, no lock, no throw.
   void SetDegraded(std::int32_t flags) noexcept { degraded_flags_.store(flags, std::memory_order_relaxed); }
 
-  /// Adds evidence about the machine to the next status: the longest delay of a witness thread in ns, and whether the
-  /// watchdog found a stage that hangs. By the publish thread.
+  /// Adds evidence about the machine to the next status. By the publish thread.
+  /// @param witness_worst_ns  Longest delay of a witness thread since the last call, ns; the status has the maximum.
+  /// @param hung  Whether the watchdog found a stage that hangs.
+  /// @rt No heap, no lock, no throw. O(1).
   void Note(Nanos witness_worst_ns, bool hung) noexcept ARMCMC_NONBLOCKING {
     witness_worst_ns_ = std::max(witness_worst_ns_, witness_worst_ns);
     hung_ = hung_ || hung;
@@ -99,9 +103,10 @@ class PublishStage {
   Counters* counters_;
   EventLog* events_;
   Injection* injection_ = nullptr;
-  /// Noted since the last status.
+  /// Evidence noted since the last status.
   Nanos witness_worst_ns_ = 0;
   bool hung_ = false;
+  /// Written by other threads, or read by them: see SetDegraded() and gap_alarm().
   std::atomic<std::int32_t> degraded_flags_{0};
   std::atomic<std::int64_t> gap_alarm_{0};
   /// Filled again for every step.

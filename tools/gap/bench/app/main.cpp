@@ -75,7 +75,7 @@ int Run(Arguments a) {
     if (a.recordings.empty()) std::erase(a.strata, kRecorded);
     a.strata.emplace_back(kTies);
   }
-  if (a.plant.empty()) a.plant = support::ProgramBeside("armcmc-plant");
+  if (a.plant.empty()) a.plant = support::SiblingProgram("armcmc-plant");
   if (!std::filesystem::exists(a.plant)) throw support::InputError(a.plant + " does not exist: give --plant");
   const PlantProcess plant(a.plant, a.out);
   std::vector<Case> cases;

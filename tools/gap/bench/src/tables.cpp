@@ -59,9 +59,11 @@ std::string CalibrationTable(const std::vector<Outcome>& outcomes) {
   return table.ToString();
 }
 
+/// With an empty line behind it; nothing if no recording belongs to it.
 std::string ConfusionTable(const std::vector<Outcome>& outcomes, bool imperfect) {
   const Confusion confusion = Confuse(outcomes, imperfect);
   TextTable table({imperfect ? "truth, where the plant is not the catalogue" : "truth", "n", "answers"});
+  bool any = false;
   for (std::size_t r = 0; r < confusion.names.size(); ++r) {
     int n = 0;
     std::string answers;
@@ -71,8 +73,9 @@ std::string ConfusionTable(const std::vector<Outcome>& outcomes, bool imperfect)
       if (count > 0) answers += (answers.empty() ? "" : ", ") + std::to_string(count) + " " + confusion.answers[c];
     }
     if (n > 0) table.AddRow({confusion.names[r], std::to_string(n), answers});
+    any = any || n > 0;
   }
-  return table.ToString();
+  return any ? table.ToString() + '\n' : "";
 }
 
 }  // namespace
@@ -96,7 +99,7 @@ std::string Line(const Outcome& o) {
 }
 
 std::string Tables(const std::vector<Outcome>& outcomes) {
-  return CountTable(outcomes) + '\n' + ConfusionTable(outcomes, false) + '\n' + ConfusionTable(outcomes, true) + '\n' +
+  return CountTable(outcomes) + '\n' + ConfusionTable(outcomes, false) + ConfusionTable(outcomes, true) +
          CalibrationTable(outcomes) + '\n' + GateTable(outcomes);
 }
 

@@ -30,6 +30,18 @@ struct ParameterEstimate {
   std::string unit;
   double mean = 0.0;
   double sd = 0.0;
+  /// Names of parameters that could make up for a change of this one, so that `sd` is that of the prior more than of
+  /// the data: see `determined`. Empty: determined by itself.
+  std::vector<std::string> confounded_with{};
+};
+
+/// A combination of parameters that the data determine, although they do not determine each of its parameters.
+struct Combination {
+  std::string text;                     ///< "a + 0.5 b", or, of parameters fitted by logarithms, "a * b^0.5".
+  std::vector<std::string> parameters;  ///< Names.
+  double value = 0.0;
+  double sd = 0.0;
+  std::string unit;
 };
 
 /// An effect of the verdict. In an ambiguous verdict: of the most probable set.
@@ -151,7 +163,7 @@ struct MapFigure {
 struct LadderRung {
   /// Names; the first was added. Several that are needed together: "a + b".
   std::vector<std::string> effects;
-  std::vector<std::string> parameters{};  ///< In words: "Fc = 20.4 +- 0.1 N".
+  std::vector<std::string> parameters{};  ///< What the data determine: "Fc = 20.4 ± 0.1 N", "a + b = ..".
   double closed_fraction = 0.0;           ///< Share of the gap closed by all rungs so far, on held-out data.
   double heldout_error = 0.0;             ///< Rms on held-out data, unit of the output.
   double probability = 0.0;               ///< Probability that an effect of this family is present.
@@ -217,8 +229,9 @@ struct Result {
   double relative_before = 0.0, relative_after = 0.0;  ///< Held-out rms error relative to the rms of the output.
   GapSummary gap;
   std::vector<ParameterChange> parameters;
-  std::vector<ParameterDrift> drift;  ///< Plant files only.
-  RunAlong run;                       ///< Plant files only.
+  std::vector<Combination> determined;  ///< With the added effects: in place of parameters that are confounded.
+  std::vector<ParameterDrift> drift;    ///< Plant files only.
+  RunAlong run;                         ///< Plant files only.
   Budget budget;
   std::string model_file;  ///< model.toml, relative to the output folder; empty when no effect was added.
   Figures figures;

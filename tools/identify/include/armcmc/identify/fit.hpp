@@ -59,8 +59,12 @@ struct FitsWithout {
 /// Precision of the prior of every sampled parameter; 0 of a uniform one.
 [[nodiscard]] Eigen::VectorXd PriorPrecision(const TrajectoryModel& model);
 
-/// Posterior standard deviations in sampled coordinates at a fit: of the inverse of J' J / s^2 + prior.
-[[nodiscard]] Eigen::VectorXd StandardDeviations(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
-                                                 const FitResult& fit);
+/// Posterior covariance in sampled coordinates at a fit, (J' J / s^2 + prior precision)^-1, with the Jacobian J of the
+/// law and the rms error s of the fit.
+/// @param rows  [row] 1: fitted.
+/// @param fit   A valid fit to these rows.
+/// @return [parameter][parameter]
+[[nodiscard]] Eigen::MatrixXd Covariance(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
+                                         const FitResult& fit);
 
 }  // namespace armcmc::identify

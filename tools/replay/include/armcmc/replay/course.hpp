@@ -10,11 +10,11 @@
 
 namespace armcmc::replay {
 
-/// What the estimator expected of every sample of a recording before it saw the pack.
+/// Predictions of the estimator for every sample of a recording, made before it saw the pack.
 struct Course {
-  double pack_s = 0.0;  ///< Length of a pack: how far ahead a prediction reaches.
-  /// [row of the recording] Measured minus expected, and half the width of the 95 % interval that was given for it;
-  /// NaN where nothing was expected.
+  double pack_s = 0.0;  ///< Length of a pack: the horizon of a prediction.
+  /// [row of the recording] Measured minus predicted, and half the width of the 95 % prediction interval; NaN where
+  /// nothing was predicted.
   std::vector<double> error, half_width;
 };
 
@@ -25,9 +25,9 @@ struct Course {
 /// @param samples_per_pack  0: as when the recording is played onto a bus.
 /// @param progress  Share done; may be empty.
 /// @throws support::InputError where no run fills a pack, std::invalid_argument where the settings are wrong.
-[[nodiscard]] Course FollowRecording(const EstimatorSettings& settings,
-                                     const std::shared_ptr<const support::Recording>& recording, int samples_per_pack,
-                                     const std::function<void(double share)>& progress);
+[[nodiscard]] Course PredictPackAhead(const EstimatorSettings& settings,
+                                      const std::shared_ptr<const support::Recording>& recording, int samples_per_pack,
+                                      const std::function<void(double share)>& progress);
 
 /// 97.5 % quantile of a law of scale 1 and mean 0.
 [[nodiscard]] double UpperQuantile(const NoiseSettings& noise);

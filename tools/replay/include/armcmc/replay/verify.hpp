@@ -12,7 +12,7 @@ namespace armcmc::replay {
 
 /// What came out of a comparison with what a live run had published.
 struct Verification {
-  std::int64_t compared = 0;      ///< Messages: estimates, posteriors, and what is believed about change.
+  std::int64_t compared = 0;      ///< Messages: estimates, posteriors, and probabilities of change.
   std::int64_t different = 0;     ///< Of those.
   std::int64_t undecodable = 0;   ///< Messages on the channels of the estimates that are of no type of this version.
   std::int64_t without_pack = 0;  ///< Recorded estimates whose pack the recording has lost.

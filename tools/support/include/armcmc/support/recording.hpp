@@ -34,12 +34,13 @@ struct Recording {
   double dt = 0.0;                           ///< s, sample interval.
   std::vector<double> t;                     ///< [row] s, increasing within a run.
   std::vector<std::size_t> runs;       ///< First row of every run: neither states nor derivatives are carried across.
-  std::vector<std::uint8_t> held_out;  ///< [row] 1: kept apart, to judge a model on.
-  /// Standard deviation of the noise that the filter has let through where the output was filtered here; else 0.
+  std::vector<std::uint8_t> held_out;  ///< [row] 1: held out, to validate a model.
+  /// If the output was filtered here, the standard deviation of the noise that passed the filter; otherwise 0.
   double smoothed_noise = 0.0;
-  /// Where time was uneven and samples are interpolated, of the standard deviation of white noise on the rows: what is
-  /// left of it on the samples, and what third differences of the samples tell of it. Else 1.
-  double noise_kept = 1.0, noise_told = 1.0;
+  /// If samples were interpolated because time was uneven, for white noise of standard deviation 1 on the rows of the
+  /// file: the standard deviation of the noise of the samples, and the estimate of it from their third differences,
+  /// which is too small since neighbours share noise. Otherwise 1.
+  double noise_in_samples = 1.0, noise_in_differences = 1.0;
   std::vector<PublishedFigure> published;
   std::vector<std::string> notes;  ///< For the user: what was derived, resampled, left out.
 

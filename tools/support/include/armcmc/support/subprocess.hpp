@@ -6,8 +6,8 @@
 
 namespace armcmc::support {
 
-/// A program of the product, in the folder of the one that runs: "armcmc-plant".
-[[nodiscard]] std::filesystem::path ProgramBeside(const std::string& name);
+/// Path of another program of the product ("armcmc-plant"): in the folder of the running one.
+[[nodiscard]] std::filesystem::path SiblingProgram(const std::string& name);
 
 /// How a process ended.
 struct SubprocessEnd {
