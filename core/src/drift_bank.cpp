@@ -47,6 +47,16 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
   from->weight = 0.0;
 }
 
+Drift::Filter Drift::JointOf(const Bank& bank, Part part) noexcept {
+  Filter joint;
+  for (std::size_t i = 0; i < bank.size(); ++i) {
+    if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
+    Filter f = bank[i];
+    Merge(&f, &joint);
+  }
+  return joint;
+}
+
 void Drift::GrowOlder() noexcept {
   // From the oldest on, so that none moves by two generations.
   for (std::size_t g = kMergeAfter.size(); g-- > 0;) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
@@ -39,8 +40,8 @@ struct Kernels;
 ///            once, new members that the data refute would widen those that the data support
 ///   bounds   if the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean are divided
 ///            by c: after a long time without information a drifting parameter returns to P_0
-///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
-///            pi_h times the evidence of that, with every filter updated by the same a, H, m
+///   pack     log L(z) = g' z - z' H z / 2 of z = (u - m, w) about the posterior mean m, H the Fisher information (see
+///            LocalLikelihood); pi_h times the evidence of that, with every filter updated by the same g, H, m
 ///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
 ///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
 ///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
@@ -58,6 +59,12 @@ struct Kernels;
 /// than a Gaussian in its core, were passed on from pack to pack, each posterior would narrow the bank a little more.
 /// (With a sampled noise scale P_drift is an affine map of P, too.) While drift is improbable (kNegligible), P is
 /// unchanged to the bit.
+///
+/// A parameter that drifts also does so while a pack is recorded: u is where it stands at the end of the pack, and
+/// u - w t is where it was at a time t before. Taken for constant, it would bias what the pack says along directions
+/// that the samples hardly determine, by many standard deviations. DriftFactor corrects the likelihood of the
+/// candidates for that, with w | u as the moments of the part that drifts have it. Parameters that changed are constant
+/// in the pack that shows the change, and so are all of a law with states.
 ///
 /// The noise scale is not a coordinate of the bank: its memory is wide enough (ModeSampler::AppendNoiseScale).
 class Drift {
@@ -114,6 +121,16 @@ class Drift {
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
 
+  /// Whether block b of what Carry() returned is of parameters that drift, also while the pack is recorded.
+  [[nodiscard]] bool Drifts(const PosteriorMemory& memory, int block) const noexcept ARMCMC_NONBLOCKING;
+  /// The posterior of those, in place of one under which the parameters are constant in the pack.
+  /// @param local     The pack about fit->mean.
+  /// @param[in,out] fit     In: its mean and precision under constant parameters.
+  /// @param[out] factor     All but `lever` and `log_scale`.
+  /// @return false, and both as they were, when some number is not finite.
+  /// @rt No heap, no lock, no throw. O(dim^3).
+  bool LetDrift(const LocalLikelihood& local, Gaussian* fit, DriftFactor* factor) const noexcept ARMCMC_NONBLOCKING;
+
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
   /// @param part     What its first block was fitted to.
@@ -154,8 +171,14 @@ class Drift {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
+  /// One filter with the moments of a part of the bank.
+  [[nodiscard]] static Filter JointOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
+  /// Bayes' rule for one filter. @param about  Where the likelihood was expanded.
+  /// @return log of the evidence; NaN when some number is not finite.
+  [[nodiscard]] static double Observe(const LocalLikelihood& local, const ParamVector& about,
+                                      Filter* filter) noexcept ARMCMC_NONBLOCKING;
   void GrowOlder() noexcept ARMCMC_NONBLOCKING;
   void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
@@ -203,6 +226,7 @@ class Drift {
   bool split_ = false;
   bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;
+  Filter drifting_;  ///< Moments of the part of `predicted_` that drifts.
   PosteriorMemory carried_;
 };
 

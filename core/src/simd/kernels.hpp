@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "armcmc/density_block.hpp"
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/expression/operation.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
@@ -78,6 +79,11 @@ struct Kernels {
 
   /// out[lane] += factor * p(u[., first + lane]).
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,
+                      double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// out[lane] *= the factor at u[., first + lane], whose predictions are in `tile`.
+  void (*apply_drift)(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data,
+                      const PredictionTile& tile, const double* log_scale, const double* const* u, int first,
                       double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] = P_0(u[., first + lane]): 0 outside the bounds.
