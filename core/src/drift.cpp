@@ -246,7 +246,7 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
     Filter& f = bank_[i];
     f = predicted_[i];
     if (!(f.weight > 0.0)) continue;
-    log_weight[i] = std::log(f.weight) + Observe(local, sampled.mean, &f);
+    log_weight[i] = std::log(f.weight) + Observe(local, sampled.mean, MovesInPack(i), &f);
     if (!std::isfinite(log_weight[i])) return false;
     top = std::fmax(top, log_weight[i]);
   }
@@ -266,8 +266,8 @@ bool Drift::Recentre(const Sampled& sampled) noexcept {
   // The posterior of the sampler's prior under the expanded likelihood: the bank itself, or a Gaussian with its
   // moments.
   const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
-  Filter now = JointOf(as_the_bank ? bank_ : predicted_, sampled.part);
-  if (!as_the_bank && !std::isfinite(Observe(local, sampled.mean, &now))) return false;
+  Filter now = sampled.part == Part::kDrift && !as_the_bank ? drifting_ : JointOf(as_the_bank ? bank_ : predicted_, sampled.part);
+  if (!as_the_bank && !std::isfinite(Observe(local, sampled.mean, true, &now))) return false;
   ParamMatrix map;
   if (!MapBetween(now.uu, sampled.covariance, &map)) return false;
   for (std::size_t i = 0; i < bank_.size(); ++i) {

@@ -52,6 +52,12 @@ Drift::Filter Drift::JointOf(const Bank& bank, Part part) noexcept {
   for (std::size_t i = 0; i < bank.size(); ++i) {
     if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
     Filter f = bank[i];
+    if (!MovesInPack(i)) {
+      f.w.setZero();
+      f.uw.setZero();
+      f.ww.setZero();
+      f.ww.diagonal().setConstant(1e-12);
+    }
     Merge(&f, &joint);
   }
   return joint;

@@ -91,14 +91,15 @@ void SetBlock(const ParamMatrix& a, Joint* joint) noexcept {
 
 }  // namespace
 
-double Drift::Observe(const LocalLikelihood& local, const ParamVector& about, Filter* filter) noexcept {
+double Drift::Observe(const LocalLikelihood& local, const ParamVector& about, bool moves, Filter* filter) noexcept {
   Filter& f = *filter;
   const Eigen::Index dim = f.u.size();
-  const bool moves = f.ww(0, 0) > 0.0;
   Joint before, h, root, m;
-  if (moves) {
+  const bool has_speed = f.ww(0, 0) > 0.0;
+  if (has_speed) {
+    const ParamMatrix none = ParamMatrix::Zero(dim, dim);
     SetBlocks(f.uu, f.uw, f.ww, &before);
-    SetBlocks(local.information, local.cross_information, local.speed_information, &h);
+    SetBlocks(local.information, moves ? local.cross_information : none, moves ? local.speed_information : none, &h);
   } else {
     SetBlock(f.uu, &before);
     SetBlock(local.information, &h);
@@ -112,9 +113,9 @@ double Drift::Observe(const LocalLikelihood& local, const ParamVector& about, Fi
     const auto at = static_cast<std::size_t>(i);
     z[at] = f.u[i] - about[i];
     pull[at] = local.gradient[i];
-    if (!moves) continue;
+    if (!has_speed) continue;
     z[at + static_cast<std::size_t>(dim)] = f.w[i];
-    pull[at + static_cast<std::size_t>(dim)] = local.speed_gradient[i];
+    pull[at + static_cast<std::size_t>(dim)] = moves ? local.speed_gradient[i] : 0.0;
   }
   double log_evidence = -0.5 * LogDeterminant(m);
   for (std::size_t i = 0; i < size; ++i) {
@@ -132,12 +133,12 @@ double Drift::Observe(const LocalLikelihood& local, const ParamVector& about, Fi
     const auto r = static_cast<std::size_t>(i);
     const auto wr = r + static_cast<std::size_t>(dim);
     f.u[i] += step[r];
-    if (moves) f.w[i] += step[wr];
+    if (has_speed) f.w[i] += step[wr];
     for (Eigen::Index j = 0; j < dim; ++j) {
       const auto c = static_cast<std::size_t>(j);
       const auto wc = c + static_cast<std::size_t>(dim);
       f.uu(i, j) = after.at[r][c];
-      if (!moves) continue;
+      if (!has_speed) continue;
       f.uw(i, j) = after.at[r][wc];
       f.ww(i, j) = after.at[wr][wc];
     }
@@ -160,7 +161,7 @@ bool Drift::LetDrift(const LocalLikelihood& local, Gaussian* fit, DriftFactor* f
   if (!eigen.converged) return false;
   const ParamMatrix whiten = Product(eigen.vectors.transpose(), root.transpose());
   Filter after = drifting_;
-  if (std::isnan(Observe(local, fit->mean.head(dim_), &after))) return false;
+  if (std::isnan(Observe(local, fit->mean.head(dim_), true, &after))) return false;
   ParamMatrix covariance = Inverse(fit->precision);
   covariance.topLeftCorner(dim_, dim_) = after.uu;
   const ParamMatrix precision = Inverse(covariance);

@@ -274,7 +274,7 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
 
   alignas(64) std::array<double, 2 * kTileLanes> log_scale;
   const bool drifts = ws->drift_factor.dim > 0;
-  for (int k = first; k < end && quadratic_.ready() && !drifts; k += kTileLanes)
+  for (int k = first; k < end && quadratic_.ready(); k += kTileLanes)
     quadratic_.Score(u, k, &ws->log_likelihood[static_cast<std::size_t>(k)]);
   for (int k = first; k < end && !quadratic_.ready() && !drifts; k += 2 * kTileLanes) {
     const bool two = k + kTileLanes < end;
@@ -308,11 +308,16 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
     }
     if (!drifts) continue;
     kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
-    kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
-    kernels_.log_likelihood(noise_, data, ws->prediction, log_scale.data(), &ws->log_likelihood[at]);
+    if (quadratic_.ready()) {
+      quadratic_.Levers(u, k, &ws->levers);
+    } else {
+      kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
+      kernels_.log_likelihood(noise_, data, ws->prediction, log_scale.data(), &ws->log_likelihood[at]);
+      kernels_.lever_sums(ws->drift_factor, noise_, data, ws->prediction, log_scale.data(), &ws->levers);
+    }
     for (int b = 0; b < previous.num_blocks; ++b)
       if (drift_.Drifts(previous, b))
-        kernels_.apply_drift(ws->drift_factor, noise_, data, ws->prediction, log_scale.data(), u, k,
+        kernels_.apply_drift(ws->drift_factor, ws->levers, log_scale.data(), u, k,
                              &ws->memory[static_cast<std::size_t>(b)][at]);
   }
 }

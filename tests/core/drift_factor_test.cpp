@@ -84,7 +84,9 @@ TEST(DriftFactor, IsTheLikelihoodOfAllVelocitiesOverThatOfNone) {
     for (const simd::Kernels* kernels : test::RunnableKernels()) {
       std::array<double, kTileLanes> out{};
       out.fill(3.0);
-      kernels->apply_drift(one->factor, noise, one->data, *tile, log_scale.data(), rows.data(), 0, out.data());
+      LeverTile levers;
+      kernels->lever_sums(one->factor, noise, one->data, *tile, log_scale.data(), &levers);
+      kernels->apply_drift(one->factor, levers, log_scale.data(), rows.data(), 0, out.data());
       for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
         Eigen::VectorXd at(dim), e(kSamples);
         for (int d = 0; d < dim; ++d) at[d] = u[static_cast<std::size_t>(d)][lane];

@@ -295,14 +295,15 @@ TEST(EngineSnapshots, HoldEveryRecursion) {
   engine.SetSnapshots(&parts);
   rt::WarmUp(&engine);
   SnapshotSaver saver(
-      path, {.identity = kIdentity}, &parts, [](const std::string&) {}, [] {});
+      path, {.identity = kIdentity, .seq = 0, .utime = 0, .adjusted = {}, .executed = {}}, &parts,
+      [](const std::string&) {}, [] {});
   const auto estimate = std::make_unique<Estimate>(), resumed = std::make_unique<Estimate>();
-  const auto step = [](rt::EstimatorEngine* of, std::int64_t seq, Estimate* to) {
+  const auto step = [](rt::EstimatorEngine* of, int seq, Estimate* to) {
     ASSERT_EQ(of->Adjust(rt::SyntheticPack(of->pack_format(), seq), 0, ClockRef{}, 0), Status::kOk) << seq;
     of->Execute(0, to);
     of->Remember(ClockRef{});
   };
-  std::int64_t next = 10;
+  int next = 10;
   for (const int packs : {3, 6}) {  // before every recursion has had a pack, and after that
     for (int i = 0; i < packs; ++i) step(&engine, next++, estimate.get());
     saver.Save();

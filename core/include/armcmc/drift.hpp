@@ -167,6 +167,11 @@ class Drift {
   };
 
   [[nodiscard]] static std::size_t HypothesisOf(std::size_t filter) noexcept { return filter % kHypotheses; }
+  /// Trends do; walks are constant in a pack.
+  [[nodiscard]] static bool MovesInPack(std::size_t filter) noexcept {
+    const std::size_t h = HypothesisOf(filter);
+    return h > 0 && kDrifts[h - 1].persistence > 1.0;
+  }
   [[nodiscard]] static bool IsOf(Part part, std::size_t filter) noexcept {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
@@ -177,7 +182,7 @@ class Drift {
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
   /// Bayes' rule for one filter. @param about  Where the likelihood was expanded.
   /// @return log of the evidence; NaN when some number is not finite.
-  [[nodiscard]] static double Observe(const LocalLikelihood& local, const ParamVector& about,
+  [[nodiscard]] static double Observe(const LocalLikelihood& local, const ParamVector& about, bool moves,
                                       Filter* filter) noexcept ARMCMC_NONBLOCKING;
   void GrowOlder() noexcept ARMCMC_NONBLOCKING;
   void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;

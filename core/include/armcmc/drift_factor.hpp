@@ -29,4 +29,9 @@ struct alignas(64) DriftFactor {
   double lever[kMaxParams][kMaxPackSamples];    ///< t dF/du_d times the weight of the sample.
 };
 
+/// `a` of kTileLanes candidates: value[parameter][lane].
+struct alignas(64) LeverTile {
+  double value[kMaxParams][kTileLanes];
+};
+
 }  // namespace armcmc

@@ -46,6 +46,7 @@ class SamplerWorkspace {
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;
   LaplaceScratch laplace;
   DriftFactor drift_factor;  ///< Of the blocks of the memory that drift.
+  LeverTile levers;
   ThetaPair theta;
   PredictionTile prediction;
   QuadraticScratch quadratic;

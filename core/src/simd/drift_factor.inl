@@ -22,7 +22,7 @@ template <NoiseKind kKind>
 /// a of DriftFactor: a[d][lane] = sum_n lever_d[n] times the score of the error.
 template <int kDim, NoiseKind kKind>
 void LeverSums(const DriftFactor& factor, const NoiseSettings& s, const ModeData& data, const PredictionTile& tile,
-               const double* log_scale, double (*a)[kTileLanes]) noexcept {
+               const double* log_scale, LeverTile* a) noexcept {
   constexpr int kGroup = 2;
   const V mean = Simd::Set(s.mean);
   for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
@@ -40,13 +40,13 @@ void LeverSums(const DriftFactor& factor, const NoiseSettings& s, const ModeData
       }
     }
     for (int g = 0; g < kGroup; ++g)
-      for (int d = 0; d < kDim; ++d) Simd::Store(&a[d][(v0 + g) * Simd::kLanes], sum[g][d]);
+      for (int d = 0; d < kDim; ++d) Simd::Store(&a->value[d][(v0 + g) * Simd::kLanes], sum[g][d]);
   }
 }
 
 template <int kDim>
 void LeverSumsOfLaw(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data,
-                    const PredictionTile& tile, const double* log_scale, double (*a)[kTileLanes]) noexcept {
+                    const PredictionTile& tile, const double* log_scale, LeverTile* a) noexcept {
   const NoiseSettings& s = noise.settings();
   switch (s.kind) {
     case NoiseKind::kGaussian: return LeverSums<kDim, NoiseKind::kGaussian>(factor, s, data, tile, log_scale, a);
@@ -56,24 +56,52 @@ void LeverSumsOfLaw(const DriftFactor& factor, const NoiseModel& noise, const Mo
   }
 }
 
-/// See Kernels::apply_drift.
-void ApplyDrift(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,
-                const double* log_scale, const double* const* u, int first, double* out) noexcept ARMCMC_NONBLOCKING {
+/// See Kernels::lever_sums.
+void LeverSumsOf(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,
+                 const double* log_scale, LeverTile* sums) noexcept ARMCMC_NONBLOCKING {
   static_assert(kMaxParams == 8);
-  constexpr double kMost = 600.0;  // nats: beyond, the expansion says nothing
-  alignas(64) double sums[kMaxParams][kTileLanes];
-  const int dim = factor.dim;
-  switch (dim) {
-    case 1: LeverSumsOfLaw<1>(factor, noise, data, tile, log_scale, sums); break;
-    case 2: LeverSumsOfLaw<2>(factor, noise, data, tile, log_scale, sums); break;
-    case 3: LeverSumsOfLaw<3>(factor, noise, data, tile, log_scale, sums); break;
-    case 4: LeverSumsOfLaw<4>(factor, noise, data, tile, log_scale, sums); break;
-    case 5: LeverSumsOfLaw<5>(factor, noise, data, tile, log_scale, sums); break;
-    case 6: LeverSumsOfLaw<6>(factor, noise, data, tile, log_scale, sums); break;
-    case 7: LeverSumsOfLaw<7>(factor, noise, data, tile, log_scale, sums); break;
-    case 8: LeverSumsOfLaw<8>(factor, noise, data, tile, log_scale, sums); break;
+  switch (factor.dim) {
+    case 1: return LeverSumsOfLaw<1>(factor, noise, data, tile, log_scale, sums);
+    case 2: return LeverSumsOfLaw<2>(factor, noise, data, tile, log_scale, sums);
+    case 3: return LeverSumsOfLaw<3>(factor, noise, data, tile, log_scale, sums);
+    case 4: return LeverSumsOfLaw<4>(factor, noise, data, tile, log_scale, sums);
+    case 5: return LeverSumsOfLaw<5>(factor, noise, data, tile, log_scale, sums);
+    case 6: return LeverSumsOfLaw<6>(factor, noise, data, tile, log_scale, sums);
+    case 7: return LeverSumsOfLaw<7>(factor, noise, data, tile, log_scale, sums);
+    case 8: return LeverSumsOfLaw<8>(factor, noise, data, tile, log_scale, sums);
     default: return;
   }
+}
+
+/// See Kernels::lever_node_sums.
+void LeverNodeSums(const DriftFactor& factor, const ModeData& data, double noise_mean, int num_linear,
+                   const PredictionTile* prediction, double* const* sums) noexcept ARMCMC_NONBLOCKING {
+  for (int v = 0; v < kVectors; ++v) {
+    const auto lane = static_cast<unsigned>(v * Simd::kLanes);
+    V total[QuadraticForm::kMaxFunctions] = {};
+    for (int n = 0; n < data.num_samples; ++n) {
+      const auto in = static_cast<unsigned>(n);
+      const V weight = Simd::Set(data.weight[in]);
+      const V law = Simd::Load(&prediction[0].value[in][lane]);
+      V part[static_cast<unsigned>(kMaxParams + 1)];  // the error, and what each parameter takes from it
+      part[0] = (Simd::Set(data.target[in] - noise_mean) - law) * weight;
+      for (int i = 0; i < num_linear; ++i)
+        part[1 + i] = (law - Simd::Load(&prediction[1 + i].value[in][lane])) * weight;
+      int f = 0;
+      for (int d = 0; d < factor.dim; ++d) {
+        const V lever = Simd::Set(factor.lever[d][n]);
+        for (int i = 0; i <= num_linear; ++i, ++f) total[f] = Simd::Fma(lever, part[i], total[f]);
+      }
+    }
+    for (int f = 0; f < factor.dim * (1 + num_linear); ++f) Simd::Store(sums[f] + lane, total[f]);
+  }
+}
+
+/// See Kernels::apply_drift.
+void ApplyDrift(const DriftFactor& factor, const LeverTile& sums, const double* log_scale, const double* const* u,
+                int first, double* out) noexcept ARMCMC_NONBLOCKING {
+  constexpr double kMost = 600.0;  // nats: beyond, the expansion says nothing
+  const int dim = factor.dim;
   for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
     V apart[kMaxParams], speed[kMaxParams], c[kMaxParams];
     for (int d = 0; d < dim; ++d) apart[d] = Simd::Load(u[d] + first + lane) - Simd::Set(factor.place[d]);
@@ -85,7 +113,7 @@ void ApplyDrift(const DriftFactor& factor, const NoiseModel& noise, const ModeDa
     const V finer = Simd::Exp2((Simd::Set(factor.log_scale) - Simd::Load(log_scale + lane)) * Simd::Set(2.0 * kLog2E));
     V log_factor{};
     for (int i = 0; i < dim; ++i) {
-      const V a = Simd::Load(&sums[i][lane]);
+      const V a = Simd::Load(&sums.value[i][lane]);
       V moved{};  // G m
       for (int j = 0; j < dim; ++j) moved = Simd::Fma(Simd::Set(factor.information[i][j]), speed[j], moved);
       moved = moved * finer;

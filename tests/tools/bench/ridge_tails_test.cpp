@@ -33,11 +33,12 @@ double KishSize(double stroke, std::uint64_t seed) {
 // The seeds are those of thousands for which a proposal that ends with the bends of its fit does worst: there one draw
 // beyond them has up to a third of all weight, and the size is 11 to 1800 instead of about 10 000.
 TEST(RidgeTails, NoDrawHasMostOfTheWeightWhereTheRidgeIsLong) {
-  for (const std::uint64_t seed : {1413, 1791, 2134, 2587, 2665, 2980}) EXPECT_GT(KishSize(0.02, seed), 8000.0) << seed;
+  for (const std::uint64_t seed : {1413u, 1791u, 2134u, 2587u, 2665u, 2980u})
+    EXPECT_GT(KishSize(0.02, seed), 8000.0) << seed;
 }
 
 TEST(RidgeTails, NoDrawHasMostOfTheWeightWhereItIsShort) {
-  for (const std::uint64_t seed : {1215, 1256, 1276, 1444}) EXPECT_GT(KishSize(0.04, seed), 5000.0) << seed;
+  for (const std::uint64_t seed : {1215u, 1256u, 1276u, 1444u}) EXPECT_GT(KishSize(0.04, seed), 5000.0) << seed;
 }
 
 }  // namespace

@@ -87,9 +87,9 @@ struct ClimbRequest {
 ///    - does not increase the error when long blocks or whole regions are left out;
 ///    - gains also in combination with a flexible function: 5 % in two of the three kinds of groups, or 20 % in one
 ///    without losing in the others;
-///    - removes more than half of the error that is not noise, alone or together with the next effect, unless its family has
-///    already been named or only noise remains; and one of its amplitudes is more than two standard deviations from
-///    zero.
+///    - removes more than half of the error that is not noise, alone or together with the next effect, unless its
+///    family has already been named or only noise remains; and one of its amplitudes is more than two standard
+///    deviations from zero.
 /// 2. Simplest first. Among the candidates that close at least 95 % of what the best one closes, those with the fewest
 ///    parameters are kept; among these the best one, or, within 1 % of it, the one that depends on the fewest
 ///    quantities. What a simple effect leaves is examined on the next rung.
