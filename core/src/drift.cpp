@@ -266,7 +266,8 @@ bool Drift::Recentre(const Sampled& sampled) noexcept {
   // The posterior of the sampler's prior under the expanded likelihood: the bank itself, or a Gaussian with its
   // moments.
   const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
-  Filter now = sampled.part == Part::kDrift && !as_the_bank ? drifting_ : JointOf(as_the_bank ? bank_ : predicted_, sampled.part);
+  Filter now = sampled.part == Part::kDrift && !as_the_bank ? drifting_
+                                                            : JointOf(as_the_bank ? bank_ : predicted_, sampled.part);
   if (!as_the_bank && !std::isfinite(Observe(local, sampled.mean, true, &now))) return false;
   ParamMatrix map;
   if (!MapBetween(now.uu, sampled.covariance, &map)) return false;

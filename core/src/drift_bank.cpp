@@ -47,7 +47,7 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
   from->weight = 0.0;
 }
 
-Drift::Filter Drift::JointOf(const Bank& bank, Part part) noexcept {
+Drift::Filter Drift::JointOf(const Bank& bank, Part part) const noexcept {
   Filter joint;
   for (std::size_t i = 0; i < bank.size(); ++i) {
     if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;

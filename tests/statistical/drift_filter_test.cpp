@@ -84,7 +84,8 @@ class Histories {
     for (History& h : next) {
       // y = (a - t w) x + e, a = kMean + kSd u: information and pull in u, then in w.
       const double unit = kSd / (kNoise * kNoise);
-      const double moves = h.new_in_pack ? 0.0 : 1.0;  // what has changed is constant for the rest of the pack
+      // What has changed is constant for the rest of the pack, and so is what walks from pack to pack.
+      const double moves = !h.new_in_pack && Drift::Of(h.law, share_).moves_in_pack() ? 1.0 : 0.0;
       h.new_in_pack = false;
       const double huu = kSd * unit * sums.xx, huw = -moves * kSd * unit * sums.txx;
       const double hww = moves * kSd * unit * sums.ttxx;

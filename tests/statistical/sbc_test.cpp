@@ -61,6 +61,7 @@ class Truth {
       }
       at = theta_;
     }
+    if (!law_.moves_in_pack()) path_.fill(theta_);
   }
 
  private:

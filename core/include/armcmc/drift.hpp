@@ -60,10 +60,11 @@ struct Kernels;
 /// (With a sampled noise scale P_drift is an affine map of P, too.) While drift is improbable (kNegligible), P is
 /// unchanged to the bit.
 ///
-/// A parameter that drifts also does so while a pack is recorded: u is where it stands at the end of the pack, and
+/// On a trend a parameter also drifts while a pack is recorded: u is where it stands at the end of the pack, and
 /// u - w t is where it was at a time t before. Taken for constant, it would bias what the pack says along directions
 /// that the samples hardly determine, by many standard deviations. DriftFactor corrects the likelihood of the
-/// candidates for that, with w | u as the moments of the part that drifts have it. Parameters that changed are constant
+/// candidates for that, with w | u as the moments of the part that drifts have it. Walks move between packs alone: fast
+/// enough to follow what happens within one, they would explain what a law lacks. Parameters that changed are constant
 /// in the pack that shows the change, and so are all of a law with states.
 ///
 /// The noise scale is not a coordinate of the bank: its memory is wide enough (ModeSampler::AppendNoiseScale).
@@ -83,8 +84,8 @@ class Drift {
                                                {0.03, 30.0, 0.16},
                                                {0.1, 30.0, 0.16},
                                                {0.3, 30.0, 0.16}}};
-  static constexpr double kSwitching = 0.01;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
-  static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
+  static constexpr double kSwitching = 0.01;    ///< kappa, 1/s: a drift begins, ends, or becomes another.
+  static constexpr double kNegligible = 0.005;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kHypotheses = 1 + static_cast<int>(kDrifts.size());
   static constexpr std::array<int, 3> kMergeAfter{5, 15, 45};  ///< Packs; of the latest first.
   static constexpr int kGenerations = 1 + static_cast<int>(kMergeAfter.size());
@@ -95,6 +96,8 @@ class Drift {
 
   struct Hypothesis {
     double rate = 0.0, persistence = 1.0, prior = 1.0;
+    /// Whether the parameters move while a pack is recorded: those on a trend do.
+    [[nodiscard]] constexpr bool moves_in_pack() const noexcept { return rate > 0.0 && persistence > 1.0; }
   };
   /// Hypothesis h where drift has the probability `share`.
   [[nodiscard]] static Hypothesis Of(int h, double share) noexcept ARMCMC_NONBLOCKING;
@@ -167,17 +170,15 @@ class Drift {
   };
 
   [[nodiscard]] static std::size_t HypothesisOf(std::size_t filter) noexcept { return filter % kHypotheses; }
-  /// Trends do; walks are constant in a pack.
-  [[nodiscard]] static bool MovesInPack(std::size_t filter) noexcept {
-    const std::size_t h = HypothesisOf(filter);
-    return h > 0 && kDrifts[h - 1].persistence > 1.0;
+  [[nodiscard]] bool MovesInPack(std::size_t filter) const noexcept {
+    return hypotheses_[HypothesisOf(filter)].moves_in_pack();
   }
   [[nodiscard]] static bool IsOf(Part part, std::size_t filter) noexcept {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
   /// One filter with the moments of a part of the bank.
-  [[nodiscard]] static Filter JointOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Filter JointOf(const Bank& bank, Part part) const noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
   /// Bayes' rule for one filter. @param about  Where the likelihood was expanded.

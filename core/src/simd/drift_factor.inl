@@ -97,33 +97,33 @@ void LeverNodeSums(const DriftFactor& factor, const ModeData& data, double noise
   }
 }
 
-/// See Kernels::apply_drift.
+template <int kDim>
 void ApplyDrift(const DriftFactor& factor, const LeverTile& sums, const double* log_scale, const double* const* u,
-                int first, double* out) noexcept ARMCMC_NONBLOCKING {
+                int first, double* out) noexcept {
   constexpr double kMost = 600.0;  // nats: beyond, the expansion says nothing
-  const int dim = factor.dim;
+  constexpr auto kSize = static_cast<unsigned>(kDim);
   for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
-    V apart[kMaxParams], speed[kMaxParams], c[kMaxParams];
-    for (int d = 0; d < dim; ++d) apart[d] = Simd::Load(u[d] + first + lane) - Simd::Set(factor.place[d]);
-    for (int i = 0; i < dim; ++i) {
+    V apart[kSize], speed[kSize], c[kSize];
+    for (int d = 0; d < kDim; ++d) apart[d] = Simd::Load(u[d] + first + lane) - Simd::Set(factor.place[d]);
+    for (int i = 0; i < kDim; ++i) {
       speed[i] = Simd::Set(factor.speed[i]);
-      for (int j = 0; j < dim; ++j) speed[i] = Simd::Fma(Simd::Set(factor.regression[i][j]), apart[j], speed[i]);
+      for (int j = 0; j < kDim; ++j) speed[i] = Simd::Fma(Simd::Set(factor.regression[i][j]), apart[j], speed[i]);
     }
     // G grows with the precision of the candidate's noise.
     const V finer = Simd::Exp2((Simd::Set(factor.log_scale) - Simd::Load(log_scale + lane)) * Simd::Set(2.0 * kLog2E));
     V log_factor{};
-    for (int i = 0; i < dim; ++i) {
+    for (int i = 0; i < kDim; ++i) {
       const V a = Simd::Load(&sums.value[i][lane]);
       V moved{};  // G m
-      for (int j = 0; j < dim; ++j) moved = Simd::Fma(Simd::Set(factor.information[i][j]), speed[j], moved);
+      for (int j = 0; j < kDim; ++j) moved = Simd::Fma(Simd::Set(factor.information[i][j]), speed[j], moved);
       moved = moved * finer;
       c[i] = a + moved;
       log_factor = log_factor - speed[i] * Simd::Fma(moved, Simd::Set(0.5), a);
     }
     V determinant = Simd::Set(1.0);
-    for (int i = 0; i < dim; ++i) {
+    for (int i = 0; i < kDim; ++i) {
       V white{};
-      for (int j = 0; j < dim; ++j) white = Simd::Fma(Simd::Set(factor.whiten[i][j]), c[j], white);
+      for (int j = 0; j < kDim; ++j) white = Simd::Fma(Simd::Set(factor.whiten[i][j]), c[j], white);
       const V shrink = Simd::Fma(Simd::Set(factor.gain[i]), finer, Simd::Set(1.0));
       determinant = determinant * shrink;
       log_factor = Simd::Fma(Simd::Set(0.5) * white, white / shrink, log_factor);
@@ -131,6 +131,23 @@ void ApplyDrift(const DriftFactor& factor, const LeverTile& sums, const double* 
     log_factor = Simd::Fma(Simd::Set(-0.5 * kLn2), Simd::Log2(determinant), log_factor);
     const V held = Simd::Min(Simd::Max(log_factor, Simd::Set(-kMost)), Simd::Set(kMost));
     Simd::Store(out + lane, Simd::Load(out + lane) * Simd::Exp2(held * Simd::Set(kLog2E)));
+  }
+}
+
+/// See Kernels::apply_drift.
+void ApplyDriftOf(const DriftFactor& factor, const LeverTile& sums, const double* log_scale, const double* const* u,
+                  int first, double* out) noexcept ARMCMC_NONBLOCKING {
+  static_assert(kMaxParams == 8);
+  switch (factor.dim) {
+    case 1: return ApplyDrift<1>(factor, sums, log_scale, u, first, out);
+    case 2: return ApplyDrift<2>(factor, sums, log_scale, u, first, out);
+    case 3: return ApplyDrift<3>(factor, sums, log_scale, u, first, out);
+    case 4: return ApplyDrift<4>(factor, sums, log_scale, u, first, out);
+    case 5: return ApplyDrift<5>(factor, sums, log_scale, u, first, out);
+    case 6: return ApplyDrift<6>(factor, sums, log_scale, u, first, out);
+    case 7: return ApplyDrift<7>(factor, sums, log_scale, u, first, out);
+    case 8: return ApplyDrift<8>(factor, sums, log_scale, u, first, out);
+    default: return;
   }
 }
 
