@@ -255,13 +255,13 @@ void Estimator::Impl::ExpectStates(AdjustResult* result) noexcept {
     }
   };
   find(kRounds);
-  const std::array<double, kMaxParams> told_mean = mean;
-  const double told = state_filter.OpenStart(kernels, mean, state_noise, *data);
-  if (told < 0.0) return;
+  const std::array<double, kMaxParams> fixed_mean = mean;
+  const double fixed_squares = state_filter.OpenStart(kernels, mean, state_noise, *data);
+  if (fixed_squares < 0.0) return;
   state_filter.Predict(kernels, mean, state_noise, data);
   find(kRoundsWithout);
-  if (!state_filter.StartIsContradicted(kernels, mean, state_noise, *data, told))
-    state_filter.Predict(kernels, told_mean, state_noise, data);
+  if (!state_filter.StartIsContradicted(kernels, mean, state_noise, *data, fixed_squares))
+    state_filter.Predict(kernels, fixed_mean, state_noise, data);
 }
 
 void Estimator::Impl::CarryStates() noexcept {

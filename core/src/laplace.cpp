@@ -15,7 +15,7 @@ struct Trial {
   double length;
 };
 /// In addition to the Newton step, as many as fit into the lanes that its linearisation does not use.
-constexpr std::array<Trial, 15> kBeside{{{0, 1.5},
+constexpr std::array<Trial, 15> kTrials{{{0, 1.5},
                                          {2, 1.5},
                                          {0, 0.5},
                                          {2, 0.5},
@@ -259,8 +259,8 @@ double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data,
     SetAround(space, trial[0], &scratch->theta);
     std::fill_n(log_scale, kTileLanes, space.LogNoiseScale(trial[0].data()));
     for (int lane = around; lane < lanes; ++lane) {
-      const Trial& beside = kBeside[static_cast<std::size_t>(lane - around)];
-      set_trial(beside.damping, beside.length, lane);
+      const Trial& other = kTrials[static_cast<std::size_t>(lane - around)];
+      set_trial(other.damping, other.length, lane);
     }
     PredictAround(kernels, model, data, space, scratch);
     kernels.log_likelihood(noise, data, scratch->prediction, log_scale, log_likelihood);

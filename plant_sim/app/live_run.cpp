@@ -30,7 +30,7 @@ namespace {
 
 // Two messages a pack and a drain every 10 ms: at 1 kHz a disk may stall for 0.1 s before a message is lost.
 constexpr int kLogSlots = 256;
-constexpr std::int64_t kPoll = 10'000'000;  // ns, between two looks at what came: no silence is told sooner
+constexpr std::int64_t kPoll = 10'000'000;  // ns, between two polls of the bus: no silence is detected sooner
 
 /// A line on stderr, with a progress line wiped first.
 void Say(const std::string& text) {

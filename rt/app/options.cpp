@@ -18,7 +18,7 @@ namespace {
 /// Without --config a built-in model has a file of its own, a plant that a file describes the defaults; with --config,
 /// --model replaces the model of the file.
 support::StrictTable OpenConfiguration(const std::string& config, const std::string& model, bool described) {
-  // A wrong name or model file is told first: it is the model's fault, not the configuration's.
+  // A wrong name or model file is reported first: the error is in the model, not in the configuration.
   const std::string base = model.empty() || described ? DefaultModel() : support::BaseModel(model);
   if (described && config.empty()) return support::StrictTable::FromText("schema = 1\n", "the default configuration");
   return support::StrictTable::FromFile(support::FindSharedFile("config", config.empty() ? base : config));
@@ -81,7 +81,7 @@ Configuration Load(const Options& options) {
     if (!plant.resume.empty() && plant.estimator.method != Method::kArmcmc)
       throw support::InputError("--resume: only method = \"armcmc\" keeps what it has learnt; leave --resume out");
     if (!options.gap_log.empty()) plant.gap_log.directory = options.gap_log;
-    // Files of several plants are told apart by their folder.
+    // Files of several plants have a folder each.
     if (plants > 1 && !plant.gap_log.directory.empty())
       plant.gap_log.directory = (std::filesystem::path(plant.gap_log.directory) / plant.prefix).string();
     for (const PlantConfiguration& other : all.plants)

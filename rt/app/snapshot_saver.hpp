@@ -14,8 +14,8 @@
 namespace armcmc::app {
 
 /// Writes what the estimator has learnt to a file, on a thread of its own without real-time priority: once per second
-/// while something new was learnt, and when it is stopped. A disk that refuses is counted, told once until it works
-/// again, and tried again a second later; the estimator does not notice.
+/// while the posterior changes, and when it is stopped. A write that fails is counted, and reported once until one
+/// works again, and tried again a second later; the estimator does not notice.
 class SnapshotSaver {
  public:
   using Say = std::function<void(const std::string&)>;

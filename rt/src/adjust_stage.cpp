@@ -39,8 +39,7 @@ void AdjustStage::NoteStatus(const StepInfo& info) noexcept {
   if (info.status == Status::kTruncated) {
     counters_->adjust.truncated.Add();
     counters_->faults.Raise(estimator_status_t::FAULT_TRUNCATED);
-  } else if (info.status == Status::kNonFinite || info.status == Status::kBadPack ||
-             info.status == Status::kSingularCovariance) {
+  } else if (info.status == Status::kNonFinite || info.status == Status::kBadPack) {
     counters_->adjust.numeric.Add();
     counters_->faults.Raise(estimator_status_t::FAULT_NUMERIC);
     events_->Add({info.times.end_ns[IndexOf(Stage::kAdjust)], EventKind::kNumericTrouble,

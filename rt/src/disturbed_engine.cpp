@@ -5,7 +5,7 @@
 namespace armcmc::rt {
 namespace {
 
-/// A wrong plant without noise, told often enough that the posterior has nearly no width left.
+/// A wrong plant without noise, repeated until the posterior has nearly no width left.
 constexpr double kWrongScale = 0.5;
 constexpr int kRepeats = 8;
 

@@ -258,7 +258,7 @@ void Pipeline::CollectLoop() noexcept {
       publish_waiter_.Post();
     }
     CountHeapCalls(Stage::kCollect, baseline);
-    // A stall that the hypervisor does not report is charged to whoever ran. What was told to disturb may use any time.
+    // A stall that the hypervisor does not report is charged to whoever ran. What injects faults may use any time.
     heard += bus.passed_over() - passed_over;
     passed_over = bus.passed_over();
     collect_thread_.NoteCpuTime(options_.injection != nullptr ? RtThread::kNoLimit

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -24,13 +25,34 @@ bool IsMade(const std::string& name) {
          name == "CMakeUserPresets.json";
 }
 
-TEST(Layout, TheTopLevelIsFixed) {
-  std::set<std::string> there;
-  for (const fs::directory_entry& entry : fs::directory_iterator(SourceDir())) {
-    const std::string name = entry.path().filename();
-    if (!name.starts_with('.') && !IsMade(name)) there.insert(name);
+/// First parts of the paths in an index of git, of version 2 or 3; empty if it is none. Format: gitformat-index(5).
+std::set<std::string> TopLevelOfIndex(const std::string& index) {
+  const auto number = [&index](std::size_t at, std::size_t bytes) {
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < bytes; ++i) value = value << 8U | static_cast<unsigned char>(index.at(at + i));
+    return value;
+  };
+  if (index.size() < 12 || !index.starts_with("DIRC") || number(4, 4) < 2 || number(4, 4) > 3) return {};
+  constexpr std::size_t kFlags = 60, kExtended = 0x4000;
+  std::set<std::string> names;
+  std::size_t at = 12;
+  for (std::size_t n = number(8, 4); n > 0; --n) {
+    const std::size_t path = at + kFlags + ((number(at + kFlags, 2) & kExtended) != 0 ? 4 : 2);
+    const std::size_t end = index.find('\0', path);
+    names.insert(index.substr(path, std::min(index.find('/', path), end) - path));
+    at += (end - at + 8) / 8 * 8;  // at least one NUL, up to a multiple of eight bytes
   }
-  EXPECT_EQ(there, kTopLevel);
+  return names;
+}
+
+// In a clone, a user's own files beside those of the project do not count.
+TEST(Layout, TheTopLevelIsFixed) {
+  std::ifstream file(SourceDir() / ".git/index", std::ios::binary);
+  std::set<std::string> names = TopLevelOfIndex({std::istreambuf_iterator<char>(file), {}});
+  if (names.empty())
+    for (const fs::directory_entry& entry : fs::directory_iterator(SourceDir())) names.insert(entry.path().filename());
+  std::erase_if(names, [](const std::string& name) { return name.starts_with('.') || IsMade(name); });
+  EXPECT_EQ(names, kTopLevel);
 }
 
 TEST(Layout, NothingIsLeftToDo) {
@@ -78,13 +100,13 @@ TEST(Layout, FourTenthsOfTheLinesOfInstalledHeadersAreDocumentation) {
         own += 1.0;
         own_documented += std::regex_match(line, comment) ? 1.0 : 0.0;
       }
-      EXPECT_GE(own_documented / own, 0.25) << part << '/' << it->str();
+      EXPECT_GE(own_documented / own, 0.33) << part << '/' << it->str();
       lines += own;
       documented += own_documented;
     }
   }
   EXPECT_GT(headers, 60);
-  EXPECT_GE(documented / lines, 0.40);
+  EXPECT_GE(documented / lines, 0.43);
 }
 
 }  // namespace

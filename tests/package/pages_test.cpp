@@ -52,6 +52,13 @@ TEST(Pages, ThePlantAndTheCsvOfTheReadmeWork) {
   EXPECT_NEAR(std::stod(caption[2]) / std::stod(after[1]), 1.0, 0.01);
 }
 
+TEST(Pages, TheExampleOfARecordingFileWorks) {
+  const ScratchDir dir;
+  std::filesystem::create_directory_symlink(SourceDir() / "tools", dir / "tools");
+  std::filesystem::create_directory_symlink(Program("x").parent_path().parent_path(), dir / "build");
+  EXPECT_THAT(FollowPage(SourceDir() / "tools/replay/RECORDINGS.md", dir.path()), IsEmpty());
+}
+
 TEST(Pages, ResultsAreMadeByTheCommandsThatTheyShow) {
   const ScratchDir dir;
   const Outcome run =

@@ -56,33 +56,33 @@ TEST_F(CollectStageTest, TellsOnceThatPacksShareMoreSamplesThanIsCountedOn) {
     Send(pack, kT * seq);
     ring_->Pop();
   };
-  const auto told = [this] {
+  const auto reported = [this] {
     std::vector<std::pair<std::int64_t, std::int64_t>> differ;
     for (Event event; events_.Take(&event);)
       if (event.kind == EventKind::kOverlapDiffers) differ.emplace_back(event.a, event.b);
     return differ;
   };
-  using Told = std::vector<std::pair<std::int64_t, std::int64_t>>;
+  using Differences = std::vector<std::pair<std::int64_t, std::int64_t>>;
   for (const std::int64_t seq : {1, 2, 5, 6}) send(seq, 100);
-  EXPECT_EQ(told(), Told{}) << "also after a gap";
+  EXPECT_EQ(reported(), Differences{}) << "also after a gap";
   for (const std::int64_t seq : {1, 2, 3}) send(seq, 130, 2);
-  EXPECT_EQ(told(), Told{}) << "time between packs";
+  EXPECT_EQ(reported(), Differences{}) << "time between packs";
   for (const std::int64_t seq : {1, 2, 3, 6}) send(seq, 10, 3);
-  EXPECT_EQ(told(), (Told{{10, 100}})) << "once a run";
+  EXPECT_EQ(reported(), (Differences{{10, 100}})) << "once a run";
   send(1, 10, 4);
   send(4, 10, 4);
-  EXPECT_EQ(told(), (Told{{10, 100}}));
+  EXPECT_EQ(reported(), (Differences{{10, 100}}));
 
   PackFormat format{HuntCrossley::kInfo.plant, 2};
   format.overlap = 10;
   stage_ = std::make_unique<CollectStage>(RtSettings{}, format, ring_.get(), counters_.get(), &events_);
   stage_->Begin(0);
   for (const std::int64_t seq : {1, 2, 4}) send(seq, 10);
-  EXPECT_EQ(told(), Told{});
+  EXPECT_EQ(reported(), Differences{});
   for (const std::int64_t seq : {1, 2}) send(seq, 5, 2);
-  EXPECT_EQ(told(), (Told{{5, 10}}));
+  EXPECT_EQ(reported(), (Differences{{5, 10}}));
   for (const std::int64_t seq : {1, 2}) send(seq, 100, 3);
-  EXPECT_EQ(told(), (Told{{100, 10}})) << "each recursion would leave samples out";
+  EXPECT_EQ(reported(), (Differences{{100, 10}})) << "each recursion would leave samples out";
 }
 
 TEST_F(CollectStageTest, ALatePackKeepsTheDeadlineOfItsGridPoint) {

@@ -51,7 +51,7 @@ class LanesTest : public ::testing::Test {
     std::vector<LanePlant> plants;
     for (std::size_t i = 0; i < kPlants; ++i) plants.push_back({&engines_[i], Prefix(i), false});
     pipeline_ = std::make_unique<Pipeline>(Settings(bus_.url()), plants, PipelineOptions{});
-    ears_ = std::make_unique<LcmReceiver>(
+    receiver_ = std::make_unique<LcmReceiver>(
         ParseLcmUrl(bus_.url()), std::vector<std::string>{"P0_EST_ESTIMATE", "P1_EST_ESTIMATE", "P2_EST_ESTIMATE"});
     pipeline_->Start();
   }
@@ -65,15 +65,15 @@ class LanesTest : public ::testing::Test {
   void Publish(std::size_t plant, std::int64_t seq) {
     peer_->Publish(Prefix(plant) + "PLANT_PACK", test::Encode(test::ValidPack(seq)));
   }
-  /// Estimates heard so far, by plant.
-  const std::array<std::vector<estimate_t>, kPlants>& Heard() {
+  /// Estimates received so far, by plant.
+  const std::array<std::vector<estimate_t>, kPlants>& Received() {
     Datagram datagram;
-    while (ears_->TryReceive(&datagram)) {
+    while (receiver_->TryReceive(&datagram)) {
       estimate_t estimate;
       EXPECT_GT(estimate.decode(datagram.payload.data(), 0, static_cast<int>(datagram.payload.size())), 0);
-      heard_[datagram.channel].push_back(estimate);
+      received_[datagram.channel].push_back(estimate);
     }
-    return heard_;
+    return received_;
   }
   static bool WaitFor(const std::function<bool()>& condition) {
     for (const Nanos end = MonotonicNow() + test::kLong; MonotonicNow() < end;
@@ -87,9 +87,9 @@ class LanesTest : public ::testing::Test {
     ASSERT_TRUE(WaitFor([&] {
       ++seq;
       for (std::size_t i = 0; i < kPlants; ++i)
-        if (Heard()[i].empty()) Publish(i, seq);
+        if (Received()[i].empty()) Publish(i, seq);
       SleepUntil(MonotonicNow() + 20 * kNanosPerMilli);
-      return std::none_of(Heard().begin(), Heard().end(), [](const auto& of) { return of.empty(); });
+      return std::none_of(Received().begin(), Received().end(), [](const auto& of) { return of.empty(); });
     }));
   }
 
@@ -97,8 +97,8 @@ class LanesTest : public ::testing::Test {
   std::array<test::FakeEngine, kPlants> engines_;
   std::unique_ptr<test::Peer> peer_;
   std::unique_ptr<Pipeline> pipeline_;
-  std::unique_ptr<LcmReceiver> ears_;
-  std::array<std::vector<estimate_t>, kPlants> heard_;
+  std::unique_ptr<LcmReceiver> receiver_;
+  std::array<std::vector<estimate_t>, kPlants> received_;
 };
 
 TEST_F(LanesTest, EveryPlantHasItsOwnAnswersAndCounts) {
@@ -113,13 +113,13 @@ TEST_F(LanesTest, EveryPlantHasItsOwnAnswersAndCounts) {
   ASSERT_TRUE(WaitFor([&] {
     for (std::size_t i = 0; i < kPlants; ++i)
       if (pipeline_->lane(i).counters().collect.received.Get() < before[i] + sent(i) ||
-          Heard()[i].back().seq < 1000 * static_cast<std::int64_t>(i + 1))
+          Received()[i].back().seq < 1000 * static_cast<std::int64_t>(i + 1))
         return false;
     return true;
   }));
   for (std::size_t i = 0; i < kPlants; ++i) {
     EXPECT_EQ(pipeline_->lane(i).counters().collect.received.Get(), before[i] + sent(i)) << i;
-    for (const estimate_t& estimate : Heard()[i]) {
+    for (const estimate_t& estimate : Received()[i]) {
       if (estimate.seq > 100) {
         EXPECT_EQ(estimate.seq / 1000, static_cast<std::int64_t>(i) + 1);
       }
@@ -140,7 +140,7 @@ TEST_F(LanesTest, PlantsThatWaitShareTheTime) {
   engines_[0].adjust_sleep_ns = 0;
   for (std::size_t i = 0; i < kPlants; ++i) Publish(i, 502);
   ASSERT_TRUE(WaitFor([&] {
-    return std::all_of(Heard().begin(), Heard().end(), [](const auto& of) { return of.back().seq >= 502; });
+    return std::all_of(Received().begin(), Received().end(), [](const auto& of) { return of.back().seq >= 502; });
   }));
   std::array<Nanos, kPlants> budgets{};
   for (std::size_t i = 0; i < kPlants; ++i) budgets[i] = engines_[i].last_budget_ns.load();

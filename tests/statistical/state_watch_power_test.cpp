@@ -35,7 +35,7 @@ struct Case {
   double rate_hz;
   std::string input;  ///< Signal that moves: a multisine.
   double amplitude, offset, bandwidth_hz;
-  double wrong;  ///< Relative error of the parameters that the watch is told.
+  double wrong;  ///< Relative error of the parameters that the watch is given.
   std::vector<std::pair<std::string, std::string>> missing;  ///< State, term of its rate: gap ratio R of about 1.
 };
 
@@ -97,15 +97,15 @@ class Source {
     return settings;
   }
   /// The truth, a little wrong.
-  [[nodiscard]] GapReference Told(double wrong) const {
-    GapReference told;
-    told.known[0] = true;
-    told.noise_std[0] = mine_.noise.std;
+  [[nodiscard]] GapReference Reference(double wrong) const {
+    GapReference reference;
+    reference.known[0] = true;
+    reference.noise_std[0] = mine_.noise.std;
     for (std::size_t d = 0; d < mine_.parameters.size(); ++d) {
       const double value = mine_.parameters[d].usual * (d % 2 == 0 ? 1.0 + wrong : 1.0 - wrong);
-      told.theta[0][d] = program_->sampled()[d].prior == "lognormal" ? std::log(value) : value;
+      reference.theta[0][d] = program_->sampled()[d].prior == "lognormal" ? std::log(value) : value;
     }
-    return told;
+    return reference;
   }
 
  private:
@@ -158,10 +158,10 @@ TEST(StateWatchPower, BetsDoNotPayWhenNothingIsMissing) {
         EstimatorSettings settings = source.Settings();
         settings.gap_watch.tolerance = 0.0;
         GapWatch watch(settings, FindModel(settings.model), simd::Best(), settings.gap_watch.false_alarm_rate);
-        const GapReference told = source.Told(c.wrong);
+        const GapReference reference = source.Reference(c.wrong);
         std::int64_t seen = 0;
         for (int k = 0; k < (kBlocks + 1) * kPacksOfBlock; ++k) {
-          watch.Step(source.Next(colour), told, false);
+          watch.Step(source.Next(colour), reference, false);
           if (watch.state().num_blocks == seen) continue;
           seen = watch.state().num_blocks;
           ++blocks;

@@ -67,7 +67,7 @@ TEST(Printable, WhatAProgramPrintsIsEscapedButForLineBreaksAndTabs) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   {
-    const HarmlessOutput harmless;
+    const EscapedOutput escaped;
     std::cout << "a\x1b[2J\tµ\n" << '\x1b' << std::setw(4) << "\xff" << std::flush;
     std::cerr << std::string("n\0", 2) << "\xC2\x9B" << '\n';
   }
@@ -86,7 +86,7 @@ void ExpectShowable(const std::string& text) {
 }
 
 /// One line of what may be shown, of at most some hundred bytes for each word that it repeats.
-void ExpectHarmless(const Outcome& run) {
+void ExpectEscaped(const Outcome& run) {
   EXPECT_EQ(run.code, 2);
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err.size();
   EXPECT_LT(run.err.size(), 2000U);
@@ -101,15 +101,15 @@ TEST(Printable, HeadersOfABrokenCsvAreShownAndCut) {
     return RunProgram(Program("armcmc-replay"), {"--config", "hunt_crossley", "--data", csv, "--out", dir / "out.csv"});
   };
   const Outcome escape = replay("t,\x1b]0;owned\a,\xff\xfe\n0,1,2\n");
-  ExpectHarmless(escape);
+  ExpectEscaped(escape);
   EXPECT_THAT(escape.err, HasSubstr("\\x1b]0;owned\\x07,\\xff\\xfe"));
-  ExpectHarmless(replay("t," + std::string(10'000, 'x') + "\n0,1\n"));
+  ExpectEscaped(replay("t," + std::string(10'000, 'x') + "\n0,1\n"));
   std::string many = "t";
   for (int i = 0; i < 3000; ++i) many += ",c" + std::to_string(i);
   const Outcome long_header = replay(many + "\n");
-  ExpectHarmless(long_header);
+  ExpectEscaped(long_header);
   EXPECT_THAT(long_header.err, HasSubstr("(3001 in all)"));
-  ExpectHarmless(replay("t,x,v,f\n0,1,2,\x1b[31m\n"));
+  ExpectEscaped(replay("t,x,v,f\n0,1,2,\x1b[31m\n"));
 }
 
 TEST(Printable, KeysAndTextsOfABrokenTomlAreShownAndCut) {
@@ -126,7 +126,7 @@ TEST(Printable, KeysAndTextsOfABrokenTomlAreShownAndCut) {
         << more << tail;
     const Outcome run = RunProgram(Program("armcmc-model"), {"check", plant});
     SCOPED_TRACE(shown);
-    ExpectHarmless(run);
+    ExpectEscaped(run);
     EXPECT_THAT(run.err, HasSubstr(shown));
   };
   expect("p", "k*u", "\"\\u001b[2J\" = 1\n", "\"\\x1b[2J\": unknown key");

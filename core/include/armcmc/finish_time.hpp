@@ -24,8 +24,8 @@ class FinishTime {
   /// that has become slower for good is followed within a few packs.
   void Add(Nanos spent_ns, int draws) noexcept ARMCMC_NONBLOCKING {
     const Nanos predicted_ns = Predict(draws);
-    const Nanos believed_ns = predicted_ns > 0 ? std::min(spent_ns, 2 * predicted_ns) : spent_ns;
-    ns_ = std::max(predicted_ns - predicted_ns / 10, believed_ns);
+    const Nanos limited_ns = predicted_ns > 0 ? std::min(spent_ns, 2 * predicted_ns) : spent_ns;
+    ns_ = std::max(predicted_ns - predicted_ns / 10, limited_ns);
     draws_ = std::max(draws_, draws);
   }
 

@@ -49,11 +49,11 @@ struct LocalLikelihood {
 ///   H = J' W J + P,   step = (H + mu diag H)^-1 [J' W e + P (m - u)]
 ///
 /// W are the reweighted-least-squares weights of the noise law. J comes from central differences evaluated as lanes of
-/// one batch, so a model needs no derivatives. The batch about the end of the undamped step (mu = 0) tells what that
-/// gains, and is the next iteration's where it is taken; damped, shorter and longer steps fill its other lanes. Where
-/// none of them is uphill 4 dampings x 8 lengths are tried as lanes of a batch of their own.
-/// Steps are clamped to the bounds of `space`. A step that promises less than `tolerance` is the last, and is taken
-/// without a trial; H is then that at its beginning.
+/// one batch, so a model needs no derivatives. The batch about the end of the undamped step (mu = 0) evaluates its
+/// gain, and is reused by the next iteration if the step is taken; damped, shorter and longer steps fill its other
+/// lanes. Where none of them is uphill 4 dampings x 8 lengths are tried as lanes of a batch of their own. Steps are
+/// clamped to the bounds of `space`. A step that promises less than `tolerance` is the last, and is taken without a
+/// trial; H is then that at its beginning.
 /// @param start      Where to begin, [dim].
 /// @param tolerance  In nats: kModeTolerance for the mode itself, kProposalTolerance for something to draw from.
 /// @param[out] fit   Mean = mode found, precision = H there. Positive definite because P is.

@@ -59,6 +59,7 @@ struct alignas(64) PredictionTile {
 struct alignas(64) ThetaTile {
   std::array<std::array<double, kTileLanes>, kMaxParams> value;
 };
+/// Two tiles that are scored in one pass over the samples.
 using ThetaPair = std::array<ThetaTile, 2>;
 
 }  // namespace armcmc

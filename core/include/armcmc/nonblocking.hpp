@@ -3,9 +3,12 @@
 /// Marks a function that a real-time stage may call: it neither allocates, locks, throws nor blocks.
 /// Checked at compile time by clang 20 and later (-Wfunction-effects) and at run time by RealtimeSanitizer;
 /// expands to nothing for other compilers. Written after noexcept, on the first declaration; the definition has it too.
+/// Source: clang's attribute `nonblocking`, https://clang.llvm.org/docs/FunctionEffectAnalysis.html.
 ///
 /// ARMCMC_TRUST_NONBLOCKING_BEGIN .. END enclose the few functions whose body the compiler is not asked about, because
 /// it cannot see that what they call does not block. Each such place says why. RealtimeSanitizer looks at them, too.
+///
+/// Code that calls this library from a real-time thread of its own need not use either.
 #if defined(__clang__) && __clang_major__ >= 20
 #define ARMCMC_NONBLOCKING [[clang::nonblocking]]
 #define ARMCMC_TRUST_NONBLOCKING_BEGIN \

@@ -8,14 +8,15 @@ namespace armcmc {
 /// Outcome of a function on the step path. Such functions never throw. They set their outputs as documented for each
 /// value, and leave the estimator in a valid state whatever the outcome: the next pack can be processed.
 ///
-/// Published as `status` of estimate_t, as a number; the values are part of the message and do not change.
+/// kOk, kTruncated and kHeld are normal operation. After kBadPack and kNonFinite the pipeline raises the fault flag for
+/// numeric trouble, records the number in the event log, and goes on with the next pack. On the bus, estimate_t has
+/// `truncated`, and the modes that a pack did not update keep what they had.
 enum class Status : std::uint8_t {
-  kOk = 0,
-  kTruncated,           ///< The deadline cut the number of draws; the result is valid, with fewer draws.
-  kHeld,                ///< The pack says nothing about the parameters; what was known is kept.
-  kBadPack,             ///< The pack violates its contract; nothing was changed.
-  kNonFinite,           ///< No draw had a finite posterior; what was known is kept.
-  kSingularCovariance,  ///< A covariance was not positive definite; a wider one was used.
+  kOk = 0,     ///< Every active mode has a new posterior.
+  kTruncated,  ///< The deadline cut the number of draws; the result is valid, with fewer draws.
+  kHeld,       ///< The pack says nothing about the parameters; what was known is kept.
+  kBadPack,    ///< The pack violates its contract; nothing was changed.
+  kNonFinite,  ///< No draw had a finite posterior; what was known is kept.
 };
 
 /// Name of a status for messages and reports, "truncated". @rt No heap, no lock, no throw.
@@ -26,7 +27,6 @@ enum class Status : std::uint8_t {
     case Status::kHeld: return "held";
     case Status::kBadPack: return "bad pack";
     case Status::kNonFinite: return "non-finite";
-    case Status::kSingularCovariance: return "singular covariance";
   }
   return "unknown";
 }

@@ -38,11 +38,11 @@ struct FlowLaw {
   /// @param head  Head(point, mode), or what is known of it beforehand.
   /// @param pdot  As measured; the prediction depends on it for gains that are too small only.
   static V Rate(const FlowPoint<S>& point, int mode, V head, V g, V theta2, V pdot, V least_gain) noexcept {
-    constexpr double kPasses = 4.0;  // times what the least gain would need: then the line misses zero by as much
+    constexpr double kLeastFlows = 4.0;  // times what the least gain would need: then the line misses zero by as much
     const V gain = S::Fma(theta2, point.gauge, g);
     const V flow = Opening(point, mode) * head;
     const V wanted = pdot - point.rate;
-    const V large = S::Max(S::Abs(gain) - least_gain, S::Abs(flow) - S::Set(kPasses) * least_gain * S::Abs(wanted));
+    const V large = S::Max(S::Abs(gain) - least_gain, S::Abs(flow) - S::Set(kLeastFlows) * least_gain * S::Abs(wanted));
     const V held = S::Select(large >= V{}, gain, mode == 0 ? least_gain : V{} - least_gain);
     const V off = S::Fma(V{} - wanted, held, flow) / S::Max(S::Abs(gain), least_gain);
     return mode == 0 ? pdot + off : pdot - off;

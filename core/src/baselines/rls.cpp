@@ -98,7 +98,7 @@ void RlsFilter::ToDraw(const ParamVector& z, double* u) const noexcept {
   for (int d = dim_; d < s.dim; ++d) u[d] = 0.0;  // the noise scale at its prior mean
 }
 
-void RlsFilter::Pass(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept {
+void RlsFilter::UpdateByAll(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept {
   const ParameterSpace& s = parts_.space;
   const double noise = std::exp(s.log_noise_scale), mean = parts_.noise.settings().mean;
   const bool of_rate = parts_.settings.regress_rate;
@@ -142,7 +142,7 @@ ParamVector RlsFilter::Linearise(const ModeData& data, const ParamVector& z, con
   return apart;
 }
 
-void RlsFilter::PassLinearised(const ModeData& data, const ParamVector& z, const ParamMatrix& p) noexcept {
+void RlsFilter::UpdateByAllLinearised(const ModeData& data, const ParamVector& z, const ParamMatrix& p) noexcept {
   static_assert(1 + 2 * kMaxParams <= kTileLanes);
   const ParamVector apart = Linearise(data, z, p);
   const double variance = std::exp(2.0 * parts_.space.log_noise_scale);
@@ -166,7 +166,7 @@ void RlsFilter::Again(const ModeData& data, const ParamVector& before_z, const P
   const ParamMatrix p = p_;
   z_ = before_z;
   p_ = before_p;
-  prediction_ != nullptr ? PassLinearised(data, z, p) : Pass(data, z, p);
+  prediction_ != nullptr ? UpdateByAllLinearised(data, z, p) : UpdateByAll(data, z, p);
 }
 
 Status RlsFilter::Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos, ClockRef, int,

@@ -150,7 +150,7 @@ double StateFilter::SquaresLeft(const ModeData& data) noexcept {
     }
   }
   for (Eigen::Index i = 0; i < size; ++i) {
-    felt_[static_cast<std::size_t>(i)] = gram(i, i);
+    sensitivity_[static_cast<std::size_t>(i)] = gram(i, i);
     gram(i, i) += kRidge * gram(i, i) + std::numeric_limits<double>::min();
   }
   return squares - right.dot(SymmetricFactor(gram).Solve(right));
@@ -160,7 +160,7 @@ double StateFilter::OpenStart(const simd::Kernels& kernels, const std::array<dou
                               double noise_std, const ModeData& data) noexcept {
   if (data.states->carried) return -1.0;
   Linearise(kernels, mean, {}, noise_std, data);
-  const double told = SquaresLeft(data);
+  const double fixed_squares = SquaresLeft(data);
   const auto n = static_cast<std::size_t>(plant_->size());
   num_opened_ = 0;
   for (std::size_t s = 0; s < n; ++s) {
@@ -172,18 +172,19 @@ double StateFilter::OpenStart(const simd::Kernels& kernels, const std::array<dou
   kernels.run_states(data, theta_, offset_, &end_, &law_);
   static_cast<void>(SquaresLeft(data));
   for (std::size_t s = 0; s < n; ++s) {
-    if (!(trial_[s] > 0.0) || !(felt_[s] > 0.0)) continue;
-    opened_[s] = kUnknown * told * trial_[s] * trial_[s] / (felt_[s] * noise_std * noise_std);
+    if (!(trial_[s] > 0.0) || !(sensitivity_[s] > 0.0)) continue;
+    opened_[s] = kUnknown * fixed_squares * trial_[s] * trial_[s] / (sensitivity_[s] * noise_std * noise_std);
     ++num_opened_;
   }
-  return num_opened_ > 0 ? told : -1.0;
+  return num_opened_ > 0 ? fixed_squares : -1.0;
 }
 
 bool StateFilter::StartIsContradicted(const simd::Kernels& kernels, const std::array<double, kMaxParams>& mean,
-                                      double noise_std, const ModeData& data, double told) noexcept {
+                                      double noise_std, const ModeData& data, double fixed_squares) noexcept {
   Linearise(kernels, mean, {}, noise_std, data);
   const double samples = data.num_samples;
-  if (samples * std::log(told / SquaresLeft(data)) > num_opened_ * std::log(samples) + kContradiction) return true;
+  if (samples * std::log(fixed_squares / SquaresLeft(data)) > num_opened_ * std::log(samples) + kContradiction)
+    return true;
   opened_.fill(0.0);
   return false;
 }

@@ -44,7 +44,7 @@ Share CoverageOf(const Recording& r, const Trace& trace, std::size_t mode, std::
   Share share;
   std::vector<double> sd;
   for (std::size_t k = 0; k < trace.packs.size(); ++k) {
-    const Knowledge& known = trace.packs[k].modes[mode];
+    const ModeTrace& known = trace.packs[k].modes[mode];
     const std::size_t last = (k + 1) * static_cast<std::size_t>(trace.pack_samples);
     if (!known.updated || !known.known || last >= r.size() || r.u[mode][last - 1] == 0.0) continue;
     const auto& [from, to] = known.interval[level][parameter];

@@ -28,7 +28,7 @@ Trace Constant(double k) {
   Trace t{"x", "x", 100, true, true, {}};
   t.packs.resize(5);
   for (PackTrace& p : t.packs) {
-    Knowledge& mode = p.modes[0];
+    ModeTrace& mode = p.modes[0];
     mode.any = mode.known = mode.updated = true;
     mode.map = {k, 2.3, 1.7};
     mode.ap = {k + 0.1, 2.3, 1.7};

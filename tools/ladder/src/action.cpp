@@ -44,7 +44,8 @@ std::optional<Equations> ActionOf(const Candidate& effect) {
   return equations;
 }
 
-/// Whether a name occurs in the formulas of an effect.
+}  // namespace
+
 bool Says(const EffectForm& form, const std::string& name) {
   const std::regex whole("\\b" + name + "\\b");
   const auto says = [&whole](const std::string& text) { return std::regex_search(text, whole); };
@@ -52,8 +53,6 @@ bool Says(const EffectForm& form, const std::string& name) {
          std::any_of(form.lets.begin(), form.lets.end(), [&](const LetDescription& l) { return says(l.text); }) ||
          std::any_of(form.states.begin(), form.states.end(), [&](const StateDescription& s) { return says(s.rate); });
 }
-
-}  // namespace
 
 bool AreCurvesOfOneThing(const Candidate& a, const Candidate& b) {
   const std::optional<Equations> of_a = ActionOf(a);

@@ -14,6 +14,9 @@ namespace armcmc::ladder {
 /// Whether it has memory: a state of its own, or a function such as delay().
 [[nodiscard]] bool Remembers(const Candidate& effect);
 
+/// Whether a name occurs in the formulas of an effect. A parameter that does not occur says only where a state begins.
+[[nodiscard]] bool Says(const EffectForm& form, const std::string& name);
+
 /// Whether it acts on the law as a whole, and so on everything that the law contains.
 [[nodiscard]] bool ActsOnLaw(const Candidate& effect);
 

@@ -14,6 +14,7 @@
 #include "free_starts.hpp"
 #include "held_out.hpp"
 #include "rung.hpp"
+#include "start_alone.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -57,12 +58,14 @@ struct Rivals {
   Constants constants;
   DerivedNoise noise;
   Curves curves;
+  StartAlone start;
   Before before;
 
   /// @param exact  It leaves noise alone, so that no curve has another shape. A constant may still be off, or noise be
   ///               what it explains, or an error of what was named before.
-  [[nodiscard]] std::optional<Rival> Of(const Contender& c, bool exact, bool smaller_part) {
+  [[nodiscard]] std::optional<Rival> Of(const Contender& c, double floor, bool exact, bool smaller_part) {
     std::optional<Rival> rival = constants.RivalOf(c);
+    if (!rival) rival = start.RivalOf(c, floor);
     if (!rival) rival = noise.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
     if (rival || !before.Dwarfs(c)) return rival;
@@ -79,7 +82,7 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
     Name(view, floor, open, rung);
     for (const std::size_t i : rung->named) {
       Contender& c = rung->contenders[i];
-      const std::optional<Rival> rival = rivals->Of(c, !LeavesMore(view, c.trial, floor), open);
+      const std::optional<Rival> rival = rivals->Of(c, floor, !LeavesMore(view, c.trial, floor), open);
       if (!rival) continue;
       c.ruled_out = again = true;
       if (rung->as_if.empty()) rung->as_if = rival->as_if;
@@ -245,6 +248,7 @@ Ladder Climb(const ClimbRequest& request) {
                     open,
                     {{request.plant->description(), ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base},
+                     {ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base, scales},
                      {}}};
     Before& before = hearing.rivals.before;

@@ -106,6 +106,17 @@ double FlexibleGain(const View& view, const Trial& trial) {
   return 1.0 - FoldSquares(view, trial.beside) / (FoldSquares(view, trial.alone) + 1e-300);
 }
 
+double NoiseIn(const View& view, const Trial& trial, double floor) {
+  const double square = trial.fit.error_sd * trial.fit.error_sd;
+  return std::min(floor * floor, square * std::clamp(1.0 - FlexibleGain(view, trial), 0.0, 1.0));
+}
+
+bool WorseThanConstant(const View& view, const Trial& trial) {
+  const Eigen::VectorXd target = trial.model->target()(view.looked_at);
+  const double varies = (target.array() - target.mean()).matrix().squaredNorm();
+  return (target - trial.fit.prediction(view.looked_at)).squaredNorm() > varies;
+}
+
 bool LeavesMore(const View& view, const Trial& trial, double floor) {
   constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.2, kFarRougher = 3.0;
   if (FlexibleGain(view, trial) > kMore) return true;

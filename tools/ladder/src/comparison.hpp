@@ -21,6 +21,13 @@ inline constexpr double kFarBetter = 2.0;   // factor by which a larger effect m
 /// Share of the remaining squared error that a flexible function removes, from the folds.
 [[nodiscard]] double FlexibleGain(const View& view, const Trial& trial);
 
+/// Squared error of a model that is noise, as estimated from neighbouring samples, but not more than a flexible
+/// function leaves.
+[[nodiscard]] double NoiseIn(const View& view, const Trial& trial, double floor);
+
+/// Whether a model errs by more than the output varies, so that a constant would do better.
+[[nodiscard]] bool WorseThanConstant(const View& view, const Trial& trial);
+
 /// Whether a trial leaves more than noise: a flexible function reduces the error, or the error exceeds the noise. An
 /// excess of a few percent is accepted if the errors decorrelate within a tenth of the period.
 /// @param floor  Standard deviation of the noise; 0: unknown.

@@ -38,40 +38,76 @@ Constants::Constants(const PlantDescription& own, const std::shared_ptr<const Pl
     : own_(own), plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{OffEntry()} {}
 
 void Constants::FitThem() {
+  fitted_.emplace();
   std::vector<std::string> notes;  // what does not fit a limit is no rival
-  std::vector<Other> all;
+  Other all;
+  PlantDescription together = plant_->description();
   for (Candidate& candidate : Candidates(plant_->description(), entries_, scales_, &notes)) {
     const std::string& name = candidate.binding.symbols.at("c");
     const auto own = std::find_if(own_.constants.begin(), own_.constants.end(),
                                   [&](const ConstantDescription& c) { return c.name == name; });
     if (own == own_.constants.end() || own->value == 0.0) continue;
-    all.push_back(
-        {name, own->value, own->value, {std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false}});
+    const ConstantDescription& constant = *own;
+    all.constants.push_back(constant);
+    all.contender.candidate = candidate;
+    Other one;
+    one.constants = {constant};
+    one.contender.candidate = std::move(candidate);
+    fitted_->push_back(std::move(one));
   }
-  support::InParallel(all.size(), [&](std::size_t i) {
-    Contender& c = all[i].contender;
+  if (fitted_->size() > 1) {
     try {
-      Eigen::VectorXd theta = identify::TrajectoryModel(c.candidate.plant, data_.series).Start();
-      theta.head(base_.fit.theta.size()) = base_.fit.theta;
-      c.trial = Refine(c.candidate.plant, data_, theta);
-      if (!c.trial.fit.valid) return;
-      LeaveOut(view_, &c.trial);
-      c.alone = Compare(view_, c, base_, false);
-      c.refined = true;
-      all[i].is *= 1.0 + c.trial.fit.theta[theta.size() - 1];
+      for (const Other& one : *fitted_)
+        together = AddEffect(together, entries_.front(), one.contender.candidate.binding, scales_);
+      all.contender.candidate.plant = std::make_shared<const Plant>(std::move(together));
+      fitted_->push_back(std::move(all));
     } catch (const PlantError&) {  // needs more than there is room for
     }
-  });
-  fitted_ = std::move(all);
+  }
+  FitFrom(base_.fit.theta);
+}
+
+void Constants::FitOne(const Eigen::VectorXd& own, Other* other) const {
+  Contender& c = other->contender;
+  try {
+    Eigen::VectorXd theta = identify::TrajectoryModel(c.candidate.plant, data_.series).Start();
+    theta.head(own.size()) = own;
+    Trial trial = Refine(c.candidate.plant, data_, theta);
+    if (!trial.fit.valid || (c.refined && !(trial.fit.cost < c.trial.fit.cost))) return;
+    c.trial = std::move(trial);
+    LeaveOut(view_, &c.trial);
+    c.alone = Compare(view_, c, base_, false);
+    c.refined = true;
+  } catch (const PlantError&) {  // needs more than there is room for
+  }
+}
+
+void Constants::FitFrom(const Eigen::VectorXd& own) {
+  support::InParallel(fitted_->size(), [&](std::size_t i) { FitOne(own, &(*fitted_)[i]); });
+}
+
+std::string Constants::AsIf(const Other& other) {
+  const auto count = static_cast<Eigen::Index>(other.constants.size());
+  const Eigen::VectorXd off = other.contender.trial.fit.theta.tail(count);
+  std::string text;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const ConstantDescription& constant = other.constants[static_cast<std::size_t>(k)];
+    if (k > 0) text += k + 1 < count ? ", " : " and ";
+    char one[160];
+    std::snprintf(one, sizeof(one), "%s were %.4g instead of %.4g", constant.name.c_str(),
+                  constant.value * (1.0 + off[k]), constant.value);
+    text += one;
+  }
+  return text;
 }
 
 std::optional<Rival> Constants::RivalOf(const Contender& c) {
   if (!fitted_) FitThem();
+  // A simulated plant may be stuck in a minimum from which the effect helped it out.
+  if (IsSimulated(plant_->description())) FitFrom(c.trial.fit.theta.head(base_.fit.theta.size()));
   for (const Other& other : *fitted_) {
     if (!other.contender.refined || other.contender.alone.folds > kExplainsIt * c.alone.folds) continue;
-    char text[160];
-    std::snprintf(text, sizeof(text), "%s were %.4g instead of %.4g", other.name.c_str(), other.is, other.was);
-    return Rival{text, "explains as much"};
+    return Rival{AsIf(other), "explains as much"};
   }
   return std::nullopt;
 }

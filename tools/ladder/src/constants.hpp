@@ -10,8 +10,8 @@
 
 namespace armcmc::ladder {
 
-/// What a plant file states as a number may be off by a few percent, and then acts like an effect: a room that is half
-/// a degree colder like the offset of a thermometer.
+/// What a plant file states as numbers may be off by a few percent, and then acts like an effect: a room that is half a
+/// degree colder like the offset of a thermometer. Several such errors together act like what none of them does.
 class Constants {
  public:
   /// All outlive it.
@@ -19,17 +19,21 @@ class Constants {
   Constants(const PlantDescription& own, const std::shared_ptr<const Plant>& plant, const Dataset& data,
             const View& view, const Trial& base, const DataScales& scales);
 
-  /// A constant that explains as much as an effect with another value, up to 5 % away. Fitted when it is first asked
-  /// for.
+  /// A constant, or all of them together, that explain as much as an effect with other values, up to 5 % away. Fitted
+  /// when they are first asked for.
   [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
 
  private:
   struct Other {
-    std::string name;
-    double was, is;
-    Contender contender;
+    std::vector<ConstantDescription> constants;  ///< In the order of the last parameters of the model.
+    Contender contender{};
   };
   void FitThem();
+  /// Fits from the values `own` of the plant's own parameters, and keeps what is better than before.
+  void FitOne(const Eigen::VectorXd& own, Other* other) const;
+  void FitFrom(const Eigen::VectorXd& own);
+  /// "ps were 6.8e+06 instead of 7e+06 and K were 31 instead of 30"
+  [[nodiscard]] static std::string AsIf(const Other& other);
 
   const PlantDescription& own_;
   const std::shared_ptr<const Plant>& plant_;

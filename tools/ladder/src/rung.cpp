@@ -26,6 +26,7 @@ constexpr double kLikely = 0.95;       // the same where few events show it: nam
 constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effect is named first
 constexpr double kAlike = 1.01;        // times the least error: as good
 constexpr double kTie = 0.05;          // share of bootstrap samples that another family may win
+constexpr double kMostly = 0.5;        // share of bootstrap samples that what is named on few events has to win
 constexpr double kBeside = 0.95;       // squared error that a name reaches where both may bend, in two of three senses,
 constexpr double kFarBeside = 0.8;     // or in one, losing in none, where few events show it or bending feigns it
 constexpr double kLeavesAsMuch = 1.5;  // times what the named one leaves: kin that are not excluded
@@ -72,12 +73,6 @@ bool IsTold(const View& view, const Contender& c) {
     if (std::abs(fit.theta[first + k]) > kSigmas * sd) return true;
   }
   return !any;
-}
-
-/// Of the squared error of a model what is noise: as neighbouring samples tell it, but no more than a flexible function
-/// leaves.
-double NoiseIn(const View& view, const Trial& trial, double floor) {
-  return std::min(floor * floor, Square(trial) * std::clamp(1.0 - FlexibleGain(view, trial), 0.0, 1.0));
 }
 
 /// One where amplitudes alone are sought, which vanish at 0 and in which laws are linear; more where a shape is.
@@ -141,6 +136,19 @@ double ShareOfFirst(const Rung& rung) {
     if (std::min_element(squares.begin(), squares.end()) == squares.begin()) ++wins;
   });
   return static_cast<double>(wins) / kBootstrap;
+}
+
+/// Whether `a` has less error than `b` on long blocks and on regions, where short segments between fitted ones may
+/// prefer `b`.
+bool ExtrapolatesBetter(const Contender& a, const Contender& b) {
+  return a.alone.blocks < b.alone.blocks && a.alone.regions < b.alone.regions;
+}
+
+/// Share of the bootstrap samples in which a family of those named has the smallest error of all that were compared.
+double WinShare(const Rung& rung) {
+  double share = 0.0;
+  for (const std::size_t i : rung.named) share += rung.contenders[i].win_share;
+  return share;
 }
 
 }  // namespace
@@ -280,7 +288,7 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
     const bool beside = below(kBeside) >= 2 || (below(kFarBeside) >= 1 && below(1.0) == 3);
-    c.earned = gains && elsewhere && beside && !TooSlow(c) && IsTold(view, c);
+    c.earned = gains && elsewhere && beside && !TooSlow(c) && IsTold(view, c) && !WorseThanConstant(view, c.trial);
   }
 }
 
@@ -322,8 +330,9 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     const bool larger = as_good && NumParameters(all[i]) > fewest &&
                         kFarBetter * all[i].alone.folds < all[leader].alone.folds &&
                         BetterEverywhere(all[i], all[leader]);
-    const bool kin = not_exact && AreKin(*all[i].candidate.entry, *all[leader].candidate.entry) &&
-                     all[i].alone.folds < kLeavesAsMuch * all[leader].alone.folds;
+    const bool kin =
+        not_exact && AreKin(*all[i].candidate.entry, *all[leader].candidate.entry) &&
+        (all[i].alone.folds < kLeavesAsMuch * all[leader].alone.folds || ExtrapolatesBetter(all[i], all[leader]));
     if ((!equal && !larger && !kin) || !families.insert(family).second) continue;
     rung->named.push_back(i);
   }
@@ -343,6 +352,10 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
   std::sort(rung->named.begin(), rung->named.end(),
             [&](std::size_t a, std::size_t b) { return all[a].alone.folds < all[b].alone.folds; });
   leader = rung->named.front();
+  if (rung->provisional && WinShare(*rung) < kMostly) {
+    rung->named.clear();
+    return;
+  }
   // Simpler effects that are named first do not win against larger ones; those are no rivals.
   rung->probability = rung->named.size() > 1 ? ShareOfFirst(*rung) : all[leader].gain_share;
 }

@@ -13,6 +13,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "\n"
       "  armcmc-model check my_axis.toml\n"
       "  armcmc-model check my_axis.toml --data run.csv\n"
+      "  armcmc-model check my_axis.toml --recording run.toml\n"
       "  armcmc-model check my_axis.toml --with coulomb_friction,sensor_delay\n"
       "  armcmc-model add my_axis.toml coulomb_friction --data run.csv --out my_axis_friction.toml\n"
       "Exit status: 0 ok, 2 the file is invalid; one line says where, and what was expected.");
@@ -24,7 +25,7 @@ void Declare(CLI::App* app, Arguments* a) {
   CLI::Option* data =
       check
           ->add_option(
-              "--data", a->data,
+              "--data,--recording", a->data,
               "Recording file, or CSV whose columns are t and the plant's signals: which parameters do they identify?")
           ->check(CLI::ExistingFile);
   check->add_option("--data-dir", a->data_dir, "Folder of the recording's CSV, if not that of the recording file")

@@ -17,17 +17,18 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using support::Significant;
 
-/// What data say about one parameter, in the coordinates that it is sampled in.
-struct Told {
-  double sd = 0.0;             ///< With all others to be found, too.
-  double sd_alone = 0.0;       ///< If the others were known.
-  bool felt = false;           ///< The data would tell it if the others were known.
-  bool told = false;           ///< They do.
-  std::vector<Index> against;  ///< What makes up for it where they do not.
+/// What data determine about one parameter, in the coordinates that it is sampled in.
+struct Identifiability {
+  double sd = 0.0;                ///< Posterior standard deviation, all parameters unknown.
+  double sd_alone = 0.0;          ///< The same if the others were known.
+  bool informative = false;       ///< The data would identify it if the others were known.
+  bool identified = false;        ///< They identify it.
+  std::vector<Index> correlated;  ///< If not: parameters that compensate a change of it.
 };
 
-/// Rows after which errors have forgotten: 1 + 2 sum of the autocorrelations before the first that is not positive.
-double RowsPerError(const VectorXd& error) {
+/// Integrated autocorrelation time of the errors, rows: 1 + 2 sum of the autocorrelations before the first that is
+/// below 0.05.
+double AutocorrelationTime(const VectorXd& error) {
   const Index most = error.size() / 10;
   const double power = error.squaredNorm();
   double rows = 1.0;
@@ -39,8 +40,8 @@ double RowsPerError(const VectorXd& error) {
   return rows;
 }
 
-/// Parameters whose move makes up for one of parameter d, the one that does most first.
-std::vector<Index> Against(const MatrixXd& information, Index d) {
+/// Parameters whose change compensates one of parameter d, at most three, the one with the largest share first.
+std::vector<Index> CorrelatedWith(const MatrixXd& information, Index d) {
   constexpr double kMost = 3, kShare = 0.2;
   std::vector<Index> others;
   for (Index e = 0; e < information.rows(); ++e)
@@ -56,37 +57,38 @@ std::vector<Index> Against(const MatrixXd& information, Index d) {
     if (share > kShare) shares.emplace_back(share, others[k]);
   }
   std::sort(shares.rbegin(), shares.rend());
-  std::vector<Index> against;
+  std::vector<Index> correlated;
   for (const auto& [share, e] : shares)
-    if (static_cast<double>(against.size()) < kMost) against.push_back(e);
-  return against;
+    if (static_cast<double>(correlated.size()) < kMost) correlated.push_back(e);
+  return correlated;
 }
 
-std::vector<Told> Judge(const ladder::Trial& trial, const std::vector<Index>& rows, double rows_per_error) {
-  constexpr double kThird = 1.0 / 3.0, kMakesUp = 10.0;
+std::vector<Identifiability> Judge(const ladder::Trial& trial, const std::vector<Index>& rows,
+                                   double autocorrelation_rows) {
+  constexpr double kThird = 1.0 / 3.0, kCompensated = 10.0;
   const identify::TrajectoryModel& model = *trial.model;
   const VectorXd spread = model.Spread(), prior = identify::PriorPrecision(model);
   const MatrixXd jacobian = trial.fit.jacobian(rows, Eigen::all) * spread.asDiagonal();
-  const double precision = 1.0 / (trial.fit.error_sd * trial.fit.error_sd * rows_per_error + 1e-300);
+  const double precision = 1.0 / (trial.fit.error_sd * trial.fit.error_sd * autocorrelation_rows + 1e-300);
   const MatrixXd data = precision * jacobian.transpose() * jacobian;
   MatrixXd information = data;
   // A uniform prior says as much as one of its standard deviation would.
   information.diagonal().array() += 1.0;
   const MatrixXd covariance = information.ldlt().solve(MatrixXd::Identity(data.rows(), data.cols()));
-  std::vector<Told> all;
+  std::vector<Identifiability> all;
   for (Index d = 0; d < data.rows(); ++d) {
-    Told told;
-    told.sd = std::sqrt(covariance(d, d)) * spread[d];
-    told.sd_alone = spread[d] / std::sqrt(information(d, d));
-    told.felt = told.sd_alone < kThird * spread[d];
-    const bool made_up =
-        told.sd > kMakesUp * told.sd_alone &&
-        told.sd > kThird * std::fabs(model.parameters()[static_cast<std::size_t>(d)].prior == "lognormal"
-                                         ? 1.0
-                                         : trial.fit.theta[d]);
-    told.told = told.sd < kThird * spread[d] && !made_up;
-    if (told.felt && !told.told) told.against = Against(data, d);
-    all.push_back(told);
+    Identifiability one;
+    one.sd = std::sqrt(covariance(d, d)) * spread[d];
+    one.sd_alone = spread[d] / std::sqrt(information(d, d));
+    one.informative = one.sd_alone < kThird * spread[d];
+    const bool compensated =
+        one.sd > kCompensated * one.sd_alone &&
+        one.sd > kThird * std::fabs(model.parameters()[static_cast<std::size_t>(d)].prior == "lognormal"
+                                        ? 1.0
+                                        : trial.fit.theta[d]);
+    one.identified = one.sd < kThird * spread[d] && !compensated;
+    if (one.informative && !one.identified) one.correlated = CorrelatedWith(data, d);
+    all.push_back(one);
   }
   return all;
 }
@@ -98,27 +100,27 @@ std::string Listed(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string InWords(const identify::TrajectoryModel& model, const std::vector<Told>& all) {
+std::string InWords(const identify::TrajectoryModel& model, const std::vector<Identifiability>& all) {
   const auto name = [&](Index d) { return model.parameters()[static_cast<std::size_t>(d)].name; };
-  std::vector<std::string> told, not_felt;
+  std::vector<std::string> identified, uninformed;
   std::string others;
   for (std::size_t d = 0; d < all.size(); ++d) {
-    if (all[d].told) {
-      told.push_back(name(static_cast<Index>(d)));
-    } else if (!all[d].felt) {
-      not_felt.push_back(name(static_cast<Index>(d)));
+    if (all[d].identified) {
+      identified.push_back(name(static_cast<Index>(d)));
+    } else if (!all[d].informative) {
+      uninformed.push_back(name(static_cast<Index>(d)));
     } else {
-      std::vector<std::string> against;
-      for (const Index e : all[d].against) against.push_back(name(e));
+      std::vector<std::string> correlated;
+      for (const Index e : all[d].correlated) correlated.push_back(name(e));
       others += "; not " + name(static_cast<Index>(d)) + ": " +
-                (against.empty() ? "its effect is too small" : "it moves against " + Listed(against));
+                (correlated.empty() ? "its effect is too small" : "it moves against " + Listed(correlated));
     }
   }
   std::string text =
-      told.empty() ? "These data identify no parameter on its own" : "These data identify " + Listed(told);
-  if (!not_felt.empty())
-    text +=
-        "; not " + Listed(not_felt) + ": hardly anything in them depends on " + (not_felt.size() > 1 ? "these" : "it");
+      identified.empty() ? "These data identify no parameter on its own" : "These data identify " + Listed(identified);
+  if (!uninformed.empty())
+    text += "; not " + Listed(uninformed) + ": hardly anything in them depends on " +
+            (uninformed.size() > 1 ? "these" : "it");
   return text + others + ".\n";
 }
 
@@ -136,8 +138,8 @@ std::string IdentifiabilityText(const std::shared_ptr<const Plant>& plant, const
   for (std::size_t n = 0; n < model.num_rows(); ++n)
     if (data.training[n] != 0 && model.active()[n] != 0) rows.push_back(static_cast<Index>(n));
   const VectorXd target = model.target()(rows), error = target - trial.fit.prediction(rows);
-  const double rows_per_error = RowsPerError(error);
-  const std::vector<Told> all = Judge(trial, rows, rows_per_error);
+  const double autocorrelation_rows = AutocorrelationTime(error);
+  const std::vector<Identifiability> all = Judge(trial, rows, autocorrelation_rows);
 
   support::TextTable table({"parameter", "unit", "these data", "identified", "if the others were known"},
                            support::TextTable::Content::kWords);
@@ -147,13 +149,14 @@ std::string IdentifiabilityText(const std::shared_ptr<const Plant>& plant, const
     // The standard deviation of a logarithm is relative.
     const double scale = p.prior == "lognormal" ? value : 1.0;
     table.AddRow({p.name, p.unit, Significant(value, 4) + " +- " + Significant(scale * all[d].sd, 2),
-                  all[d].told ? "yes" : "no", "+- " + Significant(scale * all[d].sd_alone, 2)});
+                  all[d].identified ? "yes" : "no", "+- " + Significant(scale * all[d].sd_alone, 2)});
   }
   const double rms = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
   const double size = std::sqrt((target.array() - target.mean()).square().mean());
   std::string text = std::to_string(rows.size()) + " rows used; " + plant->description().name + " leaves " +
                      Significant(rms, 3) + " (rms), " + Significant(100.0 * rms / size, 3) +
-                     " % of what varies; errors are independent after " + Significant(rows_per_error, 2) + " rows\n\n";
+                     " % of what varies; errors are independent after " + Significant(autocorrelation_rows, 2) +
+                     " rows\n\n";
   const identify::StepError steps = identify::StepErrorOf(*plant, *data.series, trial.fit.theta, rms);
   std::string warning = identify::StepErrorText(steps, data.series->dt, rms);
   if (!warning.empty()) warning = "WARNING: " + warning;

@@ -55,7 +55,7 @@ int Stress(Arguments arguments) {
   options.loads = SelectLoads(arguments.loads);
   options.faults = SelectFaults(arguments.faults);
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  // LCM tells buses apart by their port alone: one of its own for every run.
+  // Two buses of LCM on one port are one bus: every run has a port of its own.
   if (options.lcm_url.empty()) {
     options.lcm_url =
         "udpm://239.255.76.67:" + std::to_string(20'000 + getpid() % 10'000) + "?ttl=0&recv_buf_size=4194304";

@@ -62,7 +62,7 @@ const std::vector<FaultSpec> kCatalog = {
     {"bus_flood", kSignal, "", 10, 1000, 0, false, false, "FAULT_BUS_FLOOD",
      [](const E& e) { return e.Flag(S::FAULT_BUS_FLOOD); }},
     {"log_disk_full", kEnd, "", 0, 0, 0, true, false, "the plant's message and exit code",
-     [](const E& e) { return e.log_failure_told; }},
+     [](const E& e) { return e.log_failure_reported; }},
     {"plant_death", kEnd, "", 0, 0, 0, true, false, "plant_restarts, FAULT_PLANT_SILENT",
      [](const E& e) { return e.Rises(&S::plant_restarts); }},
 };

@@ -156,7 +156,7 @@ void FaultJudge::FinishSlot() {
   outcome.fault = &fault;
   outcome.own_misses = evidence_.after.missed_own - evidence_.before.missed_own;
   // A flag lives in one status: what an earlier one said does not hide a fault that comes after a status without it,
-  // and the status of a step that the estimator spoilt itself tells of that step alone.
+  // and the status of a step that the estimator missed by itself is about that step alone.
   const auto spoilt = fault.source == FaultSource::kEstimatorPlan ? steps_.find(slot.at()) : steps_.end();
   const std::int32_t of_its_step = spoilt != steps_.end() ? spoilt->second.flags : 0;
   outcome.flags = evidence_.flags = (raised_ & ~evidence_.before.fault_flags) | of_its_step;

@@ -45,9 +45,9 @@ void PlantRuns::Start(const std::string& plan, std::vector<Slot> slots, bool log
   if (!plan.empty()) command.insert(command.end(), {"--inject", plan});
   if (log_fails) command.insert(command.end(), {"--log", "/dev/full"});
   context_.judge->BeginRun(std::move(slots));
-  if (log_failure_told_) context_.judge->LogFailureTold();
+  if (log_failure_reported_) context_.judge->LogFailureReported();
   ended_by_ = nullptr;
-  log_failure_told_ = false;
+  log_failure_reported_ = false;
   handled_ = nullptr;
   context_.bus->BeginRun();
   plant_ = std::make_unique<Child>(command, options.work / "plant.log");
@@ -128,7 +128,7 @@ void PlantRuns::RunWithFaults() {
   plant_->Wait(10'000);
   if (full != nullptr) {
     ended_by_ = full;
-    log_failure_told_ = plant_->exit_code() == 1 && plant_->output().find("disk full") != std::string::npos;
+    log_failure_reported_ = plant_->exit_code() == 1 && plant_->output().find("disk full") != std::string::npos;
   }
   Pause(3.0 * context_.options->period_ms);
 }

@@ -39,7 +39,7 @@ std::vector<std::string> ReadCsvHeader(const std::filesystem::path& path) {
 }
 
 CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<std::string>& numbers,
-                          const std::vector<std::string>& texts, BadRowsAre bad_rows, const TimeColumn& time,
+                          const std::vector<std::string>& texts, BadRowPolicy bad_rows, const TimeColumn& time,
                           bool blanks_are_bad) {
   CsvColumns columns;
   std::string line;
@@ -77,8 +77,8 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
         problem = Printable(columns.header[number_fields[i].first]) + " = " +
                   (text.empty() ? "(empty)" : Printable(text)) + ": expected a finite number" + NumberHint(text);
     }
-    if (!problem.empty() && bad_rows != BadRowsAre::kKept) {
-      if (bad_rows == BadRowsAre::kErrors)
+    if (!problem.empty() && bad_rows != BadRowPolicy::kKept) {
+      if (bad_rows == BadRowPolicy::kErrors)
         throw InputError(path.string() + ":" + std::to_string(lines.number()) + ": " + problem +
                          " (--skip-bad counts and skips bad rows)");
       ++columns.skipped;

@@ -26,7 +26,7 @@ struct CsvColumns {
 
 /// What becomes of bad rows: a cell of a number column that is no finite number, too few or too many fields, a last
 /// line without an end.
-enum class BadRowsAre : std::uint8_t {
+enum class BadRowPolicy : std::uint8_t {
   kErrors,
   kSkipped,  ///< And counted.
   kKept,     ///< Whoever selects rows may do without them; what cannot be read is not a number, or an empty text.
@@ -44,7 +44,7 @@ struct TimeColumn {
 ///                        time, which no row may lack.
 /// @throws InputError naming file, line and column.
 [[nodiscard]] CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<std::string>& numbers,
-                                        const std::vector<std::string>& texts, BadRowsAre bad_rows,
+                                        const std::vector<std::string>& texts, BadRowPolicy bad_rows,
                                         const TimeColumn& time = {}, bool blanks_are_bad = true);
 
 }  // namespace armcmc::support

@@ -87,7 +87,7 @@ std::string ErrorLine(std::string_view text) {
   return line.size() <= kMost ? line : std::string(First(line, kMost)) + "...";
 }
 
-class HarmlessOutput::Filter : public std::streambuf {
+class EscapedOutput::Filter : public std::streambuf {
  public:
   explicit Filter(std::ostream* stream) : stream_(stream), below_(stream->rdbuf(this)) {}
   ~Filter() override { stream_->rdbuf(below_); }
@@ -114,9 +114,9 @@ class HarmlessOutput::Filter : public std::streambuf {
   std::streambuf* below_;
 };
 
-HarmlessOutput::HarmlessOutput()
+EscapedOutput::EscapedOutput()
     : out_(std::make_unique<Filter>(&std::cout)), err_(std::make_unique<Filter>(&std::cerr)) {}
 
-HarmlessOutput::~HarmlessOutput() = default;
+EscapedOutput::~EscapedOutput() = default;
 
 }  // namespace armcmc::support

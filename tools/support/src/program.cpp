@@ -33,8 +33,8 @@ int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, co
     return Complain(name, std::string(error.what()) + " (see " + name + " --help)", kExitBadInput);
   }
   try {
-    std::optional<HarmlessOutput> harmless;
-    if (output == Output::kText) harmless.emplace();
+    std::optional<EscapedOutput> escaped;
+    if (output == Output::kText) escaped.emplace();
     const int code = body();
     // A full disk or a closed pipe shows only now.
     if (!std::cout.flush()) return Complain(name, "cannot write to standard output", kExitFailure);

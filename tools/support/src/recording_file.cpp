@@ -79,9 +79,9 @@ void ReadRows(StrictTable rows, RecordingFile* file) {
   file->drop = ReadRanges(rows, "drop");
   file->every = static_cast<std::size_t>(rows.Integer("every", 1, 1, 1'000'000));
   const std::string blanks = rows.Choice("blanks", "refuse", {"refuse", "skip", "interpolate"});
-  file->blanks = blanks == "skip"          ? BlanksAre::kSkipped
-                 : blanks == "interpolate" ? BlanksAre::kInterpolated
-                                           : BlanksAre::kErrors;
+  file->blanks = blanks == "skip"          ? BlankPolicy::kSkipped
+                 : blanks == "interpolate" ? BlankPolicy::kInterpolated
+                                           : BlankPolicy::kErrors;
   file->segment_column = rows.Text("segment_column", "");
   StrictTable only = rows.Table("only");
   for (const std::string& column : only.Keys()) file->only[column] = only.Texts(column);

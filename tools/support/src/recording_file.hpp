@@ -39,7 +39,7 @@ struct HeldOut {
 };
 
 /// What becomes of rows in which a column that is read has an empty cell.
-enum class BlanksAre : std::uint8_t {
+enum class BlankPolicy : std::uint8_t {
   kErrors,
   kSkipped,       ///< The rows are left out.
   kInterpolated,  ///< Rows without the output are left out; other cells are interpolated between the rows around.
@@ -54,7 +54,7 @@ struct RecordingFile {
   std::optional<double> from_s, until_s;
   std::vector<RowRange> drop;
   std::size_t every = 1;
-  BlanksAre blanks = BlanksAre::kErrors;
+  BlankPolicy blanks = BlankPolicy::kErrors;
   std::string segment_column;
   std::map<std::string, std::vector<std::string>> only;  ///< By text column.
   double bandwidth_hz = 0.0;                             ///< 0: chosen.

@@ -130,12 +130,12 @@ class Selection {
 class Blanks {
  public:
   /// @param output_columns  Columns that the output is made of, whose cells are never made up.
-  Blanks(BlanksAre blanks, const std::vector<std::string>& output_columns, const std::vector<double>& t,
+  Blanks(BlankPolicy blanks, const std::vector<std::string>& output_columns, const std::vector<double>& t,
          const Selection& selection, CsvColumns* csv)
       : unusable_(csv->num_rows(), false) {
-    if (blanks == BlanksAre::kErrors) return;
+    if (blanks == BlankPolicy::kErrors) return;
     for (auto& [name, cells] : csv->number) {
-      if (blanks == BlanksAre::kInterpolated && !Contains(output_columns, name)) Fill(t, selection, *csv, &cells);
+      if (blanks == BlankPolicy::kInterpolated && !Contains(output_columns, name)) Fill(t, selection, *csv, &cells);
       for (std::size_t n = 0; n < cells.size(); ++n)
         if (std::isnan(cells[n]) && !csv->bad.contains(n)) unusable_[n] = true;
     }
@@ -257,10 +257,12 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
     want(signals.back());
   }
   const std::vector<std::string> texts = TextColumns(file, csv_path, header);
-  const BadRowsAre bad_rows = skip_bad ? BadRowsAre::kSkipped : file.root ? BadRowsAre::kKept : BadRowsAre::kErrors;
+  const BadRowPolicy bad_rows = skip_bad    ? BadRowPolicy::kSkipped
+                                : file.root ? BadRowPolicy::kKept
+                                            : BadRowPolicy::kErrors;
   TimeColumn time_column;
   if (time && time->counts_alone(signals)) time_column = {time->columns().front(), kFarTime / std::fabs(time->scale())};
-  CsvColumns csv = ReadCsvColumns(csv_path, numbers, texts, bad_rows, time_column, file.blanks == BlanksAre::kErrors);
+  CsvColumns csv = ReadCsvColumns(csv_path, numbers, texts, bad_rows, time_column, file.blanks == BlankPolicy::kErrors);
   for (const auto& [column, words] : file.only)
     RequireWords(StrictTable(*file.root).Table("rows").Table("only"), column, words, csv.text.at(column));
   if (!file.held_out.segments.empty() && file.held_out.file.empty())

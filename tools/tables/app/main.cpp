@@ -121,7 +121,7 @@ int Run(const Arguments& a) {
     }
     if (cells > 0)
       result.likelihoods = RunLikelihoods(
-          a.seeds, a.likelihoods ? Believed::kAll : Believed::kOwn,
+          a.seeds, a.likelihoods ? AssumedLaws::kAll : AssumedLaws::kOwn,
           [&](const std::string& scenario, int seed) {
             return simulator.Simulated(scenario, kContact.model.plant, 0.0, seed);
           },

@@ -119,7 +119,7 @@ Experiment RunExperiment(const std::string& key, const std::string& title, int s
   return e;
 }
 
-std::vector<LikelihoodCell> RunLikelihoods(int seeds, Believed which,
+std::vector<LikelihoodCell> RunLikelihoods(int seeds, AssumedLaws which,
                                            const std::function<Recording(const std::string&, int)>& source,
                                            const std::function<void()>& done) {
   const std::vector<std::pair<std::string, std::string>> noises = {{"gaussian", kContact.key("_paper")},
@@ -128,8 +128,8 @@ std::vector<LikelihoodCell> RunLikelihoods(int seeds, Believed which,
                                                                    {"mixture", kContact.key("_impulsive")}};
   std::vector<LikelihoodCell> cells;
   for (const auto& [noise, scenario] : noises) {
-    for (const auto& [believed, other] : noises) {
-      if (which == Believed::kOwn && believed != noise) continue;
+    for (const auto& [assumed, other] : noises) {
+      if (which == AssumedLaws::kOwn && assumed != noise) continue;
       const MethodSpec spec = PaperMethods(ScenarioSettings(other)).front();
       std::vector<ContactScore> scores;
       Row row;
@@ -139,7 +139,7 @@ std::vector<LikelihoodCell> RunLikelihoods(int seeds, Believed which,
         const Recording recording = source(scenario, seed);
         scores.push_back(ScoreContact(recording, RunMethod(recording, spec), Point::kMap, spec.settings));
       }
-      cells.push_back({noise, believed, seeds, MeanRow(std::move(row), scores, {})});
+      cells.push_back({noise, assumed, seeds, MeanRow(std::move(row), scores, {})});
       if (done) done();
     }
   }

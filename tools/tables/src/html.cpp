@@ -73,8 +73,8 @@ std::string ContactTable(const Experiment& e) {
 
 /// Whether the intervals of each method hold the truth, and what ARMCMC learns about drift.
 std::string ContactDriftTable(const Experiment& e) {
-  HtmlTable table({"method", "50 % covers K, %", "B, %", "p, %", "95 % covers K, %", "B, %", "p, %",
-                   "believed to drift, %", "K per s", "B per s", "p per s"});
+  HtmlTable table({"method", "50 % covers K, %", "B, %", "p, %", "95 % covers K, %", "B, %", "p, %", "P(drift), %",
+                   "K per s", "B per s", "p per s"});
   for (const Row& row : e.rows) {
     if (!row.has_intervals || row.key == "armcmc_ap") continue;  // its intervals are those of AR-MAP
     const ContactScore& s = row.contact;
@@ -90,8 +90,8 @@ std::string ContactDriftTable(const Experiment& e) {
 }
 
 std::string ActuatorDriftTable(const Experiment& e) {
-  HtmlTable table({"method", "50 % covers g, %", "theta2, %", "95 % covers g, %", "theta2, %", "believed to drift, %",
-                   "g per s", "theta2 per s"});
+  HtmlTable table({"method", "50 % covers g, %", "theta2, %", "95 % covers g, %", "theta2, %", "P(drift), %", "g per s",
+                   "theta2 per s"});
   for (const Row& row : e.rows) {
     if (!row.has_intervals || row.key == "armcmc_ap") continue;
     const ActuatorScore& s = row.actuator;
@@ -148,7 +148,7 @@ void PaperBlocks(const Experiment& e, plots::Page* page) {
 
 std::string LikelihoodTable(const Result& result) {
   std::ostringstream out;
-  out << "<div class=\"scroll\"><table><tr><th>noise</th><th>believed</th><th></th><th class=\"num\">50 % covers</th>"
+  out << "<div class=\"scroll\"><table><tr><th>noise</th><th>assumed</th><th></th><th class=\"num\">50 % covers</th>"
          "<th class=\"num\">90 %</th><th class=\"num\">95 %</th><th class=\"num\">force in contact, mN</th>"
          "<th class=\"num\">modifications a run</th></tr>\n";
   constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
@@ -156,7 +156,7 @@ std::string LikelihoodTable(const Result& result) {
     const ContactScore& s = cell.row.contact;
     for (std::size_t d = 0; d < 3; ++d) {
       const bool first = d == 0;
-      out << "<tr><td>" << (first ? cell.noise : "") << "</td><td>" << (first ? cell.believed : "") << "</td><td>"
+      out << "<tr><td>" << (first ? cell.noise : "") << "</td><td>" << (first ? cell.assumed : "") << "</td><td>"
           << kNames[d] << "</td>";
       for (std::size_t l = 0; l < kLevels.size(); ++l)
         out << "<td class=\"num\">" << EscapeHtml(CoverageText(s.coverage[l][d], l, cell.row.coverage_error[l][d]))

@@ -106,7 +106,7 @@ ordered_json ToJson(const Result& result) {
     }
   }
   for (const LikelihoodCell& cell : result.likelihoods) {
-    ordered_json& entry = out["likelihoods"][cell.noise][cell.believed] = ContactJson(cell.row);
+    ordered_json& entry = out["likelihoods"][cell.noise][cell.assumed] = ContactJson(cell.row);
     entry["seeds"] = cell.seeds;
   }
   if (!result.baselines) return out;  // nobody to lose to

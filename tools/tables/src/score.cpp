@@ -10,7 +10,7 @@
 namespace armcmc::tables {
 namespace {
 
-const std::array<double, 3>& PointOf(const Knowledge& k, Point point) { return point == Point::kMap ? k.map : k.ap; }
+const std::array<double, 3>& PointOf(const ModeTrace& k, Point point) { return point == Point::kMap ? k.map : k.ap; }
 
 void Times(const Trace& trace, double* median, double* most) {
   std::vector<double> ms;
@@ -26,11 +26,11 @@ DriftScore ScoreDrift(const Trace& trace, std::size_t mode) {
   DriftScore s;
   double updates = 0.0;
   for (const PackTrace& pack : trace.packs) {
-    const Knowledge& knowledge = pack.modes[mode];
-    if (!knowledge.updated) continue;
+    const ModeTrace& state = pack.modes[mode];
+    if (!state.updated) continue;
     updates += 1.0;
-    s.share += knowledge.p_drifted;
-    for (std::size_t d = 0; d < s.rate.size(); ++d) s.rate[d] += knowledge.drift_rate[d];
+    s.share += state.p_drifted;
+    for (std::size_t d = 0; d < s.rate.size(); ++d) s.rate[d] += state.drift_rate[d];
   }
   s.share /= std::fmax(updates, 1.0);
   for (double& rate : s.rate) rate /= std::fmax(updates, 1.0);
@@ -83,7 +83,7 @@ ContactScore ScoreContact(const Recording& r, const Trace& trace, Point point, c
   double counted = 0.0, updates = 0.0;
   std::array<std::vector<double>, 3> sd;
   for (std::size_t k = 0; k < trace.packs.size(); ++k) {
-    const Knowledge& mode = trace.packs[k].modes[0];
+    const ModeTrace& mode = trace.packs[k].modes[0];
     if (!mode.updated) continue;
     updates += 1.0;
     s.mean_draws += trace.packs[k].draws;
@@ -123,7 +123,7 @@ std::vector<double> ShownAngle(const Recording& r, const Trace& trace, Point poi
     ShownEstimates shown;
     if (k >= 3) {
       for (std::size_t m = 0; m < 2; ++m) {
-        const Knowledge& mode = trace.packs[static_cast<std::size_t>(k - 3)].modes[m];
+        const ModeTrace& mode = trace.packs[static_cast<std::size_t>(k - 3)].modes[m];
         shown.known[m] = mode.known;
         for (std::size_t d = 0; d < 3; ++d) shown.theta[m][d] = PointOf(mode, point)[d];
       }
@@ -171,7 +171,7 @@ ActuatorScore ScoreActuator(const Recording& r, const Trace& trace, Point point,
   for (std::size_t m = 0; m < 2; ++m) {
     double counted = 0.0;
     for (std::size_t k = 0; k < trace.packs.size(); ++k) {
-      const Knowledge& mode = trace.packs[k].modes[m];
+      const ModeTrace& mode = trace.packs[k].modes[m];
       const std::size_t last = (k + 1) * static_cast<std::size_t>(trace.pack_samples);
       if (!mode.updated || !mode.known || last >= r.size() || ModeAt(r, last) != static_cast<int>(m)) continue;
       counted += 1.0;

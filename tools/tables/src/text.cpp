@@ -94,12 +94,12 @@ void PaperTable(const std::string& title, const std::vector<std::string>& header
 }
 
 void LikelihoodTable(const Result& result, std::ostringstream* out) {
-  TextTable table({"noise", "believed", "parameter", "50 % covers", "90 %", "95 %", "force mN", "modifications a run"});
+  TextTable table({"noise", "assumed", "parameter", "50 % covers", "90 %", "95 %", "force mN", "modifications a run"});
   constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
   for (const LikelihoodCell& cell : result.likelihoods) {
     const ContactScore& s = cell.row.contact;
     for (std::size_t d = 0; d < 3; ++d) {
-      std::vector<std::string> cells = {d == 0 ? cell.noise : "", d == 0 ? cell.believed : "", kNames[d]};
+      std::vector<std::string> cells = {d == 0 ? cell.noise : "", d == 0 ? cell.assumed : "", kNames[d]};
       for (std::size_t l = 0; l < kLevels.size(); ++l)
         cells.push_back(CoverageText(s.coverage[l][d], l, cell.row.coverage_error[l][d]));
       if (d == 0) cells.push_back(Significant(s.force_contact_mn, 4));
@@ -108,7 +108,7 @@ void LikelihoodTable(const Result& result, std::ostringstream* out) {
     }
   }
   Put(out,
-      "Each noise law under the likelihood that is believed: coverage in percent with its standard error; off by more "
+      "Each noise law under each assumed likelihood: coverage in percent with its standard error; off by more "
       "than two is said",
       table);
 }

@@ -13,7 +13,7 @@ namespace armcmc::tables {
 namespace {
 
 /// Central intervals of a parameter from the visits of the chain.
-void Intervals(const ModeDraws& draws, const ParameterSpace& space, std::size_t d, Knowledge* out) {
+void Intervals(const ModeDraws& draws, const ParameterSpace& space, std::size_t d, ModeTrace* out) {
   std::vector<std::pair<double, double>> values;
   double total = 0.0;
   for (int k = 0; k < draws.draws; ++k) {
@@ -60,20 +60,20 @@ Trace RunMethod(const Recording& recording, const MethodSpec& spec) {
     now.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     for (std::size_t m = 0; m < num_modes; ++m) {
       const ModeEstimate& mode = estimate->modes[m];
-      Knowledge& knowledge = now.modes[m];
-      knowledge.updated = mode.updated;
-      knowledge.known = mode.known;
-      knowledge.any = knowledge.any || mode.updated || mode.known;
-      if (!knowledge.any) continue;
-      knowledge.p_drifted = mode.p_drifted;
+      ModeTrace& state = now.modes[m];
+      state.updated = mode.updated;
+      state.known = mode.known;
+      state.any = state.any || mode.updated || mode.known;
+      if (!state.any) continue;
+      state.p_drifted = mode.p_drifted;
       const ParameterSpace space(spec.settings, spec.settings.noise[m]);
       for (std::size_t d = 0; d < num_parameters; ++d) {
-        knowledge.ap[d] = mode.marginal[d].ar_ap;
+        state.ap[d] = mode.marginal[d].ar_ap;
         // The mode of a posterior that knows nothing is an accident.
-        knowledge.map[d] = mode.known ? mode.marginal[d].ar_map : mode.marginal[d].ar_ap;
-        knowledge.sd[d] = mode.marginal[d].sd;
-        knowledge.drift_rate[d] = mode.drift_rate[d];
-        if (mode.updated) Intervals(result->modes[m], space, d, &knowledge);
+        state.map[d] = mode.known ? mode.marginal[d].ar_map : mode.marginal[d].ar_ap;
+        state.sd[d] = mode.marginal[d].sd;
+        state.drift_rate[d] = mode.drift_rate[d];
+        if (mode.updated) Intervals(result->modes[m], space, d, &state);
       }
     }
     const ModeEstimate& acting = estimate->modes[static_cast<std::size_t>(estimate->report_mode)];

@@ -41,12 +41,14 @@ class RlsFilter final : public PackFilter {
  private:
   void Update(const ParamVector& phi, double y, double r) noexcept ARMCMC_NONBLOCKING;
   /// Updates by all samples. Of a pressure rate: weighted by the gains of a state (gain_z, gain_p).
-  void Pass(const ModeData& data, const ParamVector& gain_z, const ParamMatrix& gain_p) noexcept ARMCMC_NONBLOCKING;
+  void UpdateByAll(const ModeData& data, const ParamVector& gain_z,
+                   const ParamMatrix& gain_p) noexcept ARMCMC_NONBLOCKING;
   /// Expected square of flow / rate at a sample: it turns a variance of the rate into one of the flow.
   [[nodiscard]] double SquareGain(const ModeData& data, std::size_t sample, const ParamVector& z,
                                   const ParamMatrix& p) const noexcept ARMCMC_NONBLOCKING;
   /// The same by the law as it is about `z`, with standard deviations from `p`.
-  void PassLinearised(const ModeData& data, const ParamVector& z, const ParamMatrix& p) noexcept ARMCMC_NONBLOCKING;
+  void UpdateByAllLinearised(const ModeData& data, const ParamVector& z,
+                             const ParamMatrix& p) noexcept ARMCMC_NONBLOCKING;
   /// Predictions at z, lane 0, and to either side of it in direction d, lanes 1 + 2 d and 2 + 2 d.
   /// @return the distance of these two, 0 where there is none.
   ParamVector Linearise(const ModeData& data, const ParamVector& z, const ParamMatrix& p) noexcept ARMCMC_NONBLOCKING;

@@ -33,8 +33,8 @@ struct EffectScales {
 /// A parameter that is estimated together with those of the base model. Its prior is N(mean, sd^2) cut at the bounds,
 /// in multiples of `unit_size`.
 struct EffectAmplitude {
-  std::string_view name;
-  std::string_view unit;
+  std::string_view name;                                     ///< Within the effect; in messages after its name.
+  std::string_view unit;                                     ///< As text.
   double mean, sd, lower, upper;                             ///< lower = 0 where the physics has a sign.
   double (*unit_size)(const EffectScales& scales) noexcept;  ///< In the parameter's unit.
 };
@@ -51,12 +51,12 @@ struct EffectShape {
 /// One physical effect of the catalogue of a compiled plant. What else an effect has, is up to the plant: see
 /// effects.hpp of its slice.
 struct EffectInfo {
-  std::string_view name;
-  std::string_view family;
-  std::string_view formula;
+  std::string_view name;     ///< "coulomb_friction".
+  std::string_view family;   ///< Effects of one family act alike: "dry friction".
+  std::string_view formula;  ///< For people.
   EffectSlot slot;
-  bool online;  ///< The estimator can run it.
-  int num_amplitudes;
+  bool online;         ///< The estimator can run it.
+  int num_amplitudes;  ///< At most kMaxEffectAmplitudes.
   std::array<EffectAmplitude, kMaxEffectAmplitudes> amplitudes;
   int num_shapes;
   std::array<EffectShape, kMaxEffectShapes> shapes;

@@ -19,7 +19,8 @@ struct CompiledPack {
 };
 
 /// Turns packs of a compiled plant into what the kernels score, with the effects added to the law, and keeps the memory
-/// that effects carry from pack to pack (delays, hysteresis). Not shared between threads.
+/// that effects carry from pack to pack (delays, hysteresis). Not shared between threads: adjust owns it, and packs
+/// have to come in the order of their time.
 class EffectRows {
  public:
   EffectRows() = default;

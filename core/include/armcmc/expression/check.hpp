@@ -10,7 +10,7 @@ namespace armcmc::expression {
 
 /// What is known of an expression before a sample is seen.
 struct Meaning {
-  std::optional<Unit> unit;  ///< None: cannot be told.
+  std::optional<Unit> unit;  ///< None: not determined, as where an exponent is a parameter.
   Interval range;            ///< Values that it can have.
   bool condition = false;    ///< True or false.
   bool sampled = false;      ///< Depends on a parameter or a state.

@@ -10,7 +10,7 @@ namespace armcmc::expression {
 /// (Parse, Check, ParseUnit), never by an evaluation.
 ///
 /// what() says what was expected and what was found, without the text of the expression and its file, which the caller
-/// adds.
+/// adds: `expected the end, found ")"`.
 class Error : public std::runtime_error {
  public:
   /// @param column  Position in the text, in characters from 1.
@@ -23,7 +23,8 @@ class Error : public std::runtime_error {
   int column_;
 };
 
-/// A name that is not defined. The caller knows which names are, and may suggest the nearest one.
+/// A name that is not defined. The caller knows which names are, and may suggest the nearest one. Plant makes a
+/// PlantError of it, with the names in PlantError::known().
 class UnknownName : public Error {
  public:
   /// @param column  Position of the name in the text, in characters from 1.

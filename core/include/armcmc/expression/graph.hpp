@@ -18,14 +18,17 @@ struct GraphNode {
   std::array<int, kMaxArguments> argument{-1, -1, -1};
   double value = 0.0;                       ///< Of a number.
   SymbolKind kind = SymbolKind::kConstant;  ///< Of a symbol: signal, time, parameter or state.
-  int index = -1;
-  bool sampled = false;  ///< Depends on a parameter or a state.
-  bool varies = false;   ///< Depends on a signal, a state or time: differs from sample to sample.
-  bool memory = false;   ///< Depends on samples before.
+  int index = -1;                           ///< Of a symbol: among those of its kind.
+  bool sampled = false;                     ///< Depends on a parameter or a state.
+  bool varies = false;                      ///< Depends on a signal, a state or time: differs from sample to sample.
+  bool memory = false;                      ///< Depends on samples before.
 };
 
 /// The expressions of a plant as one graph without repetition: what is a number is folded, what is computed twice is
 /// shared. Nodes stand behind their arguments.
+///
+/// Nodes are never removed, so that numbers of nodes stay valid. Allocates; for set-up, never for the step path, for
+/// which FeatureProgram and Tape are compiled from it.
 class Graph {
  public:
   /// Node of a number.
@@ -53,6 +56,7 @@ class Graph {
 
   /// A node. @throws std::out_of_range.
   [[nodiscard]] const GraphNode& at(int node) const { return nodes_.at(static_cast<std::size_t>(node)); }
+  /// Number of nodes; their numbers are 0 to size() - 1.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(nodes_.size()); }
   /// Whether a node is a literal number.
   [[nodiscard]] bool IsNumber(int node) const { return at(node).op == Op::kNumber; }

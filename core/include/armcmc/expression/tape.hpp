@@ -69,8 +69,8 @@ enum class TapeOp : std::uint8_t {
   kPast,    ///< R = what was kept R a samples before place S b of its line
 };
 
-/// Where R a is the result of the instruction before it stays where arithmetic is done, and where nobody else needs a
-/// result it never reaches a register: in a chain of operations memory is what costs.
+/// If R a is the result of the previous instruction, it is still in a processor register and is not loaded; a result
+/// that no later instruction reads is not stored. In a chain of operations the memory accesses are what costs.
 struct TapeInstruction {
   TapeOp op = TapeOp::kCopy;
   bool loads = false;   ///< R a comes from its register; else it is there already, or there is none.
@@ -102,15 +102,15 @@ struct Tape {
   int once = 0;  ///< The first instructions need no sample: they run once a tile.
   int num_parameters = 0;
   int num_states = 0;
-  int num_registers = 0;
-  int num_scalars = 0;
-  int num_results = 0;
+  int num_registers = 0;                               ///< At most kMaxTapeRegisters, parameters and states included.
+  int num_scalars = 0;                                 ///< At most kMaxTapeScalars.
+  int num_results = 0;                                 ///< At most kMaxTapeResults.
   std::array<std::uint8_t, kMaxTapeResults> result{};  ///< Registers.
 
   TapeShape shape = TapeShape::kGeneral;  ///< Of the first result.
   TapeSum factor, rest;                   ///< kLinear: `rest` alone.
   std::uint8_t exponent = 0, log2 = 0;    ///< kPower: parameter and scalar.
-  double largest_exponent = 1e300;        ///< Its magnitude, as far as whoever made the tape knows it.
+  double largest_exponent = 1e300;        ///< Upper bound of its magnitude, if known when the tape is made.
 
   /// Instructions a sample.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(code.size()) - once; }
@@ -134,6 +134,7 @@ struct TapeScalars {
   int stride = 0;  ///< Scalars of one sample.
   alignas(64) std::array<double, static_cast<std::size_t>(kMaxPackSamples) * kMaxTapeScalars> value;
 
+  /// Scalars of sample n, `stride` of them. @pre 0 <= n < kMaxPackSamples.
   [[nodiscard]] const double* Row(int n) const noexcept { return value.data() + n * stride; }
   [[nodiscard]] double* Row(int n) noexcept { return value.data() + n * stride; }
 };

@@ -20,7 +20,7 @@ namespace armcmc {
 class DescribedFamily final : public GapFamily {
  public:
   /// Allocates. @param plant  Outlives the family.
-  /// @param probes  Names of regions that somebody else fills (StateProbes).
+  /// @param probes  Names of the regions that StateProbes fills.
   explicit DescribedFamily(const PlantProgram& plant, const std::vector<std::string>& probes = {});
   static constexpr int kMostProbes = 8;
   /// The region of the first of them; negative: there is none.

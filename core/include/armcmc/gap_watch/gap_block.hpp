@@ -63,7 +63,7 @@ class GapBlock {
   void AddRegions(int k, const GapRows& rows, double tau, bool changed, const RegionTemplates& regions,
                   bool continues) noexcept ARMCMC_NONBLOCKING;
   /// Least squares with a weak prior (precision in units of the noise) on every direction: where to linearise next.
-  /// @param damping  Relative to the normal matrix: what the block hardly tells apart moves little.
+  /// @param damping  Relative to the normal matrix: directions that the block hardly determines move little.
   /// @param[out] shift  Of every pack.
   void Fit(const std::array<double, kGapColumns>& precision, double damping,
            std::array<GapShift, kGapBlockPacks>* shift) noexcept ARMCMC_NONBLOCKING;

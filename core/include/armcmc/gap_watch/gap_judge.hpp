@@ -21,7 +21,7 @@ struct GapBlockSpan {
   double hours = 0.0;          ///< Data in it.
 };
 
-/// Turns the scores of successive blocks into what is published: evidence, the check that it speaks for, the alarm.
+/// Turns the scores of successive blocks into what is published: evidence, the check with the most evidence, the alarm.
 class GapJudge {
  public:
   /// @param checks  Outlive the judge. @param rate  See GapEvidence.

@@ -15,12 +15,14 @@ namespace armcmc {
 /// @rt No heap, no lock, no throw.
 class GapCheckText {
  public:
+  /// Copies the text, and cuts it after 48 bytes. O(1).
   GapCheckText& operator=(std::string_view text) noexcept ARMCMC_NONBLOCKING {
     text_.fill('\0');
     size_ = std::min(text.size(), text_.size());
     std::copy_n(text.data(), size_, text_.data());
     return *this;
   }
+  /// The text; valid until the next assignment.
   [[nodiscard]] std::string_view view() const noexcept ARMCMC_NONBLOCKING { return {text_.data(), size_}; }
 
  private:

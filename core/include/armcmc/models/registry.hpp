@@ -13,7 +13,7 @@ namespace armcmc {
 /// Every plant that is compiled in. The index into this list identifies its model inside the estimator.
 [[nodiscard]] std::span<const ModelInfo* const> CompiledModels() noexcept ARMCMC_NONBLOCKING;
 
-/// The name of the first of them: what programs show in examples, and take where nobody says anything else.
+/// The name of the first of them: what programs show in examples, and use by default.
 [[nodiscard]] std::string DefaultModel();
 
 /// Every name that BuiltinSettings() takes, separated by ", ".

@@ -8,8 +8,8 @@ namespace armcmc {
 
 /// A measured quantity: a column of packs and recordings.
 struct SignalDescription {
-  std::string name;
-  std::string unit;
+  std::string name;           ///< Letters, digits and "_"; not that of a function.
+  std::string unit;           ///< "N s/m^2"; "1": a pure number.
   std::string role;           ///< "position", "velocity", "force", ...: what effects of the catalogue ask for.
   std::string derivative_of;  ///< Signal that it is the rate of; empty: of none.
   std::string between = {};   ///< What it does between samples, for states: "linear" (or empty), "held" or "smooth".
@@ -30,8 +30,8 @@ struct ParameterDescription {
   double mean = 0.0;                           ///< Of the lognormal law: the median.
   double sd = 0.0;                             ///< Of the lognormal law: of the logarithm.
   std::optional<double> lower = std::nullopt;  ///< Left out: 8 sd below the mean.
-  std::optional<double> upper = std::nullopt;
-  bool per_mode = false;  ///< Each mode has a value of its own.
+  std::optional<double> upper = std::nullopt;  ///< Left out: 8 sd above the mean.
+  bool per_mode = false;                       ///< Each mode has a value of its own.
 };
 
 /// A named subexpression: [let]. It may use those defined before it.
@@ -43,10 +43,10 @@ struct LetDescription {
 /// A mode of the plant: [[mode]]. At every sample, the first mode whose condition holds acts.
 struct ModeDescription {
   std::string name;
-  std::string when;    ///< Empty: always.
-  std::string law;     ///< An expression; of a passive mode it may be empty: 0.
-  std::string target;  ///< What the law explains, of signals; empty: the output.
-  bool passive = false;
+  std::string when;      ///< Empty: always.
+  std::string law;       ///< An expression; of a passive mode it may be empty: 0.
+  std::string target;    ///< What the law explains, of signals; empty: the output.
+  bool passive = false;  ///< Its samples say nothing about the parameters.
 };
 
 /// A state: [states]. Integrated with the inputs by the classical Runge-Kutta method of order 4, in `substeps` equal

@@ -43,8 +43,8 @@ struct DataScales {
 ///
 /// The output varies by 30 standard deviations of the noise. A signal x varies by the output over the size
 /// (|mean| + sd, of a lognormal prior the median) of a parameter whose unit is the output's over that of x; rates
-/// follow from what they are the rate of, with a period of 1 s, and the other way round; what nothing tells is 1 in its
-/// unit.
+/// follow from what they are the rate of, with a period of 1 s, and the other way round; all other signals are 1 in
+/// their unit.
 [[nodiscard]] DataScales DefaultScales(const PlantDescription& plant);
 
 /// Value of a size such as "0.3*output" or "2*dt" or "high_x + 0.1*range_x".

@@ -9,6 +9,13 @@ namespace armcmc {
 /// A plant description that is invalid: the key of the value in its file, the position in the value, and what is wrong.
 /// Thrown when a Plant or an effect is set up. The reader of a file adds its name and line, and a suggestion from
 /// known().
+/// @code
+/// try {
+///   auto plant = std::make_shared<const Plant>(description);
+/// } catch (const PlantError& e) {
+///   std::cerr << e.key() << ": " << e.what() << '\n';  // law: unknown name "kk"
+/// }
+/// @endcode
 class PlantError : public std::runtime_error {
  public:
   /// @param key      Path of the value in a plant file: "law", "parameters.M.sd", "mode[1].when".

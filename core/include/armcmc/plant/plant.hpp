@@ -17,10 +17,10 @@ namespace armcmc {
 struct PlantMode {
   std::string name;
   bool passive = false;
-  int when = -1;    ///< Condition on signals; -1: always.
-  int law = -1;     ///< What is predicted; of a passive mode what is shown.
-  int target = -1;  ///< What the law explains.
-  std::optional<expression::Unit> target_unit;
+  int when = -1;                                ///< Condition on signals; -1: always.
+  int law = -1;                                 ///< What is predicted; of a passive mode what is shown.
+  int target = -1;                              ///< What the law explains.
+  std::optional<expression::Unit> target_unit;  ///< None: fits everywhere.
 };
 
 /// A state of a plant: d state/dt = rate, state = start at the first sample. Nodes of the graph.

@@ -27,9 +27,9 @@ struct PlantPack {
   std::array<double, kMaxPackSamples> target{};       ///< What the law of that mode explains.
   std::array<double, kMaxPackSamples> passive{};      ///< What is shown where no sampled mode acts.
   std::array<bool, kMaxPackSamples> passive_given{};  ///< A passive mode acts, and its law is given.
-  StateRun states;
-  expression::PastLines past;  ///< What candidates look up.
-  std::array<PlantPoint::Values, kMaxPackSamples> point{};
+  StateRun states;                                    ///< Inputs and start of the integration.
+  expression::PastLines past;                         ///< What candidates look up.
+  std::array<PlantPoint::Values, kMaxPackSamples> point{};  ///< What rates read of each sample as signals.
 };
 
 /// A described plant as the estimator runs it: tapes for its laws, one program for everything that no parameter
@@ -78,9 +78,15 @@ class PlantProgram {
                              PlantPack* out) const noexcept ARMCMC_NONBLOCKING;
 
   /// What the last sample of a pack leaves to the states of the next one.
+  /// @pre Prepare() returned true for `pack`. @rt No heap, no lock, no throw.
   void Leave(const PlantPack& pack, int num_samples, StateMemory* memory) const noexcept ARMCMC_NONBLOCKING;
 
-  /// The samples of one sampled mode. `pack` must outlive `data`.
+  /// The samples of one sampled mode.
+  /// @param pack  From Prepare(); must outlive `data`, which points into it.
+  /// @param num_samples  Of the pack.
+  /// @param mode  In [0, info().num_modes).
+  /// @param[out] data  The samples in which that mode acts.
+  /// @rt No heap, no lock, no throw. O(samples).
   void Fill(const PlantPack& pack, int num_samples, int mode, ModeData* data) const noexcept ARMCMC_NONBLOCKING;
 
   /// The law of a sampled mode is the plant's output, not something else that it explains.
@@ -100,9 +106,11 @@ class PlantProgram {
   /// True where it is the sampled parameter r.
   [[nodiscard]] bool IsReportedAsSampled(int r) const noexcept ARMCMC_NONBLOCKING;
   /// The sampled parameter d from its reported value.
+  /// Of a lognormal one, its logarithm. @rt No heap, no lock, no throw.
   [[nodiscard]] double Sampled(int d, double reported) const noexcept ARMCMC_NONBLOCKING;
 
  private:
+  /// Tapes of the laws of one sampled mode; several where modes are sampled as one.
   struct SampledMode {
     std::string name;
     std::vector<expression::Tape> laws{};

@@ -55,11 +55,11 @@ class StateFilter {
                                  double noise_std, const ModeData& data) noexcept ARMCMC_NONBLOCKING;
   /// Whether the data contradict the starts of the file, about the mean of a Predict() after OpenStart(); if not, they
   /// hold again from the next Predict() on.
-  /// @param told  What OpenStart() returned.
+  /// @param fixed_squares  What OpenStart() returned.
   /// @rt As Predict().
   [[nodiscard]] bool StartIsContradicted(const simd::Kernels& kernels, const std::array<double, kMaxParams>& mean,
                                          double noise_std, const ModeData& data,
-                                         double told) noexcept ARMCMC_NONBLOCKING;
+                                         double fixed_squares) noexcept ARMCMC_NONBLOCKING;
 
   /// After the draws.
   /// @param mean, sd  Of the posterior after the pack.
@@ -75,7 +75,7 @@ class StateFilter {
                  const std::array<double, kMaxParams>& sd, double noise_std,
                  const ModeData& data) noexcept ARMCMC_NONBLOCKING;
 
-  /// Squares of the errors of `law_` that remain where all starts with a step are free. Sets `felt_`.
+  /// Squares of the errors of `law_` that remain where all starts with a step are free. Sets `sensitivity_`.
   double SquaresLeft(const ModeData& data) noexcept ARMCMC_NONBLOCKING;
 
   const PlantStates* plant_;
@@ -84,8 +84,8 @@ class StateFilter {
   ParamMatrix factor_;  ///< L of P = L L'.
   ParamMatrix slope_;   ///< G at the end of the last pack.
   std::array<double, kMaxParams> about_{}, reach_{};
-  std::array<double, kMaxStates> opened_{};  ///< Variance of a start that is not believed; 0: it is.
-  std::array<double, kMaxStates> step_{}, trial_{}, felt_{};
+  std::array<double, kMaxStates> opened_{};  ///< Prior variance of a start that is free; 0: it is fixed.
+  std::array<double, kMaxStates> step_{}, trial_{}, sensitivity_{};
   int num_opened_ = 0;
   ThetaTile theta_;
   StateTile offset_, end_;

@@ -27,9 +27,9 @@ struct alignas(64) StateTile {
 struct StateRun {
   const expression::Tape* step = nullptr;   ///< Null: the plant has no states.
   const expression::Tape* start = nullptr;  ///< State at the first sample, of the scalars of that sample.
-  int num_states = 0;
-  int num_samples = 0;
-  int substeps = 1;
+  int num_states = 0;                       ///< At most kMaxStates.
+  int num_samples = 0;                      ///< Of the pack.
+  int substeps = 1;                         ///< Of one sample interval.
   bool carried = false;  ///< Goes on from `value`, one interval before the first sample; else begins at that sample.
   /// Of a state that begins with a number: whether it does, and the number.
   std::array<bool, kMaxStates> given{};
@@ -37,6 +37,7 @@ struct StateRun {
   int stride = 0;  ///< Scalars of a row.
   alignas(64) std::array<double, kMaxStateCells> cell;
 
+  /// Scalars of row r, `stride` of them. @pre r >= 0, (r + 1) stride <= kMaxStateCells.
   [[nodiscard]] const double* Row(int r) const noexcept {
     return cell.data() + static_cast<std::ptrdiff_t>(r) * stride;
   }

@@ -79,7 +79,8 @@ class AdjustStage {
   /// @rt No heap, no lock, no throw, no system call but those of the CPU time meter. Bounded by the adjust budget plus
   /// the ring's capacity.
   [[nodiscard]] bool Step(int waiting = 1) noexcept ARMCMC_NONBLOCKING;
-  /// After a Step() that handed over a result, and after whoever takes it was woken: what only the next pack needs.
+  /// The part of a step that only the next pack needs. After a Step() that handed over a result, and after the thread
+  /// of execute was woken.
   /// @rt As Step(), bounded by the draws.
   void Remember() noexcept ARMCMC_NONBLOCKING;
 
@@ -87,8 +88,11 @@ class AdjustStage {
   [[nodiscard]] CpuTimeMeter* cpu_time() noexcept { return &cpu_time_; }
 
  private:
+  /// Drops the oldest packs while they cannot keep their deadline and a newer one waits.
   void DropUnkeepable() noexcept ARMCMC_NONBLOCKING;
+  /// Counts a dropped pack, and records by how much it would have been late.
   void CountDropped(std::int64_t seq, MissCause cause, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
+  /// Counts a truncated or failed computation and raises its fault.
   void NoteStatus(const StepInfo& info) noexcept ARMCMC_NONBLOCKING;
 
   Nanos budget_ns_, reserve_ns_;

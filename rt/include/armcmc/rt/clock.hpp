@@ -11,14 +11,16 @@
 
 namespace armcmc::rt {
 
-/// Units of time in ns.
+/// Units of time in ns. All times of this library are Nanos, 64-bit integers: they last for 292 years.
 inline constexpr Nanos kNanosPerSecond = 1'000'000'000;
 inline constexpr Nanos kNanosPerMilli = 1'000'000;
 inline constexpr Nanos kNanosPerMicro = 1'000;
 
 ARMCMC_TRUST_NONBLOCKING_BEGIN  // clock_gettime is served by the vDSO: no system call
 
-    /// CLOCK_MONOTONIC, ns. The only clock that deadlines, releases and latencies are measured on.
+    /// CLOCK_MONOTONIC, ns since an arbitrary moment, usually the start of the machine. The only clock that
+    /// deadlines, releases and latencies are measured on; it is the same for all processes, so that time stamps of the
+    /// plant can be compared with those of the estimator on one machine.
     /// @rt No system call (vDSO).
     [[nodiscard]] inline Nanos
     MonotonicNow() noexcept ARMCMC_NONBLOCKING {
@@ -45,13 +47,18 @@ ARMCMC_TRUST_NONBLOCKING_END
 }
 
 /// The monotonic clock in the form that the functions of core take. Core has no clock of its own: tests pass a fake
-/// one, a replay one that never reaches a deadline.
+/// one, and a replay passes none, which never reaches a deadline.
+/// @code
+/// engine.Adjust(pack, MonotonicNow() + 2 * kNanosPerMilli, MonotonicClock(), slot);   // at most 2 ms
+/// @endcode
 /// @rt No heap, no lock, no throw.
 [[nodiscard]] inline ClockRef MonotonicClock() noexcept ARMCMC_NONBLOCKING {
   return {[](const void*) noexcept ARMCMC_NONBLOCKING -> Nanos { return MonotonicNow(); }, nullptr};
 }
 
-/// An absolute time in ns >= 0 as a timespec.
+/// An absolute time as a timespec, for the system calls that take one.
+/// @param t_ns  ns, >= 0: a negative time would give a negative tv_nsec, which the kernel rejects.
+/// @rt No system call. O(1).
 [[nodiscard]] constexpr timespec ToTimespec(Nanos t_ns) noexcept {
   return {static_cast<time_t>(t_ns / kNanosPerSecond), static_cast<long>(t_ns % kNanosPerSecond)};
 }

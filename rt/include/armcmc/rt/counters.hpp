@@ -82,7 +82,7 @@ struct Counters {
   alignas(64) FaultFlags faults;
   alignas(64) std::array<Counter, kNumStages> heap_calls;  ///< Of each stage thread, after warm-up.
 
-  /// Rejected packs of all causes.
+  /// Rejected packs of all causes. Any thread, as for the two below.
   [[nodiscard]] std::int64_t Rejected() const noexcept {
     std::int64_t sum = 0;
     for (const Counter& counter : collect.rejected) sum += counter.Get();

@@ -26,8 +26,11 @@ struct StepTimes {
   std::array<Nanos, kNumStages> withheld_before_ns{}, withheld_ns{};
   Earlier adjusted_earlier;  ///< How much earlier adjust would have been through.
 
+  /// Time between begin and end of a stage, ns, stalls included.
   [[nodiscard]] Nanos Duration(Stage stage) const noexcept { return end_ns[IndexOf(stage)] - start_ns[IndexOf(stage)]; }
+  /// Release to complete estimate, ns.
   [[nodiscard]] Nanos EndToEnd() const noexcept { return end_ns[IndexOf(Stage::kExecute)] - release_ns; }
+  /// Time left until the deadline when the estimate was complete, ns; negative: missed.
   [[nodiscard]] Nanos Slack() const noexcept { return deadline_ns - end_ns[IndexOf(Stage::kExecute)]; }
 };
 
@@ -37,6 +40,7 @@ struct StepTimes {
 /// miss counters may be read any time, the histograms after both have ended.
 class DeadlineMonitor {
  public:
+  /// @param settings  Budgets of the stages; not kept.
   explicit DeadlineMonitor(const RtSettings& settings) noexcept;
 
   /// Wake-ups of the witness on the CPU of a stage; without one no miss is attributed to the machine.
@@ -69,9 +73,11 @@ class DeadlineMonitor {
   /// @param lacked_ns  By how much execute was late; at least 1 is assumed. @rt O(wake-ups since adjust).
   MissCause RecordOvertaken(const StepTimes& times, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
 
+  /// Missed deadlines with that cause: steps that finished late, packs given up and results overtaken. Any thread.
   [[nodiscard]] std::int64_t misses(MissCause cause) const noexcept ARMCMC_NONBLOCKING;
   /// Steps in which a stage took more than its budget (adjust: its budget; the others: the execute reserve).
   [[nodiscard]] std::int64_t stage_overruns(Stage stage) const noexcept { return overruns_[IndexOf(stage)].Get(); }
+  /// Durations of a stage, ns. @pre the threads have ended, as for end_to_end().
   [[nodiscard]] const LogHistogram& stage_times(Stage stage) const noexcept { return stage_times_[IndexOf(stage)]; }
   [[nodiscard]] const LogHistogram& end_to_end() const noexcept { return end_to_end_; }
 

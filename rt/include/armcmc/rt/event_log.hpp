@@ -36,8 +36,8 @@ inline constexpr int kNumEventKinds = 17;
 struct Event {
   Nanos t_ns = 0;  ///< CLOCK_MONOTONIC.
   EventKind kind = EventKind::kWaitingForPlant;
-  std::uint8_t detail = 0;
-  std::int64_t a = 0, b = 0;
+  std::uint8_t detail = 0;    ///< See EventKind; else 0.
+  std::int64_t a = 0, b = 0;  ///< See EventKind; else 0.
 };
 
 /// Fixed ring of events from one thread to the one that prints. A full ring drops the event and counts it.

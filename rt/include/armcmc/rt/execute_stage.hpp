@@ -17,7 +17,8 @@ namespace armcmc::rt {
 ///
 /// Estimate, intervals and prediction come from StepEngine::Execute(). The deadline is judged here, when the estimate
 /// is complete in memory: publishing is measured separately (PublicationLatency). A missed step is attributed to a
-/// cause by the DeadlineMonitor.
+/// cause by the DeadlineMonitor. The estimate of a missed step is published like any other; the status of
+/// that step names the cause.
 class ExecuteStage {
  public:
   /// Constructed on the set-up thread; the arguments must outlive the stage. Allocates the spare output.
@@ -44,8 +45,10 @@ class ExecuteStage {
   [[nodiscard]] const LogHistogram& ess() const noexcept { return ess_; }
 
  private:
+  /// Adds draws and effective sample sizes of the modes that the step updated.
   void CountSampling(const Estimate& estimate) noexcept ARMCMC_NONBLOCKING;
 
+  /// What the constructor was given.
   StepEngine* engine_;
   ResultHandOver* results_;
   OutputRing* outputs_;

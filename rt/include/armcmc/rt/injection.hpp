@@ -41,7 +41,8 @@ struct InjectionItem {
 [[nodiscard]] std::vector<InjectionItem> ParseInjections(const std::string& list);
 
 /// Carries out a plan. Each stage asks at its own hook whether a fault is due; with an empty plan the hooks do nothing.
-/// Every kind is asked for by one thread only.
+/// Every kind is asked for by one thread only. What is carried out is counted, and recorded in the event log of the
+/// stage.
 class Injection {
  public:
   /// @param plan  From ParseInjections().
@@ -50,7 +51,9 @@ class Injection {
   /// Where the stages' events go: collect, adjust, execute, publish. Before the threads start.
   void SetEventLogs(std::array<EventLog*, 4> logs) noexcept { logs_ = logs; }
 
-  /// Overruns and hangs of a stage. Blocks or spins as long as the plan says: that is what it is for.
+  /// Overruns and hangs of a stage: an overrun spins, a hang sleeps. Blocks as long as the plan says: that is what it
+  /// is for.
+  /// @param stage  Which one calls. @param pack  Number of the pack that it works on.
   void Disturb(Stage stage, std::int64_t pack) noexcept ARMCMC_NONBLOCKING;
   /// Whether the draws of this pack are to be cut at once. By adjust. @rt No heap, no lock, no throw. O(plan).
   [[nodiscard]] bool Squeezes(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
@@ -63,12 +66,14 @@ class Injection {
   /// @return true when this publication is not to be sent. @param pack  Newest pack, 0 for a status without one.
   [[nodiscard]] bool FailsPublication(std::int64_t pack) noexcept ARMCMC_NONBLOCKING;
 
-  /// How often each kind was carried out.
+  /// How often each kind was carried out. Any time, from any thread.
   [[nodiscard]] std::int64_t count(InjectionKind kind) const noexcept {
     return counts_[static_cast<std::size_t>(kind)].Get();
   }
 
  private:
+  /// The first entry of that kind for that pack, after counting and recording it; null if there is none.
+  /// @param log  Index into logs_.
   const InjectionItem* Take(InjectionKind kind, std::int64_t pack, std::size_t log) noexcept ARMCMC_NONBLOCKING;
 
   std::vector<InjectionItem> plan_;

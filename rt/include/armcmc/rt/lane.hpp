@@ -59,7 +59,8 @@ class Lane {
   [[nodiscard]] const ExecuteStage& execute() const noexcept { return execute_; }
   /// Newest published estimate. @pre the pipeline has ended.
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return publish_.last_estimate(); }
-  /// Time from release to the sent message. @pre the pipeline has ended.
+  /// Age of the data when their estimate has been sent, from arrival and from the last sample. @pre the pipeline has
+  /// ended.
   [[nodiscard]] const PublicationLatency& latency() const noexcept { return publish_.latency(); }
 
   /// Raises FAULT_* bits in the next status message. Any time, from any thread. @rt Wait-free.

@@ -13,7 +13,13 @@ namespace armcmc::rt {
 /// The values themselves are kept by the caller, in kSlots slots. The writer fills write_slot() and calls Publish();
 /// the reader calls Acquire() and then owns read_slot(). The third slot holds the newest value in between; an atomic
 /// exchange of its number passes the ownership. No value is copied, neither side waits, and they never work on the same
-/// slot.
+/// slot. For one writer and one reader.
+/// @code
+/// slots[latest.write_slot()] = value;                              // writer
+/// const bool lost = latest.Publish();
+///
+/// if (latest.Acquire()) Use(slots[latest.read_slot()]);            // reader
+/// @endcode
 class LatestValue {
  public:
   /// Number of slots that the caller provides.
@@ -57,6 +63,7 @@ class LatestValue {
   /// Bits of shared_ that hold the slot number.
   static constexpr std::uint8_t kSlotMask = 0x03;
 
+  /// Slot in between, with kFresh; each of the three members on a cache line of its own.
   alignas(kCacheLine) std::atomic<std::uint8_t> shared_{1};
   alignas(kCacheLine) int write_slot_ = 0;  // of the writer
   alignas(kCacheLine) int read_slot_ = 2;   // of the reader

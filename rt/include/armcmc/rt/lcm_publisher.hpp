@@ -22,21 +22,26 @@ namespace armcmc::rt {
 /// Each message is encoded into a buffer that belongs to the publisher, so that there is no heap call after the first
 /// message of each type (liblcm's own publish() would allocate each time). Sending is a blocking system call: for the
 /// publish thread, never for a stage with a deadline. Used by one thread.
+///
+/// A message travels in one datagram, since each is smaller than kMaxShortMessage. UDP may lose it without a word;
+/// receivers notice by the sequence number in it. Types, units and rates: lcm_types/README.md.
 class LcmPublisher {
  public:
   /// Opens the socket.
   /// @param url     Bus, for example udpm://239.255.76.67:7667?ttl=0.
   /// @param prefix  Put before EST_ESTIMATE, EST_POSTERIOR, EST_CHANGE and EST_STATUS; may be empty.
-  /// @throws std::runtime_error  with the remedy, if the machine has no multicast route.
+  /// @throws std::runtime_error  with the remedy, if the machine has no multicast route; naming the URL, if liblcm
+  ///   cannot open it.
   LcmPublisher(const LcmUrl& url, const std::string& prefix);
 
   /// Sends a message on its channel.
+  /// @param message  Complete: the publisher changes nothing in it, neither time stamps nor numbers.
   /// @return false if it could not be encoded (larger than 16 384 bytes) or sent; the caller counts that.
   /// @rt No heap, no throw. Blocks in the socket.
   [[nodiscard]] bool Publish(const estimate_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(estimate_channel_, message);
   }
-  /// Marginal distributions, on EST_POSTERIOR; otherwise as above.
+  /// Marginal distributions, on EST_POSTERIOR; otherwise as above. @rt As above.
   [[nodiscard]] bool Publish(const posterior_t& message) noexcept ARMCMC_NONBLOCKING {
     return Send(posterior_channel_, message);
   }
@@ -50,12 +55,14 @@ class LcmPublisher {
   }
 
  private:
+  /// Closes the socket and frees what liblcm holds.
   struct Destroy {
     void operator()(lcm_t* lcm) const noexcept { lcm_destroy(lcm); }
   };
 
   // The publish thread is the one that sends, below every stage. encode() looks up the fingerprint in a static variable
   // that its first call computes.
+  /// Encodes into buffer_ and sends. encode() returns the bytes written, or a negative number if they do not fit.
   ARMCMC_TRUST_NONBLOCKING_BEGIN
   template <typename Message>
   [[nodiscard]] bool Send(const std::string& channel, const Message& message) noexcept ARMCMC_NONBLOCKING {
@@ -67,7 +74,9 @@ class LcmPublisher {
   ARMCMC_TRUST_NONBLOCKING_END
 
   std::unique_ptr<lcm_t, Destroy> lcm_;
+  /// Names of the channels, prefix included; at most kMaxChannelLength characters.
   std::string estimate_channel_, posterior_channel_, change_channel_, status_channel_;
+  /// The encoded message; the largest type, posterior_t, fits.
   std::array<std::uint8_t, 16'384> buffer_{};
 };
 

@@ -23,8 +23,13 @@ struct Datagram {
   std::size_t channel = 0;                ///< Which one, in the order of the subscription.
 };
 
-/// The channel, compared byte by byte against an LCM datagram.
-enum class DatagramKind : std::uint8_t { kOurs, kForeign, kFragment, kMalformed };
+/// What a datagram is for a receiver of one channel.
+enum class DatagramKind : std::uint8_t {
+  kOurs,       ///< A whole message of the channel.
+  kForeign,    ///< A whole message of another channel.
+  kFragment,   ///< A part of a message above kMaxShortMessage, magic number "LC03".
+  kMalformed,  ///< Not of LCM's format: too short, another magic number, or a channel name without an end.
+};
 
 /// Splits a datagram of LCM's wire format: be32 "LC02", be32 message number, channel, NUL, payload.
 /// @param bytes    The datagram.
@@ -43,6 +48,7 @@ enum class DatagramKind : std::uint8_t { kOurs, kForeign, kFragment, kMalformed 
 /// One thread uses it; Wake() may come from any other, also from a signal handler.
 class LcmReceiver {
  public:
+  /// Datagrams that were read and not returned. Read them on the thread that receives.
   struct Counts {
     std::int64_t foreign = 0;    ///< Datagrams of other channels.
     std::int64_t fragments = 0;  ///< Fragments of messages above kMaxShortMessage.
@@ -50,7 +56,11 @@ class LcmReceiver {
     [[nodiscard]] std::int64_t passed_over() const noexcept { return foreign + fragments + malformed; }
   };
 
-  /// @throws std::runtime_error saying what to do when the machine has no multicast route.
+  /// Opens the socket and joins the group.
+  /// @param url       Bus; its recv_buf_size is cut to net.core.rmem_max without CAP_NET_ADMIN.
+  /// @param channels  Names with prefix; Datagram::channel counts them from 0.
+  /// @throws std::invalid_argument when a name is longer than kMaxChannelLength.
+  /// @throws std::runtime_error saying what to do when the machine has no multicast route, or which call failed.
   LcmReceiver(const LcmUrl& url, std::vector<std::string> channels);
   ~LcmReceiver();
   LcmReceiver(const LcmReceiver&) = delete;
@@ -63,10 +73,10 @@ class LcmReceiver {
   /// @return true when *datagram holds a message of one of the channels.
   [[nodiscard]] bool TryReceive(Datagram* datagram) noexcept ARMCMC_NONBLOCKING;
 
-  /// Throws away what the kernel holds; at most as many datagrams as its buffer can hold.
+  /// Throws away what the kernel holds; at most as many datagrams as its buffer can hold. @rt System calls, bounded.
   void Drain() noexcept ARMCMC_NONBLOCKING;
 
-  /// Ends the present wait, or the next one.
+  /// Ends the present wait, or the next one. @rt One system call (eventfd), which does not block.
   void Wake() noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }

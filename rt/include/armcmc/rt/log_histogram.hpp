@@ -20,6 +20,11 @@ namespace armcmc::rt {
 /// Minimum and maximum are exact.
 ///
 /// Fixed size (about 30 kB), no allocation. One writer; readers only after the writer has finished.
+/// @code
+/// LogHistogram latency;                              // ns
+/// latency.Add(end_ns - start_ns);                    // in the stage
+/// report["p99_ms"] = latency.Quantile(0.99) / 1e6;   // after the stage has ended
+/// @endcode
 class LogHistogram {
  public:
   /// Counts a value; negative ones count as 0.
@@ -34,7 +39,8 @@ class LogHistogram {
     min_ = std::min(min_, v);
   }
 
-  /// Adds the values of another histogram, as if each had been added here. O(buckets).
+  /// Adds the values of another histogram, as if each had been added here.
+  /// @pre Neither histogram is being written. @rt No heap, no lock, no throw. O(buckets).
   void Merge(const LogHistogram& other) noexcept {
     for (std::size_t i = 0; i < kBuckets; ++i) {
       buckets_[i].count += other.buckets_[i].count;
@@ -45,16 +51,17 @@ class LogHistogram {
     min_ = std::min(min_, other.min_);
   }
 
-  /// Number of values.
+  /// Number of values. @rt This and the following two: O(1).
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  /// Largest value; 0 if there is none.
+  /// Largest value, in the unit of the values; 0 if there is none. Exact below 2^53.
   [[nodiscard]] double max() const noexcept { return static_cast<double>(max_); }
-  /// Smallest value; 0 if there is none.
+  /// Smallest value; 0 if there is none. As max().
   [[nodiscard]] double min() const noexcept { return count_ == 0 ? 0.0 : static_cast<double>(min_); }
 
   /// Quantile: the value of rank ceil(q count), as the mean of its bucket.
   /// @param q  In (0, 1]; 1 is within the bucket of the maximum.
-  /// @return 0 if there are no values. O(buckets).
+  /// @return in the unit of the values; 0 if there are no values.
+  /// @pre The writer has finished. @rt No heap, no lock, no throw. O(buckets).
   [[nodiscard]] double Quantile(double q) const noexcept {
     if (count_ == 0) return 0.0;
     const double rank = std::clamp(std::ceil(q * static_cast<double>(count_)), 1.0, static_cast<double>(count_));
@@ -69,7 +76,9 @@ class LogHistogram {
  private:
   /// Buckets per factor of two, as a power of two: 2^5 = 32.
   static constexpr unsigned kSubBits = 5;
+  /// Buckets per factor of two.
   static constexpr std::uint64_t kSub = 1U << kSubBits;
+  /// One row of kSub for the values below kSub, and one for each higher position of the highest bit.
   static constexpr std::size_t kBuckets = (64 - kSubBits + 1) * kSub;
 
   /// Values of one bucket; the sum is a double, since sums of ns may exceed 64 bits.

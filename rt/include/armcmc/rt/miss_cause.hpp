@@ -10,9 +10,14 @@
 namespace armcmc::rt {
 
 /// Cause of a missed deadline. The values are those of estimator_status_t.MISS_*.
-enum class MissCause : std::uint8_t { kNone = 0, kOwn = 1, kMachine = 2, kLateData = 3 };
+enum class MissCause : std::uint8_t {
+  kNone = 0,      ///< The deadline was kept.
+  kOwn = 1,       ///< The estimator itself took too long.
+  kMachine = 2,   ///< Stalls of the machine: hypervisor, firmware or kernel.
+  kLateData = 3,  ///< The pack came late.
+};
 /// Number of values, kNone included.
-inline constexpr std::size_t kNumMissCauses = 4;  ///< Number of values.
+inline constexpr std::size_t kNumMissCauses = 4;
 /// Name for reports, "late data".
 [[nodiscard]] std::string_view ToString(MissCause cause) noexcept ARMCMC_NONBLOCKING;
 

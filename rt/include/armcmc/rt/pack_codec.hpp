@@ -34,7 +34,7 @@ inline constexpr std::size_t kNumRejectCauses = 11;
 /// The three groups in which estimator_status_t counts them.
 enum class RejectGroup : std::uint8_t { kSize = 0, kType = 1, kValue = 2 };
 
-/// Name of a cause for events and reports, "sample count".
+/// Name of a cause for events and reports, "n_samples out of range".
 [[nodiscard]] std::string_view ToString(RejectCause cause) noexcept ARMCMC_NONBLOCKING;
 /// Group in which a cause is counted. @pre cause != kNone.
 [[nodiscard]] RejectGroup GroupOf(RejectCause cause) noexcept ARMCMC_NONBLOCKING;
@@ -55,7 +55,8 @@ class PackCodec {
   /// @rt No heap, no lock, no throw. O(n_samples x n_inputs) after a decode of fixed size.
   [[nodiscard]] RejectCause Decode(std::span<const std::uint8_t> payload) noexcept ARMCMC_NONBLOCKING;
 
-  /// Whether the last message was a pack of this plant, even if its values were rejected; its number may then be used.
+  /// Whether the last message had the type and the length of a pack, even if its contents were rejected, for example as
+  /// a pack of another plant; number and run may then be read.
   [[nodiscard]] bool decoded() const noexcept { return decoded_; }
   /// Header of the last message. @pre decoded(). Values are unchecked unless Decode() returned kNone.
   [[nodiscard]] std::int64_t seq() const noexcept { return described() ? described_.seq : message_.seq; }
@@ -66,7 +67,8 @@ class PackCodec {
   [[nodiscard]] double t_last_s() const noexcept { return described() ? described_.t_last_s : message_.t_last_s; }
   [[nodiscard]] double dt() const noexcept { return described() ? described_.dt : message_.dt; }
   [[nodiscard]] int num_samples() const noexcept { return described() ? described_.n_samples : message_.n_samples; }
-  /// Copies the used rows and columns. @pre the last Decode() returned kNone.
+  /// Copies header, used rows and used columns; the rest of *pack stays as it was.
+  /// @pre the last Decode() returned kNone. @rt No heap, no lock, no throw. O(n_samples x n_inputs).
   void CopyTo(DataPack* pack) const noexcept ARMCMC_NONBLOCKING;
 
  private:

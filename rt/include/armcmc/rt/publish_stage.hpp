@@ -19,6 +19,12 @@ namespace armcmc::rt {
 
 /// Turns outputs of execute into messages and sends them. It runs on the thread with the lowest priority of the
 /// pipeline, since sending blocks; a slow bus delays messages, never an estimate.
+///
+/// A step gives four messages, in this order: estimate_t, posterior_t, change_t (with the sequence number of the pack)
+/// and estimator_status_t. A message that cannot be sent is counted in Counters::publish.errors, raises FAULT_PUBLISH
+/// and is recorded in the event log; it is not sent again, since the next step replaces it.
+///
+/// Threads: everything without another remark is for the publish thread.
 class PublishStage {
  public:
   /// Set-up thread; the arguments must outlive the stage.
@@ -39,6 +45,7 @@ class PublishStage {
         events_(events) {}
 
   /// Injected faults of publication; null: none. Before the thread starts.
+  /// @param injection  Outlives the stage.
   void SetInjection(Injection* injection) noexcept { injection_ = injection; }
   /// DEGRADED_* bits for the following status messages: real-time measures that are not in effect. Any thread, any
   /// time.
@@ -51,22 +58,29 @@ class PublishStage {
     hung_ = hung_ || hung;
   }
 
-  /// Sends estimate, posterior, change and status of all finished steps, oldest first.
+  /// Sends estimate, posterior, change and status of all finished steps, oldest first. Steps that finish meanwhile are
+  /// sent as well, up to the limit, so that a call ends.
   /// @return their number, at most kOutputRingCapacity.
   /// @rt No heap, no throw. Blocks in the socket.
   int PublishSteps() noexcept ARMCMC_NONBLOCKING;
   /// Sends a status without a step: no pack came in this period, or none was finished. @rt As PublishSteps().
   void PublishIdleStatus() noexcept ARMCMC_NONBLOCKING;
 
-  /// Number of the pack at which the gap watch raised its alarm; 0: it has not.
+  /// Number of the pack at which the gap watch raised its newest alarm; 0: it has not. Any thread may read it: the gap
+  /// log polls it to learn when the recent packs are to be saved.
   [[nodiscard]] const std::atomic<std::int64_t>& gap_alarm() const noexcept { return gap_alarm_; }
-  /// The newest published estimate. @pre the thread has ended.
+  /// The newest published estimate, for the report at the end; in its initial state if there was none.
+  /// @pre the thread has ended.
   [[nodiscard]] const Estimate& last_estimate() const noexcept { return last_; }
-  /// Time from release to the sent message, over all published estimates. @pre the thread has ended.
+  /// Times from the last sample and from the arrival of the pack to the sent message, over all published estimates.
+  /// @pre the thread has ended.
   [[nodiscard]] const PublicationLatency& latency() const noexcept { return latency_; }
 
  private:
+  /// Status of a step, or of a period without one (nullptr). Takes the raised faults and the noted evidence with it,
+  /// so that each is reported once.
   void PublishStatus(const StepOutput* output) noexcept ARMCMC_NONBLOCKING;
+  /// Stores a new alarm of the gap watch for gap_alarm(), and records it in the event log.
   void NoteGap(const GapState& gap) noexcept ARMCMC_NONBLOCKING;
   /// Sends one message and counts what became of it. @param pack  That it belongs to, 0: none.
   template <typename Message>
@@ -76,6 +90,7 @@ class PublishStage {
   /// Counts a message, or an error and FAULT_PUBLISH.
   void CountSent(bool sent) noexcept ARMCMC_NONBLOCKING;
 
+  /// What the constructor was given.
   const RtSettings& settings_;
   const StepEngine* engine_;
   OutputRing* outputs_;
@@ -84,10 +99,12 @@ class PublishStage {
   Counters* counters_;
   EventLog* events_;
   Injection* injection_ = nullptr;
+  /// Noted since the last status.
   Nanos witness_worst_ns_ = 0;
   bool hung_ = false;
   std::atomic<std::int32_t> degraded_flags_{0};
   std::atomic<std::int64_t> gap_alarm_{0};
+  /// Filled again for every step.
   estimate_t estimate_{};
   posterior_t posterior_{};
   change_t change_{};

@@ -14,7 +14,10 @@ struct Release {
   std::uint32_t missed;  ///< Grid points that passed before it.
 };
 
-/// Next point of the release grid after an iteration that ended at now_ns. Never bunches, never drifts.
+/// Next point of the release grid release + k period, k >= 1, after an iteration that ended at now_ns. Points that have
+/// passed are skipped and counted, so that releases neither bunch nor drift.
+/// @param release_ns  Point of the iteration that ended. @param now_ns  CLOCK_MONOTONIC. @param period_ns  > 0.
+/// @rt No heap, no lock, no throw. O(1).
 [[nodiscard]] constexpr Release NextRelease(Nanos release_ns, Nanos now_ns, Nanos period_ns) noexcept {
   const Nanos next = release_ns + period_ns;
   if (now_ns <= next) return {next, 0};
@@ -50,13 +53,14 @@ class ReleaseGrid {
   explicit ReleaseGrid(Nanos period_ns) noexcept
       : period_ns_(period_ns), settling_packs_(std::max<Nanos>(kWindow, kSettleNs / period_ns)) {}
 
-  /// Locks the grid on the first pack of a run of the plant.
+  /// Locks the grid on the first pack of a run of the plant, which is on time by definition. @rt O(1).
   Point Lock(Nanos arrival_ns) noexcept ARMCMC_NONBLOCKING;
 
   /// Places the next pack on the grid.
   /// @param steps       Difference of its pack number to that of the pack before, >= 1.
   /// @param arrival_ns  When it came.
-  /// @pre locked().
+  /// @return its release and lateness.
+  /// @pre locked(). @rt No heap, no lock, no throw. O(1).
   Point OnPack(std::int64_t steps, Nanos arrival_ns) noexcept ARMCMC_NONBLOCKING;
 
   [[nodiscard]] bool locked() const noexcept { return locked_; }

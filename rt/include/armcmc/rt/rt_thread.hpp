@@ -31,7 +31,7 @@ struct ThreadPlacement {
   int cpu = -1;         ///< -1 when not pinned to one CPU.
 };
 
-/// A pinned SCHED_FIFO thread with a small, prefaulted stack.
+/// A pinned SCHED_FIFO thread with a small, prefaulted stack. Start() and Join() are for the thread that owns it.
 class RtThread {
  public:
   /// Function of the thread; its return ends the thread.
@@ -47,6 +47,9 @@ class RtThread {
 
   /// Creates the thread and waits until it has touched its stack and read its policy and affinity back.
   /// Signals are those of the caller. Without the privileges: throws in kEnforce, else runs without them.
+  /// @param request  Priority 0 asks for SCHED_OTHER, CPU -1 for no affinity.
+  /// @param mode     What to do without the privileges.
+  /// @param entry    Must return when its owner tells it to, see Join(). @param context  Its argument.
   /// @throws PrivilegeError (kEnforce), std::runtime_error when no thread can be made at all.
   const ThreadPlacement& Start(const ThreadRequest& request, RtMode mode, Entry entry, void* context);
   /// Waits until the entry function has returned. Without a thread, nothing.
@@ -55,15 +58,17 @@ class RtThread {
   [[nodiscard]] const ThreadPlacement& placement() const noexcept { return placement_; }
 
   /// Says how much CPU time the thread has had, for cpu_time_ns(). By the thread itself, before it waits.
-  /// @param most_ns  That a turn since the last call can have needed. A stall that the hypervisor does not own up to is
-  ///                 charged to whoever ran when it came: what is more is none of the thread's.
+  /// @param most_ns  Upper bound of what the thread can have used since the last call; the excess is not counted. The
+  ///                 kernel charges a stall that the hypervisor does not report to the thread that ran when it began.
   /// @rt One system call, bounded.
   void NoteCpuTime(Nanos most_ns = kNoLimit) noexcept ARMCMC_NONBLOCKING;
   /// CPU time, ns, of the thread up to its newest wait. Any time, from any thread.
   [[nodiscard]] const std::atomic<Nanos>& cpu_time_ns() const noexcept { return cpu_time_ns_; }
 
  private:
+  /// What pthread_create() runs: touches the stack, reads back, waits for Start() to agree, calls the entry.
   static void* Main(void* self);
+  /// @return 0, or the error of pthread_create() and its attributes.
   [[nodiscard]] int Create(bool fifo, bool pin) noexcept;
   void ReadBack();
 

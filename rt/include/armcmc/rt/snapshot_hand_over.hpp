@@ -17,6 +17,7 @@ struct SnapshotPart {
   std::int64_t seq = 0;          ///< Pack after which it was taken.
   std::size_t size = 0;          ///< Used bytes.
   std::vector<std::byte> bytes;  ///< Of fixed size after construction.
+  /// The used bytes, as SnapshotReader takes them.
   [[nodiscard]] std::span<const std::byte> used() const noexcept { return {bytes.data(), size}; }
 };
 
@@ -31,7 +32,8 @@ class SnapshotChannel {
 
   /// Stage only.
   /// @param seq   Of the pack after which it is taken.
-  /// @param save  Writes into the span and returns the bytes used, 0 when they do not fit.
+  /// @param save  Writes into the span and returns the bytes used, 0 when they do not fit. In that case nothing is
+  ///   handed over, and the previous snapshot stays the newest.
   /// @rt Wait-free, when `save` is.
   template <class Save>
   void Write(std::int64_t seq, const Save& save) noexcept ARMCMC_NONBLOCKING {
@@ -47,17 +49,23 @@ class SnapshotChannel {
   }
 
  private:
+  /// Which of the three buffers belongs to whom.
   LatestValue latest_;
   std::array<SnapshotPart, LatestValue::kSlots> parts_;
 };
 
 /// Channels of the two stages that carry state, adjust (posterior) and execute (gap watch), for each recursion where
 /// packs overlap: a pack changes what one of them knows. The newest parts of a recursion may be one step apart.
+///
+/// Threads: the adjust thread writes `adjusted`, the execute thread `executed`, and one thread without a deadline takes
+/// both and writes them to the disk. All buffers are allocated at construction.
 class SnapshotHandOver {
  public:
+  /// What one recursion of the estimator hands over.
   struct Recursion {
+    /// @param bytes  Size of each of the two snapshots.
     explicit Recursion(std::size_t bytes) : adjusted(bytes), executed(bytes) {}
-    SnapshotChannel adjusted, executed;
+    SnapshotChannel adjusted, executed;  ///< From Estimator::SaveAdjusted() and SaveExecuted().
   };
   /// @param bytes       Size of each snapshot.
   /// @param recursions  At least 1.
@@ -65,17 +73,23 @@ class SnapshotHandOver {
     for (int j = 0; j < recursions; ++j) recursions_.emplace_back(bytes);
   }
 
+  /// Number of recursions. @rt O(1).
   [[nodiscard]] int size() const noexcept ARMCMC_NONBLOCKING { return static_cast<int>(recursions_.size()); }
-  /// @pre 0 <= j < size().
+  /// Channels of recursion j. @pre 0 <= j < size(). @rt O(1).
   [[nodiscard]] Recursion& of(int j) noexcept ARMCMC_NONBLOCKING { return recursions_[static_cast<std::size_t>(j)]; }
 
  private:
   std::deque<Recursion> recursions_;  // which do not move
 };
 
-/// The parts of all recursions in a row: a single one as it is, several with the size of each before it (u32).
+/// The parts of all recursions in a row: a single one as it is, several with the size of each before it (u32, byte
+/// order of the machine). Allocates; for the thread that writes the file.
+/// @pre at least one part.
 [[nodiscard]] std::vector<std::byte> JoinParts(std::span<const std::vector<std::byte>> parts);
-/// Undoes JoinParts(). @return `count` parts, or none when the bytes are not that.
+/// Undoes JoinParts(). The contents of the parts are not checked; Estimator::Restore() does that.
+/// @param bytes  As JoinParts() returned them.
+/// @param count  Number of recursions, at least 1.
+/// @return `count` parts, or none if a size does not fit the bytes or bytes are left over.
 [[nodiscard]] std::vector<std::vector<std::byte>> SplitParts(std::span<const std::byte> bytes, int count);
 
 }  // namespace armcmc::rt

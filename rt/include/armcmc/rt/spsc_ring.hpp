@@ -19,6 +19,10 @@ inline constexpr std::size_t kCacheLine = 64;
 /// Producer: Claim(), fill, Commit(). Consumer: Front(), use, Pop(). A committed element is visible to the consumer
 /// with everything written before (release / acquire on the indices). The indices count up without wrapping and are
 /// reduced by a mask, so that all kCapacity slots can be used.
+/// @code
+/// if (Pack* slot = ring.Claim()) { Fill(slot); ring.Commit(); }               // producer
+/// while (Pack* pack = ring.Front()) { Use(*pack); ring.Pop(); }               // consumer
+/// @endcode
 /// @tparam T          Default constructible; objects live as long as the ring and are reused.
 /// @tparam kCapacity  Number of elements, a power of two.
 template <typename T, std::size_t kCapacity>

@@ -31,10 +31,12 @@ struct StageWork {
 ///     start_k = max(ready_k, end_{k-1}) + wake-up,  end_k = start_k + work_k,
 ///
 /// where ready, wake-up and work are shortened by what was late or stood still. Times that would have been are never
-/// later than those that were.
+/// later than those that were. All times are CLOCK_MONOTONIC in ns; one thread.
+/// Source: D. V. Lindley, The theory of queues with a single server, 1952.
 class StageTimeline {
  public:
-  /// When the stage could have begun with input that was there at ready_ns. @rt O(1).
+  /// When the stage could have begun with input that was there at ready_ns: max(ready_ns, end of the work before).
+  /// @rt O(1).
   [[nodiscard]] Nanos CouldBegin(Nanos ready_ns) const noexcept ARMCMC_NONBLOCKING {
     return std::max(ready_ns, free_ns_);
   }
@@ -52,7 +54,9 @@ class StageTimeline {
             gained(ready.without_both, free_.without_both) + work.stall_before_ns};
   }
 
-  /// Work that was done. @return how much earlier it would have been. @rt O(1).
+  /// Work that was done, in the order of its beginning.
+  /// @param work, ready  As for Begin().
+  /// @return how much earlier it would have been finished. @rt O(1).
   Earlier Do(const StageWork& work, const Earlier& ready) noexcept ARMCMC_NONBLOCKING {
     free_ = Begin(work, ready);
     GoOn(work.end_ns, work.stall_ns);

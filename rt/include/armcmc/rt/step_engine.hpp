@@ -24,7 +24,7 @@ namespace armcmc::rt {
 ///
 /// The pipeline refers to results by their slot number, so that draws are never copied. Adjust() and Execute() run at
 /// the same time on two threads, on different slots; an implementation keeps what they share immutable. EstimatorEngine
-/// is the implementation for service; tests use fake ones.
+/// is the implementation for service; tests use fake ones. Names and units that it returns live as long as the engine.
 class StepEngine {
  public:
   virtual ~StepEngine() = default;
@@ -57,7 +57,8 @@ class StepEngine {
   virtual void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING = 0;
   /// Summarises a slot: estimate, intervals, prediction, gap watch. @rt No heap, no lock, no throw. O(draws).
   virtual void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING = 0;
-  /// Returns to the initial state. Ends the warm-up, whose packs must not leave a trace.
+  /// Returns to the initial state. Ends the warm-up, whose packs must not leave a trace. Called before the first pack,
+  /// while neither Adjust() nor Execute() runs.
   virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
 };
 
@@ -72,6 +73,7 @@ class EstimatorEngine final : public StepEngine {
   explicit EstimatorEngine(const EstimatorSettings& settings);
   ~EstimatorEngine() override;
 
+  /// See StepEngine. Adjust() draws, Remember() saves the new posterior for the next pack and for the snapshot.
   [[nodiscard]] PackFormat pack_format() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] int num_modes() const noexcept ARMCMC_NONBLOCKING override;
   [[nodiscard]] int num_reported() const noexcept ARMCMC_NONBLOCKING override;
@@ -82,7 +84,7 @@ class EstimatorEngine final : public StepEngine {
   void Execute(int slot, Estimate* estimate) noexcept ARMCMC_NONBLOCKING override;
   void Reset() noexcept ARMCMC_NONBLOCKING override;
 
-  /// Hands what is learnt to another thread after every step. Before the pipeline starts.
+  /// Hands the state of the estimator to another thread after every step. Before the pipeline starts.
   /// @param snapshots  Of Estimator::kSnapshotBytes for each of estimator().settings().overlap recursions; outlives the
   ///                   engine.
   void SetSnapshots(SnapshotHandOver* snapshots) noexcept { snapshots_ = snapshots; }
@@ -96,12 +98,13 @@ class EstimatorEngine final : public StepEngine {
   [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_.first(); }
 
  private:
+  /// Restores every recursion from the bytes that Resume() was given; true without them.
   [[nodiscard]] bool RestoreResumed() noexcept ARMCMC_NONBLOCKING;
 
   InterleavedEstimator estimator_;  ///< One recursion, or as many as packs overlap.
   std::array<std::unique_ptr<AdjustResult>, LatestValue::kSlots> results_;
   SnapshotHandOver* snapshots_ = nullptr;
-  bool warm_ = false;     // what the warm-up learns is handed to nobody
+  bool warm_ = false;     // snapshots of the warm-up are not handed over
   bool learnt_ = false;   // by the newest Adjust()
   std::int64_t seq_ = 0;  ///< Of the newest pack.
   std::vector<std::vector<std::byte>> resumed_adjusted_, resumed_executed_;  // by recursion

@@ -13,10 +13,12 @@ namespace armcmc::rt {
 ///
 /// A POSIX semaphore (sem_clockwait of glibc 2.30 and later): Post() takes no lock, may be called from a signal
 /// handler, and enters the kernel only if a thread waits. Threads call it in their loop, never inside a stage function.
+/// Any number of threads may post; one waits.
 class Waiter {
  public:
   /// Initialises the semaphore. @throws std::system_error  if that fails.
   Waiter();
+  /// @pre no thread waits.
   ~Waiter();
   Waiter(const Waiter&) = delete;
   Waiter& operator=(const Waiter&) = delete;
@@ -27,10 +29,12 @@ class Waiter {
 
   /// Blocks until a Post() or until a time is reached; signals do not end the wait.
   /// @param t_ns  CLOCK_MONOTONIC, ns.
-  /// @return true for a Post(), false at the time.
+  /// @return true for a Post(), false at the time. What the poster wrote before is then visible (acquire / release).
+  /// @rt One system call, which blocks; no heap, no throw.
   [[nodiscard]] bool WaitUntil(Nanos t_ns) noexcept ARMCMC_NONBLOCKING;
 
-  /// When the first Post() since the last call came, 0 if none did. By the thread that waits.
+  /// When the first Post() since the last call came, CLOCK_MONOTONIC in ns; 0 if none did. By the thread that waits:
+  /// the difference to the time after the wait is the latency of the wake-up. @rt Wait-free.
   [[nodiscard]] Nanos TakePostTime() noexcept ARMCMC_NONBLOCKING {
     return first_post_ns_.exchange(0, std::memory_order_relaxed);
   }

@@ -25,12 +25,16 @@ inline constexpr std::size_t kNumWatched = 4;
 /// overdue at two consecutive checks, the second of which is on time, is a hang: an event, and FAULT_STAGE_HUNG in the
 /// next status. If the whole process was suspended, or the machine stalled, the check itself is late, and this does not
 /// count. What the process does about a hang is decided by its owner, see [rt.watchdog] on_hang.
+///
+/// With T_s the period of the packs, a report may be late by max(T_s / 4, 5 ms), and a check comes every
+/// max(T_s / 8, 1 ms).
 class Watchdog {
  public:
   /// Smallest tolerance of a report, ns: the time that a machine occasionally takes to wake a thread.
   static constexpr Nanos kShortestSlack = 5'000'000;
 
-  /// @param settings  Period, priorities and CPUs. @param events  Receives a line for each hang; must outlive this.
+  /// @param settings  Period, priorities and CPUs.
+  /// @param events    Receives a line for each hang; must outlive this.
   Watchdog(const RtSettings& settings, EventLog* events) noexcept;
   ~Watchdog() { Stop(); }
   Watchdog(const Watchdog&) = delete;
@@ -57,7 +61,7 @@ class Watchdog {
   /// Starts the thread that checks, with a priority above every stage, on the CPU of collect.
   /// @throws PrivilegeError  in kEnforce without the privileges.
   const ThreadPlacement& Start();
-  /// Ends the thread; waits for it.
+  /// Ends the thread; waits for it, for one check period at most. Without a thread, nothing.
   void Stop() noexcept;
 
   /// Threads that hang now: bit i is Watched i. Any time, from any thread.
@@ -66,9 +70,9 @@ class Watchdog {
   [[nodiscard]] std::int64_t hangs() const noexcept { return hangs_.load(std::memory_order_relaxed); }
   /// Whether a thread hangs, or has since the last call: FAULT_STAGE_HUNG. @rt Wait-free.
   [[nodiscard]] bool TakeHung() noexcept { return unread_.exchange(false, std::memory_order_acq_rel) || hung() != 0; }
-  /// Time between checks.
+  /// Time between checks, ns.
   [[nodiscard]] Nanos check_period_ns() const noexcept { return check_period_ns_; }
-  /// Tolerance of a report.
+  /// Tolerance of a report, ns.
   [[nodiscard]] Nanos slack_ns() const noexcept { return slack_ns_; }
   /// CPU of the watchdog thread.
   [[nodiscard]] int cpu() const noexcept { return request_.cpu; }

@@ -37,6 +37,7 @@ class WakeUpRing {
   [[nodiscard]] Nanos StalledTime(Nanos begin_ns, Nanos end_ns, Nanos now_ns) const noexcept ARMCMC_NONBLOCKING;
 
  private:
+  /// One wake-up, CLOCK_MONOTONIC.
   struct Entry {
     std::atomic<Nanos> due_ns{0};
     std::atomic<Nanos> woke_ns{0};

@@ -89,15 +89,17 @@ struct ClimbRequest {
 ///    without losing in the others;
 ///    - removes more than half of the error that is not noise, alone or together with the next effect, unless its
 ///    family has already been named or only noise remains; and one of its amplitudes is more than two standard
-///    deviations from zero.
+///    deviations from zero;
+///    - leaves less than the output varies.
 /// 2. Simplest first. Among the candidates that close at least 95 % of what the best one closes, those with the fewest
 ///    parameters are kept; among these the best one, or, within 1 % of it, the one that depends on the fewest
 ///    quantities. What a simple effect leaves is examined on the next rung.
-/// 3. Ties. The leader is tied with related effects (`kin`) whose error is less than 1.5 times as large, if its own
-///    formula is not exact; with a family of as few parameters that wins one bootstrap sample in twenty; and with a
-///    larger effect of another family that leaves less than half of the error and is better in every kind of group.
-///    Nothing is named after a tie, since it would depend on an undecided choice; each tied effect is therefore shown
-///    in the form that predicts best.
+/// 3. Ties. The leader is tied with related effects (`kin`) whose error is less than 1.5 times as large, or smaller
+///    both on blocks and on regions, if its own formula is not exact; with a family of as few parameters that wins one
+///    bootstrap sample in twenty; and with a larger effect of another family that leaves less than half of the error
+///    and is better in every kind of group. Nothing is named after a tie, since it would depend on an undecided choice;
+///    each tied effect is therefore shown in the form that predicts best. A provisional name, or tie, is given only if
+///    its families win half of the bootstrap samples; otherwise too many effects explain the same.
 /// 4. Unnamed rivals. If more than noise remains, an effect is ruled out by a curve: a part of the law that varies with
 ///    one quantity, in a shape that no formula of the catalogue has, and leaves less than half of the error, is better
 ///    on blocks, is no worse on regions, and cannot represent the effect. A curve can represent an effect without
@@ -105,8 +107,9 @@ struct ClimbRequest {
 ///    curve reproduces the effect's prediction up to a tenth of the squared error that the effect leaves; but never an
 ///    effect that needs the next one to remove half of the error, because one curve is simpler than two effects. An
 ///    effect is also ruled out if the unextended model leaves less error on smoother versions of the derived signals,
-///    because then the misfit is their noise, or if another value of a constant of the plant, up to 5 % away, explains
-///    as much. And an effect of another family that is smaller than a third of those
+///    because then the misfit is their noise, or if other values of its constants, up to 5 % away, explain
+///    as much, or if the response to its free start values does, so that nothing shows how it responds to the motion.
+///    And an effect of another family that is smaller than a third of those
 ///    named before is ruled out if it acts like one of them, or if a curve of a quantity that one of them reads
 ///    explains as much.
 /// 5. Confirmation. A name is withdrawn if the held-out rows do not show half of its gain, or if the model diverges on

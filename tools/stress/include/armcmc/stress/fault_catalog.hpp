@@ -21,7 +21,7 @@ struct Evidence {
   estimator_status_t before{}, after{};  ///< Last status before the fault, last one of its slot.
   std::int32_t flags = 0;                ///< FAULT_* since the fault that were not in `before`, or are of its step.
   bool modification = false;             ///< An estimate after the fault dropped the past.
-  bool log_failure_told = false;         ///< The plant ended with an error that names its log.
+  bool log_failure_reported = false;     ///< The plant ended with an error that names its log.
 
   [[nodiscard]] bool Flag(std::int32_t flag) const { return (flags & flag) != 0; }
   [[nodiscard]] bool Rises(std::int64_t estimator_status_t::*counter) const { return after.*counter > before.*counter; }

@@ -52,7 +52,7 @@ class FaultJudge {
   /// ... and is over now, after this pack.
   void SignalEnds(std::int64_t newest);
   /// What the plant said at its end belongs to the present slot.
-  void LogFailureTold() { evidence_.log_failure_told = true; }
+  void LogFailureReported() { evidence_.log_failure_reported = true; }
 
   /// The slot that a pack number of this run lies in; nullptr between them.
   [[nodiscard]] const Slot* current() const { return next_ < slots_.size() ? &slots_[next_] : nullptr; }

@@ -51,7 +51,7 @@ class PlantRuns {
   FaultLayout layout_;
   std::unique_ptr<Child> plant_, flood_;
   const FaultSpec* ended_by_ = nullptr;  // fault with which the plant before ended
-  bool log_failure_told_ = false;
+  bool log_failure_reported_ = false;
   const FaultSpec* active_ = nullptr;  // a signal that is on
   const Slot* handled_ = nullptr;      // the slot whose signal was sent
   std::int64_t active_since_ns_ = 0, active_until_ns_ = 0;

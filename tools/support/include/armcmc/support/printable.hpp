@@ -23,12 +23,12 @@ namespace armcmc::support {
 /// What std::cout and std::cerr are given while this exists reaches the terminal with its control characters and bytes
 /// that are not UTF-8 as \xNN, line breaks and tabs excepted. Text passes through without a buffer of its own, so that
 /// threads may print as they may without it. Restores both streams at its end.
-class HarmlessOutput {
+class EscapedOutput {
  public:
-  HarmlessOutput();
-  ~HarmlessOutput();
-  HarmlessOutput(const HarmlessOutput&) = delete;
-  HarmlessOutput& operator=(const HarmlessOutput&) = delete;
+  EscapedOutput();
+  ~EscapedOutput();
+  EscapedOutput(const EscapedOutput&) = delete;
+  EscapedOutput& operator=(const EscapedOutput&) = delete;
 
  private:
   class Filter;

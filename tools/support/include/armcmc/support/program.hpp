@@ -25,7 +25,7 @@ class InputError : public std::runtime_error {
 
 /// What a program writes to standard output and standard error through the C++ streams.
 enum class Output {
-  kText,     ///< Text, in which control characters are escaped (HarmlessOutput): names of a file, paths.
+  kText,     ///< Text, in which control characters are escaped (EscapedOutput): names of a file, paths.
   kColours,  ///< Also escape sequences of its own; the program escapes what it repeats.
 };
 

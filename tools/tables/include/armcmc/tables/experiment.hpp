@@ -39,21 +39,21 @@ using Source = std::function<Recording(int)>;
 [[nodiscard]] Experiment RunExperiment(const std::string& key, const std::string& title, int seeds,
                                        const Source& source, const std::vector<MethodSpec>& methods);
 
-/// Coverage of ARMCMC's intervals when the estimator believes in another noise law than the one that acts.
+/// Coverage of ARMCMC's intervals when the estimator assumes another noise law than the true one.
 struct LikelihoodCell {
-  std::string noise, believed;
+  std::string noise, assumed;
   int seeds = 1;
   Row row;
 };
-/// Which laws the estimator is made to believe in.
-enum class Believed {
+/// Which noise laws the estimator assumes.
+enum class AssumedLaws {
   kOwn,  ///< That of the noise: four cells.
   kAll,  ///< Each of the four under each: sixteen.
 };
 /// @param source  Scenario and number of the seed in [0, seeds) to recording.
 /// @param done    Called after each cell.
 [[nodiscard]] std::vector<LikelihoodCell> RunLikelihoods(
-    int seeds, Believed which, const std::function<Recording(const std::string&, int)>& source,
+    int seeds, AssumedLaws which, const std::function<Recording(const std::string&, int)>& source,
     const std::function<void()>& done);
 
 }  // namespace armcmc::tables

@@ -11,19 +11,19 @@
 
 namespace armcmc::tables {
 
-/// What was known of one mode after a pack.
-struct Knowledge {
+/// State of one mode after a pack: estimates, intervals, drift.
+struct ModeTrace {
   bool any = false;      ///< Some pack has updated the mode.
   bool known = false;    ///< Some parameter is known better than its prior says.
   bool updated = false;  ///< By this pack.
   std::array<double, 3> map{}, ap{}, sd{};
   std::array<std::array<std::array<double, 2>, 3>, 3> interval{};  ///< [level][parameter] from, to.
-  double p_drifted = 0.0;                                          ///< Believed probability that the parameters drift.
+  double p_drifted = 0.0;                                          ///< Posterior probability that the parameters drift.
   std::array<double, 3> drift_rate{};                              ///< And how fast, unit of the parameter per s.
 };
 
 struct PackTrace {
-  std::array<Knowledge, 2> modes;
+  std::array<ModeTrace, 2> modes;
   int decision = 0;  ///< Of the mode that acts; Decision as a number.
   double zeta = 0.0, lambda = 0.0, ms = 0.0;
   int draws = 0;

@@ -1,0 +1,85 @@
+// Which of the effects that passed the tests of a rung are named: the rules, on figures that are set by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "rung.hpp"
+#include "tools/ladder/climb_rig.hpp"
+#include "tools/ladder/made_data.hpp"
+
+namespace armcmc::ladder::naming_test {
+namespace {
+
+using test::AxisSample;
+using test::NamesOf;
+using test::Sign;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+/// A rung on which two effects, which are kin of different families, are compared; neither formula is exact.
+struct Compared {
+  Ladder ladder;
+  Rung rung;
+  Contender *hysteresis = nullptr, *presliding = nullptr;
+
+  Compared() {
+    double z = 0.0;  // rounder than either formula
+    const auto rounder = [&z](const AxisSample& s) {
+      constexpr int kSteps = 20;
+      for (int i = 0; i < kSteps; ++i)
+        z += 0.01 / kSteps * s.v / 0.02 * (1.0 - std::pow(std::abs(z), 1.6) * (0.5 + 0.5 * Sign(s.v * z)));
+      return 60.0 * z;
+    };
+    ladder = test::ClimbWith({"hysteresis", "presliding_friction"}, test::AxisData(rounder));
+    rung = ladder.rungs[0];
+    for (Contender& c : rung.contenders) {
+      c.earned = c.larger_part = false;
+      c.ruled_out = false;
+      Contender*& best = c.candidate.entry->name == "hysteresis" ? hysteresis : presliding;
+      if (best == nullptr) best = &c;
+    }
+    for (Contender* c : {hysteresis, presliding}) {
+      c->earned = c->larger_part = true;
+      c->gain_share = 1.0;
+      c->win_share = 0.0;
+    }
+    hysteresis->alone = {0.1, 0.2, 0.2};
+    presliding->alone = {0.4, 0.3, 0.3};
+  }
+
+  std::vector<std::string> Named() {
+    constexpr double kFloor = 0.5;  // N, far below the errors: no formula is exact
+    Name(rung.view, kFloor, false, &rung);
+    return NamesOf(rung);
+  }
+};
+
+TEST(Name, KinThatLeavesFarMoreIsExcluded) {
+  Compared compared;
+  EXPECT_THAT(compared.Named(), ElementsAre("hysteresis"));
+}
+
+TEST(Name, KinThatExtrapolatesBetterIsNotExcludedByShortSegments) {
+  Compared compared;
+  compared.presliding->alone = {0.4, 0.1, 0.1};
+  EXPECT_THAT(compared.Named(), UnorderedElementsAre("hysteresis", "presliding_friction"));
+  compared.presliding->alone = {0.4, 0.3, 0.1};
+  EXPECT_THAT(compared.Named(), ElementsAre("hysteresis"));
+}
+
+TEST(Name, WhatFewEventsShowIsNotNamedIfOtherFamiliesWinMoreOften) {
+  Compared compared;
+  compared.hysteresis->gain_share = 0.96;
+  compared.hysteresis->win_share = 0.3;
+  EXPECT_THAT(compared.Named(), IsEmpty());
+  compared.hysteresis->win_share = 0.6;
+  EXPECT_THAT(compared.Named(), ElementsAre("hysteresis"));
+  EXPECT_TRUE(compared.rung.provisional);
+}
+
+}  // namespace
+}  // namespace armcmc::ladder::naming_test
