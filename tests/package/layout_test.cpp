@@ -1,15 +1,16 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "support/paths.hpp"
+#include "support/process.hpp"
 
 namespace armcmc::test::layout_test {
 namespace {
@@ -25,30 +26,18 @@ bool IsMade(const std::string& name) {
          name == "CMakeUserPresets.json";
 }
 
-/// First parts of the paths in an index of git, of version 2 or 3; empty if it is none. Format: gitformat-index(5).
-std::set<std::string> TopLevelOfIndex(const std::string& index) {
-  const auto number = [&index](std::size_t at, std::size_t bytes) {
-    std::size_t value = 0;
-    for (std::size_t i = 0; i < bytes; ++i) value = value << 8U | static_cast<unsigned char>(index.at(at + i));
-    return value;
-  };
-  if (index.size() < 12 || !index.starts_with("DIRC") || number(4, 4) < 2 || number(4, 4) > 3) return {};
-  constexpr std::size_t kFlags = 60, kExtended = 0x4000;
+/// First parts of the paths that git tracks here; empty if this is no clone.
+std::set<std::string> TrackedTopLevel() {
+  std::istringstream paths(
+      RunProgram("/usr/bin/env", {"git", "-c", "safe.directory=*", "-C", SourceDir().string(), "ls-files"}).out);
   std::set<std::string> names;
-  std::size_t at = 12;
-  for (std::size_t n = number(8, 4); n > 0; --n) {
-    const std::size_t path = at + kFlags + ((number(at + kFlags, 2) & kExtended) != 0 ? 4 : 2);
-    const std::size_t end = index.find('\0', path);
-    names.insert(index.substr(path, std::min(index.find('/', path), end) - path));
-    at += (end - at + 8) / 8 * 8;  // at least one NUL, up to a multiple of eight bytes
-  }
+  for (std::string path; std::getline(paths, path);) names.insert(path.substr(0, path.find('/')));
   return names;
 }
 
 // In a clone, a user's own files beside those of the project do not count.
 TEST(Layout, TheTopLevelIsFixed) {
-  std::ifstream file(SourceDir() / ".git/index", std::ios::binary);
-  std::set<std::string> names = TopLevelOfIndex({std::istreambuf_iterator<char>(file), {}});
+  std::set<std::string> names = TrackedTopLevel();
   if (names.empty())
     for (const fs::directory_entry& entry : fs::directory_iterator(SourceDir())) names.insert(entry.path().filename());
   std::erase_if(names, [](const std::string& name) { return name.starts_with('.') || IsMade(name); });

@@ -31,6 +31,14 @@ class AllocCounter {
   long frees_at_start_;
 };
 
+/// Allocations by this thread while it calls `run`.
+template <class Run>
+[[nodiscard]] long AllocationsOf(const Run& run) {
+  const AllocCounter guard;
+  run();
+  return guard.count();
+}
+
 /// What a test should say when it skips because nothing is counted.
 inline constexpr const char* kAllocCounterInactive =
     "allocations are not counted under a sanitizer, which replaces malloc itself";

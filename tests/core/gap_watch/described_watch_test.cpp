@@ -273,13 +273,10 @@ TEST(DescribedWatch, AllocatesNothing) {
       return s;
     }));
   if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
-  long allocations = 0;
-  {
-    const test::AllocCounter guard;
+  const auto watch = [&] {
     for (const DataPack& pack : packs) rig.watch().Step(pack, rig.told(), false);
-    allocations = guard.count();
-  }
-  EXPECT_EQ(allocations, 0);
+  };
+  EXPECT_EQ(test::AllocationsOf(watch), 0);
   EXPECT_GE(rig.watch().state().num_blocks, 1);
 }
 

@@ -326,13 +326,10 @@ TEST(StateWatch, AllocatesNothing) {
   packs.reserve(PacksFor(1));
   for (int i = 0; i < PacksFor(1); ++i) packs.push_back(rig.Next(&swing));
   if (!test::AllocCounter::kActive) GTEST_SKIP() << test::kAllocCounterInactive;
-  long allocations = 0;
-  {
-    const test::AllocCounter guard;
+  const auto watch = [&] {
     for (const DataPack& pack : packs) rig.watch().Step(pack, rig.told(), false);
-    allocations = guard.count();
-  }
-  EXPECT_EQ(allocations, 0);
+  };
+  EXPECT_EQ(test::AllocationsOf(watch), 0);
   EXPECT_EQ(rig.watch().state().num_blocks, 1);
 }
 

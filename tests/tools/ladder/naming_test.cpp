@@ -1,8 +1,10 @@
-// Which of the effects that passed the tests of a rung are named: the rules, on figures that are set by hand.
+// Which of the effects that were tried on a rung are named: the rules of ties, on figures that are set by hand, and
+// models that do not predict the output at all.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,20 @@ TEST(Name, WhatFewEventsShowIsNotNamedIfOtherFamiliesWinMoreOften) {
   compared.hysteresis->win_share = 0.6;
   EXPECT_THAT(compared.Named(), ElementsAre("hysteresis"));
   EXPECT_TRUE(compared.rung.provisional);
+}
+
+TEST(Climb, NothingIsNamedThatLeavesMoreThanTheOutputVaries) {
+  // The sensor of a motor is off by a million: the speed begins there and decays, which a lag of the sensor slows down.
+  const Dataset honest = test::MotorData([](double, double) { return 1.0; });
+  auto series = std::make_shared<identify::Series>(*honest.series);
+  for (double& w : series->signals[1]) w += 1e6;
+  Dataset data = honest;
+  data.series = series;
+  PlantDescription plant = test::MotorPlant();
+  plant.states[0].start = "w";
+  const Ladder ladder = test::ClimbWith({"sensor_lag"}, data, plant);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_FALSE(ladder.complete);
 }
 
 }  // namespace

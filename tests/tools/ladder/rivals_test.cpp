@@ -1,4 +1,5 @@
-// What else may explain what an effect seems to: curves, and the effects that were named before.
+// What else may explain what an effect seems to: curves, constants of the plant, and the effects that were named
+// before.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -91,6 +92,17 @@ TEST(Climb, WhatFollowsAnotherQuantityIsNotProtectedByACurveThatCanCopyIt) {
     const Ladder ladder = ClimbWith({other}, LossyData(), test::MotorPlant());
     EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << other;
   }
+}
+
+TEST(Climb, ConstantsThatAreEachALittleOffTogetherRuleOutAnEffect) {
+  // Springs for either side, both 4 % stiffer than the file says: neither alone explains what a tilt does.
+  PlantDescription plant = test::AxisPlant();
+  plant.law += " + k1*max(q, 0) + k2*min(q, 0)";
+  plant.constants = {{"k1", 2000.0, "N/m"}, {"k2", 2000.0, "N/m"}};
+  const Ladder ladder =
+      ClimbWith({"baseline_tilt"}, test::AxisData([](const AxisSample& s) { return 2080.0 * s.q; }), plant);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.rungs[0].as_if, ::testing::HasSubstr(" and k2 were "));
 }
 
 }  // namespace

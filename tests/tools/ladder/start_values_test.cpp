@@ -1,9 +1,8 @@
-// Effects that act through the start values of their states, and models that do not predict the output at all.
+// Effects that act through the start values of their states.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
@@ -46,31 +45,6 @@ TEST(Climb, AnEffectThatAlsoRespondsToTheMotionIsNamedWithItsStart) {
   };
   const Ladder ladder = ClimbWith({"stress_relaxation"}, test::AxisData(branch), SprungAxis());
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("stress_relaxation"));
-}
-
-TEST(Climb, ConstantsThatAreEachALittleOffTogetherRuleOutAnEffect) {
-  // Springs for either side, both 4 % stiffer than the file says: neither alone explains what a tilt does.
-  PlantDescription plant = test::AxisPlant();
-  plant.law += " + k1*max(q, 0) + k2*min(q, 0)";
-  plant.constants = {{"k1", 2000.0, "N/m"}, {"k2", 2000.0, "N/m"}};
-  const Ladder ladder =
-      ClimbWith({"baseline_tilt"}, test::AxisData([](const AxisSample& s) { return 2080.0 * s.q; }), plant);
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
-  EXPECT_THAT(ladder.rungs[0].as_if, ::testing::HasSubstr(" and k2 were "));
-}
-
-TEST(Climb, NothingIsNamedThatLeavesMoreThanTheOutputVaries) {
-  // The sensor of a motor is off by a million: the speed begins there and decays, which a lag of the sensor slows down.
-  const Dataset honest = test::MotorData([](double, double) { return 1.0; });
-  auto series = std::make_shared<identify::Series>(*honest.series);
-  for (double& w : series->signals[1]) w += 1e6;
-  Dataset data = honest;
-  data.series = series;
-  PlantDescription plant = test::MotorPlant();
-  plant.states[0].start = "w";
-  const Ladder ladder = ClimbWith({"sensor_lag"}, data, plant);
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
-  EXPECT_FALSE(ladder.complete);
 }
 
 }  // namespace

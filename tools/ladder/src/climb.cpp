@@ -19,7 +19,7 @@
 namespace armcmc::ladder {
 namespace {
 
-/// Rungs are told of in order; a share of the whole is a guess.
+/// Reports progress rung by rung; how many rungs there will be is not known, so the fraction is an estimate.
 class SharedProgress {
  public:
   explicit SharedProgress(const ClimbRequest& request) : request_(request) {}
@@ -36,24 +36,24 @@ class SharedProgress {
 /// What was named on the rungs before.
 struct Before {
   std::vector<const Candidate*> effects;
-  double explained = 0.0;  ///< Squared error, over that which is left.
+  double explained = 0.0;  ///< Squared error that it removed, relative to what remains.
 
-  /// Of an effect that acts like one of them: that one, else null.
+  /// The named effect that acts like this one; null if none does.
   [[nodiscard]] const Candidate* Like(const Contender& c) const {
     const auto alike = std::find_if(effects.begin(), effects.end(),
                                     [&](const Candidate* e) { return AreKin(*e->entry, *c.candidate.entry); });
     return alike == effects.end() ? nullptr : *alike;
   }
-  /// Whether an effect of another family is so small beside it that a formula a little off explains it.
+  /// Whether an effect of another family is so small compared with it that an error of its formula would explain it.
   [[nodiscard]] bool Dwarfs(const Contender& c) const {
-    constexpr double kFormulaError = 1.0 / 3.0;  // of an amplitude: another formula of the same physics
+    constexpr double kFormulaError = 1.0 / 3.0;  // of the amplitude: formulas for the same physics differ by this much
     return 1.0 - c.alone.folds < kFormulaError * kFormulaError * explained &&
            std::none_of(effects.begin(), effects.end(),
                         [&](const Candidate* e) { return e->entry->family == c.candidate.entry->family; });
   }
 };
 
-/// What else may explain what an effect seems to.
+/// Alternative explanations of what an effect explains.
 struct Rivals {
   Constants constants;
   DerivedNoise noise;
@@ -61,8 +61,8 @@ struct Rivals {
   StartAlone start;
   Before before;
 
-  /// @param exact  It leaves noise alone, so that no curve has another shape. A constant may still be off, or noise be
-  ///               what it explains, or an error of what was named before.
+  /// @param exact  Nothing but noise is left, so that no curve of another shape can do better. A wrong constant, noise,
+  ///               or an error in an effect named earlier may still explain the same.
   [[nodiscard]] std::optional<Rival> Of(const Contender& c, double floor, bool exact, bool smaller_part) {
     std::optional<Rival> rival = constants.RivalOf(c);
     if (!rival) rival = start.RivalOf(c, floor);
@@ -75,7 +75,7 @@ struct Rivals {
   }
 };
 
-/// Names what no rival rules out.
+/// Gives a name unless a rival rules it out.
 void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* rung, std::vector<std::string>* notes) {
   for (bool again = true; again;) {
     again = false;
@@ -92,14 +92,14 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
   }
 }
 
-/// What the data kept apart say of a name.
+/// Error of a name on the held-out data.
 struct KeptApart {
-  double before = 0.0, after = 0.0;  ///< Error there; not finite where a law runs away.
+  double before = 0.0, after = 0.0;  ///< Not finite if the simulation diverges.
   bool agree = true;
 };
 
-/// At least half of the gain is to be found there. Without any there is no objection.
-/// @param gain  Share of the squared error that is less in folds than with `before`.
+/// Whether at least half of the gain in cross-validation is found there, too. True if no data were held out.
+/// @param gain  Fraction of the squared error of `before` that is removed in cross-validation.
 KeptApart AskedApart(const Dataset& data, const Trial& before, const Trial& after, double gain) {
   constexpr double kAgain = 0.5;
   const WholeRun first = RunWhole(data, before), second = RunWhole(data, after);
@@ -109,20 +109,21 @@ KeptApart AskedApart(const Dataset& data, const Trial& before, const Trial& afte
   return {was, is, 1.0 - is * is / (was * was) > kAgain * gain};
 }
 
-/// What is asked before a name is given.
+/// What a name is checked against.
 struct Hearing {
-  const Dataset& data;  ///< The whole of it.
+  const Dataset& data;  ///< All of it.
   const View& view;
   double floor;
-  const Rung* open;  ///< The rung before, where its name waits for this one; else null.
+  const Rung* open;  ///< The previous rung, if its name depends on this one; else null.
   Rivals rivals;
 };
 
-/// Names what no rival rules out and the data kept apart do not contradict.
+/// Gives a name unless a rival rules it out or the held-out data contradict it.
 void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* notes) {
   for (bool contradicted = false;;) {
     NameOne(hearing->view, hearing->floor, false, &hearing->rivals, rung, notes);
-    // Two effects of one size each take the smaller part: the first may be named if the next one makes up for it.
+    // Of two effects of the same size neither explains the larger part: the first may be named if the next completes
+    // it.
     if (rung->named.empty() && hearing->open == nullptr && !contradicted) {
       NameOne(hearing->view, hearing->floor, true, &hearing->rivals, rung, notes);
       rung->open = !rung->named.empty();
@@ -148,7 +149,8 @@ void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* note
   }
 }
 
-/// The rung that named the same effect in the same place, if a second one makes a curve of it; else how many there are.
+/// Index of the rung that named the same effect in the same place, if a second one would only draw a curve; else the
+/// number of rungs.
 std::size_t FirstWith(const Ladder& ladder, const Candidate& candidate) {
   const auto same = [&](const Rung& rung) {
     if (rung.named.empty() || !candidate.entry->single) return false;
@@ -159,7 +161,8 @@ std::size_t FirstWith(const Ladder& ladder, const Candidate& candidate) {
   return static_cast<std::size_t>(std::find_if(ladder.rungs.begin(), ladder.rungs.end(), same) - ladder.rungs.begin());
 }
 
-/// What this rung would name, or would but for a rival, though an earlier one did in the same place.
+/// The effect that this rung names, or would but for a rival, although an earlier rung named it in the same place; null
+/// if there is none.
 const Contender* NamedAgain(const Ladder& ladder, const Rung& rung) {
   for (std::size_t i = 0; i < rung.contenders.size(); ++i) {
     const Contender& c = rung.contenders[i];
@@ -169,15 +172,15 @@ const Contender* NamedAgain(const Ladder& ladder, const Rung& rung) {
   return nullptr;
 }
 
-/// Which changes from sample to sample like the noise: the output; where the law explains a target instead, the error
-/// of the law. Inputs that switch make a target jump, and noise is that of the signals that the law is made of.
+/// The series whose sample-to-sample changes measure the noise: the output or, if the law explains a target instead,
+/// the error of the law. Inputs that switch make a target jump, and its noise is that of the signals in the law.
 Eigen::VectorXd SmoothBut(const Trial& base) {
   const std::vector<ModeDescription>& modes = base.model->plant().description().modes;
   const bool target = std::any_of(modes.begin(), modes.end(), [](const auto& mode) { return !mode.target.empty(); });
   return target ? Eigen::VectorXd(base.model->target() - base.fit.prediction) : base.model->target();
 }
 
-/// Back to where nothing had been named on a rung.
+/// Returns to the state before a rung named anything.
 void TakeBack(std::size_t rung, Ladder* ladder, Trial* base) {
   ladder->rungs.resize(rung + 1);
   Rung& alone = ladder->rungs.back();
@@ -216,7 +219,7 @@ Ladder Climb(const ClimbRequest& request) {
   }
   ladder.base = base;
   std::set<std::string> families;
-  int again = 2;  // rungs that begin anew from a better fit
+  int again = 2;  // rungs that may be repeated from a better fit
   for (int r = 0; r < request.max_rungs; ++r) {
     const std::string which = "rung " + std::to_string(r + 1);
     const DataScales scales = ScalesOf(data, ladder.plant->description(), ladder.noise_floor);
@@ -278,7 +281,7 @@ Ladder Climb(const ClimbRequest& request) {
     base = leader.trial;
     if (tie) break;
   }
-  if (!ladder.rungs.empty() && ladder.rungs.back().open)  // the last that was allowed
+  if (!ladder.rungs.empty() && ladder.rungs.back().open)  // the limit on rungs was reached
     TakeBack(ladder.rungs.size() - 1, &ladder, &base);
   ladder.final_trial = base;
   if (base.judged) {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kConstantOff = 0.05;  // of a constant, at most
 constexpr double kExplainsIt = 1.05;   // times the squared error that an effect leaves
+constexpr double kWorthAFold = 1.3;    // times that error in the fit itself: beyond, no data left out make up for it
 
 /// A constant times a number about 1.
 EffectEntry OffEntry() {
@@ -30,6 +31,9 @@ EffectEntry OffEntry() {
   entry.forms = {form};
   return entry;
 }
+
+/// Of the fit, its data included.
+double Square(const Contender& c) { return c.trial.fit.error_sd * c.trial.fit.error_sd; }
 
 }  // namespace
 
@@ -75,9 +79,8 @@ void Constants::FitOne(const Eigen::VectorXd& own, Other* other) const {
     Trial trial = Refine(c.candidate.plant, data_, theta);
     if (!trial.fit.valid || (c.refined && !(trial.fit.cost < c.trial.fit.cost))) return;
     c.trial = std::move(trial);
-    LeaveOut(view_, &c.trial);
-    c.alone = Compare(view_, c, base_, false);
     c.refined = true;
+    other->left_out = false;
   } catch (const PlantError&) {  // needs more than there is room for
   }
 }
@@ -105,9 +108,15 @@ std::optional<Rival> Constants::RivalOf(const Contender& c) {
   if (!fitted_) FitThem();
   // A simulated plant may be stuck in a minimum from which the effect helped it out.
   if (IsSimulated(plant_->description())) FitFrom(c.trial.fit.theta.head(base_.fit.theta.size()));
-  for (const Other& other : *fitted_) {
-    if (!other.contender.refined || other.contender.alone.folds > kExplainsIt * c.alone.folds) continue;
-    return Rival{AsIf(other), "explains as much"};
+  for (Other& other : *fitted_) {
+    Contender& constant = other.contender;
+    if (!constant.refined || Square(constant) > kWorthAFold * Square(c)) continue;
+    if (!other.left_out) {
+      LeaveOut(view_, &constant.trial);
+      constant.alone = Compare(view_, constant, base_, false);
+      other.left_out = true;
+    }
+    if (constant.alone.folds <= kExplainsIt * c.alone.folds) return Rival{AsIf(other), "explains as much"};
   }
   return std::nullopt;
 }

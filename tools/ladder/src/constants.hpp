@@ -27,6 +27,7 @@ class Constants {
   struct Other {
     std::vector<ConstantDescription> constants;  ///< In the order of the last parameters of the model.
     Contender contender{};
+    bool left_out = false;  ///< Whether `contender` is known on data left out.
   };
   void FitThem();
   /// Fits from the values `own` of the plant's own parameters, and keeps what is better than before.

@@ -37,7 +37,7 @@ Diagnosis DiagnoseEquation(const DiagnosisRequest& request, Dataset* data) {
   climb.data = *data;
   climb.known_noise = request.recording.smoothed_noise;
   climb.noise_over_differences = request.recording.noise_kept / request.recording.noise_told;
-  // Rows that the law was judged on are judged here, too: a load may come late.
+  // The rows on which the law was judged are judged here as well: a load may come late.
   constexpr std::size_t kSecond = 16'000;
   if (!request.equation.empty()) climb.most_simulated = kSecond;
   climb.progress = request.progress;
@@ -80,7 +80,7 @@ void FollowUp(const DiagnosisRequest& request, const Dataset& data, Diagnosis* d
 }
 
 Diagnosis Diagnose(const DiagnosisRequest& request) {
-  constexpr double kClimb = 0.9;  // share of the time, about
+  constexpr double kClimb = 0.9;  // estimated fraction of the time
   const auto begin = std::chrono::steady_clock::now();
   Diagnosis diagnosis;
   if (request.plant->plant.description().predicts.empty()) {

@@ -17,27 +17,29 @@
 namespace armcmc::ladder {
 namespace {
 
-constexpr std::size_t kMostJudged = 8;  // of a rung, by closing: what is far behind is not named anyway
+constexpr std::size_t kMostJudged =
+    8;  // candidates of a rung that are judged, best first: those far behind are not named anyway
 constexpr int kBootstrap = 400;
-constexpr double kAtBound = 1e-3;      // of the logarithm of a frequency
-constexpr std::size_t kAnywhere = 8;   // starts of all parameters of what runs freely
-constexpr double kSure = 0.99;         // share of bootstrap samples in which it does
-constexpr double kLikely = 0.95;       // the same where few events show it: named, provisionally
-constexpr double kAsGood = 0.95;       // of the best's closing: a simpler effect is named first
-constexpr double kAlike = 1.01;        // times the least error: as good
-constexpr double kTie = 0.05;          // share of bootstrap samples that another family may win
-constexpr double kMostly = 0.5;        // share of bootstrap samples that what is named on few events has to win
-constexpr double kBeside = 0.95;       // squared error that a name reaches where both may bend, in two of three senses,
-constexpr double kFarBeside = 0.8;     // or in one, losing in none, where few events show it or bending feigns it
-constexpr double kLeavesAsMuch = 1.5;  // times what the named one leaves: kin that are not excluded
-constexpr double kLoses = 1.1;         // squared error in regions that says: it is not that
-constexpr double kSame = 0.02;         // of the square of what one adds: the other adds the same
+constexpr double kAtBound = 1e-3;     // of the logarithm of a frequency
+constexpr std::size_t kAnywhere = 8;  // starting points for all parameters of a simulated plant
+constexpr double kSure = 0.99;        // fraction of bootstrap samples in which it is better
+constexpr double kLikely = 0.95;      // the same if few events show it: the name is provisional
+constexpr double kAsGood = 0.95;      // of the best's gain: a simpler effect that reaches it comes first
+constexpr double kAlike = 1.01;       // times the smallest error: equally good
+constexpr double kTie = 0.05;         // fraction of bootstrap samples that another family may win
+constexpr double kMostly = 0.5;       // fraction of bootstrap samples that a provisional name has to win
+constexpr double kBeside =
+    0.95;  // squared error beside a flexible remainder that a name has to reach in two of three tests,
+constexpr double kFarBeside = 0.8;     // or in one, losing in none, if few events show it or the remainder imitates it
+constexpr double kLeavesAsMuch = 1.5;  // times the error of the named one: kin that are not excluded
+constexpr double kLoses = 1.1;         // squared error on regions from which an effect is excluded
+constexpr double kSame = 0.02;         // of the mean square of what one adds: the other adds the same
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
 
 int NumParameters(const Contender& c) { return NumFormulaParameters(c.candidate.form()); }
 
-/// Whether a frequency would be lower than the data can show it to be one.
+/// Whether a frequency is too low for the data to show an oscillation.
 bool TooSlow(const Contender& c) {
   const Eigen::VectorXd lower = c.trial.model->Lower();
   const std::vector<Frequency> frequencies = c.candidate.Frequencies();
@@ -47,8 +49,8 @@ bool TooSlow(const Contender& c) {
   });
 }
 
-/// Whether the data tell some amplitude of an effect apart from none, all else held. Where they do not, as where a
-/// friction never slides or a play is never crossed, the effect stands for what it does in the limit, which is another
+/// Whether the data distinguish some amplitude of an effect from zero, with everything else fixed. If they do not, as
+/// when a friction never slides or a play is never crossed, the effect acts only through its limit, and that is another
 /// effect.
 bool IsTold(const View& view, const Contender& c) {
   constexpr double kSigmas = 2.0, kSingular = 1e-10;
@@ -75,7 +77,7 @@ bool IsTold(const View& view, const Contender& c) {
   return !any;
 }
 
-/// One where amplitudes alone are sought, which vanish at 0 and in which laws are linear; more where a shape is.
+/// Number of starting points: one if only amplitudes are fitted, in which laws are linear; more for shape parameters.
 std::size_t StartsFor(const Contender& c) {
   constexpr std::size_t kOfShape = 8;
   const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
@@ -84,14 +86,14 @@ std::size_t StartsFor(const Contender& c) {
   return shape ? kOfShape : 1;
 }
 
-/// The model so far on a part of the data.
+/// The current model on a part of the data.
 struct QuickBase {
   Dataset data;
   double square;  ///< Mean squared error.
 };
 
-/// Bootstrap samples of the short stretches, the same ones at every call.
-/// @param see  Gets the squared errors of the base and of those in `among` on each sample.
+/// Bootstrap samples of the short segments, the same at every call.
+/// @param see  Called for each sample with the squared errors of the base model and of those in `among`.
 template <class See>
 void ForEachSample(const Rung& rung, const std::vector<std::size_t>& among, See see) {
   std::mt19937_64 random(400);
@@ -115,9 +117,9 @@ std::set<std::string> NeededBy(const Contender& c) {
   return names;
 }
 
-/// Whether an effect does the same as another one in the same slot and needs more for it: parameters, or quantities.
-/// Adhesion that reaches farther than the motion is an offset of one stroke, and this, where the law has a constant, is
-/// dry friction.
+/// Whether an effect does the same as another one in the same slot, but with more parameters or more signals. Adhesion
+/// that reaches farther than the motion is an offset of one stroke; and an offset of one stroke, if the law has a
+/// constant, is dry friction.
 bool IsTheSameWithMore(const View& view, const Trial& base, const Contender& c, const Contender& simple) {
   if (c.candidate.form().terms.front().slot != simple.candidate.form().terms.front().slot) return false;
   const std::set<std::string> needs = NeededBy(c), fewer = NeededBy(simple);
@@ -129,7 +131,7 @@ bool IsTheSameWithMore(const View& view, const Trial& base, const Contender& c, 
   return apart.squaredNorm() < kSame * added.squaredNorm();
 }
 
-/// Share of bootstrap samples in which the first of those named is the best of them.
+/// Fraction of bootstrap samples in which the first of those named is the best of them.
 double ShareOfFirst(const Rung& rung) {
   int wins = 0;
   ForEachSample(rung, rung.named, [&](double, const std::vector<double>& squares) {
@@ -144,7 +146,7 @@ bool ExtrapolatesBetter(const Contender& a, const Contender& b) {
   return a.alone.blocks < b.alone.blocks && a.alone.regions < b.alone.regions;
 }
 
-/// Share of the bootstrap samples in which a family of those named has the smallest error of all that were compared.
+/// Fraction of the bootstrap samples in which a family of those named has the smallest error of all that were compared.
 double WinShare(const Rung& rung) {
   double share = 0.0;
   for (const std::size_t i : rung.named) share += rung.contenders[i].win_share;
@@ -166,7 +168,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
   constexpr double kNoiseAlone = 1.2, kMoreThanNoise = 1.5;  // times its square
   std::vector<Contender>& all = rung->contenders;
   const Eigen::VectorXd error = rung->base.model->target() - rung->base.fit.prediction;
-  // With what remembers and what does not: quick parts of two kinds.
+  // Candidates with memory are tried on another part of the data than those without.
   std::array<std::optional<QuickBase>, 2> bases;
   const auto quick = [&](const Contender& c) -> std::optional<QuickBase>& {
     return bases[Remembers(*c.candidate.plant) ? 1 : 0];
@@ -175,11 +177,11 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     if (std::optional<QuickBase>& base = quick(c); !base) {
       base.emplace(QuickBase{QuickPart(*c.candidate.plant, data, error), 0.0});
       base->square = Square(Refine(plant, base->data, rung->base.fit.theta));
-      // What begins later does not show in beginnings.
+      // An effect with a later onset does not show at the start of runs.
       if (base->square < kNoiseAlone * floor * floor && Square(rung->base) > kMoreThanNoise * floor * floor)
         base.emplace(QuickBase{data, Square(rung->base)});
     }
-  // From what the model so far has, or from anywhere where `known` is empty.
+  // Starts from the parameters in `known`, or from several points if it is empty.
   const auto try_from = [&](const Eigen::VectorXd& known, std::size_t starts, Contender* c) {
     Trial trial = Try(c->candidate.plant, quick(*c)->data, known, starts, c->candidate.Frequencies());
     if (!trial.fit.valid || (c->trial.fit.valid && !(trial.fit.cost < c->trial.fit.cost))) return;
@@ -190,7 +192,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
   support::InParallel(all.size(), [&](std::size_t i) {
     try {
       try_from(rung->base.fit.theta, StartsFor(all[i]), &all[i]);
-    } catch (const PlantError& why) {  // as a rate that would have to remember a state
+    } catch (const PlantError& why) {  // for example a rate that would need the memory of a state
       not_tried[i] = all[i].candidate.entry->name + " was not tried: " + why.what();
     }
   });
@@ -204,14 +206,14 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
   const double quick_best = best_closing();
   support::InParallel(all.size(), [&](std::size_t i) {
     if (!all[i].trial.fit.valid || all[i].closed < kWorthIt * quick_best) return;
-    // What runs freely may have been bent by what is missing so far that no fit finds back from there.
+    // What is missing may have distorted the fit of a simulated plant so much that no fit recovers from there.
     if (IsSimulated(plant->description())) try_from({}, kAnywhere, &all[i]);
     all[i].trial = Refine(all[i].candidate.plant, data, all[i].trial.fit.theta);
     all[i].refined = all[i].trial.fit.valid;
     all[i].closed = all[i].refined ? std::clamp(1.0 - Square(all[i].trial) / Square(rung->base), 0.0, 1.0) : 0.0;
   });
   const double best = best_closing();
-  // Those that close most are judged, a simple one before a larger one that closes as much.
+  // Those with the largest gain are judged, a simple one before a larger one with the same gain.
   std::vector<std::size_t> judged;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].refined && all[i].closed >= std::max(kNoGain, 2.0 * kWorthIt * best)) judged.push_back(i);
@@ -228,7 +230,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
 
 Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Rung& rung) {
   constexpr std::size_t kTried = 4;
-  constexpr double kBetter = 0.99;  // of the error: more than where fits end
+  constexpr double kBetter = 0.99;  // of the error: more than the tolerance of a fit
   Trial best;
   if (!IsSimulated(plant->description())) return best;
   std::vector<const Contender*> first;
@@ -275,10 +277,10 @@ void Bootstrap(Rung* rung) {
 void Judge(const View& view, double floor, const std::set<std::string>& families, double before, Rung* rung) {
   for (Contender& c : rung->contenders) {
     if (!c.trial.judged) continue;
-    // What stands on an earlier name has to be sure.
+    // A name that depends on an earlier one must not be provisional.
     const bool gains = c.alone.folds < 1.0 - kLeastGain && c.gain_share >= (families.empty() ? kLikely : kSure);
-    // A law that is a little off everywhere can be bent by many effects, each a little. What is really missing takes
-    // the larger part of what is unexplained, or leaves nothing.
+    // Many effects can each correct a law that is slightly wrong everywhere. What is really missing explains the larger
+    // part of the unexplained error, or leaves nothing but noise.
     const double noise = before * NoiseIn(view, c.trial, floor) / Square(rung->base);
     c.larger_part = before * c.alone.folds - noise < kLargerPart * (1.0 - noise) ||
                     families.contains(c.candidate.entry->family) || !LeavesMore(view, c.trial, floor);
@@ -310,7 +312,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t i : good)
     if (NumParameters(all[i]) == fewest) least = std::min(least, all[i].alone.folds);
-  // Of those that are alike the one that reads fewest quantities, as dry friction where the pressure stands still.
+  // Of equally good ones the one that reads the fewest signals: dry friction if the pressure is constant.
   std::size_t leader = SIZE_MAX;
   for (const std::size_t i : good) {
     if (NumParameters(all[i]) != fewest || all[i].alone.folds > kAlike * least) continue;
@@ -319,7 +321,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
   }
   rung->named = {leader};
   rung->provisional = all[leader].alone.blocks > 1.0 - kLeastGain || all[leader].gain_share < kSure;
-  // A formula that leaves noise alone is exact: what is like it, or holds it, is no rival.
+  // A formula that leaves nothing but noise is exact: an effect that acts like it or contains it is no rival.
   const bool not_exact = LeavesMore(view, all[leader].trial, floor);
   std::set<std::string> families{all[leader].candidate.entry->family};
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -341,8 +343,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     return std::any_of(tied.begin(), tied.end(),
                        [&](std::size_t k) { return IsTheSameWithMore(view, rung->base, all[i], all[k]); });
   });
-  // Which of them it is, is open, and nothing follows that would refine it: of each its best form, the one that
-  // predicts best first.
+  // The tie is final, and no later rung refines it: each is given in its best form, the best prediction first.
   if (rung->named.size() > 1)
     for (std::size_t& named : rung->named)
       for (std::size_t i = 0; i < all.size(); ++i)
@@ -356,7 +357,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     rung->named.clear();
     return;
   }
-  // Simpler effects that are named first do not win against larger ones; those are no rivals.
+  // A simpler effect is preferred to larger ones that are better; those do not count as rivals.
   rung->probability = rung->named.size() > 1 ? ShareOfFirst(*rung) : all[leader].gain_share;
 }
 

@@ -49,13 +49,8 @@ StartAlone::StartAlone(const std::shared_ptr<const Plant>& plant, const Dataset&
                        const Trial& base, const DataScales& scales)
     : plant_(plant), data_(data), view_(view), base_(base), scales_(scales) {}
 
-Trial StartAlone::WithResponse(const Contender& c, const VectorXd& at_rest) const {
-  VectorXd driven;
-  if (!c.trial.model->PredictOne(at_rest, &driven)) return {};
-  VectorXd response = c.trial.fit.prediction - driven;
-  const double size = std::sqrt(response.squaredNorm() / static_cast<double>(std::max<Index>(response.size(), 1)));
-  if (!(size > 0.0)) return {};
-  response /= size;
+Trial StartAlone::WithResponse(VectorXd response) const {
+  response /= std::sqrt(response.squaredNorm() / static_cast<double>(response.size()));
   auto series = std::make_shared<identify::Series>(*data_.series);
   series->signals.emplace_back(response.begin(), response.end());
   Dataset data = data_;
@@ -78,16 +73,20 @@ Trial StartAlone::WithResponse(const Contender& c, const VectorXd& at_rest) cons
 std::optional<Rival> StartAlone::RivalOf(const Contender& c, double floor) const {
   const VectorXd at_rest = AtRest(c);
   if (at_rest == c.trial.fit.theta) return std::nullopt;
-  const Rival rival{"something decayed from the beginning of the recording", "explains as much"};
-  const Trial start = WithResponse(c, at_rest);
-  if (!start.fit.valid) return rival;
+  constexpr const char* kDecay = "something decayed from the beginning of the recording";
+  const Rival unknown{kDecay, "may explain as much: a model with that alone cannot be fitted"};
+  VectorXd from_rest;
+  if (!c.trial.model->PredictOne(at_rest, &from_rest)) return unknown;
+  if (from_rest == c.trial.fit.prediction) return std::nullopt;
+  const Trial start = WithResponse(c.trial.fit.prediction - from_rest);
+  if (!start.fit.valid) return unknown;
   const double square = start.fit.error_sd * start.fit.error_sd;
   Contender driven = c;
   driven.closed = std::clamp(1.0 - c.trial.fit.error_sd * c.trial.fit.error_sd / square, 0.0, 1.0);
   const double left = Compare(view_, driven, start, false).folds;
   const double noise = NoiseIn(view_, c.trial, floor) / square;
   if (left < 1.0 - kLeastGain && left - noise < kLargerPart * (1.0 - noise)) return std::nullopt;
-  return rival;
+  return Rival{kDecay, "explains as much"};
 }
 
 }  // namespace armcmc::ladder

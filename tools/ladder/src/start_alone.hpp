@@ -21,13 +21,14 @@ class StartAlone {
   /// amplitude. The response to the motion must remove a tenth of the squared error that this leaves, and more than
   /// half of what is not noise.
   /// @param floor  Standard deviation of the noise.
-  /// @return a rival if it does not, or if the two cannot be compared; empty if the effect has no free start values.
+  /// @return a rival if it does not, or if the two cannot be compared; empty if the effect has no free start values, or
+  ///   if these change nothing.
   /// @pre c.trial.judged.
   [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c, double floor) const;
 
  private:
-  /// The base model with the effect's response to its start values. Invalid if there is none.
-  [[nodiscard]] Trial WithResponse(const Contender& c, const Eigen::VectorXd& at_rest) const;
+  /// The base model with a response to start values, one value per row. Invalid if it cannot be fitted.
+  [[nodiscard]] Trial WithResponse(Eigen::VectorXd response) const;
 
   const std::shared_ptr<const Plant>& plant_;
   const Dataset& data_;
