@@ -54,6 +54,7 @@ ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerS
       quadratic_(kernels_, model_, space_, noise_, sampler.use_linearity ? linear : LinearPart{}),
       normal_table_(MarginalTable::Normal()),
       student_table_(MarginalTable::StudentT(kStudentDof)),
+      noise_table_(MarginalTable::StudentT(kNoiseDof)),
       transition_(kernels_, model_, space_, noise_, &normal_table_, forgetting.partial_change),
       drift_(kernels_, model_, space_, noise_, forgetting.drift_share) {
   // P_0 as a proposal: axis aligned, each coordinate with its own law.

@@ -132,7 +132,8 @@ void ModeSampler::FitUnder(const ParamVector& mean, const ParamMatrix& covarianc
   const Eigen::Index last = space_.dim - 1;
   const double away = (fit->mean[last] - mean[last]) * (fit->mean[last] - mean[last]) / covariance(last, last);
   if (!(away > kNoiseSurprise)) return;
-  const double hold = std::sqrt((kStudentDof + 1.0) / (kStudentDof - 2.0 + away));
+  const double variance = noise_table_.Variance();
+  const double hold = std::sqrt((kNoiseDof + 1.0) * variance / (kNoiseDof + variance * away));
   prior.precision.row(last) *= hold;
   prior.precision.col(last) *= hold;
   const ParamVector start = fit->mean;

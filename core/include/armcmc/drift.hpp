@@ -33,8 +33,10 @@ struct Kernels;
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
-///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from the whole bank with a
-///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
+///   time     pi_h <- e^{-kappa dt} pi_h + a_h, new members from the whole bank with a velocity of their own:
+///            sum_{h>0} a_h = 1 - e^{-kappa s dt} for a prior probability s of drift, that of a drift since, which over
+///            a long time need not be one still, a_0 = e^{-kappa s dt} - e^{-kappa dt};
+///            then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
 ///   age      it takes several packs to tell a new member from the old ones. So each hypothesis has one filter per
 ///            generation, merged into the next older one every kMergeAfter packs by matching moments. If merged at
 ///            once, new members that the data refute would widen those that the data support
@@ -84,8 +86,8 @@ class Drift {
                                                {0.03, 30.0, 0.16},
                                                {0.1, 30.0, 0.16},
                                                {0.3, 30.0, 0.16}}};
-  static constexpr double kSwitching = 0.01;    ///< kappa, 1/s: a drift begins, ends, or becomes another.
-  static constexpr double kNegligible = 0.005;  ///< Probability below which a part is left out of the prior of a pack.
+  static constexpr double kSwitching = 0.01;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
+  static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kHypotheses = 1 + static_cast<int>(kDrifts.size());
   static constexpr std::array<int, 3> kMergeAfter{5, 15, 45};  ///< Packs; of the latest first.
   static constexpr int kGenerations = 1 + static_cast<int>(kMergeAfter.size());
@@ -186,7 +188,8 @@ class Drift {
   [[nodiscard]] static double Observe(const LocalLikelihood& local, const ParamVector& about, bool moves,
                                       Filter* filter) noexcept ARMCMC_NONBLOCKING;
   void GrowOlder() noexcept ARMCMC_NONBLOCKING;
-  void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;
+  /// Members that have become what they are within the time elapsed.
+  void AddNewcomers(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
   void Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;

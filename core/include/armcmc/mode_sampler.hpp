@@ -79,7 +79,8 @@ class ModeSampler {
   static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock, at most.
   static constexpr int kMismatchDraws = 256;
   static constexpr double kLaplaceInflation = 1.2;  ///< Standard deviations of the Laplace components.
-  static constexpr double kStudentDof = 5.0;  ///< Tails of the Laplace components, and of the noise scale's memory.
+  static constexpr double kStudentDof = 5.0;        ///< Tails of the Laplace components.
+  static constexpr double kNoiseDof = 2.0;          ///< And of the noise scale's memory, which may jump by itself.
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
               const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise,
@@ -237,9 +238,9 @@ class ModeSampler {
   /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
   void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
-  /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law with a standard
-  /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not held to be
-  /// impossible.
+  /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law of log s with
+  /// kNoiseDof and a scale of at least kNoiseMemory. A level that doubles, ten such scales away, is then a jump of the
+  /// noise; with the tails of a Gaussian it would be one of all parameters.
   void AppendNoiseScale(int first, int count, const double* weight, MarginalTable* table, const ModeDraws& draws,
                         DensityBlock* block) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
@@ -254,7 +255,7 @@ class ModeSampler {
   ParameterSpace space_;
   NoiseModel noise_;
   QuadraticScore quadratic_;
-  MarginalTable normal_table_, student_table_;
+  MarginalTable normal_table_, student_table_, noise_table_;
   Transition transition_;
   Drift drift_;
   std::array<MarginalTable, kMaxParams> uniform_tables_;
