@@ -312,8 +312,8 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
       quadratic_.Levers(u, k, &ws->levers);
     } else {
       kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
-      kernels_.log_likelihood(noise_, data, ws->prediction, log_scale.data(), &ws->log_likelihood[at]);
-      kernels_.lever_sums(ws->drift_factor, noise_, data, ws->prediction, log_scale.data(), &ws->levers);
+      kernels_.lever_sums(ws->drift_factor, noise_, data, ws->prediction, log_scale.data(), &ws->levers,
+                          &ws->log_likelihood[at]);
     }
     for (int b = 0; b < previous.num_blocks; ++b)
       if (drift_.Drifts(previous, b))

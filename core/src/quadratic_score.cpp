@@ -123,7 +123,7 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const DriftFactor* factor
     if (!(std::fabs(by_sums[l] - by_samples[l]) <= kConfirmed + kTolerance * std::fabs(by_samples[l]))) return false;
   if (form_.num_levers == 0) return true;
   LeverTile levers, levers_by_sums;
-  kernels_.lever_sums(*factor, noise_, data, scratch->prediction[0], log_scale.data(), &levers);
+  kernels_.lever_sums(*factor, noise_, data, scratch->prediction[0], log_scale.data(), &levers, by_samples.data());
   Levers(u.data(), 0, &levers_by_sums);
   for (int d = 0; d < form_.num_levers; ++d) {
     double largest = 1.0;

@@ -79,13 +79,14 @@ TEST(DriftFactor, IsTheLikelihoodOfAllVelocitiesOverThatOfNone) {
       one->data.target[n] = random();
       for (double& f : tile->value[n]) f = one->data.target[n] - settings.std * 1.5 * random();
     }
-    std::array<double, kTileLanes> log_scale{};
+    alignas(64) std::array<double, kTileLanes> log_scale{};
     for (double& v : log_scale) v = std::log(settings.std) + 0.3 * random();
     for (const simd::Kernels* kernels : test::RunnableKernels()) {
       std::array<double, kTileLanes> out{};
       out.fill(3.0);
       LeverTile levers;
-      kernels->lever_sums(one->factor, noise, one->data, *tile, log_scale.data(), &levers);
+      std::array<double, kTileLanes> log_likelihood{};
+      kernels->lever_sums(one->factor, noise, one->data, *tile, log_scale.data(), &levers, log_likelihood.data());
       kernels->apply_drift(one->factor, levers, log_scale.data(), rows.data(), 0, out.data());
       for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
         Eigen::VectorXd at(dim), e(kSamples);
@@ -100,6 +101,46 @@ TEST(DriftFactor, IsTheLikelihoodOfAllVelocitiesOverThatOfNone) {
                                 0.5 * std::log(covariance.determinant()) + 0.5 * e.squaredNorm();
         EXPECT_NEAR(std::log(out[lane] / 3.0), expected, 1e-9 * (1.0 + std::fabs(expected)))
             << kernels->name << ", " << dim;
+      }
+    }
+  }
+}
+
+TEST(DriftFactor, LeversSumTheScoresOfEveryNoiseLaw) {
+  test::Normal random(12);
+  const auto tile = std::make_unique<PredictionTile>();
+  const auto one = std::make_unique<Case>(3, &random);
+  one->Set(1.0);
+  for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture}) {
+    NoiseSettings settings;
+    settings.kind = kind;
+    settings.std = 0.2;
+    const NoiseModel noise(settings);
+    for (std::size_t n = 0; n < kSamples; ++n) {
+      one->data.target[n] = random();
+      one->data.weight[n] = 0.5 + 0.4 * std::sin(static_cast<double>(n));
+      for (double& f : tile->value[n]) f = one->data.target[n] - settings.std * (n % 9 == 0 ? 12.0 : 1.5) * random();
+    }
+    alignas(64) std::array<double, kTileLanes> log_scale{};
+    for (double& v : log_scale) v = std::log(settings.std) + 0.3 * random();
+    for (const simd::Kernels* kernels : test::RunnableKernels()) {
+      LeverTile levers;
+      alignas(64) std::array<double, kTileLanes> together{}, alone{};
+      kernels->lever_sums(one->factor, noise, one->data, *tile, log_scale.data(), &levers, together.data());
+      kernels->log_likelihood(noise, one->data, *tile, log_scale.data(), alone.data());
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane) {
+        EXPECT_NEAR(together[lane], alone[lane], 1e-6 * std::fabs(alone[lane]));
+        for (int d = 0; d < 3; ++d) {
+          double expected = 0.0, size = 0.0;
+          for (std::size_t n = 0; n < kSamples; ++n) {
+            const double e = (one->data.target[n] - tile->value[n][lane]) * one->data.weight[n];
+            const double term = one->factor.lever[d][n] * noise.SquareWeight(e, std::exp(log_scale[lane])) * e;
+            expected += term;
+            size += std::fabs(term);
+          }
+          EXPECT_NEAR(levers.value[d][lane], expected, 1e-6 * size)
+              << kernels->name << ", law " << static_cast<int>(kind);
+        }
       }
     }
   }

@@ -114,7 +114,8 @@ TEST(QuadraticScore, HasTheLeversOfADriftFactor) {
         kernels->to_physical(c.space, c.u.data(), 0, theta.get(), log_scale.data());
         kernels->predict(0, c.data, *theta, tile.get());
         LeverTile expected, levers;
-        kernels->lever_sums(*factor, c.noise, c.data, *tile, log_scale.data(), &expected);
+        alignas(64) std::array<double, kTileLanes> log_likelihood;
+        kernels->lever_sums(*factor, c.noise, c.data, *tile, log_scale.data(), &expected, log_likelihood.data());
         score.Levers(c.u.data(), 0, &levers);
         for (int d = 0; d < 3; ++d)
           for (int l = 0; l < kTileLanes; ++l)

@@ -3,72 +3,55 @@
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-/// -(d log p / de) of an error at a scale, as NoiseModel::SquareWeight has it.
-template <NoiseKind kKind>
-[[gnu::always_inline]] inline V ScoreOf(const NoiseSettings& s, V e, V inverse) noexcept {
-  const V z = e * inverse;
-  if constexpr (kKind == NoiseKind::kStudentT)
-    return inverse * z * Simd::Set(s.dof + 1.0) / Simd::Fma(z, z, Simd::Set(s.dof));
-  if constexpr (kKind == NoiseKind::kLaplace) return inverse * z / Simd::Max(Simd::Abs(z), Simd::Set(0.5));
-  if constexpr (kKind == NoiseKind::kMixture) {
-    const double wide = 1.0 / (s.outlier_scale * s.outlier_scale);
-    const V inlier = Simd::Set(1.0 - s.outlier_weight) * Simd::Exp2(z * z * Simd::Set(-0.5 * kLog2E * (1.0 - wide)));
-    const double outlier = s.outlier_weight / s.outlier_scale;
-    return inverse * z * (inlier + Simd::Set(outlier * wide)) / (inlier + Simd::Set(outlier));
-  }
-  return inverse * z;
-}
-
-/// a of DriftFactor: a[d][lane] = sum_n lever_d[n] times the score of the error.
-template <int kDim, NoiseKind kKind>
-void LeverSums(const DriftFactor& factor, const NoiseSettings& s, const ModeData& data, const PredictionTile& tile,
-               const double* log_scale, LeverTile* a) noexcept {
+/// See Kernels::lever_sums.
+template <int kDim>
+void LeverSums(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,
+               const double* log_scale, LeverTile* sums, double* log_likelihood) noexcept {
   constexpr int kGroup = 2;
+  const NoiseSettings& s = noise.settings();
   const V mean = Simd::Set(s.mean);
-  for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
-    V inverse[static_cast<unsigned>(kGroup)];
-    V sum[static_cast<unsigned>(kGroup)][static_cast<unsigned>(kDim)] = {};
-    InverseScale<kGroup>(log_scale + v0 * Simd::kLanes, inverse);
-    for (int n = 0; n < data.num_samples; ++n) {
-      const auto k = static_cast<unsigned>(n);
-      const V target = Simd::Set(data.target[k]);
-      const V weight = Simd::Set(data.weight[k]);
+  ForLaw<ScoreSimd, kGroup>(s.kind, [&]<class Law>() noexcept {
+    for (int v0 = 0; v0 < kVectors; v0 += kGroup) {
+      V inverse[static_cast<unsigned>(kGroup)];
+      V sum[static_cast<unsigned>(kGroup)][static_cast<unsigned>(kDim)] = {};
+      InverseScale<kGroup>(log_scale + v0 * Simd::kLanes, inverse);
+      Law law(s, inverse);
+      for (int n0 = 0; n0 < data.num_samples; n0 += kRun) {
+        const int end = n0 + kRun < data.num_samples ? n0 + kRun : data.num_samples;
+        for (int n = n0; n < end; ++n) {
+          const auto k = static_cast<unsigned>(n);
+          const V target = Simd::Set(data.target[k]);
+          const V weight = Simd::Set(data.weight[k]);
+          for (int g = 0; g < kGroup; ++g) {
+            const V f = Simd::Load(&tile.value[k][static_cast<unsigned>((v0 + g) * Simd::kLanes)]);
+            const V score = law.AddWithScore(g, (target - f - mean) * weight);
+            for (int d = 0; d < kDim; ++d) sum[g][d] = Simd::Fma(Simd::Set(factor.lever[d][n]), score, sum[g][d]);
+          }
+        }
+        law.EndRun();
+      }
       for (int g = 0; g < kGroup; ++g) {
-        const V f = Simd::Load(&tile.value[k][static_cast<unsigned>((v0 + g) * Simd::kLanes)]);
-        const V score = ScoreOf<kKind>(s, (target - f - mean) * weight, inverse[g]);
-        for (int d = 0; d < kDim; ++d) sum[g][d] = Simd::Fma(Simd::Set(factor.lever[d][n]), score, sum[g][d]);
+        Simd::Store(log_likelihood + (v0 + g) * Simd::kLanes, law.Result(g));
+        for (int d = 0; d < kDim; ++d) Simd::Store(&sums->value[d][(v0 + g) * Simd::kLanes], sum[g][d]);
       }
     }
-    for (int g = 0; g < kGroup; ++g)
-      for (int d = 0; d < kDim; ++d) Simd::Store(&a->value[d][(v0 + g) * Simd::kLanes], sum[g][d]);
-  }
-}
-
-template <int kDim>
-void LeverSumsOfLaw(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data,
-                    const PredictionTile& tile, const double* log_scale, LeverTile* a) noexcept {
-  const NoiseSettings& s = noise.settings();
-  switch (s.kind) {
-    case NoiseKind::kGaussian: return LeverSums<kDim, NoiseKind::kGaussian>(factor, s, data, tile, log_scale, a);
-    case NoiseKind::kLaplace: return LeverSums<kDim, NoiseKind::kLaplace>(factor, s, data, tile, log_scale, a);
-    case NoiseKind::kStudentT: return LeverSums<kDim, NoiseKind::kStudentT>(factor, s, data, tile, log_scale, a);
-    case NoiseKind::kMixture: return LeverSums<kDim, NoiseKind::kMixture>(factor, s, data, tile, log_scale, a);
-  }
+    AddConstant<Law>(noise, data.num_samples, log_scale, log_likelihood);
+  });
 }
 
 /// See Kernels::lever_sums.
 void LeverSumsOf(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data, const PredictionTile& tile,
-                 const double* log_scale, LeverTile* sums) noexcept ARMCMC_NONBLOCKING {
+                 const double* log_scale, LeverTile* sums, double* log_likelihood) noexcept ARMCMC_NONBLOCKING {
   static_assert(kMaxParams == 8);
   switch (factor.dim) {
-    case 1: return LeverSumsOfLaw<1>(factor, noise, data, tile, log_scale, sums);
-    case 2: return LeverSumsOfLaw<2>(factor, noise, data, tile, log_scale, sums);
-    case 3: return LeverSumsOfLaw<3>(factor, noise, data, tile, log_scale, sums);
-    case 4: return LeverSumsOfLaw<4>(factor, noise, data, tile, log_scale, sums);
-    case 5: return LeverSumsOfLaw<5>(factor, noise, data, tile, log_scale, sums);
-    case 6: return LeverSumsOfLaw<6>(factor, noise, data, tile, log_scale, sums);
-    case 7: return LeverSumsOfLaw<7>(factor, noise, data, tile, log_scale, sums);
-    case 8: return LeverSumsOfLaw<8>(factor, noise, data, tile, log_scale, sums);
+    case 1: return LeverSums<1>(factor, noise, data, tile, log_scale, sums, log_likelihood);
+    case 2: return LeverSums<2>(factor, noise, data, tile, log_scale, sums, log_likelihood);
+    case 3: return LeverSums<3>(factor, noise, data, tile, log_scale, sums, log_likelihood);
+    case 4: return LeverSums<4>(factor, noise, data, tile, log_scale, sums, log_likelihood);
+    case 5: return LeverSums<5>(factor, noise, data, tile, log_scale, sums, log_likelihood);
+    case 6: return LeverSums<6>(factor, noise, data, tile, log_scale, sums, log_likelihood);
+    case 7: return LeverSums<7>(factor, noise, data, tile, log_scale, sums, log_likelihood);
+    case 8: return LeverSums<8>(factor, noise, data, tile, log_scale, sums, log_likelihood);
     default: return;
   }
 }

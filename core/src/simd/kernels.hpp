@@ -81,9 +81,11 @@ struct Kernels {
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,
                       double* out) noexcept ARMCMC_NONBLOCKING;
 
-  /// sums[d][lane] = sum_n lever_d[n] times -(d log p / de) of the error of sample n, as log_likelihood has it.
+  /// log_likelihood() as Score() has it, and sums[d][lane] = sum_n lever_d[n] times -(d log p / de) of the error of
+  /// sample n.
   void (*lever_sums)(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data,
-                     const PredictionTile& tile, const double* log_scale, LeverTile* sums) noexcept ARMCMC_NONBLOCKING;
+                     const PredictionTile& tile, const double* log_scale, LeverTile* sums,
+                     double* log_likelihood) noexcept ARMCMC_NONBLOCKING;
 
   /// Sums over the samples that make QuadraticForm::lever, for each lane, in the form's order; see quadratic_sums.
   void (*lever_node_sums)(const DriftFactor& factor, const ModeData& data, double noise_mean, int num_linear,
