@@ -218,28 +218,38 @@ Eigen::Index TrajectoryModel::RowsToForget(const Eigen::VectorXd& theta, double 
   return static_cast<Eigen::Index>(rows);
 }
 
-bool TrajectoryModel::Linearise(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian,
-                                const std::vector<Eigen::Index>* only) const {
+Eigen::MatrixXd TrajectoryModel::Around(const Eigen::VectorXd& theta) const {
   constexpr double kStep = 1e-5;
   const Eigen::VectorXd spread = Spread(), lower = Lower(), upper = Upper();
   const Eigen::Index size = num_parameters();
-  // The point itself, then a step up and one down along every parameter.
   Eigen::MatrixXd thetas = theta.replicate(1, 1 + 2 * size);
   for (Eigen::Index d = 0; d < size; ++d) {
     thetas(d, 1 + d) = std::min(theta[d] + kStep * spread[d], upper[d]);
     thetas(d, 1 + size + d) = std::max(theta[d] - kStep * spread[d], lower[d]);
   }
-  Eigen::MatrixXd predictions;
-  Predict(thetas, &predictions, only);
+  return thetas;
+}
+
+bool TrajectoryModel::LineariseFrom(const Eigen::MatrixXd& around, const Eigen::Ref<const Eigen::MatrixXd>& predictions,
+                                    Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian) {
+  const Eigen::Index size = around.rows();
   if (!predictions.row(0).allFinite()) return false;
   *prediction = predictions.col(0);
   jacobian->resize(prediction->size(), size);
   for (Eigen::Index d = 0; d < size; ++d) {
-    const double width = thetas(d, 1 + d) - thetas(d, 1 + size + d);
+    const double width = around(d, 1 + d) - around(d, 1 + size + d);
     if (!(width > 0.0)) return false;
     jacobian->col(d) = (predictions.col(1 + d) - predictions.col(1 + size + d)) / width;
   }
   return true;
+}
+
+bool TrajectoryModel::Linearise(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian,
+                                const std::vector<Eigen::Index>* only) const {
+  const Eigen::MatrixXd thetas = Around(theta);
+  Eigen::MatrixXd predictions;
+  Predict(thetas, &predictions, only);
+  return LineariseFrom(thetas, predictions, prediction, jacobian);
 }
 
 }  // namespace armcmc::identify

@@ -65,6 +65,12 @@ class TrajectoryModel {
   /// @param only  As of Predict.
   [[nodiscard]] bool Linearise(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian,
                                const std::vector<Eigen::Index>* only = nullptr) const;
+  /// What Linearise predicts: the point itself, then a step up and one down along every parameter.
+  [[nodiscard]] Eigen::MatrixXd Around(const Eigen::VectorXd& theta) const;
+  /// Linearise from the predictions of Around(): several points may be predicted together.
+  [[nodiscard]] static bool LineariseFrom(const Eigen::MatrixXd& around,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& predictions,
+                                          Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian);
   /// Rows behind the beginning of a run after which a wrong start of the states that begin with a mere number has at
   /// most `share` of its largest effect on the law; a start that is off by the state's rms. Where several states begin
   /// with the measured output, which is one of them at most, also of those. 0: there are no such states. The length of
