@@ -1,6 +1,7 @@
 #include "armcmc/identify/lane_program.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -136,7 +137,8 @@ void LaneRun::Clear() {
 }
 
 LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>& outputs,
-                         const std::vector<Varies>& inputs) {
+                         const std::vector<Varies>& inputs)
+    : input_size_(inputs.size()) {
   std::vector<bool> needed(static_cast<std::size_t>(graph.size()), false);
   for (const int output : outputs) needed[static_cast<std::size_t>(output)] = true;
   for (int n = graph.size() - 1; n >= 0; --n)
@@ -228,6 +230,20 @@ LaneRun LaneProgram::Begin(const Lanes* input, double dt) const {
   return run;
 }
 
+LaneRun LaneProgram::BeginPair(const Lanes* input, double dt) const {
+  LaneRun run;
+  run.dt = dt;
+  run.pair.resize(num_blocks_ + 1);
+  std::vector<Lanes> half(input_size_);
+  for (std::size_t h = 0; h < 2; ++h) {
+    for (std::size_t i = 0; i < half.size(); ++i) half[i] = input[2 * i + h];
+    const LaneRun alone = Begin(half.data(), dt);
+    for (const Instruction& i : once_)
+      Copy(alone.one[i.block].value.data(), run.pair[i.block].value.data() + h * kLanes);
+  }
+  return run;
+}
+
 /// With `kSamples` known where this is compiled, an instruction is a few vectors and no loop.
 template <std::size_t kSamples>
 ARMCMC_INSIDE void LaneProgram::Compute(const Instruction& i, Blocks<kSamples>* blocks) {
@@ -271,6 +287,11 @@ void LaneProgram::WalkOne(const Lanes* input, std::size_t stride, const double* 
 }
 
 ARMCMC_FOR_WIDER_LANES
+void LaneProgram::WalkPair(const Lanes* input, const double* t, LaneRun* run, Lanes* out) const {
+  Walk<2>(input, 2, t, run, &run->pair, out);
+}
+
+ARMCMC_FOR_WIDER_LANES
 void LaneProgram::WalkTile(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const {
   Walk<kTile>(input, stride, t, run, &run->tile, out);
 }
@@ -292,6 +313,11 @@ void LaneProgram::Evaluate(std::size_t samples, const Lanes* input, std::size_t 
     WalkOne(input + r, stride, t + r, run, out + r);
     run->empty = false;
   }
+}
+
+void LaneProgram::EvaluatePair(const Lanes* input, double t, LaneRun* run, Lanes* out) const {
+  const std::array<double, 2> same{t, t};
+  WalkPair(input, same.data(), run, out);
 }
 
 ARMCMC_FOR_WIDER_LANES

@@ -92,11 +92,13 @@ class TrajectoryModel {
   [[nodiscard]] std::vector<int> SplitMemory(expression::Graph* graph, std::vector<int>* nodes) const;
   void EvaluateOnce(const expression::Graph& graph, const std::vector<int>& nodes,
                     std::vector<std::vector<double>>* columns) const;
+  template <std::size_t kHalves>
   class Walk;
-  /// Up to kLanes candidates from the first row to the last; `see` gets every row, the law and the states at it.
+  /// Up to kHalves kLanes candidates from the first row to the last; `see` gets every row, the half, the law of its
+  /// candidates and their states.
   /// @param offset  [state] Added to the starts; may be null.
   /// @param only    As of Predict.
-  template <class See>
+  template <std::size_t kHalves, class See>
   void Run(const Eigen::MatrixXd& thetas, Eigen::Index first, Eigen::Index count, const std::vector<Lanes>* offset,
            const std::vector<Eigen::Index>* only, See see) const;
 
