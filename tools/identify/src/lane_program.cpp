@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "armcmc/expression/elementary.hpp"
@@ -58,9 +59,8 @@ ARMCMC_INSIDE void ForAll(std::size_t count, const double* __restrict a, const d
   }
 }
 
-ARMCMC_INSIDE void Copy(const double* __restrict from, double* __restrict to) {
-  for (std::size_t l = 0; l < kLanes; ++l) to[l] = from[l];
-}
+/// By whole vectors: what is written in parts is waited for where it is read as a whole.
+ARMCMC_INSIDE void Copy(const double* from, double* to) { std::memcpy(to, from, sizeof(Lanes)); }
 
 /// a^(whole + 0.5 if half), by as few multiplications as there are bits.
 /// @param square  Room; memory, since what stands in registers by parts is waited for when it is read as a whole.
