@@ -197,6 +197,27 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
     (i.varies == Varies::kByLane ? once_ : each_).push_back(i);
   }
   for (const int output : outputs) outputs_.push_back(place[static_cast<std::size_t>(output)].block);
+  GuardBranches();
+}
+
+void LaneProgram::GuardBranches() {
+  constexpr std::size_t kUnused = SIZE_MAX;
+  std::vector<Guard> guard(num_blocks_, Guard{kUnused, false});
+  const auto use = [&](std::size_t block, Guard where) {
+    Guard& its = guard[block];
+    if (its.condition == kUnused) its = where;
+    if (its.condition != where.condition || its.holds != where.holds) its = {};
+  };
+  std::vector<bool> by_sample(num_blocks_, false);
+  for (const Instruction& i : each_) by_sample[i.block] = i.varies == Varies::kBySample;
+  for (const std::size_t output : outputs_) use(output, {});
+  for (std::size_t k = each_.size(); k-- > 0;) {
+    Instruction& i = each_[k];
+    const bool chooses = i.op == Op::kIf && by_sample[i.argument[0]];
+    i.guard = i.memory ? Guard{} : guard[i.block];
+    for (std::size_t a = 0; a < i.argument.size(); ++a)
+      use(i.argument[a], chooses && a > 0 ? Guard{i.argument[0], a == 1} : i.guard);
+  }
 }
 
 bool LaneProgram::Reads(std::size_t signal) const {
@@ -264,6 +285,8 @@ template <std::size_t kSamples>
 ARMCMC_INSIDE void LaneProgram::Walk(const Lanes* input, std::size_t stride, const double* t, LaneRun* run,
                                      Blocks<kSamples>* blocks, Lanes* out) const {
   for (const Instruction& i : each_) {
+    if constexpr (kSamples < kTile)  // all candidates of one sample take the same branch
+      if (i.guard.condition > 0 && ((*blocks)[i.guard.condition].value[0] != 0.0) != i.guard.holds) continue;
     double* const value = (*blocks)[i.block].value.data();
     if (i.op == Op::kSymbol && i.time)
       for (std::size_t r = 0; r < kSamples; ++r) std::fill_n(value + r * kLanes, kLanes, t[r]);

@@ -84,6 +84,11 @@ class LaneProgram {
  private:
   template <std::size_t kSamples>
   using Blocks = std::vector<LaneRun::Block<kSamples>>;
+  /// The one branch of a condition that an instruction serves: where the other is taken it is left out.
+  struct Guard {
+    std::size_t condition = 0;  ///< Block; 0: none.
+    bool holds = false;
+  };
   struct Instruction {
     expression::Op op = expression::Op::kNumber;
     std::array<std::size_t, expression::kMaxArguments> argument{};  ///< Blocks.
@@ -99,7 +104,9 @@ class LaneProgram {
     bool steady = false;    ///< A low pass whose time constant varies by lane at most.
     std::size_t index = 0;  ///< Of a signal; of a memory.
     std::size_t line = 0;   ///< Of a delay.
+    Guard guard;
   };
+  void GuardBranches();
   template <std::size_t kSamples>
   static void Compute(const Instruction& instruction, Blocks<kSamples>* blocks);
   template <std::size_t kSamples>
