@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -153,15 +154,19 @@ TEST(TrajectoryModel, AnInputMayBeHeldOrSmoothBetweenSamples) {
 }
 
 TEST(TrajectoryModel, SeveralCandidatesAtOnceAreEachAsAlone) {
-  const Made made = Make(Oscillator(), Swing(100));
-  Eigen::MatrixXd thetas(2, 37), predictions;
-  for (Eigen::Index c = 0; c < 37; ++c)
-    thetas.col(c) << std::log(3.0 + 0.3 * static_cast<double>(c)), 0.1 * static_cast<double>(c % 5);
-  made.model->Predict(thetas, &predictions);
-  for (const Eigen::Index c : {0, 15, 16, 31, 36}) {
-    VectorXd alone;
-    ASSERT_TRUE(made.model->PredictOne(thetas.col(c), &alone));
-    EXPECT_EQ(alone, VectorXd(predictions.col(c))) << c;
+  for (const char* rate : {"u - k*pos - d*speed", "lowpass(u + k*y, 0.2) - k*pos - d*speed"}) {
+    PlantDescription plant = Oscillator();
+    plant.states[1].rate = rate;
+    const Made made = Make(std::move(plant), Swing(100, {0, 40}));
+    Eigen::MatrixXd thetas(2, 53), predictions;
+    for (Eigen::Index c = 0; c < thetas.cols(); ++c)
+      thetas.col(c) << std::log(3.0 + 0.3 * static_cast<double>(c)), 0.1 * static_cast<double>(c % 5);
+    made.model->Predict(thetas, &predictions);
+    for (const Eigen::Index c : {0, 15, 16, 31, 32, 36, 47, 48, 52}) {
+      VectorXd alone;
+      ASSERT_TRUE(made.model->PredictOne(thetas.col(c), &alone));
+      EXPECT_EQ(alone, VectorXd(predictions.col(c))) << rate << ' ' << c;
+    }
   }
 }
 
@@ -203,6 +208,26 @@ Made Bead(double wave, double give = 0.0) {
     series.signals[1].push_back(force + 3e-9 + wave * std::sin(37.0 * n));
   }
   return Make(std::move(contact), std::move(series));
+}
+
+TEST(BestFit, IsTheBestOfThoseThatGoOnAlone) {
+  const Made made = Make(Oscillator(), Swing(300));
+  std::vector<VectorXd> starts;
+  for (int s = 0; s < 9; ++s) starts.push_back(VectorXd{{std::log(2.0 + s), 0.05 * s}});
+  std::vector<FitResult> alone;
+  for (const VectorXd& start : starts) alone.push_back(Fit(*made.model, made.rows, start, 2));
+  std::stable_sort(alone.begin(), alone.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  FitResult expected;
+  for (std::size_t k = 0; k < 4; ++k) {
+    FitResult fit = Fit(*made.model, made.rows, alone[k].theta, 6);
+    if (!expected.valid || fit.cost < expected.cost) expected = std::move(fit);
+  }
+  const FitResult best = BestFit(*made.model, made.rows, starts, 4, 6, false);
+  ASSERT_TRUE(best.valid);
+  EXPECT_EQ(best.theta, expected.theta);
+  EXPECT_EQ(best.cost, expected.cost);
+  EXPECT_EQ(best.iterations, expected.iterations);
+  EXPECT_EQ(best.jacobian, expected.jacobian);
 }
 
 TEST(Fit, AParameterThatIsFarOffDoesNotCarryTheOthersAway) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -99,6 +100,42 @@ TEST(LaneProgram, WhatLanesShareIsComputedOnce) {
   ExpectTheSame("lowpass(sin(x), 0.2)", {kSample, kSample, kSample});
   ExpectTheSame("lowpass(sin(x), u)", {kSample, kSample, kLane});
   ExpectTheSame("x + u*v", {kLane, kSample, kLane});
+}
+
+TEST(LaneProgram, ABranchThatNoCandidateTakesChangesNothing) {
+  for (const char* text :
+       {"if(x > 0, sqrt(abs(v)), v*u)", "if(x > 0, v*u, v - u) + v*u", "if(x > 0, if(x > 0.5, v^2, v*u), v^2) - u",
+        "if(x > 0, lowpass(v, u), integral(v + u))", "if(x > 0, v*u, exp(v*u))", "if(v > 0, v*u, if(x > 0, v, u - v))",
+        "if(if(x > 0, x > 0.5, v > 0), v + u, v*u)"})
+    ExpectTheSame(text, {kSample, kBoth, kLane});
+}
+
+TEST(LaneProgram, TwiceAsManyCandidatesAtOnceAreEachAsAlone) {
+  Graph graph;
+  const int node = graph.Lower(expression::Parse("if(x > 0, v*u, sqrt(abs(v)) + t) - exp(u)"), test::PlantWords(), {});
+  const LaneProgram program(graph, {node}, {kSample, kBoth, kLane});
+  std::array<std::vector<Lanes>, 2> alone{std::vector<Lanes>(3), std::vector<Lanes>(3)};
+  std::vector<Lanes> both(6);
+  const auto fill = [&](std::size_t n) {
+    for (std::size_t h = 0; h < 2; ++h)
+      for (std::size_t l = 0; l < kLanes; ++l)
+        for (std::size_t s = 0; s < 3; ++s)
+          both[2 * s + h][l] = alone[h][s][l] = Signals(s == 2 ? 0 : n, s == 0 ? 0 : h * kLanes + l)[s];
+  };
+  fill(0);
+  LaneRun first = program.Begin(alone[0].data(), kDt), second = program.Begin(alone[1].data(), kDt);
+  LaneRun pair = program.BeginPair(both.data(), kDt);
+  for (std::size_t n = 0; n < 60; ++n) {
+    fill(n);
+    const double t = kDt * static_cast<double>(n);
+    Lanes of_first, of_second;
+    std::array<Lanes, 2> of_pair;
+    program.Evaluate(1, alone[0].data(), 1, &t, &first, &of_first);
+    program.Evaluate(1, alone[1].data(), 1, &t, &second, &of_second);
+    program.EvaluatePair(both.data(), t, &pair, of_pair.data());
+    EXPECT_EQ(of_pair[0], of_first) << n;
+    EXPECT_EQ(of_pair[1], of_second) << n;
+  }
 }
 
 TEST(LaneProgram, KnowsWhichSignalsItReadsSampleBySample) {

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 namespace armcmc::identify {
 namespace {
@@ -109,66 +111,238 @@ Problem MakeProblem(const TrajectoryModel& model, const std::vector<std::uint8_t
           model.Start(), PriorPrecision(model), model.Spread()};
 }
 
-/// @param wanted      Rows that predictions are needed at; null: all.
-/// @param least_gain  Of the cost by one step: less ends the fit.
-FitResult FitFrom(const Problem& problem, const std::vector<Eigen::Index>* wanted, const Eigen::VectorXd& start,
-                  int max_iterations, double least_gain) {
-  const TrajectoryModel& model = problem.model;
-  FitResult fit;
-  fit.theta = start.cwiseMax(problem.lower).cwiseMin(problem.upper);
-  if (problem.rows.empty() || !model.Linearise(fit.theta, &fit.prediction, &fit.jacobian, wanted)) return fit;
-  fit.valid = true;
-  fit.cost = problem.Cost(fit.theta, fit.prediction);
-  double damping = 1e-2;
+/// A computation that asks for predictions step by step, so that several can share the runs of a model.
+class Asking {
+ public:
+  Asking() = default;
+  Asking(const Asking&) = delete;
+  Asking& operator=(const Asking&) = delete;
+  virtual ~Asking() = default;
+  [[nodiscard]] bool done() const { return done_; }
+  /// Parameters whose predictions come next, a column each. Not where it is done.
+  [[nodiscard]] virtual Eigen::MatrixXd Asks() = 0;
+  /// @param predictions  [row][candidate] As of TrajectoryModel::Predict.
+  virtual void Take(const Eigen::Ref<const Eigen::MatrixXd>& predictions) = 0;
+
+ protected:
+  bool done_ = false;
+};
+
+/// Goes on with all of them until they are done. A run has room for TrajectoryModel's lanes, of which one fit fills a
+/// part; predictions do not depend on what stands beside them.
+/// @param wanted  Rows that predictions are needed at; null: all.
+void Finish(const TrajectoryModel& model, const std::vector<Eigen::Index>* wanted, const std::vector<Asking*>& all) {
+  constexpr Eigen::Index kTogether = 96;  // candidates whose predictions are kept at a time
   Eigen::MatrixXd predictions;
-  for (; fit.iterations < max_iterations; ++fit.iterations) {
-    const Eigen::MatrixXd thetas = Steps(problem, fit.theta, NormalEquations(problem, fit), Dampings(damping));
-    model.Predict(thetas, &predictions, wanted);
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t next = 0; next < all.size();) {
+      std::vector<std::pair<Asking*, Eigen::MatrixXd>> part;
+      Eigen::Index columns = 0;
+      for (; next < all.size() && columns < kTogether; ++next) {
+        if (all[next]->done()) continue;
+        part.emplace_back(all[next], all[next]->Asks());
+        columns += part.back().second.cols();
+      }
+      if (part.empty()) break;
+      any = true;
+      Eigen::MatrixXd thetas(model.num_parameters(), columns);
+      Eigen::Index first = 0;
+      for (const auto& [asking, its] : part) {
+        thetas.middleCols(first, its.cols()) = its;
+        first += its.cols();
+      }
+      model.Predict(thetas, &predictions, wanted);
+      first = 0;
+      for (const auto& [asking, its] : part) {
+        asking->Take(predictions.middleCols(first, its.cols()));
+        first += its.cols();
+      }
+    }
+  }
+}
+
+/// Finish() for objects of one kind.
+template <class Kind>
+void FinishAll(const TrajectoryModel& model, const std::vector<Eigen::Index>* wanted,
+               const std::vector<std::unique_ptr<Kind>>& all) {
+  std::vector<Asking*> asking;
+  for (const std::unique_ptr<Kind>& one : all) asking.push_back(one.get());
+  Finish(model, wanted, asking);
+}
+
+/// Levenberg-Marquardt, see Fit().
+class Fitting : public Asking {
+ public:
+  /// @param problem     Not copied.
+  /// @param least_gain  Of the cost by one step: less ends the fit.
+  Fitting(const Problem& problem, const Eigen::VectorXd& start, int max_iterations, double least_gain)
+      : problem_(problem), max_iterations_(max_iterations), least_gain_(least_gain) {
+    fit_.theta = start.cwiseMax(problem.lower).cwiseMin(problem.upper);
+    done_ = problem.rows.empty();
+  }
+
+  [[nodiscard]] Eigen::MatrixXd Asks() override {
+    thetas_ = linearises_ ? problem_.model.Around(fit_.theta)
+                          : Steps(problem_, fit_.theta, NormalEquations(problem_, fit_), Dampings(damping_));
+    return thetas_;
+  }
+  void Take(const Eigen::Ref<const Eigen::MatrixXd>& predictions) override {
+    if (!linearises_) {
+      TakeSteps(predictions);
+    } else if (!TrajectoryModel::LineariseFrom(thetas_, predictions, &fit_.prediction, &fit_.jacobian)) {
+      fit_.valid = false;
+      done_ = true;
+    } else if (!fit_.valid) {
+      fit_.valid = true;
+      fit_.cost = problem_.Cost(fit_.theta, fit_.prediction);
+      linearises_ = false;
+      if (max_iterations_ <= 0) End();
+    } else {
+      linearises_ = false;
+      if (gain_ < least_gain_)
+        End();
+      else
+        Iterated();
+    }
+  }
+  /// Once it is done.
+  [[nodiscard]] FitResult& result() { return fit_; }
+
+ private:
+  void TakeSteps(const Eigen::Ref<const Eigen::MatrixXd>& predictions) {
     Eigen::Index best = -1;
-    double cost = fit.cost;
-    for (Eigen::Index trial = 0; trial < thetas.cols(); ++trial) {
-      if (!thetas.col(trial).allFinite() || !std::isfinite(predictions(0, trial))) continue;
-      const double its = problem.Cost(thetas.col(trial), predictions.col(trial));
+    double cost = fit_.cost;
+    for (Eigen::Index trial = 0; trial < thetas_.cols(); ++trial) {
+      if (!thetas_.col(trial).allFinite() || !std::isfinite(predictions(0, trial))) continue;
+      const double its = problem_.Cost(thetas_.col(trial), predictions.col(trial));
       if (its < cost) {
         cost = its;
         best = trial;
       }
     }
-    const double gain = fit.cost - cost;
     if (best < 0) {
-      if (damping > 1e6) break;
-      damping *= 1e5;
-      continue;
+      if (damping_ > 1e6) {
+        End();
+      } else {
+        damping_ *= 1e5;
+        Iterated();
+      }
+      return;
     }
-    damping = std::clamp(damping * std::pow(8.0, static_cast<double>(best) - 2.0), 1e-7, 1e6);
-    fit.theta = thetas.col(best);
-    fit.cost = cost;
-    if (!model.Linearise(fit.theta, &fit.prediction, &fit.jacobian, wanted)) {
-      fit.valid = false;
-      return fit;
-    }
-    if (gain < least_gain) break;
+    gain_ = fit_.cost - cost;
+    damping_ = std::clamp(damping_ * std::pow(8.0, static_cast<double>(best) - 2.0), 1e-7, 1e6);
+    fit_.theta = thetas_.col(best);
+    fit_.cost = cost;
+    linearises_ = true;
   }
-  fit.error_sd = std::sqrt(MeanSquare(model, problem.rows, fit.prediction));
-  return fit;
-}
+  void Iterated() {
+    if (++fit_.iterations >= max_iterations_) End();
+  }
+  void End() {
+    fit_.error_sd = std::sqrt(MeanSquare(problem_.model, problem_.rows, fit_.prediction));
+    done_ = true;
+  }
+
+  const Problem& problem_;
+  const int max_iterations_;
+  const double least_gain_;
+  FitResult fit_;
+  Eigen::MatrixXd thetas_;
+  bool linearises_ = true;
+  double damping_ = 1e-2, gain_ = 0.0;
+};
+
+double LeastGain(const Problem& problem) { return 1e-3 + 1e-7 * static_cast<double>(problem.rows.size()); }
+
+/// A start that is moved along one parameter at a time, the one that helps most: a parameter that is far off is
+/// corrected without the others running away.
+class MovingAlongOne : public Asking {
+ public:
+  MovingAlongOne(const Problem& problem, const Eigen::VectorXd& start, int steps)
+      : problem_(problem), steps_(steps), theta_(start.cwiseMax(problem.lower).cwiseMin(problem.upper)) {
+    done_ = steps == 0 || problem.rows.empty();
+  }
+
+  [[nodiscard]] Eigen::MatrixXd Asks() override {
+    if (linearises_) thetas_ = problem_.model.Around(theta_);
+    return thetas_;
+  }
+  void Take(const Eigen::Ref<const Eigen::MatrixXd>& predictions) override {
+    if (linearises_) {
+      TakeLinearised(predictions);
+      return;
+    }
+    Eigen::Index best = theta_.size();
+    for (Eigen::Index d = 0; d < theta_.size(); ++d)
+      if (std::isfinite(predictions(0, d)) &&
+          problem_.Cost(thetas_.col(d), predictions.col(d)) < problem_.Cost(thetas_.col(best), predictions.col(best)))
+        best = d;
+    theta_ = thetas_.col(best);
+    linearises_ = true;
+    done_ = --steps_ == 0;
+  }
+  [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
+
+ private:
+  void TakeLinearised(const Eigen::Ref<const Eigen::MatrixXd>& predictions) {
+    Eigen::VectorXd prediction;
+    Eigen::MatrixXd jacobian;
+    if (!TrajectoryModel::LineariseFrom(thetas_, predictions, &prediction, &jacobian)) {
+      done_ = true;
+      return;
+    }
+    const Eigen::VectorXd error = (problem_.model.target() - prediction)(problem_.rows);
+    thetas_ = theta_.replicate(1, theta_.size() + 1);
+    for (Eigen::Index d = 0; d < theta_.size(); ++d) {
+      const Eigen::VectorXd along = jacobian.col(d)(problem_.rows);
+      const double move = along.dot(error) / (along.squaredNorm() + 1e-300);
+      thetas_(d, d) = std::clamp(theta_[d] + move, problem_.lower[d], problem_.upper[d]);
+    }
+    linearises_ = false;
+  }
+
+  const Problem& problem_;
+  int steps_;
+  Eigen::VectorXd theta_;
+  Eigen::MatrixXd thetas_;
+  bool linearises_ = true;
+};
 
 /// Derivatives at some rows by differences to one side, in units of the spread.
-bool Differences(const TrajectoryModel& model, const Eigen::VectorXd& theta, const std::vector<Eigen::Index>& rows,
-                 const Eigen::VectorXd& spread, Eigen::MatrixXd* jacobian) {
-  constexpr double kStep = 1e-5;
-  Eigen::MatrixXd thetas = theta.replicate(1, theta.size() + 1), predictions;
-  const Eigen::VectorXd upper = model.Upper();
-  for (Eigen::Index d = 0; d < theta.size(); ++d)
-    thetas(d, d) += theta[d] + kStep * spread[d] > upper[d] ? -kStep * spread[d] : kStep * spread[d];
-  model.Predict(thetas, &predictions, &rows);
-  if (!predictions.row(0).allFinite()) return false;
-  const Eigen::VectorXd here = predictions.col(theta.size())(rows);
-  jacobian->resize(here.size(), theta.size());
-  for (Eigen::Index d = 0; d < theta.size(); ++d)
-    jacobian->col(d) = (predictions.col(d)(rows) - here) * (spread[d] / (thetas(d, d) - theta[d]));
-  return true;
-}
+class OneSided : public Asking {
+ public:
+  OneSided(const Problem& problem, const Eigen::VectorXd& theta, const std::vector<Eigen::Index>& rows)
+      : problem_(problem), theta_(theta), rows_(rows) {}
+
+  [[nodiscard]] Eigen::MatrixXd Asks() override {
+    constexpr double kStep = 1e-5;
+    thetas_ = theta_.replicate(1, theta_.size() + 1);
+    for (Eigen::Index d = 0; d < theta_.size(); ++d) {
+      const double step = kStep * problem_.spread[d];
+      thetas_(d, d) += theta_[d] + step > problem_.upper[d] ? -step : step;
+    }
+    return thetas_;
+  }
+  void Take(const Eigen::Ref<const Eigen::MatrixXd>& predictions) override {
+    done_ = true;
+    finite_ = predictions.row(0).allFinite();
+    if (!finite_) return;
+    const Eigen::VectorXd here = predictions.col(theta_.size())(rows_);
+    jacobian_.resize(here.size(), theta_.size());
+    for (Eigen::Index d = 0; d < theta_.size(); ++d)
+      jacobian_.col(d) = (predictions.col(d)(rows_) - here) * (problem_.spread[d] / (thetas_(d, d) - theta_[d]));
+  }
+  [[nodiscard]] bool finite() const { return finite_; }
+  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
+
+ private:
+  const Problem& problem_;
+  const Eigen::VectorXd theta_;
+  const std::vector<Eigen::Index>& rows_;
+  Eigen::MatrixXd thetas_, jacobian_;
+  bool finite_ = false;
+};
 
 }  // namespace
 
@@ -184,54 +358,34 @@ Eigen::VectorXd PriorPrecision(const TrajectoryModel& model) {
 FitResult Fit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows, const Eigen::VectorXd& start,
               int max_iterations) {
   const Problem problem = MakeProblem(model, rows);
-  return FitFrom(problem, nullptr, start, max_iterations, 1e-3 + 1e-7 * static_cast<double>(problem.rows.size()));
-}
-
-Eigen::VectorXd AlongOne(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
-                         const Eigen::VectorXd& start, int steps) {
-  const Problem problem = MakeProblem(model, rows);
-  Eigen::VectorXd theta = start.cwiseMax(problem.lower).cwiseMin(problem.upper);
-  Eigen::VectorXd prediction;
-  Eigen::MatrixXd jacobian, predictions;
-  for (int step = 0; step < steps && !problem.rows.empty(); ++step) {
-    if (!model.Linearise(theta, &prediction, &jacobian)) break;
-    const Eigen::VectorXd error = (model.target() - prediction)(problem.rows);
-    Eigen::MatrixXd thetas = theta.replicate(1, theta.size() + 1);
-    for (Eigen::Index d = 0; d < theta.size(); ++d) {
-      const Eigen::VectorXd along = jacobian.col(d)(problem.rows);
-      const double move = along.dot(error) / (along.squaredNorm() + 1e-300);
-      thetas(d, d) = std::clamp(theta[d] + move, problem.lower[d], problem.upper[d]);
-    }
-    model.Predict(thetas, &predictions);
-    Eigen::Index best = theta.size();
-    for (Eigen::Index d = 0; d < theta.size(); ++d)
-      if (std::isfinite(predictions(0, d)) &&
-          problem.Cost(thetas.col(d), predictions.col(d)) < problem.Cost(thetas.col(best), predictions.col(best)))
-        best = d;
-    theta = thetas.col(best);
-  }
-  return theta;
+  Fitting fitting(problem, start, max_iterations, LeastGain(problem));
+  Finish(model, nullptr, {&fitting});
+  return std::move(fitting.result());
 }
 
 FitResult BestFit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                   const std::vector<Eigen::VectorXd>& starts, std::size_t most_fits, int max_iterations,
                   bool along_one) {
   constexpr int kAlong = 3, kFirst = 2;
-  std::vector<FitResult> begins;
-  for (const Eigen::VectorXd& start : starts) {
-    FitResult fit = Fit(model, rows, along_one ? AlongOne(model, rows, start, kAlong) : start, kFirst);
-    if (!fit.valid) continue;
-    fit.prediction.resize(0);
-    fit.jacobian.resize(0, 0);
-    begins.push_back(std::move(fit));
-  }
-  std::stable_sort(begins.begin(), begins.end(),
-                   [](const FitResult& a, const FitResult& b) { return a.cost < b.cost; });
+  const Problem problem = MakeProblem(model, rows);
+  std::vector<std::unique_ptr<MovingAlongOne>> moved;
+  for (const Eigen::VectorXd& start : starts)
+    moved.push_back(std::make_unique<MovingAlongOne>(problem, start, along_one ? kAlong : 0));
+  FinishAll(model, nullptr, moved);
+  std::vector<std::unique_ptr<Fitting>> fits;
+  for (const std::unique_ptr<MovingAlongOne>& start : moved)
+    fits.push_back(std::make_unique<Fitting>(problem, start->theta(), kFirst, LeastGain(problem)));
+  FinishAll(model, nullptr, fits);
+  std::erase_if(fits, [](const std::unique_ptr<Fitting>& fit) { return !fit->result().valid; });
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const auto& a, const auto& b) { return a->result().cost < b->result().cost; });
+  fits.resize(std::min(fits.size(), most_fits));
+  for (std::unique_ptr<Fitting>& fit : fits)
+    fit = std::make_unique<Fitting>(problem, fit->result().theta, max_iterations, LeastGain(problem));
+  FinishAll(model, nullptr, fits);
   FitResult best;
-  for (std::size_t b = 0; b < std::min(begins.size(), most_fits); ++b) {
-    FitResult fit = Fit(model, rows, begins[b].theta, max_iterations);
-    if (fit.valid && (!best.valid || fit.cost < best.cost)) best = std::move(fit);
-  }
+  for (const std::unique_ptr<Fitting>& fit : fits)
+    if (fit->result().valid && (!best.valid || fit->result().cost < best.cost)) best = std::move(fit->result());
   return best;
 }
 
@@ -272,17 +426,21 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
   // Steps with the Jacobian of the fit to all rows tell most groups where to go, one with its own whether it is there.
   for (int iteration = 0; iteration <= kWithTheSame && !moving.empty(); ++iteration) {
     Eigen::MatrixXd thetas(all.theta.size(), static_cast<Eigen::Index>(moving.size()) * trials), predictions;
+    std::vector<std::unique_ptr<OneSided>> own;
+    for (std::size_t k = 0; k < moving.size() && iteration == kWithTheSame; ++k)
+      own.push_back(std::make_unique<OneSided>(problem, fits.theta.col(moving[k]), rows));
+    FinishAll(model, &rows, own);
     for (std::size_t k = 0; k < moving.size(); ++k) {
       const Eigen::Index g = moving[k];
       const std::vector<Eigen::Index>& group = groups[static_cast<std::size_t>(g)];
       const Eigen::VectorXd e = fits.error.col(g), theta = fits.theta.col(g);
       Normal normal;
-      Eigen::MatrixXd own;
-      if (iteration == kWithTheSame && Differences(model, theta, rows, problem.spread, &own)) {
-        fits.jacobian[static_cast<std::size_t>(g)] = own * problem.spread.cwiseInverse().asDiagonal();
-        const Eigen::MatrixXd without = own(group, Eigen::all);
-        normal = {own.transpose() * own - without.transpose() * without,
-                  own.transpose() * e - without.transpose() * e(group)};
+      if (!own.empty() && own[k]->finite()) {
+        const Eigen::MatrixXd& its = own[k]->jacobian();
+        fits.jacobian[static_cast<std::size_t>(g)] = its * problem.spread.cwiseInverse().asDiagonal();
+        const Eigen::MatrixXd without = its(group, Eigen::all);
+        normal = {its.transpose() * its - without.transpose() * without,
+                  its.transpose() * e - without.transpose() * e(group)};
       } else {
         normal = {gram_without[static_cast<std::size_t>(g)],
                   jacobian.transpose() * e - part[static_cast<std::size_t>(g)].transpose() * e(group)};
@@ -310,17 +468,24 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
     moving = std::move(still);
   }
   // Those that are not are fitted for themselves.
-  for (const Eigen::Index g : moving) {
+  std::vector<Problem> problems(moving.size(), problem);
+  std::vector<std::unique_ptr<Fitting>> fitting;
+  for (std::size_t m = 0; m < moving.size(); ++m) {
+    const Eigen::Index g = moving[m];
     std::vector<std::uint8_t> in_group(rows.size(), 0);
     for (const Eigen::Index k : groups[static_cast<std::size_t>(g)]) in_group[static_cast<std::size_t>(k)] = 1;
-    problem.rows.clear();
+    problems[m].rows.clear();
     for (std::size_t k = 0; k < rows.size(); ++k)
-      if (in_group[k] == 0) problem.rows.push_back(rows[k]);
-    const FitResult fit = FitFrom(problem, &rows, fits.theta.col(g), max_iterations, kMoves);
+      if (in_group[k] == 0) problems[m].rows.push_back(rows[k]);
+    fitting.push_back(std::make_unique<Fitting>(problems[m], fits.theta.col(g), max_iterations, kMoves));
+  }
+  FinishAll(model, &rows, fitting);
+  for (std::size_t m = 0; m < moving.size(); ++m) {
+    const FitResult& fit = fitting[m]->result();
     if (!fit.valid) continue;
-    fits.theta.col(g) = fit.theta;
-    fits.error.col(g) = (model.target() - fit.prediction)(rows);
-    fits.jacobian[static_cast<std::size_t>(g)] = fit.jacobian(rows, Eigen::all);
+    fits.theta.col(moving[m]) = fit.theta;
+    fits.error.col(moving[m]) = (model.target() - fit.prediction)(rows);
+    fits.jacobian[static_cast<std::size_t>(moving[m])] = fit.jacobian(rows, Eigen::all);
   }
   return fits;
 }

@@ -1,7 +1,9 @@
 #include "armcmc/identify/lane_program.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "armcmc/expression/elementary.hpp"
@@ -57,9 +59,8 @@ ARMCMC_INSIDE void ForAll(std::size_t count, const double* __restrict a, const d
   }
 }
 
-ARMCMC_INSIDE void Copy(const double* __restrict from, double* __restrict to) {
-  for (std::size_t l = 0; l < kLanes; ++l) to[l] = from[l];
-}
+/// By whole vectors: what is written in parts is waited for where it is read as a whole.
+ARMCMC_INSIDE void Copy(const double* from, double* to) { std::memcpy(to, from, sizeof(Lanes)); }
 
 /// a^(whole + 0.5 if half), by as few multiplications as there are bits.
 /// @param square  Room; memory, since what stands in registers by parts is waited for when it is read as a whole.
@@ -136,7 +137,8 @@ void LaneRun::Clear() {
 }
 
 LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>& outputs,
-                         const std::vector<Varies>& inputs) {
+                         const std::vector<Varies>& inputs)
+    : input_size_(inputs.size()) {
   std::vector<bool> needed(static_cast<std::size_t>(graph.size()), false);
   for (const int output : outputs) needed[static_cast<std::size_t>(output)] = true;
   for (int n = graph.size() - 1; n >= 0; --n)
@@ -195,6 +197,27 @@ LaneProgram::LaneProgram(const expression::Graph& graph, const std::vector<int>&
     (i.varies == Varies::kByLane ? once_ : each_).push_back(i);
   }
   for (const int output : outputs) outputs_.push_back(place[static_cast<std::size_t>(output)].block);
+  GuardBranches();
+}
+
+void LaneProgram::GuardBranches() {
+  constexpr std::size_t kUnused = SIZE_MAX;
+  std::vector<Guard> guard(num_blocks_, Guard{kUnused, false});
+  const auto use = [&](std::size_t block, Guard where) {
+    Guard& its = guard[block];
+    if (its.condition == kUnused) its = where;
+    if (its.condition != where.condition || its.holds != where.holds) its = {};
+  };
+  std::vector<bool> by_sample(num_blocks_, false);
+  for (const Instruction& i : each_) by_sample[i.block] = i.varies == Varies::kBySample;
+  for (const std::size_t output : outputs_) use(output, {});
+  for (std::size_t k = each_.size(); k-- > 0;) {
+    Instruction& i = each_[k];
+    const bool chooses = i.op == Op::kIf && by_sample[i.argument[0]];
+    i.guard = i.memory ? Guard{} : guard[i.block];
+    for (std::size_t a = 0; a < i.argument.size(); ++a)
+      use(i.argument[a], chooses && a > 0 ? Guard{i.argument[0], a == 1} : i.guard);
+  }
 }
 
 bool LaneProgram::Reads(std::size_t signal) const {
@@ -228,6 +251,20 @@ LaneRun LaneProgram::Begin(const Lanes* input, double dt) const {
   return run;
 }
 
+LaneRun LaneProgram::BeginPair(const Lanes* input, double dt) const {
+  LaneRun run;
+  run.dt = dt;
+  run.pair.resize(num_blocks_ + 1);
+  std::vector<Lanes> half(input_size_);
+  for (std::size_t h = 0; h < 2; ++h) {
+    for (std::size_t i = 0; i < half.size(); ++i) half[i] = input[2 * i + h];
+    const LaneRun alone = Begin(half.data(), dt);
+    for (const Instruction& i : once_)
+      Copy(alone.one[i.block].value.data(), run.pair[i.block].value.data() + h * kLanes);
+  }
+  return run;
+}
+
 /// With `kSamples` known where this is compiled, an instruction is a few vectors and no loop.
 template <std::size_t kSamples>
 ARMCMC_INSIDE void LaneProgram::Compute(const Instruction& i, Blocks<kSamples>* blocks) {
@@ -248,6 +285,8 @@ template <std::size_t kSamples>
 ARMCMC_INSIDE void LaneProgram::Walk(const Lanes* input, std::size_t stride, const double* t, LaneRun* run,
                                      Blocks<kSamples>* blocks, Lanes* out) const {
   for (const Instruction& i : each_) {
+    if constexpr (kSamples < kTile)  // all candidates of one sample take the same branch
+      if (i.guard.condition > 0 && ((*blocks)[i.guard.condition].value[0] != 0.0) != i.guard.holds) continue;
     double* const value = (*blocks)[i.block].value.data();
     if (i.op == Op::kSymbol && i.time)
       for (std::size_t r = 0; r < kSamples; ++r) std::fill_n(value + r * kLanes, kLanes, t[r]);
@@ -268,6 +307,11 @@ ARMCMC_INSIDE void LaneProgram::Walk(const Lanes* input, std::size_t stride, con
 ARMCMC_FOR_WIDER_LANES
 void LaneProgram::WalkOne(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const {
   Walk<1>(input, stride, t, run, &run->one, out);
+}
+
+ARMCMC_FOR_WIDER_LANES
+void LaneProgram::WalkPair(const Lanes* input, const double* t, LaneRun* run, Lanes* out) const {
+  Walk<2>(input, 2, t, run, &run->pair, out);
 }
 
 ARMCMC_FOR_WIDER_LANES
@@ -292,6 +336,11 @@ void LaneProgram::Evaluate(std::size_t samples, const Lanes* input, std::size_t 
     WalkOne(input + r, stride, t + r, run, out + r);
     run->empty = false;
   }
+}
+
+void LaneProgram::EvaluatePair(const Lanes* input, double t, LaneRun* run, Lanes* out) const {
+  const std::array<double, 2> same{t, t};
+  WalkPair(input, same.data(), run, out);
 }
 
 ARMCMC_FOR_WIDER_LANES

@@ -107,7 +107,11 @@ std::string Constants::AsIf(const Other& other) {
 std::optional<Rival> Constants::RivalOf(const Contender& c) {
   if (!fitted_) FitThem();
   // A simulated plant may be stuck in a minimum from which the effect helped it out.
-  if (IsSimulated(plant_->description())) FitFrom(c.trial.fit.theta.head(base_.fit.theta.size()));
+  if (const Eigen::VectorXd own = c.trial.fit.theta.head(base_.fit.theta.size());
+      IsSimulated(plant_->description()) && std::find(from_.begin(), from_.end(), own) == from_.end()) {
+    from_.push_back(own);
+    FitFrom(own);
+  }
   for (Other& other : *fitted_) {
     Contender& constant = other.contender;
     if (!constant.refined || Square(constant) > kWorthAFold * Square(c)) continue;

@@ -44,6 +44,7 @@ class Constants {
   const DataScales& scales_;
   std::vector<EffectEntry> entries_;
   std::optional<std::vector<Other>> fitted_;
+  std::vector<Eigen::VectorXd> from_;  ///< Own parameters of effects from whose minimum they were fitted.
 };
 
 }  // namespace armcmc::ladder

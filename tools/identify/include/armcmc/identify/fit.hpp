@@ -30,13 +30,9 @@ struct FitResult {
 [[nodiscard]] FitResult Fit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                             const Eigen::VectorXd& start, int max_iterations = 30);
 
-/// A start that is moved along one parameter at a time, the one that helps most: a parameter that is far off is
-/// corrected without the others running away.
-[[nodiscard]] Eigen::VectorXd AlongOne(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
-                                       const Eigen::VectorXd& start, int steps);
-
 /// The best of fits by cost. All begin with two steps; the `most_fits` best go on.
-/// @param along_one  Starts are moved along single parameters first, as those are that may be far off.
+/// @param along_one  Starts are first moved along one parameter at a time, the one that helps most: a parameter that
+///   is far off is corrected without the others running away.
 [[nodiscard]] FitResult BestFit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                                 const std::vector<Eigen::VectorXd>& starts, std::size_t most_fits,
                                 int max_iterations = 30, bool along_one = true);

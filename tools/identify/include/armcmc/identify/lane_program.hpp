@@ -38,7 +38,8 @@ struct LaneRun {
   double dt = 1.0;                       ///< s
   bool empty = true;                     ///< No sample yet.
   std::vector<Block<1>> one;             ///< Zero, one of every instruction, room: of one sample,
-  std::vector<Block<kTile>> tile;        ///< and of several.
+  std::vector<Block<2>> pair;            ///< of one sample of twice as many candidates,
+  std::vector<Block<kTile>> tile;        ///< and of several samples.
   std::vector<Slot> slot;                ///< Of every function with memory.
   std::vector<std::vector<Lanes>> line;  ///< [delay][sample of the run]
 
@@ -69,6 +70,13 @@ class LaneProgram {
   void Evaluate(std::size_t samples, const Lanes* input, std::size_t stride, const double* t, LaneRun* run,
                 Lanes* out) const;
 
+  /// Twice as many candidates side by side, where nothing is remembered: [signal][half].
+  [[nodiscard]] LaneRun BeginPair(const Lanes* input, double dt) const;
+  /// One sample of them, the same values as Evaluate() has for each half.
+  /// @param input     [signal][half]
+  /// @param[out] out  [output][half]
+  void EvaluatePair(const Lanes* input, double t, LaneRun* run, Lanes* out) const;
+
   [[nodiscard]] bool has_memory() const noexcept { return num_memories_ > 0; }
   /// Whether the signal is read sample by sample.
   [[nodiscard]] bool Reads(std::size_t signal) const;
@@ -76,6 +84,11 @@ class LaneProgram {
  private:
   template <std::size_t kSamples>
   using Blocks = std::vector<LaneRun::Block<kSamples>>;
+  /// The one branch of a condition that an instruction serves: where the other is taken it is left out.
+  struct Guard {
+    std::size_t condition = 0;  ///< Block; 0: none.
+    bool holds = false;
+  };
   struct Instruction {
     expression::Op op = expression::Op::kNumber;
     std::array<std::size_t, expression::kMaxArguments> argument{};  ///< Blocks.
@@ -91,13 +104,16 @@ class LaneProgram {
     bool steady = false;    ///< A low pass whose time constant varies by lane at most.
     std::size_t index = 0;  ///< Of a signal; of a memory.
     std::size_t line = 0;   ///< Of a delay.
+    Guard guard;
   };
+  void GuardBranches();
   template <std::size_t kSamples>
   static void Compute(const Instruction& instruction, Blocks<kSamples>* blocks);
   template <std::size_t kSamples>
   void Walk(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Blocks<kSamples>* blocks,
             Lanes* out) const;
   void WalkOne(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const;
+  void WalkPair(const Lanes* input, const double* t, LaneRun* run, Lanes* out) const;
   void WalkTile(const Lanes* input, std::size_t stride, const double* t, LaneRun* run, Lanes* out) const;
   void ComputeOnce(Blocks<1>* blocks) const;
   static void Remember(const Instruction& instruction, bool first, const double* e, const double* tau, LaneRun* run,
@@ -105,7 +121,7 @@ class LaneProgram {
 
   std::vector<Instruction> once_, each_;  ///< Computed once a run of candidates; at each sample.
   std::vector<std::size_t> outputs_;      ///< Blocks.
-  std::size_t num_blocks_ = 1, num_memories_ = 0, num_delays_ = 0;
+  std::size_t input_size_ = 0, num_blocks_ = 1, num_memories_ = 0, num_delays_ = 0;
 };
 
 }  // namespace armcmc::identify

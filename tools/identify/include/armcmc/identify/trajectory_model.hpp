@@ -65,6 +65,12 @@ class TrajectoryModel {
   /// @param only  As of Predict.
   [[nodiscard]] bool Linearise(const Eigen::VectorXd& theta, Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian,
                                const std::vector<Eigen::Index>* only = nullptr) const;
+  /// What Linearise predicts: the point itself, then a step up and one down along every parameter.
+  [[nodiscard]] Eigen::MatrixXd Around(const Eigen::VectorXd& theta) const;
+  /// Linearise from the predictions of Around(): several points may be predicted together.
+  [[nodiscard]] static bool LineariseFrom(const Eigen::MatrixXd& around,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& predictions,
+                                          Eigen::VectorXd* prediction, Eigen::MatrixXd* jacobian);
   /// Rows behind the beginning of a run after which a wrong start of the states that begin with a mere number has at
   /// most `share` of its largest effect on the law; a start that is off by the state's rms. Where several states begin
   /// with the measured output, which is one of them at most, also of those. 0: there are no such states. The length of
@@ -86,11 +92,13 @@ class TrajectoryModel {
   [[nodiscard]] std::vector<int> SplitMemory(expression::Graph* graph, std::vector<int>* nodes) const;
   void EvaluateOnce(const expression::Graph& graph, const std::vector<int>& nodes,
                     std::vector<std::vector<double>>* columns) const;
+  template <std::size_t kHalves>
   class Walk;
-  /// Up to kLanes candidates from the first row to the last; `see` gets every row, the law and the states at it.
+  /// Up to kHalves kLanes candidates from the first row to the last; `see` gets every row, the half, the law of its
+  /// candidates and their states.
   /// @param offset  [state] Added to the starts; may be null.
   /// @param only    As of Predict.
-  template <class See>
+  template <std::size_t kHalves, class See>
   void Run(const Eigen::MatrixXd& thetas, Eigen::Index first, Eigen::Index count, const std::vector<Lanes>* offset,
            const std::vector<Eigen::Index>* only, See see) const;
 
