@@ -133,13 +133,15 @@ class Composer {
   }
 
   /// Texts that determine the behaviour of the plant: laws, rates, lets, and conditions that may vary.
+  /// @param symbol  Of a state, what others read is changed, and its own rate stays.
   template <class Change>
-  void ForEachText(const Change& change) {
+  void ForEachText(const std::string& symbol, const Change& change) {
     for (std::string* text : {&plant_.law, &plant_.predicts}) change(text);
     for (ModeDescription& mode : plant_.modes) change(&mode.law);
     for (LetDescription& let : plant_.lets)
       if (!IsTargetAsRead(let.name)) change(&let.text);
-    for (StateDescription& state : plant_.states) change(&state.rate);
+    for (StateDescription& state : plant_.states)
+      if (state.name != symbol) change(&state.rate);
   }
 
   void Replace(const EffectTerm& term) {
@@ -149,7 +151,7 @@ class Composer {
     if (decides && MayMerge(plant_)) Merge();
     const std::string name = prefix_ + symbol;
     SplitTargets(prefix_, symbol, &plant_);
-    ForEachText([&](std::string* text) { *text = WithNames(*text, {{symbol, name}}); });
+    ForEachText(symbol, [&](std::string* text) { *text = WithNames(*text, {{symbol, name}}); });
     plant_.lets.insert(plant_.lets.begin(), {name, Inserted(term.formula, names_)});
   }
 

@@ -131,10 +131,10 @@ class FormChecker {
       return;
     }
     const std::string kind = term.slot == "rate" ? "state" : term.slot == "input" ? "signal" : "parameter";
-    const bool or_constant = term.slot == "parameter";
+    const std::string or_kind = term.slot == "parameter" ? "constant" : term.slot == "input" ? "state" : kind;
     const auto need =
         std::find_if(form_.needs.begin(), form_.needs.end(), [&](const auto& n) { return n.name == term.of; });
-    if (need == form_.needs.end() || (need->kind != kind && !(or_constant && need->kind == "constant")))
+    if (need == form_.needs.end() || (need->kind != kind && need->kind != or_kind))
       throw PlantError(key_ + at + "of", 0, "expected a name of [needs] that is a " + kind, term.of, NeedNames());
     CheckText(at + "formula", term.formula, with(term.slot == "rate" ? NameList{"rate"} : NameList{}));
   }

@@ -78,5 +78,26 @@ TEST_F(Action, FrequenciesAreAlongWhatTheirUnitSays) {
   EXPECT_TRUE(Of("cubic_stiffness").Frequencies().empty());
 }
 
+TEST(InputOfAState, IsChangedForOtherStatesAndNotForItself) {
+  PlantDescription plant;
+  plant.name = "circuit";
+  plant.output = "y";
+  plant.law = "b";
+  plant.signals = {{"u", "V", "drive", ""}, {"y", "V", "voltage", ""}};
+  plant.parameters = {{"Ta", "s", "lognormal", 0.01, 0.7}, {"Tb", "s", "lognormal", 0.02, 0.7}};
+  plant.states = {{"a", "V", "voltage", "(u - a)/Ta", "0", "", 1}, {"b", "V", "voltage", "(a - b)/Tb", "0", "", 1}};
+  const DataScales scales = ScalesOf(test::SwingData([](double u) { return u; }), plant, 0.003);
+  const std::vector<EffectEntry> entries = support::ReadEffectLibrary();
+  std::vector<std::string> notes;
+  int found = 0;
+  for (const Candidate& c : Candidates(plant, entries, scales, &notes)) {
+    if (c.form().name != "between") continue;
+    ++found;
+    EXPECT_EQ(c.plant->description().states[0].rate, "(u - a)/Ta");
+    EXPECT_EQ(c.plant->description().states[1].rate, "(input_saturation_a - b)/Tb");
+  }
+  EXPECT_EQ(found, 1);
+}
+
 }  // namespace
 }  // namespace armcmc::ladder::action_test

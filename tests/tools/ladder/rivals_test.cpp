@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "armcmc/ladder/features.hpp"
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
@@ -103,6 +105,79 @@ TEST(Climb, ConstantsThatAreEachALittleOffTogetherRuleOutAnEffect) {
       ClimbWith({"baseline_tilt"}, test::AxisData([](const AxisSample& s) { return 2080.0 * s.q; }), plant);
   EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
   EXPECT_THAT(ladder.rungs[0].as_if, ::testing::HasSubstr(" and k2 were "));
+}
+
+/// The axis on a spring that its file makes 2.5 % too soft.
+PlantDescription SprungAxis() {
+  PlantDescription plant = test::AxisPlant();
+  plant.law += " + k*q";
+  plant.constants = {{"k", 40000.0, "N/m"}};
+  return plant;
+}
+
+TEST(Climb, AnEffectThatIsHiddenBehindAConstantThatIsOffIsNamed) {
+  const auto hidden = [](const AxisSample& s) { return 41000.0 * s.q + 6.0 * Sign(s.v); };
+  const Ladder ladder = ClimbWith({"coulomb_friction", "drag"}, test::AxisData(hidden), SprungAxis());
+  ASSERT_FALSE(ladder.rungs.empty());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
+  ASSERT_TRUE(ladder.free_constants);
+  EXPECT_THAT(AsIf(*ladder.free_constants, ladder.final_trial, ladder.view.data.training),
+              ::testing::StartsWith("k were 4.1e+04 instead of 4e+04"));
+  EXPECT_TRUE(ladder.complete);
+  // The model before is the one in the file.
+  EXPECT_GT(ladder.base.fit.error_sd, 20.0);
+}
+
+TEST(Climb, WithNothingButAConstantOffNothingIsNamedAndTheConstantIsTold) {
+  const Ladder ladder = ClimbWith({"coulomb_friction", "drag"},
+                                  test::AxisData([](const AxisSample& s) { return 41000.0 * s.q; }), SprungAxis());
+  ASSERT_EQ(ladder.rungs.size(), 1u);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.rungs[0].as_if, ::testing::StartsWith("k were 4.1e+04 instead of 4e+04"));
+  EXPECT_FALSE(ladder.free_constants);
+  EXPECT_FALSE(ladder.complete);
+}
+
+TEST(FeaturesOf, LeavesOutTheSignalThatALawExplains) {
+  PlantDescription plant = test::AxisPlant();
+  plant.modes = {{"always", "", plant.law, "F", false}};
+  plant.law.clear();
+  plant.output = "q";
+  const identify::TrajectoryModel model(std::make_shared<const Plant>(plant),
+                                        test::AxisData([](const AxisSample&) { return 0.0; }).series);
+  std::vector<std::string> names;
+  for (const Feature& feature : FeaturesOf(model, model.Start())) names.push_back(feature.name);
+  EXPECT_THAT(names, ElementsAre("v", "a"));
+}
+
+TEST(Climb, ASensorWithoutASignIsFoundThoughTheLawAloneFitsNowhere) {
+  double w = 0.0;
+  const Dataset data =
+      test::DataOf({.rows = 1000,
+                    .noise = 0.3,
+                    .seed = 11,
+                    .drive = [](double t) { return 3.0 * std::sin(0.9 * t) + 1.5 * std::sin(2.3 * t + 1.0); },
+                    .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.25); },
+                    .shown = [&] { return std::abs(w); }});
+  const Ladder ladder =
+      ClimbWith({"absolute_value_sensor", "input_saturation", "output_bias"}, data, test::MotorPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("absolute_value_sensor"));
+  EXPECT_TRUE(ladder.complete);
+}
+
+TEST(Climb, WhatDataKeptApartShowLittleOfIsNotWithdrawn) {
+  // Drag, and a drive that is so weak in the rows kept apart that noise is most of the error there.
+  double w = 0.0;
+  const Dataset data = test::DataOf(
+      {.rows = 1000,
+       .noise = 0.3,
+       .seed = 11,
+       .drive =
+           [](double t) { return (t < 14.0 ? 1.0 : 0.35) * (3.5 * std::sin(0.9 * t) + 2.5 * std::sin(3.7 * t + 1.0)); },
+       .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.25 - 0.01 * w * std::abs(w)); },
+       .shown = [&] { return w; }});
+  const Ladder ladder = ClimbWith({"drag"}, data, test::MotorPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("drag"));
 }
 
 }  // namespace

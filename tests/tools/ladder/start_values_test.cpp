@@ -47,5 +47,21 @@ TEST(Climb, AnEffectThatAlsoRespondsToTheMotionIsNamedWithItsStart) {
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("stress_relaxation"));
 }
 
+TEST(Climb, ARecordingThatBeginsInTheMiddleOfAMotionIsNoEffect) {
+  // The file says that it begins at rest; a quarter of the rows remember that it does not.
+  double w = 150.0;
+  const Dataset data =
+      test::DataOf({.rows = 300,
+                    .noise = 0.3,
+                    .seed = 11,
+                    .drive = [](double t) { return 3.5 * std::sin(0.9 * t) + 2.5 * std::sin(3.7 * t); },
+                    .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.25); },
+                    .shown = [&] { return w; }});
+  const Ladder ladder = test::ClimbWith({"drag", "output_drift"}, data, test::MotorPlant());
+  EXPECT_TRUE(test::NamesOf(ladder.rungs[0]).empty());
+  EXPECT_TRUE(ladder.complete);
+  EXPECT_LT(ladder.base.fit.error_sd, 0.35);
+}
+
 }  // namespace
 }  // namespace armcmc::ladder::start_values_test

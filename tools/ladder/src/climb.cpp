@@ -6,7 +6,9 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <utility>
 
+#include "armcmc/gap/blocks.hpp"
 #include "comparison.hpp"
 #include "constants.hpp"
 #include "curves.hpp"
@@ -98,15 +100,28 @@ struct KeptApart {
   bool agree = true;
 };
 
-/// Whether at least half of the gain in cross-validation is found there, too. True if no data were held out.
-/// @param gain  Fraction of the squared error of `before` that is removed in cross-validation.
-KeptApart AskedApart(const Dataset& data, const Trial& before, const Trial& after, double gain) {
+/// Whether the second model is better in nearly every bootstrap sample of blocks of the rows.
+bool SurelyBetter(const WholeRun& first, const WholeRun& second, const std::vector<Eigen::Index>& rows) {
+  constexpr double kSurely = 0.99;
+  constexpr unsigned long long kSeed = 400;
+  if (rows.size() < static_cast<std::size_t>(gap::kNumBlocks)) return false;
+  const Eigen::VectorXd gain = gap::BlockSquares(first.error(rows)) - gap::BlockSquares(second.error(rows));
+  return gap::BlockBootstrap(kSeed).ProbabilityAbove(gain, 0.0) > kSurely;
+}
+
+/// Whether at least half of the gain in cross-validation is found there, too; or, where the effect acts less than
+/// elsewhere and noise is most of the error, surely half of what is not noise. True if no data were held out.
+/// @param gain   Fraction of the squared error of `before` that is removed in cross-validation.
+/// @param noise  Squared error that is noise.
+KeptApart AskedApart(const Dataset& data, const Trial& before, const Trial& after, double gain, double noise) {
   constexpr double kAgain = 0.5;
   const WholeRun first = RunWhole(data, before), second = RunWhole(data, after);
   const std::vector<Eigen::Index> rows = HeldOutRows(data, first);
   if (rows.empty()) return {};
   const double was = FitOn(first, rows, 1.0).rmse, is = FitOn(second, rows, 1.0).rmse;
-  return {was, is, 1.0 - is * is / (was * was) > kAgain * gain};
+  const double removed = was * was - is * is;
+  const bool all_of_it = removed > kAgain * (was * was - noise) && second.error.size() > 0;
+  return {was, is, removed > kAgain * gain * was * was || (all_of_it && SurelyBetter(first, second, rows))};
 }
 
 /// What a name is checked against.
@@ -132,8 +147,8 @@ void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* note
     Contender& leader = rung->contenders[rung->named.front()];
     const Rung* const open = hearing->open;
     const double left = leader.alone.folds * (open != nullptr ? open->leader().alone.folds : 1.0);
-    const KeptApart apart =
-        AskedApart(hearing->data, open != nullptr ? open->base : rung->base, leader.trial, 1.0 - left);
+    const KeptApart apart = AskedApart(hearing->data, open != nullptr ? open->base : rung->base, leader.trial,
+                                       1.0 - left, NoiseIn(hearing->view, leader.trial, hearing->floor));
     if (apart.agree) return;
     if (!std::isfinite(apart.after) && open == nullptr) {
       rung->open = true;
@@ -180,6 +195,30 @@ Eigen::VectorXd SmoothBut(const Trial& base) {
   return target ? Eigen::VectorXd(base.model->target() - base.fit.prediction) : base.model->target();
 }
 
+/// The plant with its constants fitted, if this removes a tenth of the squared error on left-out data.
+/// @param rung  The first one, which named nothing. Its best contenders give starting points: a simulated plant may be
+///   stuck in a minimum from which an effect helped it out.
+std::optional<FreeConstants> Corrected(const PlantDescription& own, const std::shared_ptr<const Plant>& plant,
+                                       const Dataset& data, const View& view, const DataScales& scales,
+                                       const Rung& rung) {
+  constexpr std::size_t kFrom = 3;
+  const Eigen::VectorXd& theta = rung.base.fit.theta;
+  std::vector<Eigen::VectorXd> known{theta};
+  for (const Contender& c : rung.contenders)
+    if (c.refined && known.size() <= kFrom && IsSimulated(own))
+      known.emplace_back(c.trial.fit.theta.head(theta.size()));
+  std::optional<FreeConstants> free = WithFreeConstants(own, plant, data, scales, known);
+  if (!free) return free;
+  Contender corrected;
+  corrected.trial = free->trial;
+  corrected.closed = std::clamp(1.0 - std::pow(free->trial.fit.error_sd / rung.base.fit.error_sd, 2), 0.0, 1.0);
+  if (!(corrected.closed > kLeastGain)) return std::nullopt;
+  LeaveOut(view, &corrected.trial);
+  if (!(Compare(view, corrected, rung.base, false).folds < 1.0 - kLeastGain)) return std::nullopt;
+  free->trial = std::move(corrected.trial);
+  return free;
+}
+
 /// Returns to the state before a rung named anything.
 void TakeBack(std::size_t rung, Ladder* ladder, Trial* base) {
   ladder->rungs.resize(rung + 1);
@@ -189,6 +228,28 @@ void TakeBack(std::size_t rung, Ladder* ladder, Trial* base) {
   ladder->view = alone.view;
   alone.named.clear();
   alone.open = false;
+}
+
+/// The first rung with the constants as the file states them.
+struct AsGiven {
+  Rung rung;
+  std::shared_ptr<const Plant> plant;
+  std::vector<std::string> notes;
+};
+
+/// Returns to the constants of the file, since nothing was named with others either. Those others are what the misfit
+/// looks like if they explain all of it, or nothing else does.
+void GiveBackConstants(AsGiven given, Ladder* ladder, Trial* base) {
+  const FreeConstants& free = *ladder->free_constants;
+  const bool all = !LeavesMore(given.rung.view, free.trial, ladder->noise_floor);
+  if (all || given.rung.as_if.empty()) given.rung.as_if = AsIf(free, free.trial, given.rung.view.data.training);
+  *base = given.rung.base;
+  ladder->view = given.rung.view;
+  ladder->plant = std::move(given.plant);
+  ladder->notes = std::move(given.notes);
+  ladder->rungs.clear();
+  ladder->rungs.push_back(std::move(given.rung));
+  ladder->free_constants.reset();
 }
 
 }  // namespace
@@ -220,13 +281,17 @@ Ladder Climb(const ClimbRequest& request) {
   ladder.base = base;
   std::set<std::string> families;
   int again = 2;  // rungs that may be repeated from a better fit
+  PlantDescription own = request.plant->description();
+  Trial start = base;            // of the first rung
+  std::optional<AsGiven> given;  // the first rung, if it is repeated with other constants
+  const std::vector<std::string> first_notes = ladder.notes;
   for (int r = 0; r < request.max_rungs; ++r) {
     const std::string which = "rung " + std::to_string(r + 1);
     const DataScales scales = ScalesOf(data, ladder.plant->description(), ladder.noise_floor);
     Rung rung;
     ladder.view = MakeView(data, *base.model, base.fit.theta, scales.period);
     LeaveOut(ladder.view, &base);
-    if (r == 0) ladder.base = base;
+    if (r == 0 && !given) ladder.base = base;
     rung.base = base;
     rung.view = ladder.view;
     for (Candidate& candidate : Candidates(ladder.plant->description(), *ladder.entries, scales, &ladder.notes))
@@ -249,18 +314,31 @@ Ladder Climb(const ClimbRequest& request) {
                     ladder.view,
                     floor,
                     open,
-                    {{request.plant->description(), ladder.plant, data, ladder.view, base, scales},
+                    {{own, ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base},
                      {ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base, scales},
                      {}}};
     Before& before = hearing.rivals.before;
     for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
-    before.explained = std::pow(ladder.base.fit.error_sd / base.fit.error_sd, 2) - 1.0;
+    if (r == 0) start = base;
+    before.explained = std::pow(start.fit.error_sd / base.fit.error_sd, 2) - 1.0;
     NameAndConfirm(&hearing, &rung, &ladder.notes);
     if (r == 0 && rung.named.empty() && rung.as_if.empty() && LeavesMore(ladder.view, base, floor))
       rung.as_if = hearing.rivals.curves.Best();
     const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
+    if (r == 0 && !named && !given && LeavesMore(ladder.view, base, floor)) {
+      progress.Tell(which + ": fitting constants", static_cast<double>(r) / request.max_rungs);
+      ladder.free_constants = Corrected(own, ladder.plant, data, ladder.view, scales, rung);
+      if (ladder.free_constants) {
+        given = AsGiven{std::move(rung), std::exchange(ladder.plant, ladder.free_constants->plant),
+                        std::exchange(ladder.notes, first_notes)};
+        base = ladder.free_constants->trial;
+        own.constants.clear();  // fitted: no rivals any more
+        --r;
+        continue;
+      }
+    }
     if (!named && open != nullptr) {
       TakeBack(ladder.rungs.size() - 1, &ladder, &base);
       break;
@@ -283,6 +361,8 @@ Ladder Climb(const ClimbRequest& request) {
   }
   if (!ladder.rungs.empty() && ladder.rungs.back().open)  // the limit on rungs was reached
     TakeBack(ladder.rungs.size() - 1, &ladder, &base);
+  if (given && (ladder.rungs.empty() || ladder.rungs.front().named.empty()))
+    GiveBackConstants(std::move(*given), &ladder, &base);
   ladder.final_trial = base;
   if (base.judged) {
     ladder.flexible_gain = FlexibleGain(ladder.view, base);

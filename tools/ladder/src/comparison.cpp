@@ -111,11 +111,13 @@ double NoiseIn(const View& view, const Trial& trial, double floor) {
   return std::min(floor * floor, square * std::clamp(1.0 - FlexibleGain(view, trial), 0.0, 1.0));
 }
 
-bool WorseThanConstant(const View& view, const Trial& trial) {
+double UnexplainedShare(const View& view, const Trial& trial) {
   const Eigen::VectorXd target = trial.model->target()(view.looked_at);
   const double varies = (target.array() - target.mean()).matrix().squaredNorm();
-  return (target - trial.fit.prediction(view.looked_at)).squaredNorm() > varies;
+  return (target - trial.fit.prediction(view.looked_at)).squaredNorm() / (varies + 1e-300);
 }
+
+bool WorseThanConstant(const View& view, const Trial& trial) { return UnexplainedShare(view, trial) > 1.0; }
 
 bool LeavesMore(const View& view, const Trial& trial, double floor) {
   constexpr double kMore = 0.5 * kLeastGain, kRougher = 1.2, kFarRougher = 3.0;

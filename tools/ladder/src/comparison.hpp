@@ -25,6 +25,9 @@ inline constexpr double kFarBetter = 2.0;   // factor by which a larger effect m
 /// function leaves.
 [[nodiscard]] double NoiseIn(const View& view, const Trial& trial, double floor);
 
+/// Squared error of a model, divided by the variance of what it explains.
+[[nodiscard]] double UnexplainedShare(const View& view, const Trial& trial);
+
 /// Whether a model errs by more than the output varies, so that a constant would do better.
 [[nodiscard]] bool WorseThanConstant(const View& view, const Trial& trial);
 

@@ -139,6 +139,11 @@ std::vector<Candidate> Curves::MostPromising() const {
   const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.looked_at);
   std::vector<std::string> notes;  // curves beyond a limit of plants are no rivals
   std::vector<Candidate> all = Candidates(plant_->description(), entries_, scales, &notes);
+  std::erase_if(all, [&](const Candidate& candidate) {
+    const auto& symbols = candidate.binding.symbols;
+    return std::any_of(symbols.begin(), symbols.end(),
+                       [&](const auto& symbol) { return IsExplained(plant_->description(), symbol.second); });
+  });
   const Dataset quick = QuickPart(*plant_, data_, base_.model->target() - base_.fit.prediction);
   const Index own = base_.fit.theta.size();
   std::vector<VectorXd> left(all.size());

@@ -27,6 +27,11 @@ Eigen::VectorXd Past(const Dataset& data, const Eigen::VectorXd& value, double t
 
 }  // namespace
 
+bool IsExplained(const PlantDescription& plant, const std::string& signal) {
+  return std::any_of(plant.modes.begin(), plant.modes.end(),
+                     [&](const ModeDescription& mode) { return !mode.passive && mode.target == signal; });
+}
+
 std::vector<Feature> FeaturesOf(const identify::TrajectoryModel& model, const Eigen::VectorXd& theta) {
   const PlantDescription& plant = model.plant().description();
   std::vector<Feature> features;
@@ -35,7 +40,7 @@ std::vector<Feature> FeaturesOf(const identify::TrajectoryModel& model, const Ei
   };
   const auto rows = static_cast<Eigen::Index>(model.num_rows());
   for (std::size_t s = 0; s < plant.signals.size(); ++s)
-    if (static_cast<int>(s) != model.plant().output())
+    if (static_cast<int>(s) != model.plant().output() && !IsExplained(plant, plant.signals[s].name))
       add(plant.signals[s].name, plant.signals[s].unit,
           Eigen::Map<const Eigen::VectorXd>(model.series().signals[s].data(), rows));
   if (!plant.states.empty()) {

@@ -11,8 +11,8 @@ namespace armcmc::ladder {
 namespace {
 
 constexpr double kForgotten = 0.01;   // of the most that a start changes,
-constexpr double kMostOfRun = 0.5;    // in more of the rows than that; where several states begin so, than
-constexpr double kMostGuessed = 0.1;  // that; else these rows are left out (see LeaveOutStarts)
+constexpr double kMostOfRun = 0.5;    // in more of the rows than that; where a state begins with a number, or several
+constexpr double kMostGuessed = 0.1;  // begin so, than that; else these rows are left out (see LeaveOutStarts)
 
 /// @param which  States whose starts are freed.
 PlantDescription Freed(PlantDescription plant, const std::set<std::string>& which, const DataScales& scales) {
@@ -59,7 +59,7 @@ std::shared_ptr<const Plant> WithFreeStarts(const Trial& trial, const Dataset& d
     const double most = *std::max_element(change.begin(), change.end());
     std::size_t rows = change.size();
     while (rows > 0 && !(change[rows - 1] > kForgotten * most)) --rows;
-    const double most_of_run = !number && begin_so > 1 ? kMostGuessed : kMostOfRun;
+    const double most_of_run = number || begin_so > 1 ? kMostGuessed : kMostOfRun;
     if (static_cast<double>(rows) > most_of_run * static_cast<double>(change.size())) felt.insert(state.name);
   }
   return felt.empty() ? nullptr : std::make_shared<const Plant>(Freed(own, felt, scales));

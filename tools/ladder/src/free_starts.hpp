@@ -13,10 +13,10 @@ namespace armcmc::ladder {
 void FreeStart(StateDescription* state, double sd, PlantDescription* plant);
 
 /// The plant with free starts of the states that begin with the measured output or with a mere number, where this is
-/// felt in more than half of a recording of one run; in more than a tenth where several states begin so, of which one
-/// at most is measured. The noise of one sample is in such a start, an integrator keeps it to the end, and there it
-/// looks like an offset or a drift of the sensor. What a state was before the recording began to move it, as a cart
-/// that comes in at a speed, does the same.
+/// felt in more than half of a recording of one run; in more than a tenth where the start is a number, or several
+/// states begin with the output, of which one at most is measured. The noise of one sample is in such a start, an
+/// integrator keeps it to the end, and there it looks like an offset or a drift of the sensor. What a state was before
+/// the recording began to move it, as a cart that comes in at a speed, does the same.
 /// @param trial  The plant as it came, fitted to `data`. @param noise  Standard deviation of the output's noise.
 /// @return null: there are none.
 [[nodiscard]] std::shared_ptr<const Plant> WithFreeStarts(const Trial& trial, const Dataset& data, double noise);

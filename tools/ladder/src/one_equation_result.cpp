@@ -164,7 +164,18 @@ class Teller {
     return true;
   }
 
+  /// Says which errors other constants alone would leave, if effects were named beside them.
+  void TellConstants() {
+    if (!ladder_.free_constants) return;
+    const double alone = FitOn(RunWhole(data_, ladder_.rungs.front().base), rows_, 0.0).rmse;
+    result_.notes.push_back(
+        "the constants of the plant were fitted as well, each up to 5 % from the value in the file: alone they change "
+        "the error from " +
+        Number(result_.gap.before.rmse) + " to " + Number(alone));
+  }
+
   void TellLadder() {
+    TellConstants();
     for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
       const Rung& rung = ladder_.rungs[r];
       if (rung.named.empty()) continue;
@@ -319,7 +330,7 @@ class Teller {
     return "Missing" + in + ": " + JoinedWords(rungs, ", then ") + ". With that, " + percent +
            " % of the gap on held-out data is closed" +
            (complete_ ? ", and nothing is left to explain." : "; something is still unexplained." + ActsAsIf()) +
-           WhyRepeated(ladder_);
+           WithConstants() + WhyRepeated(ladder_);
   }
 
   /// The rival of the last rung, which describes the remaining misfit.
@@ -327,6 +338,12 @@ class Teller {
     const bool known =
         !ladder_.rungs.empty() && ladder_.rungs.back().named.empty() && !ladder_.rungs.back().as_if.empty();
     return known ? " It acts as if " + ladder_.rungs.back().as_if + "." : "";
+  }
+
+  /// The constants that were fitted beside the effects.
+  [[nodiscard]] std::string WithConstants() const {
+    if (!ladder_.free_constants) return "";
+    return " Besides, the plant acts as if " + AsIf(*ladder_.free_constants, ladder_.final_trial, training_) + ".";
   }
 
   [[nodiscard]] double Closed(double rmse) const {

@@ -166,6 +166,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
             std::vector<std::string>* notes) {
   constexpr double kWorthIt = 0.25, kNoGain = 0.05;
   constexpr double kNoiseAlone = 1.2, kMoreThanNoise = 1.5;  // times its square
+  constexpr double kMostOfIt = 0.25;                         // of the variance of the output
   std::vector<Contender>& all = rung->contenders;
   const Eigen::VectorXd error = rung->base.model->target() - rung->base.fit.prediction;
   // Candidates with memory are tried on another part of the data than those without.
@@ -188,10 +189,15 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     c->trial = std::move(trial);
     c->closed = std::clamp(1.0 - Square(c->trial) / quick(*c)->square, 0.0, 1.0);
   };
+  const bool simulated = IsSimulated(plant->description());
+  // The parameters of a simulated plant that explains little of its output say nothing about those that it has with
+  // what is missing.
+  const bool from_anywhere = simulated && UnexplainedShare(view, rung->base) > kMostOfIt;
   std::vector<std::string> not_tried(all.size());
   support::InParallel(all.size(), [&](std::size_t i) {
     try {
       try_from(rung->base.fit.theta, StartsFor(all[i]), &all[i]);
+      if (from_anywhere) try_from({}, kAnywhere, &all[i]);
     } catch (const PlantError& why) {  // for example a rate that would need the memory of a state
       not_tried[i] = all[i].candidate.entry->name + " was not tried: " + why.what();
     }
@@ -207,7 +213,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
   support::InParallel(all.size(), [&](std::size_t i) {
     if (!all[i].trial.fit.valid || all[i].closed < kWorthIt * quick_best) return;
     // What is missing may have distorted the fit of a simulated plant so much that no fit recovers from there.
-    if (IsSimulated(plant->description())) try_from({}, kAnywhere, &all[i]);
+    if (simulated && !from_anywhere) try_from({}, kAnywhere, &all[i]);
     all[i].trial = Refine(all[i].candidate.plant, data, all[i].trial.fit.theta);
     all[i].refined = all[i].trial.fit.valid;
     all[i].closed = all[i].refined ? std::clamp(1.0 - Square(all[i].trial) / Square(rung->base), 0.0, 1.0) : 0.0;

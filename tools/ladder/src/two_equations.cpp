@@ -279,6 +279,8 @@ double RankOf(const Equation& equation) {
 PlantDescription WithNamed(PlantDescription plant, const Equation& equation) {
   const Ladder& ladder = equation.ladder();
   const PlantDescription& found = ladder.plant->description();
+  if (ladder.free_constants)
+    plant = AddFreeConstants(plant, *ladder.free_constants, ScalesOf(ladder.view.data, plant, ladder.noise_floor));
   for (const Rung& rung : ladder.rungs) {
     if (rung.named.empty()) continue;
     const Candidate& named = rung.leader().candidate;

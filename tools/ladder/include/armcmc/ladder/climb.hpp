@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "armcmc/ladder/candidates.hpp"
 #include "armcmc/ladder/dataset.hpp"
+#include "armcmc/ladder/free_constants.hpp"
 #include "armcmc/ladder/trial.hpp"
 #include "armcmc/plant/effect.hpp"
 
@@ -53,13 +55,14 @@ struct Rung {
 struct Ladder {
   std::shared_ptr<const std::vector<EffectEntry>> entries;  ///< Catalogue entries that the candidates point to.
   double noise_floor = 0.0;
-  Trial base;                          ///< The plant without additions.
-  std::vector<Rung> rungs;             ///< In the last one nothing is named.
-  std::shared_ptr<const Plant> plant;  ///< With all named effects.
-  Trial final_trial;                   ///< Fit of `plant` to all training rows.
-  View view;                           ///< View of the last rung.
-  double flexible_gain = 0.0;          ///< Share of the remaining squared error that a flexible function removes.
-  bool complete = false;               ///< Only noise remains: see LeavesMore().
+  Trial base;                                   ///< The plant without additions.
+  std::optional<FreeConstants> free_constants;  ///< Fitted before the first rung, if that is needed to name something.
+  std::vector<Rung> rungs;                      ///< In the last one nothing is named.
+  std::shared_ptr<const Plant> plant;           ///< With all named effects.
+  Trial final_trial;                            ///< Fit of `plant` to all training rows.
+  View view;                                    ///< View of the last rung.
+  double flexible_gain = 0.0;  ///< Share of the remaining squared error that a flexible function removes.
+  bool complete = false;       ///< Only noise remains: see LeavesMore().
   std::vector<std::string> notes;
 };
 
@@ -112,10 +115,15 @@ struct ClimbRequest {
 ///    And an effect of another family that is smaller than a third of those
 ///    named before is ruled out if it acts like one of them, or if a curve of a quantity that one of them reads
 ///    explains as much.
-/// 5. Confirmation. A name is withdrawn if the held-out rows do not show half of its gain, or if the model diverges on
-///    them, unless it does not with the next effect; and if a later rung names the same effect again in the same place,
-///    for effects of which two can be pieces of a curve that is neither (two backlashes approximate a hardening
-///    spring).
+/// 5. Confirmation. A name is withdrawn if the held-out rows show neither half of its gain nor, where noise is most of
+///    their error, surely half of the rest, or if the model diverges on them, unless it does not with the next effect;
+///    and if a later rung names the same effect again in the same place, for effects of which two can be pieces of a
+///    curve that is neither (two backlashes approximate a hardening spring).
+///
+/// If the first rung names nothing, the constants of the plant may hide an effect: they are a few percent off in most
+/// files. If all of them together, each up to 5 % from the file, remove a tenth of the squared error on left-out data,
+/// the first rung is repeated with them fitted. An effect that is named then gains beyond what any constants can do.
+/// If again nothing is named, the file's values stay.
 [[nodiscard]] Ladder Climb(const ClimbRequest& request);
 
 }  // namespace armcmc::ladder

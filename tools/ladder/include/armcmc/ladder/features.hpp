@@ -16,8 +16,11 @@ struct Feature {
   Eigen::VectorXd value;  ///< [row]
 };
 
-/// The features of a plant: its signals except the output, its states at `theta`, and time, without those that are
-/// constant.
+/// Whether a law explains just this signal. A function of it explains any error, its noise included.
+[[nodiscard]] bool IsExplained(const PlantDescription& plant, const std::string& signal);
+
+/// The features of a plant: its signals except the output and those that a law explains, and its states at `theta`,
+/// without those that are constant.
 [[nodiscard]] std::vector<Feature> FeaturesOf(const identify::TrajectoryModel& model, const Eigen::VectorXd& theta);
 
 /// Basis of a flexible function of the features and their recent past: `count` random Fourier features sqrt(2 / count)
