@@ -113,6 +113,7 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
 
 void ModeSampler::LetDrift(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws,
                            Gaussian* fit) noexcept {
+  if (data.states != nullptr) return;  // constant in the pack: see ModeData::before_end
   ws->drift_factor.log_scale = previous.log_noise_scale;
   for (int k = 0; k < 2; ++k) {  // about the fit, then about what becomes of it
     const ParamVector about = fit->mean.head(space_.num_parameters);

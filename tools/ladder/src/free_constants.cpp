@@ -71,7 +71,7 @@ std::optional<FreeConstants> WithFreeConstants(const PlantDescription& own, cons
 
 std::string AsIf(const FreeConstants& free, const Trial& trial, const std::vector<std::uint8_t>& rows) {
   constexpr double kSigmas = 2.0;
-  const VectorXd sd = identify::StandardDeviations(*trial.model, rows, trial.fit);
+  const VectorXd sd = identify::Covariance(*trial.model, rows, trial.fit).diagonal().cwiseSqrt();
   std::vector<std::string> told, all;
   for (std::size_t k = 0; k < free.candidates.size(); ++k) {
     const auto d = static_cast<Index>(free.candidates[k].first_fitted());

@@ -48,7 +48,8 @@ struct EffectConstant {
 ///   output     added to what explains the output
 ///   law        takes the place of what explains the output
 ///   rate       added to the rate of the state `of`; where it says `rate`, it takes that one's place
-///   input      takes the place of the input `of` wherever the plant reads it, or of the state `of` wherever the law and
+///   input      takes the place of the input `of` wherever the plant reads it, or of the state `of` wherever the law
+///   and
 ///              other states read it
 ///   parameter  takes the place of the parameter or constant `of` likewise
 ///
