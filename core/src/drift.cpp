@@ -169,7 +169,7 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   const int rest_from = both_ && fitted_ == Part::kDrift ? 1 : 0;
   const int drift_from = both_ && fitted_ == Part::kRest ? 1 : 0;
   const auto block_moments = [&](int b) noexcept ARMCMC_NONBLOCKING {
-    if (b == 0) return Moments{from};
+    if (b == 0) return Moments{.weight = from.weight, .mean = from.mean, .covariance = from.covariance};
     const DensityBlock& block = last.block[static_cast<std::size_t>(b)];
     return Moments{
         .weight = 1.0, .mean = MeanOf(block).head(dim_), .covariance = CovarianceOf(block).topLeftCorner(dim_, dim_)};

@@ -46,9 +46,9 @@ class FormChecker {
 
  private:
   void Add(const std::string& key, const std::string& name) {
-    static const NameList kReserved = {"t",     "law",  "rate", "output", "dt",    "record", "start", "period",
-                                       "noise", "mean", "low",  "high",   "range", "unit",   "form",  "name"};
-    if (!expression::IsFreeName(name) || IsAmong(kReserved, name))
+    static const NameList reserved = {"t",     "law",  "rate", "output", "dt",    "record", "start", "period",
+                                      "noise", "mean", "low",  "high",   "range", "unit",   "form",  "name"};
+    if (!expression::IsFreeName(name) || IsAmong(reserved, name))
       throw PlantError(key_ + key, 0, '"' + name + "\" cannot be a name in an effect");
     if (IsAmong(names_, name)) throw PlantError(key_ + key, 0, '"' + name + "\" is the name of something else already");
     names_.push_back(name);
