@@ -20,14 +20,12 @@ namespace {
 
 using test::AxisSample;
 using test::ClimbWith;
+using test::kSome;
 using test::NamesOf;
 using test::RotaryData;
 using test::RotaryPlant;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-const std::vector<std::string> kSome{"coulomb_friction", "presliding_friction", "drag",    "cubic_stiffness",
-                                     "output_drift",     "asymmetric_friction", "cogging", "sensor_lag"};
 
 TEST(Climb, NothingHiddenIsNothingMissing) {
   for (const unsigned seed : {3U, 4U, 5U}) {

@@ -15,6 +15,10 @@ namespace armcmc::test {
 
 inline double Sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
+/// Effects that an axis may lack, of several families.
+inline const std::vector<std::string> kSome{"coulomb_friction", "presliding_friction", "drag",    "cubic_stiffness",
+                                            "output_drift",     "asymmetric_friction", "cogging", "sensor_lag"};
+
 /// Climbs with a part of the catalogue, which takes a second where all of it takes ten.
 /// @param kin  Whether effects know which ones act like them.
 inline ladder::Ladder ClimbWith(const std::vector<std::string>& effects, const ladder::Dataset& data,

@@ -22,15 +22,13 @@ namespace {
 
 using test::AxisSample;
 using test::ClimbWith;
+using test::kSome;
 using test::NamesOf;
 using test::RotaryData;
 using test::RotaryPlant;
 using test::Sign;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-const std::vector<std::string> kSome{"coulomb_friction", "presliding_friction", "drag",    "cubic_stiffness",
-                                     "output_drift",     "asymmetric_friction", "cogging", "sensor_lag"};
 
 TEST(Candidate, ItsParametersComeAfterThoseThatEachModeHasForItself) {
   const auto begin = [](const PlantDescription& plant) {
