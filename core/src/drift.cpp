@@ -156,7 +156,6 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   const double since = data.time_s - time_s_;
   Predict(since > 0.0 ? since : data.duration_s);
   ExpectDrift();
-  if (share_ >= kNegligible) drifting_ = JointOf(predicted_, Part::kDrift);
   const Moments from{
       .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
   carried_.valid = true;
@@ -239,6 +238,7 @@ Drift::Sampled Drift::SampledBlock(const ModeData& data, const PosteriorMemory& 
 
 bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
   const LocalLikelihood& local = sampled.local;
+  const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
   std::array<double, kFilters> log_weight{};
   double top = -HUGE_VAL;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
@@ -246,9 +246,28 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
     Filter& f = bank_[i];
     f = predicted_[i];
     if (!(f.weight > 0.0)) continue;
-    log_weight[i] = std::log(f.weight) + Observe(local, sampled.mean, MovesInPack(i), &f);
+    // P = C (1 + H C)^-1, and w is updated through its covariance with u.
+    ParamMatrix spread = Product(local.information, f.uu);
+    spread += identity;
+    const ParamMatrix t = Inverse(spread);
+    const ParamVector apart = f.u - sampled.mean;
+    const ParamVector pulled = Multiply(local.information, apart);
+    const ParamVector residual = local.gradient - pulled;
+    const ParamVector step = Multiply(t, residual);
+    const ParamVector move = Multiply(f.uu, step);
+    log_weight[i] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
+                    0.5 * residual.dot(move) - 0.5 * std::log(std::fmax(Determinant(spread), 1e-300));
     if (!std::isfinite(log_weight[i])) return false;
     top = std::fmax(top, log_weight[i]);
+    f.u += move;
+    f.w += Multiply(f.uw.transpose(), step);
+    f.ww -= Product(Product(f.uw.transpose(), Product(t, local.information)), f.uw);
+    f.uw = Product(t.transpose(), f.uw);
+    f.uu = Product(f.uu, t);
+    MakeSymmetric(&f.uu);
+    MakeSymmetric(&f.ww);
+    if (!f.u.allFinite() || !f.w.allFinite() || !f.uu.allFinite() || !f.uw.allFinite() || !f.ww.allFinite())
+      return false;
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
@@ -266,15 +285,21 @@ bool Drift::Recentre(const Sampled& sampled) noexcept {
   // The posterior of the sampler's prior under the expanded likelihood: the bank itself, or a Gaussian with its
   // moments.
   const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
-  Filter now = sampled.part == Part::kDrift && !as_the_bank ? drifting_
-                                                            : JointOf(as_the_bank ? bank_ : predicted_, sampled.part);
-  if (!as_the_bank && !std::isfinite(Observe(local, sampled.mean, true, &now))) return false;
+  Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, sampled.part);
+  if (!as_the_bank) {
+    ParamMatrix spread = Product(local.information, now.covariance);
+    spread += ParamMatrix::Identity(dim_, dim_);
+    const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
+    now.covariance = Product(now.covariance, Inverse(spread));
+    MakeSymmetric(&now.covariance);
+    now.mean += Multiply(now.covariance, local.gradient - pulled);
+  }
   ParamMatrix map;
-  if (!MapBetween(now.uu, sampled.covariance, &map)) return false;
+  if (!MapBetween(now.covariance, sampled.covariance, &map)) return false;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
     Filter& f = bank_[i];
     if (!(f.weight > 0.0) || !IsOf(sampled.part, i)) continue;
-    f.u = sampled.mean + Multiply(map, f.u - now.u);
+    f.u = sampled.mean + Multiply(map, f.u - now.mean);
     f.uu = Product(Product(map, f.uu), map.transpose());
     MakeSymmetric(&f.uu);
     f.uw = Product(map, f.uw);

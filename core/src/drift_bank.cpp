@@ -47,22 +47,6 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
   from->weight = 0.0;
 }
 
-Drift::Filter Drift::JointOf(const Bank& bank, Part part) const noexcept {
-  Filter joint;
-  for (std::size_t i = 0; i < bank.size(); ++i) {
-    if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
-    Filter f = bank[i];
-    if (!MovesInPack(i)) {
-      f.w.setZero();
-      f.uw.setZero();
-      f.ww.setZero();
-      f.ww.diagonal().setConstant(1e-12);
-    }
-    Merge(&f, &joint);
-  }
-  return joint;
-}
-
 void Drift::GrowOlder() noexcept {
   // From the oldest on, so that none moves by two generations.
   for (std::size_t g = kMergeAfter.size(); g-- > 0;) {
@@ -72,16 +56,12 @@ void Drift::GrowOlder() noexcept {
   }
 }
 
-void Drift::AddNewcomers(double elapsed_s) noexcept {
+void Drift::AddNewcomers(double share) noexcept {
   const Moments all = MomentsOf(predicted_, Part::kWhole);
-  const double kept = std::exp(-kSwitching * elapsed_s);
-  const double drift_share = 1.0 - hypotheses_[0].prior;
-  const double none_began = std::exp(-kSwitching * elapsed_s * drift_share);
-  for (Filter& f : predicted_) f.weight *= kept;
+  for (Filter& f : predicted_) f.weight *= 1.0 - share;
   // Starts anywhere in the bank, with a rate from the law of the hypothesis.
   for (std::size_t h = 0; h < kHypotheses; ++h) {
-    const double share = h == 0 ? none_began - kept : (1.0 - none_began) * hypotheses_[h].prior / drift_share;
-    Filter fresh{.weight = share * all.weight,
+    Filter fresh{.weight = share * hypotheses_[h].prior * all.weight,
                  .u = all.mean,
                  .w = ParamVector::Zero(dim_),
                  .uu = all.covariance,
@@ -125,7 +105,7 @@ void Drift::Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const 
 void Drift::Predict(double elapsed_s) noexcept {
   predicted_ = bank_;
   GrowOlder();
-  AddNewcomers(elapsed_s);
+  AddNewcomers(1.0 - std::exp(-kSwitching * elapsed_s));
   for (std::size_t i = 0; i < predicted_.size(); ++i)
     if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
       Pass(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);

@@ -54,7 +54,6 @@ ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerS
       quadratic_(kernels_, model_, space_, noise_, sampler.use_linearity ? linear : LinearPart{}),
       normal_table_(MarginalTable::Normal()),
       student_table_(MarginalTable::StudentT(kStudentDof)),
-      noise_table_(MarginalTable::StudentT(kNoiseDof)),
       transition_(kernels_, model_, space_, noise_, &normal_table_, forgetting.partial_change),
       drift_(kernels_, model_, space_, noise_, forgetting.drift_share) {
   // P_0 as a proposal: axis aligned, each coordinate with its own law.
@@ -174,7 +173,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const bool informed = last.valid && last.informed;  // otherwise the result is complete only after Remember()
   const Nanos fit_start = clock.Now();
   FitLaplace(data, previous, use_previous, stream_of(kStartStream), ws);
-  quadratic_.Prepare(data, use_previous ? fit_persisted_ : fit_fresh_, &ws->quadratic, &ws->drift_factor);
+  quadratic_.Prepare(data, use_previous ? fit_persisted_ : fit_fresh_, &ws->quadratic);
   const Nanos anchor_ns =
       (clock.Now() - fit_start) / laplace_fits_;  // an upper bound, since they start close to each other
   Proposal proposal;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kMinimumGroup = 2e-3;  // posterior probability below which a group of draws gets no block
 constexpr double kLesserPart = 0.2;     // posterior probability above which a group is always kept
 constexpr int kMostRoots = 8;           // largest root of the weights for a group with too few effective draws
-constexpr double kNoiseMemory = 0.08;   // minimum scale of the t law of log s in the prior of the next pack
+constexpr double kNoiseMemory = 0.1;    // minimum standard deviation of log s in the prior of the next pack
 constexpr double kInformedSd = 0.9;     // relative to the prior: a posterior narrower in any parameter is informed
 constexpr FitOptions kMemoryFit{
     .bandwidth_factor = 0.7, .tail_weight = 0.02, .tail_sd = 1.25, .shrink_to_normal = true};
@@ -118,8 +118,8 @@ void ModeSampler::AppendNoiseScale(int first, int count, const double* weight, M
   const double mean = sums[2] / sums[0];
   double square = 0.0;
   kernels_.second_moments(1, &row, weight, &mean, count, &square);
-  const double width = std::fmax(std::sqrt(square / sums[0]), kNoiseMemory / space_.scale[d]);
-  AppendIndependent(mean, width * std::sqrt(noise_table_.Variance()), noise_table_, table, block);
+  const double sd = std::fmax(std::sqrt(square / sums[0]), kNoiseMemory / space_.scale[d]);
+  AppendIndependent(mean, sd, student_table_, table, block);
 }
 
 void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept {

@@ -239,6 +239,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
       *in_haste = now + ahead > time.deadline_ns;
       if (*in_haste) break;
     }
+    if (round == 0 && drift_.Splits(previous)) FitApart(data, previous, ws);
     const bool thin_but_right = on_ridge && (round > 1 || ess >= kMinimumEss);
     if (!thin_but_right) {  // otherwise more draws from the same proposal
       pooled = made;
@@ -273,10 +274,9 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
     for (int d = 0; d < out->dim; ++d) u[d][k] = u[d][last - 1];
 
   alignas(64) std::array<double, 2 * kTileLanes> log_scale;
-  const bool drifts = ws->drift_factor.dim > 0;
   for (int k = first; k < end && quadratic_.ready(); k += kTileLanes)
     quadratic_.Score(u, k, &ws->log_likelihood[static_cast<std::size_t>(k)]);
-  for (int k = first; k < end && !quadratic_.ready() && !drifts; k += 2 * kTileLanes) {
+  for (int k = first; k < end && !quadratic_.ready(); k += 2 * kTileLanes) {
     const bool two = k + kTileLanes < end;
     kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
     if (two) kernels_.to_physical(space_, u, k + kTileLanes, &ws->theta[1], log_scale.data() + kTileLanes);
@@ -306,19 +306,6 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
         kernels_.add_density(*component.block, u, k, component.share, q);
       }
     }
-    if (!drifts) continue;
-    kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
-    if (quadratic_.ready()) {
-      quadratic_.Levers(u, k, &ws->levers);
-    } else {
-      kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
-      kernels_.lever_sums(ws->drift_factor, noise_, data, ws->prediction, log_scale.data(), &ws->levers,
-                          &ws->log_likelihood[at]);
-    }
-    for (int b = 0; b < previous.num_blocks; ++b)
-      if (drift_.Drifts(previous, b))
-        kernels_.apply_drift(ws->drift_factor, ws->levers, log_scale.data(), u, k,
-                             &ws->memory[static_cast<std::size_t>(b)][at]);
   }
 }
 

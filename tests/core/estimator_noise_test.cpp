@@ -72,8 +72,8 @@ TEST(EstimatedNoise, AJumpOfItsLevelIsJudgedAlikeByAllSeeds) {
     least = std::fmin(least, changed);
     most = std::fmax(most, changed);
   }
-  EXPECT_GT(least, 0.01);
-  EXPECT_LT(most, 0.04) << "the noise alone is the likelier cause";
+  EXPECT_GT(least, 0.2);
+  EXPECT_LT(most, 0.5);
 }
 
 TEST(EstimatedNoise, IntervalsHoldTheScaleOfASensorThatWarmsUp) {

@@ -80,14 +80,10 @@ TEST_F(OverlapLive, ThreeSecondsAtAHundredHertzLoseNothingCoverTheTruthAndReplay
   ASSERT_EQ(without_overlap["pack"].back(), "30");
   for (int i = 0; i < 3; ++i) {
     const std::string name = i == 0 ? "K" : i == 1 ? "B" : "p";
-    const auto plain_value = [&](const char* what) {
-      return std::strtod(without_overlap[name + what].back().c_str(), nullptr);
-    };
-    // Of the interval, not of the standard deviation: a drift of two per cent probability is in one prior and not in
-    // the other.
-    const double width = plain_value("_q975") - plain_value("_q025");
-    EXPECT_NEAR((live.back().q975[i] - live.back().q025[i]) / width, 1.0, 0.2) << name;
-    EXPECT_NEAR(live.back().ar_ap[i], plain_value("_ap"), 0.125 * width) << name;
+    const double sd = std::strtod(without_overlap[name + "_sd"].back().c_str(), nullptr);
+    EXPECT_NEAR(live.back().sd[i] / sd, 1.0, 0.2) << name;
+    EXPECT_NEAR(live.back().ar_ap[i], std::strtod(without_overlap[name + "_ap"].back().c_str(), nullptr), 0.5 * sd)
+        << name;
   }
   const std::string from_log = Replay({"--data", Log()});
   EXPECT_EQ(from_log, Replay({"--data", Log()})) << "the same every time";

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 
-#include "armcmc/drift_factor.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
@@ -33,17 +32,15 @@ struct Kernels;
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
-///   time     pi_h <- e^{-kappa dt} pi_h + a_h, new members from the whole bank with a velocity of their own:
-///            sum_{h>0} a_h = 1 - e^{-kappa s dt} for a prior probability s of drift, that of a drift since, which over
-///            a long time need not be one still, a_0 = e^{-kappa s dt} - e^{-kappa dt};
-///            then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
+///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from the whole bank with a
+///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
 ///   age      it takes several packs to tell a new member from the old ones. So each hypothesis has one filter per
 ///            generation, merged into the next older one every kMergeAfter packs by matching moments. If merged at
 ///            once, new members that the data refute would widen those that the data support
 ///   bounds   if the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean are divided
 ///            by c: after a long time without information a drifting parameter returns to P_0
-///   pack     log L(z) = g' z - z' H z / 2 of z = (u - m, w) about the posterior mean m, H the Fisher information (see
-///            LocalLikelihood); pi_h times the evidence of that, with every filter updated by the same g, H, m
+///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
+///            pi_h times the evidence of that, with every filter updated by the same a, H, m
 ///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
 ///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
 ///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
@@ -61,13 +58,6 @@ struct Kernels;
 /// than a Gaussian in its core, were passed on from pack to pack, each posterior would narrow the bank a little more.
 /// (With a sampled noise scale P_drift is an affine map of P, too.) While drift is improbable (kNegligible), P is
 /// unchanged to the bit.
-///
-/// On a trend a parameter also drifts while a pack is recorded: u is where it stands at the end of the pack, and
-/// u - w t is where it was at a time t before. Taken for constant, it would bias what the pack says along directions
-/// that the samples hardly determine, by many standard deviations. DriftFactor corrects the likelihood of the
-/// candidates for that, with w | u as the moments of the part that drifts have it. Walks move between packs alone: fast
-/// enough to follow what happens within one, they would explain what a law lacks. Parameters that changed are constant
-/// in the pack that shows the change, and so are all of a law with states.
 ///
 /// The noise scale is not a coordinate of the bank: its memory is wide enough (ModeSampler::AppendNoiseScale).
 class Drift {
@@ -98,8 +88,6 @@ class Drift {
 
   struct Hypothesis {
     double rate = 0.0, persistence = 1.0, prior = 1.0;
-    /// Whether the parameters move while a pack is recorded: those on a trend do.
-    [[nodiscard]] constexpr bool moves_in_pack() const noexcept { return rate > 0.0 && persistence > 1.0; }
   };
   /// Hypothesis h where drift has the probability `share`.
   [[nodiscard]] static Hypothesis Of(int h, double share) noexcept ARMCMC_NONBLOCKING;
@@ -125,16 +113,6 @@ class Drift {
   [[nodiscard]] Part CarriedPart() const noexcept ARMCMC_NONBLOCKING;
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
-
-  /// Whether block b of what Carry() returned is of parameters that drift, also while the pack is recorded.
-  [[nodiscard]] bool Drifts(const PosteriorMemory& memory, int block) const noexcept ARMCMC_NONBLOCKING;
-  /// The posterior of those, in place of one under which the parameters are constant in the pack.
-  /// @param local     The pack about fit->mean.
-  /// @param[in,out] fit     In: its mean and precision under constant parameters.
-  /// @param[out] factor     All but `lever` and `log_scale`.
-  /// @return false, and both as they were, when some number is not finite.
-  /// @rt No heap, no lock, no throw. O(dim^3).
-  bool LetDrift(const LocalLikelihood& local, Gaussian* fit, DriftFactor* factor) const noexcept ARMCMC_NONBLOCKING;
 
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
@@ -172,24 +150,14 @@ class Drift {
   };
 
   [[nodiscard]] static std::size_t HypothesisOf(std::size_t filter) noexcept { return filter % kHypotheses; }
-  [[nodiscard]] bool MovesInPack(std::size_t filter) const noexcept {
-    return hypotheses_[HypothesisOf(filter)].moves_in_pack();
-  }
   [[nodiscard]] static bool IsOf(Part part, std::size_t filter) noexcept {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
-  /// One filter with the moments of a part of the bank.
-  [[nodiscard]] Filter JointOf(const Bank& bank, Part part) const noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
-  /// Bayes' rule for one filter. @param about  Where the likelihood was expanded.
-  /// @return log of the evidence; NaN when some number is not finite.
-  [[nodiscard]] static double Observe(const LocalLikelihood& local, const ParamVector& about, bool moves,
-                                      Filter* filter) noexcept ARMCMC_NONBLOCKING;
   void GrowOlder() noexcept ARMCMC_NONBLOCKING;
-  /// Members that have become what they are within the time elapsed.
-  void AddNewcomers(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
   void Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
@@ -235,7 +203,6 @@ class Drift {
   bool split_ = false;
   bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;
-  Filter drifting_;  ///< Moments of the part of `predicted_` that drifts.
   PosteriorMemory carried_;
 };
 

@@ -8,7 +8,6 @@
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/draw_pace.hpp"
 #include "armcmc/drift.hpp"
-#include "armcmc/drift_factor.hpp"
 #include "armcmc/finish_time.hpp"
 #include "armcmc/forgetting.hpp"
 #include "armcmc/laplace.hpp"
@@ -45,8 +44,6 @@ class SamplerWorkspace {
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;
   LaplaceScratch laplace;
-  DriftFactor drift_factor;  ///< Of the blocks of the memory that drift.
-  LeverTile levers;
   ThetaPair theta;
   PredictionTile prediction;
   QuadraticScratch quadratic;
@@ -79,8 +76,7 @@ class ModeSampler {
   static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock, at most.
   static constexpr int kMismatchDraws = 256;
   static constexpr double kLaplaceInflation = 1.2;  ///< Standard deviations of the Laplace components.
-  static constexpr double kStudentDof = 5.0;        ///< Tails of the Laplace components.
-  static constexpr double kNoiseDof = 2.0;          ///< And of the noise scale's memory, which may jump by itself.
+  static constexpr double kStudentDof = 5.0;  ///< Tails of the Laplace components, and of the noise scale's memory.
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
               const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise,
@@ -179,10 +175,6 @@ class ModeSampler {
   /// Laplace fit under a memory with these moments.
   void FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data, SamplerWorkspace* ws,
                 Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
-  /// What becomes of a fit of parameters that drift where they also do so during the pack, and the factor of the
-  /// likelihood of that.
-  void LetDrift(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws,
-                Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
   /// The Laplace fits of what rests and of what drifts: they may have come apart.
   void FitApart(const ModeData& data, const PosteriorMemory& previous,
                 SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
@@ -238,9 +230,9 @@ class ModeSampler {
   /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
   void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
-  /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law of log s with
-  /// kNoiseDof and a scale of at least kNoiseMemory. A level that doubles, ten such scales away, is then a jump of the
-  /// noise; with the tails of a Gaussian it would be one of all parameters.
+  /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law with a standard
+  /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not held to be
+  /// impossible.
   void AppendNoiseScale(int first, int count, const double* weight, MarginalTable* table, const ModeDraws& draws,
                         DensityBlock* block) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
@@ -255,7 +247,7 @@ class ModeSampler {
   ParameterSpace space_;
   NoiseModel noise_;
   QuadraticScore quadratic_;
-  MarginalTable normal_table_, student_table_, noise_table_;
+  MarginalTable normal_table_, student_table_;
   Transition transition_;
   Drift drift_;
   std::array<MarginalTable, kMaxParams> uniform_tables_;

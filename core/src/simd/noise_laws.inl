@@ -2,8 +2,7 @@
 //
 // Each takes errors of kGroup vectors of candidates, not yet divided by their scales, of which several advance together
 // so that the operations of one do not wait for each other, and is told after every kRun samples. Its result is
-// (log-likelihood - samples (constant + Constant() - log scale)) / Slope(). All are even in the error. AddWithScore()
-// also returns -(d log p / de) as NoiseModel::SquareWeight has it.
+// (log-likelihood - samples (constant + Constant() - log scale)) / Slope(). All are even in the error.
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
@@ -16,11 +15,6 @@ struct LaplaceSum {
   static double Slope(const NoiseSettings&) noexcept { return -1.0; }
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
   [[gnu::always_inline]] void Add(int g, V e) noexcept { sum[g] = sum[g] + Simd::Abs(e); }
-  [[gnu::always_inline]] V AddWithScore(int g, V e) noexcept {
-    Add(g, e);
-    const V z = e * inverse[g];
-    return inverse[g] * z / Simd::Max(Simd::Abs(z), Simd::Set(0.5));
-  }
   void EndRun() noexcept {}
   [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g]; }
 
@@ -34,10 +28,6 @@ struct GaussianSum {
   static double Slope(const NoiseSettings&) noexcept { return -0.5; }
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
   [[gnu::always_inline]] void Add(int g, V e) noexcept { sum[g] = Simd::Fma(e, e, sum[g]); }
-  [[gnu::always_inline]] V AddWithScore(int g, V e) noexcept {
-    Add(g, e);
-    return e * inverse[g] * inverse[g];
-  }
   void EndRun() noexcept {}
   [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g] * inverse[g]; }
 
@@ -72,23 +62,17 @@ struct LogProduct {
 /// log2 (1 + e^2 / nu). Factors are kept within what a run of them can hold.
 template <int kGroup>
 struct StudentSum : LogProduct<kGroup> {
-  StudentSum(const NoiseSettings& s, const V* inverse_scale) noexcept : slope(Simd::Set(s.dof + 1.0)) {
+  StudentSum(const NoiseSettings& s, const V* inverse_scale) noexcept {
     for (int g = 0; g < kGroup; ++g) rate[g] = inverse_scale[g] * inverse_scale[g] * Simd::Set(1.0 / s.dof);
   }
   static double Slope(const NoiseSettings& s) noexcept { return -0.5 * (s.dof + 1.0) * kLn2; }
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
-  [[gnu::always_inline]] void Add(int g, V e) noexcept { (void)AddFactor(g, e); }
-  [[gnu::always_inline]] V AddWithScore(int g, V e) noexcept { return e * rate[g] * slope / AddFactor(g, e); }
-
-  V slope;  ///< nu + 1
-  V rate[static_cast<unsigned>(kGroup)];
-
- private:
-  [[gnu::always_inline]] V AddFactor(int g, V e) noexcept {
+  [[gnu::always_inline]] void Add(int g, V e) noexcept {
     const V factor = Simd::Fma(e * e, rate[g], Simd::Set(1.0));
     this->product[g] = this->product[g] * Simd::Min(factor, Simd::Set(1e30));
-    return factor;
   }
+
+  V rate[static_cast<unsigned>(kGroup)];
 };
 
 /// log2 of p(e) = N(e; c) (w / c) [1 + r exp(-e^2/2 (1 - 1/c^2))], r = (1 - w) c / w, but for what every sample has
@@ -108,11 +92,11 @@ struct MixtureSum : LogProduct<kGroup> {
   static V Constant(const NoiseSettings& s) noexcept {
     return Simd::Set(kLn2) * Simd::Log2(Simd::Set(s.outlier_weight / s.outlier_scale));
   }
-  [[gnu::always_inline]] void Add(int g, V e) noexcept { (void)AddPower(g, e); }
-  [[gnu::always_inline]] V AddWithScore(int g, V e) noexcept {
-    const V power = AddPower(g, e);
-    const V rate = Simd::Fma(inlier_rate[g], power / (power + Simd::Set(1.0)), wide_rate[g]);
-    return Simd::Set(-2.0 * kLn2) * e * rate;
+  [[gnu::always_inline]] void Add(int g, V e) noexcept {
+    const V square = e * e;
+    squares[g] = squares[g] + square;
+    const V power = S::Exp2(Simd::Max(Simd::Fma(square, inlier_rate[g], log2_ratio), Simd::Set(-1000.0)));
+    this->product[g] = Simd::Fma(this->product[g], power, this->product[g]);
   }
   [[nodiscard]] V Result(int g) const noexcept {
     return Simd::Fma(wide_rate[g], squares[g], LogProduct<kGroup>::Result(g));
@@ -121,16 +105,6 @@ struct MixtureSum : LogProduct<kGroup> {
   V log2_ratio;
   V inlier_rate[static_cast<unsigned>(kGroup)], wide_rate[static_cast<unsigned>(kGroup)];
   V squares[static_cast<unsigned>(kGroup)] = {};
-
- private:
-  /// @return r exp(-e^2/2 (1 - 1/c^2))
-  [[gnu::always_inline]] V AddPower(int g, V e) noexcept {
-    const V square = e * e;
-    squares[g] = squares[g] + square;
-    const V power = S::Exp2(Simd::Max(Simd::Fma(square, inlier_rate[g], log2_ratio), Simd::Set(-1000.0)));
-    this->product[g] = Simd::Fma(this->product[g], power, this->product[g]);
-    return power;
-  }
 };
 
 /// fn.template operator()<Law>(), Law the class template instance of the kind for kGroup vectors.
