@@ -14,16 +14,9 @@
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
-namespace armcmc::ladder::climb_names_test {
+namespace armcmc::ladder::climbs::climb_names_test {
 namespace {
 
-using test::AxisSample;
-using test::ClimbWith;
-using test::kSome;
-using test::NamesOf;
-using test::RotaryData;
-using test::RotaryPlant;
-using test::Sign;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -165,4 +158,4 @@ TEST(Climb, AWeirIsAnOverflowAndNoMode) {
 }
 
 }  // namespace
-}  // namespace armcmc::ladder::climb_names_test
+}  // namespace armcmc::ladder::climbs::climb_names_test

@@ -15,15 +15,9 @@
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
-namespace armcmc::ladder::climb_no_name_test {
+namespace armcmc::ladder::climbs::climb_no_name_test {
 namespace {
 
-using test::AxisSample;
-using test::ClimbWith;
-using test::kSome;
-using test::NamesOf;
-using test::RotaryData;
-using test::RotaryPlant;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -167,4 +161,4 @@ TEST(Climb, WhatASpringIsOffFromItsFormulaIsNoCogging) {
 }
 
 }  // namespace
-}  // namespace armcmc::ladder::climb_no_name_test
+}  // namespace armcmc::ladder::climbs::climb_no_name_test

@@ -61,3 +61,16 @@ inline PlantDescription RotaryPlant() {
 }
 
 }  // namespace armcmc::test
+
+/// The tests that climb are in namespaces within this one, so that these names need no prefix there.
+namespace armcmc::ladder::climbs {
+
+using test::AxisSample;
+using test::ClimbWith;
+using test::kSome;
+using test::NamesOf;
+using test::RotaryData;
+using test::RotaryPlant;
+using test::Sign;
+
+}  // namespace armcmc::ladder::climbs

@@ -17,16 +17,9 @@
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
-namespace armcmc::ladder::climb_test {
+namespace armcmc::ladder::climbs::climb_test {
 namespace {
 
-using test::AxisSample;
-using test::ClimbWith;
-using test::kSome;
-using test::NamesOf;
-using test::RotaryData;
-using test::RotaryPlant;
-using test::Sign;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -150,4 +143,4 @@ TEST(Climb, AnOffsetThatComesAndGoesIsNotNoise) {
 }
 
 }  // namespace
-}  // namespace armcmc::ladder::climb_test
+}  // namespace armcmc::ladder::climbs::climb_test

@@ -12,12 +12,9 @@
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
-namespace armcmc::ladder::naming_test {
+namespace armcmc::ladder::climbs::naming_test {
 namespace {
 
-using test::AxisSample;
-using test::NamesOf;
-using test::Sign;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
@@ -98,4 +95,4 @@ TEST(Climb, NothingIsNamedThatLeavesMoreThanTheOutputVaries) {
 }
 
 }  // namespace
-}  // namespace armcmc::ladder::naming_test
+}  // namespace armcmc::ladder::climbs::naming_test

@@ -12,13 +12,9 @@
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
-namespace armcmc::ladder::rivals_test {
+namespace armcmc::ladder::climbs::rivals_test {
 namespace {
 
-using test::AxisSample;
-using test::ClimbWith;
-using test::NamesOf;
-using test::Sign;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -181,4 +177,4 @@ TEST(Climb, WhatDataKeptApartShowLittleOfIsNotWithdrawn) {
 }
 
 }  // namespace
-}  // namespace armcmc::ladder::rivals_test
+}  // namespace armcmc::ladder::climbs::rivals_test

@@ -7,12 +7,9 @@
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
-namespace armcmc::ladder::start_values_test {
+namespace armcmc::ladder::climbs::start_values_test {
 namespace {
 
-using test::AxisSample;
-using test::ClimbWith;
-using test::NamesOf;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -64,4 +61,4 @@ TEST(Climb, ARecordingThatBeginsInTheMiddleOfAMotionIsNoEffect) {
 }
 
 }  // namespace
-}  // namespace armcmc::ladder::start_values_test
+}  // namespace armcmc::ladder::climbs::start_values_test
