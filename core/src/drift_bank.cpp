@@ -72,7 +72,7 @@ void Drift::AddNewcomers(double share) noexcept {
   }
 }
 
-void Drift::Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
+void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
   Filter& f = *filter;
   const double speed = law.rate * law.rate;
   const double t = law.persistence;
@@ -108,7 +108,7 @@ void Drift::Predict(double elapsed_s) noexcept {
   AddNewcomers(1.0 - std::exp(-kSwitching * elapsed_s));
   for (std::size_t i = 0; i < predicted_.size(); ++i)
     if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
-      Pass(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);
+      Propagate(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);
 }
 
 void Drift::ExpectDrift() noexcept {

@@ -14,12 +14,12 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
                           const ModeData& data, const PredictiveMoments& predictive) noexcept {
   const int samples = data.num_samples;
   const double n = samples;
-  const double s2 = noise_scale * noise_scale;
+  const double noise_variance = noise_scale * noise_scale;
   double error = 0.0, deviance = 0.0, variance = 0.0, log_density = 0.0, log_expected = 0.0;
   for (int i = 0; i < samples; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double e = data.target[k] - predictive.mean[k] - noise.settings().mean;
-    const double v = predictive.variance[k] / s2;
+    const double v = predictive.variance[k] / noise_variance;
     error += e;
     deviance += noise.Deviance(e, noise_scale);
     variance += v;
@@ -39,7 +39,8 @@ Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& 
   switch (settings.index) {
     case MismatchIndex::kSignedMean:
       m.zeta = error / noise_scale;
-      m.allowance = kAllowance * std::sqrt(1.0 / (noise.information() * n) + predictive.variance_of_mean / s2);
+      m.allowance =
+          kAllowance * std::sqrt(1.0 / (noise.information() * n) + predictive.variance_of_mean / noise_variance);
       excess = std::fabs(m.zeta - settings.mu);
       break;
     case MismatchIndex::kRms: {

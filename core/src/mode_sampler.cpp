@@ -107,16 +107,16 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
     // Second pass over the tile: running first and second moments about the reference in p.mean.
     for (int n = 0; n < data.num_samples; ++n) {
       const auto in = static_cast<std::size_t>(n);
-      double s1 = 0.0;
-      double s2 = 0.0;
+      double sum = 0.0;
+      double squares = 0.0;
       const double reference = p.mean[in];
       for (std::size_t l = 0; l < kTileLanes; ++l) {
         const double d = ws->prediction.value[in][l] - reference;
-        s1 += d;
-        s2 += d * d;
+        sum += d;
+        squares += d * d;
       }
-      ws->group_weight[in] = (first == 0 ? 0.0 : ws->group_weight[in]) + s1;
-      p.variance[in] += s2;
+      ws->group_weight[in] = (first == 0 ? 0.0 : ws->group_weight[in]) + sum;
+      p.variance[in] += squares;
     }
   }
   for (int n = 0; n < data.num_samples; ++n) {

@@ -183,7 +183,7 @@ int RunLive(const Scenario& scenario, const PlantOptions& options) {
     throw std::runtime_error("the plant left the finite range: check the scenario's parameters");
   if (publisher.send_errors() > 0)
     throw std::runtime_error(std::to_string(publisher.send_errors()) +
-                             " messages could not be sent: did the multicast route go away?");
+                             " messages could not be sent: is the multicast route gone?");
   return 0;
 }
 

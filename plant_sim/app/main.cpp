@@ -85,7 +85,7 @@ void Hide(const CLI::App& app, const HideOptions& hide, std::uint64_t seed, Scen
   for (const char* option : {"--effect-strength", "--effect-gate"})
     if (!asked && app.count(option) > 0) throw InputError(std::string(option) + " needs --hide-effect");
   if (asked && hide.sealed_path.empty())
-    throw InputError("--hide-effect needs --sealed FILE: else nobody would ever know what was hidden");
+    throw InputError("--hide-effect needs --sealed FILE, which records the hidden effects");
   if (asked && !scenario->hidden.empty())
     throw InputError("--hide-effect: the scenario hides effects of its own ([[hidden_effect]])");
   if (!(hide.strength >= 1e-3 && hide.strength <= 1e3))

@@ -65,7 +65,7 @@ int PlayRuns(const SampleRuns& runs, const std::string& title, int samples_per_p
   if (log && log->errors() > 0)
     throw std::runtime_error(options.log_path + ": could not be written completely: is the disk full?");
   if (sender.errors() > 0)
-    throw std::runtime_error(Counted(sender.errors(), "pack") + " could not be sent: did the multicast route go away?");
+    throw std::runtime_error(Counted(sender.errors(), "pack") + " could not be sent: is the multicast route gone?");
   return 0;
 }
 

@@ -32,7 +32,7 @@ constexpr DegradedFlag kDegraded[] = {{estimator_status_t::DEGRADED_NO_FIFO, "no
                                       {estimator_status_t::DEGRADED_SHARED_CPU, "stages share one processor"},
                                       {estimator_status_t::DEGRADED_NO_WITNESS, "no witness thread"},
                                       {estimator_status_t::DEGRADED_CPUS_SLEEP, "processors sleep when idle"},
-                                      {estimator_status_t::DEGRADED_INJECTED, "faults on purpose"}};
+                                      {estimator_status_t::DEGRADED_INJECTED, "injected faults"}};
 
 std::vector<std::string> DegradedTexts(std::int32_t flags) {
   std::vector<std::string> texts;

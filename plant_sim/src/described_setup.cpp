@@ -38,7 +38,7 @@ void DescribedSimulation::MakeNames() {
   const auto add = [this](const std::string& key, const auto& list) {
     for (const auto& entry : list) {
       if (std::find(names_.begin(), names_.end(), entry.name) != names_.end() || entry.name == "t")
-        throw DescribedError(key + "." + entry.name, 0, '"' + entry.name + "\" is the name of something else already");
+        throw DescribedError(key + "." + entry.name, 0, '"' + entry.name + "\" is already the name of something else");
       names_.push_back(entry.name);
     }
   };

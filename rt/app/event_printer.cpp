@@ -54,7 +54,8 @@ std::string EventText(const rt::Event& event, const GapCheckNames& gap_check) {
     case EventKind::kPlantFirstSeen: return "plant is there, first pack " + a;
     case EventKind::kPlantSilent: return "plant is silent since pack " + a;
     case EventKind::kPlantBack: return "plant is back with pack " + a + " after " + Count(event.b, "silent period");
-    case EventKind::kPlantRestarted: return "plant was restarted (pack " + a + "); going on with what has been learnt";
+    case EventKind::kPlantRestarted:
+      return "plant was restarted (pack " + a + "); continuing from the current posterior";
     case EventKind::kPackRejected:
       return "pack rejected: " + std::string(rt::ToString(static_cast<rt::RejectCause>(event.a)));
     case EventKind::kPacksLost: return Count(event.a, "pack") + " lost before pack " + std::to_string(event.b);

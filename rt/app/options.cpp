@@ -79,7 +79,7 @@ Configuration Load(const Options& options) {
     CheckPath("--report", plant.report);
     CheckPath("--resume", plant.resume);
     if (!plant.resume.empty() && plant.estimator.method != Method::kArmcmc)
-      throw support::InputError("--resume: only method = \"armcmc\" keeps what it has learnt; leave --resume out");
+      throw support::InputError("--resume: only method = \"armcmc\" saves its state; omit --resume");
     if (!options.gap_log.empty()) plant.gap_log.directory = options.gap_log;
     // Files of several plants have a folder each.
     if (plants > 1 && !plant.gap_log.directory.empty())

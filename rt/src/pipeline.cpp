@@ -34,13 +34,13 @@ std::vector<std::unique_ptr<Lane>> MakeLanes(const RtSettings& settings, const s
     throw std::invalid_argument("a pipeline takes 1 to " + std::to_string(Pipeline::kMaxLanes) + " plants, not " +
                                 std::to_string(plants.size()));
   if (injection != nullptr && plants.size() > 1)
-    throw std::invalid_argument("faults on purpose are made with one plant, not " + std::to_string(plants.size()));
+    throw std::invalid_argument("fault injection needs exactly one plant, found " + std::to_string(plants.size()));
   std::set<std::string> prefixes;
   std::vector<std::unique_ptr<Lane>> lanes;
   for (const LanePlant& plant : plants) {
     if (!prefixes.insert(plant.prefix).second)
       throw std::invalid_argument("two plants have the prefix \"" + plant.prefix +
-                                  "\": their messages could not be told apart");
+                                  "\": their messages could not be distinguished");
     if (plant.prefix.size() > kMaxPrefixLength)
       throw std::invalid_argument("the prefix \"" + plant.prefix + "\" is longer than " +
                                   std::to_string(kMaxPrefixLength) + " characters");

@@ -260,7 +260,7 @@ TEST(DescribedSimulation, RefusesWhatItCannotSimulate) {
   plant.modes[0].law = "k*x + previous(f)";
   EXPECT_THAT(ErrorOf(plant, good), HasSubstr("law reads the output"));
   plant.modes[0].law = "k*y";
-  EXPECT_THAT(ErrorOf(plant, good), HasSubstr("law nothing is called \"y\""));
+  EXPECT_THAT(ErrorOf(plant, good), HasSubstr("law unknown name \"y\""));
   plant = Spring();
   plant.modes[0].target = "f*2";
   EXPECT_THAT(ErrorOf(plant, good), HasSubstr("target"));

@@ -40,6 +40,17 @@ TEST(Printable, LeavesUtf8AndEscapesWhatIsNone) {
   EXPECT_EQ(Escaped("\xF4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80") << "beyond Unicode";
 }
 
+TEST(Printable, EscapesMarksThatReorderOrBreakALine) {
+  EXPECT_EQ(Escaped("a\xE2\x80\xAE"
+                    "b"),
+            "a\\xe2\\x80\\xaeb")
+      << "right-to-left override";
+  EXPECT_EQ(Escaped("\xE2\x81\xA6"), "\\xe2\\x81\\xa6") << "isolate";
+  EXPECT_EQ(Escaped("\xE2\x80\xA8"), "\\xe2\\x80\\xa8") << "line separator";
+  EXPECT_EQ(Escaped("\xE2\x80\xA7\xE2\x80\xAF\xE2\x81\xAA\xE2\x80\x93"),
+            "\xE2\x80\xA7\xE2\x80\xAF\xE2\x81\xAA\xE2\x80\x93");
+}
+
 TEST(Printable, CutsBetweenCharacters) {
   EXPECT_EQ(Printable("abcdef", 6), "abcdef");
   EXPECT_EQ(Printable("äöüß", 2), "äö...");

@@ -236,7 +236,7 @@ TEST_F(RecordingFile, AWrongUnitIsAnErrorThatNamesIt) {
 TEST_F(RecordingFile, MistakesAreErrorsWithTheirPlace) {
   WriteCsv(1000);
   EXPECT_THAT(ErrorOf("[rows]\nform = 3\n"), testing::AllOf(HasSubstr("recording.toml:9"), HasSubstr("from")));
-  EXPECT_THAT(ErrorOf("", "[columns]\nt = \"time_ms\"\nQ = \"pos_mm\"\nF = \"volt\"\n"), HasSubstr("no signal"));
+  EXPECT_THAT(ErrorOf("", "[columns]\nt = \"time_ms\"\nQ = \"pos_mm\"\nF = \"volt\"\n"), HasSubstr("not a signal"));
   EXPECT_THAT(ErrorOf("", "[columns]\nt = \"time_ms\"\nq = \"pos_m\"\nF = \"volt\"\n"),
               HasSubstr("did you mean pos_mm"));
   EXPECT_THAT(ErrorOf("", "[columns]\nq = \"pos_mm\"\nF = \"volt\"\n"), HasSubstr("rate_hz"));

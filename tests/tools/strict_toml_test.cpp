@@ -83,7 +83,7 @@ TEST(StrictToml, RefusesNanAndInfinityEvenWithoutBounds) {
 TEST(StrictToml, WrongTypesAreNamed) {
   auto t = Toml("a = \"1\"\nb = 1\nc = [1]\n");
   EXPECT_THAT(MessageOf([&] { t.Number("a", 0, 0, 1); }), HasSubstr("expected a number"));
-  EXPECT_THAT(MessageOf([&] { t.Text("b", ""); }), HasSubstr("f.toml:2:5: b = 1: expected a text in quotes"));
+  EXPECT_THAT(MessageOf([&] { t.Text("b", ""); }), HasSubstr("f.toml:2:5: b = 1: expected a string in quotes"));
   EXPECT_THAT(MessageOf([&] { t.Boolean("b", false); }), HasSubstr("expected true or false"));
   EXPECT_THAT(MessageOf([&] { t.Table("b"); }), HasSubstr("expected a table, [b]"));
   EXPECT_THAT(MessageOf([&] { t.Tables("c"); }), HasSubstr("expected an array of tables, [[c]]"));

@@ -159,7 +159,7 @@ class Drift {
   void GrowOlder() noexcept ARMCMC_NONBLOCKING;
   void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
-  void Pass(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
+  void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// Probability of drift in `predicted_`, and its expected rate.
   void ExpectDrift() noexcept ARMCMC_NONBLOCKING;

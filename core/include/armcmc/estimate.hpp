@@ -41,7 +41,7 @@ struct ModeEstimate {
   double kish_ess = 0.0;  ///< Of the importance weights.
   double acceptance = 0.0, log_evidence = 0.0, p_changed = 0.0, noise_std = 0.0;
   double p_drifted = 0.0;  ///< Probability that the parameters drift; 1 - p_changed - p_drifted: that they stayed.
-  /// Expected speed of a reported quantity, in its unit per second, as believed before the pack.
+  /// Expected speed of a reported quantity, in its unit per second, before the pack.
   std::array<double, kMaxReported> drift_rate{};
   std::array<MarginalSummary, kMaxReported> marginal{};  ///< Order of PlantModel::reported().
 

@@ -48,11 +48,11 @@ bool BendPredictor::NextPressureWithEffects(const Input& input, const ShownEstim
   *p = state->p;
   const int valve = command != 0.0 ? (command > 0.0 ? 0 : 1) : state->valve;
   if (valve == 2) return true;  // nothing was ever opened
-  const auto told = static_cast<std::size_t>(valve);
-  if (!shown.known[told]) return false;
+  const auto commanded = static_cast<std::size_t>(valve);
+  if (!shown.known[commanded]) return false;
   double opening = command, spool = state->spool;
   if (flow_.lag().there()) {
-    const ValveLag::Spool<ScalarOps> law(shown.theta[told][static_cast<std::size_t>(flow_.lag().parameter)],
+    const ValveLag::Spool<ScalarOps> law(shown.theta[commanded][static_cast<std::size_t>(flow_.lag().parameter)],
                                          motion_.interval());
     spool = law.Next(spool, command);
     if (flow_.lag().ActsAt(input.t_s)) opening = spool;

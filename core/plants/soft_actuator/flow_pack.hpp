@@ -23,7 +23,7 @@ struct alignas(64) FlowPack final : CompiledPack {
   Row gauge{};              ///< p - p_atm as measured, Pa.
   Row pdot{};               ///< Pa/s
   bool head_moves = false;  ///< Some effect changes the pressures across the valves: `head` is not theirs.
-  Row head{};  ///< sign(dp) sqrt|dp| by the measured pressure, of the valve that is told to open; sqrt(Pa).
+  Row head{};  ///< sign(dp) sqrt|dp| by the measured pressure, of the valve that is commanded to open; sqrt(Pa).
 
   std::array<int, FlowEffects::kSize> amplitude{};
   std::array<Row, FlowEffects::kSize> gate{};  ///< 0 or 1.

@@ -82,12 +82,13 @@ bool FlowRows::Prepare(const DataPack& pack, CompiledPack* compiled) noexcept {
   for (int n = 0; n < pack.num_samples; ++n) {
     const auto& u = pack.u[Index(n)];
     const double t = pack.t_last_s - (pack.num_samples - 1 - n) * pack.dt;
-    const int told = SoftActuator::ModeOf(pack, n);
-    const double command = told == 0 ? u[0] : (told == 1 ? -u[1] : 0.0);
+    const int commanded = SoftActuator::ModeOf(pack, n);
+    const double command = commanded == 0 ? u[0] : (commanded == 1 ? -u[1] : 0.0);
     out->gauge[Index(n)] = u[2] - plan_.p_atm;
     out->pdot[Index(n)] = u[3];
-    out->head[Index(n)] =
-        told < kNone ? FlowLaw<ScalarOps>::Head({command, out->gauge[Index(n)], plan_.supply, 0.0}, told) : 0.0;
+    out->head[Index(n)] = commanded < kNone
+                              ? FlowLaw<ScalarOps>::Head({command, out->gauge[Index(n)], plan_.supply, 0.0}, commanded)
+                              : 0.0;
     for (std::size_t e = 0; e < plan_.term.size(); ++e)
       out->gate[e][Index(n)] = plan_.term[e].there() && plan_.term[e].ActsAt(t) ? 1.0 : 0.0;
     bool sure = true;
@@ -98,7 +99,7 @@ bool FlowRows::Prepare(const DataPack& pack, CompiledPack* compiled) noexcept {
       unsure_ = std::max(unsure_ - 1, 0);
     }
     command_[Index(rows_++)] = command;
-    out->mode[Index(n)] = static_cast<std::int8_t>(sure ? told : kNone);
+    out->mode[Index(n)] = static_cast<std::int8_t>(sure ? commanded : kNone);
   }
   out->history = history_;
   out->spool = before_;

@@ -18,8 +18,8 @@ inline constexpr std::string_view kRateUnit = "Pa/s";  ///< Of what is regressed
 
 /// Packs of the actuator as the scoring kernels read them, with what a slow valve remembers of the packs before.
 ///
-/// A sample belongs to the valve that is told to open. Behind a slow valve it belongs to none where the other one may
-/// still be open, and where the memory is too short to say how far it is: after a start and after a lost pack.
+/// A sample belongs to the valve that is commanded to open. Behind a slow valve it belongs to none where the other one
+/// may still be open, and where the memory is too short to say how far it is: after a start and after a lost pack.
 ///
 /// What is regressed is the pressure rate (see FlowLaw), whose noise is that of a sensor, so that the noise of the
 /// settings is in Pa/s; each valve has its own amplitudes.

@@ -165,7 +165,7 @@ class Checker {
     if (a.number || b.number) return a.number && !b.number ? b : a;
     if (!a.unit || !b.unit) return a.unit ? a : b;
     if (a.unit->Same(*b.unit)) return a;
-    std::string message = "units do not fit: " + std::string(what) + " are " + Name(a) + " and " + Name(b);
+    std::string message = "units do not match: " + std::string(what) + Name(a) + " and " + Name(b);
     if (a.unit->SameDimension(*b.unit)) message += ", which differ by a factor";
     throw Error(column, message);
   }
@@ -192,13 +192,13 @@ class Checker {
     const UnitState plain{Unit{}, false};
     switch (at.op) {
       case Op::kAdd:
-      case Op::kSubtract: return Alike(at.column, x, y, at.op == Op::kAdd ? "what is added" : "what is subtracted");
+      case Op::kSubtract: return Alike(at.column, x, y, at.op == Op::kAdd ? "the sum is of " : "the difference is of ");
       case Op::kMin:
-      case Op::kMax: return Alike(at.column, x, y, "what is compared");
+      case Op::kMax: return Alike(at.column, x, y, "the comparison is of ");
       case Op::kLess:
       case Op::kLessEqual:
       case Op::kEqual:
-      case Op::kNotEqual: (void)Alike(at.column, x, y, "what is compared"); return plain;
+      case Op::kNotEqual: (void)Alike(at.column, x, y, "the comparison is of "); return plain;
       case Op::kClamp:
         return Alike(at.column, Alike(at.column, x, y, "a value and its bound"), a[2].unit, "a value and its bound");
       case Op::kMultiply:

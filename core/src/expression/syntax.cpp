@@ -55,8 +55,8 @@ class Lexer {
       if (text_.substr(at_, 2) == sign) return Take(token, TokenKind::kSign, 2);
     if (std::string_view("+-*/^()<>,").find(c) != std::string_view::npos) return Take(token, TokenKind::kSign, 1);
     const bool printable = c > ' ' && c <= '~';
-    std::string what = printable ? std::string("'") + c + "' does not belong into an expression"
-                                 : std::string("a character that does not belong into an expression");
+    std::string what = printable ? std::string("'") + c + "' is not allowed in an expression"
+                                 : std::string("a character that is not allowed in an expression");
     if (c == '=') what += ": equality is ==";
     if (c == '&') what += ": write and";
     if (c == '|') what += ": write or, or abs(x) for the absolute value";

@@ -39,7 +39,7 @@ class FormChecker {
     CheckTexts();
     CheckSizes();
     for (const EffectParameter& p : form_.parameters)
-      if (!mentioned_.contains(p.name)) throw PlantError(key_ + "parameters." + p.name, 0, p.name + " is used nowhere");
+      if (!mentioned_.contains(p.name)) throw PlantError(key_ + "parameters." + p.name, 0, p.name + " is not used");
     if (std::none_of(form_.parameters.begin(), form_.parameters.end(), [](const auto& p) { return !p.none.empty(); }))
       throw PlantError(key_ + "parameters", 0, "no parameter has `none`, the value at which the effect is not there");
   }
@@ -50,7 +50,7 @@ class FormChecker {
                                       "noise", "mean", "low",  "high",   "range", "unit",   "form",  "name"};
     if (!expression::IsFreeName(name) || IsAmong(reserved, name))
       throw PlantError(key_ + key, 0, '"' + name + "\" cannot be a name in an effect");
-    if (IsAmong(names_, name)) throw PlantError(key_ + key, 0, '"' + name + "\" is the name of something else already");
+    if (IsAmong(names_, name)) throw PlantError(key_ + key, 0, '"' + name + "\" is already the name of something else");
     names_.push_back(name);
   }
 
@@ -197,7 +197,7 @@ void CheckEffect(const EffectEntry& entry) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   });
   if (!is_name || !expression::IsFreeName(entry.name))
-    throw PlantError("name", 0, "an effect's name has small letters, digits and _ only, a letter first");
+    throw PlantError("name", 0, "expected lower-case letters, digits and _, beginning with a letter");
   if (entry.title.empty()) throw PlantError("title", 0, "expected what the effect is, in words");
   if (entry.family.empty()) throw PlantError("family", 0, "expected the family of the effect");
   if (entry.forms.empty()) throw PlantError("formula", 0, "expected a formula");

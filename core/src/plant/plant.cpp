@@ -67,8 +67,7 @@ expression::Interval Bounds(const ParameterDescription& p) {
 }  // namespace
 
 Plant::Plant(PlantDescription description) : description_(std::move(description)) {
-  if (!IsPlantName(description_.name))
-    throw PlantError("name", 0, "a plant's name has small letters, digits and _ only");
+  if (!IsPlantName(description_.name)) throw PlantError("name", 0, "expected lower-case letters, digits and _");
   if (description_.name.size() > kMaxNameLength)
     throw PlantError("name", 0, "a plant's name has at most " + std::to_string(kMaxNameLength) + " characters");
   AddSignals();
@@ -102,10 +101,12 @@ void Plant::Identify() {
 void Plant::AddSymbol(const std::string& key, Symbol symbol) {
   if (symbol.name == "t") throw PlantError(key, 0, "t is the plant's time: choose another name");
   if (!expression::IsFreeName(symbol.name))
-    throw PlantError(key, 0,
-                     '"' + symbol.name + "\" cannot be a name in an expression: letters, digits and _, no function");
+    throw PlantError(
+        key, 0,
+        '"' + symbol.name +
+            "\" cannot be a name in an expression: expected letters, digits and _, and not the name of a function");
   if (scope_.Find(symbol.name) != nullptr)
-    throw PlantError(key, 0, '"' + symbol.name + "\" is the name of something else already");
+    throw PlantError(key, 0, '"' + symbol.name + "\" is already the name of something else");
   // Signals, parameters and states are there whether a text uses them or not.
   if (symbol.kind == SymbolKind::kSignal || symbol.kind == SymbolKind::kParameter || symbol.kind == SymbolKind::kState)
     (void)graph_.Symbol(symbol.kind, symbol.index);
@@ -239,7 +240,7 @@ Plant::Lowered Plant::Lower(const std::string& key, const std::string& text, con
     std::string message = error.what();
     for (const LetDescription& let : description_.lets)
       if (let.name == error.name())
-        message = '"' + let.name + "\" is defined further down in [let]: what is used stands above";
+        message = '"' + let.name + "\" is defined further down in [let]; move it above its first use";
     throw PlantError(key, error.column(), message, error.name(), scope_.Names());
   } catch (const expression::Error& error) {
     throw PlantError(key, error.column(), error.what());

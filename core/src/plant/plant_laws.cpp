@@ -127,8 +127,7 @@ void Plant::CheckParametersAreFelt() const {
   for (std::size_t d = 0; d < description_.parameters.size(); ++d) {
     const std::string& name = description_.parameters[d].name;
     const std::string key = "parameters." + name;
-    if (mentions_.count(name) == 0)
-      throw PlantError(key, 0, name + " is used nowhere: remove it, or use it in the law");
+    if (mentions_.count(name) == 0) throw PlantError(key, 0, name + " is not used: remove it, or use it in the law");
     const int node = NodeOf(SymbolKind::kParameter, static_cast<int>(d));
     std::vector<int> felt;
     for (const PlantMode& mode : modes_)

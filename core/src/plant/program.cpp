@@ -247,7 +247,8 @@ void PlantProgram::FillInfo() {
         throw PlantError("report." + reports[r].name + ".value", 1,
                          "differs from mode to mode, and there is one value to report");
     if (std::find(names_.begin(), names_.end(), reports[r].name) != names_.end())
-      throw PlantError("report." + reports[r].name, 0, '"' + reports[r].name + "\" is reported already: a parameter");
+      throw PlantError("report." + reports[r].name, 0,
+                       '"' + reports[r].name + "\" is already reported: it is a parameter");
     nodes.push_back(first);
     names_.push_back(reports[r].name);
     units_.push_back(reports[r].unit);

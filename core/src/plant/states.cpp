@@ -62,7 +62,7 @@ PlantStates::PlantStates(const Plant& plant, expression::Graph* graph, const std
     throw PlantError("states", 0,
                      "a step of their rates needs " + std::to_string(step_.num_scalars) +
                          " quantities of signals, and " + std::to_string(substeps_) +
-                         " steps a sample are more than there is room for: use fewer substeps");
+                         " steps a sample exceed the limit: use fewer substeps");
 }
 
 void PlantStates::CompileStep(Graph* graph, const std::vector<int>& rates,

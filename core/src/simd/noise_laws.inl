@@ -1,7 +1,7 @@
 // Laws of the measurement noise as sums over the samples; included by kernels.inl, once per instruction set.
 //
 // Each takes errors of kGroup vectors of candidates, not yet divided by their scales, of which several advance together
-// so that the operations of one do not wait for each other, and is told after every kRun samples. Its result is
+// so that the operations of one do not wait for each other, and is notified after every kRun samples. Its result is
 // (log-likelihood - samples (constant + Constant() - log scale)) / Slope(). All are even in the error.
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {

@@ -119,7 +119,7 @@ void Expression::Bind(Tree* node, const Names& names, const std::vector<bool>& h
   if (node->kind == Kind::kName) {
     const auto at = std::find(names.begin(), names.end(), node->text);
     if (at == names.end())
-      throw Error(node->column, "nothing is called \"" + node->text + "\" here; there are " + Listed(names));
+      throw Error(node->column, "unknown name \"" + node->text + "\"; known here: " + Listed(names));
     node->slot = static_cast<int>(at - names.begin());
   }
   if (HasMemory(*node)) {

@@ -167,7 +167,7 @@ class Parser {
     const Function* function = nullptr;
     for (const Function& known : kFunctions)
       if (known.name == tree->text) function = &known;
-    if (function == nullptr) throw Error(tree->column, "no function is called \"" + tree->text + '"');
+    if (function == nullptr) throw Error(tree->column, "unknown function \"" + tree->text + '"');
     Advance();
     while (token_ != ")") {
       if (!tree->arguments.empty()) Expect(",");

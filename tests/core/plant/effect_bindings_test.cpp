@@ -103,7 +103,7 @@ TEST(EffectErrors, OfACompositionSayWhichTextItGives) {
     FAIL() << "a velocity was added to a force";
   } catch (const PlantError& error) {
     EXPECT_THAT(error.what(), HasSubstr("friction in axis gives law = \"M*a + Fv*v + off + friction_Fc*sign(v)\""));
-    EXPECT_THAT(error.what(), HasSubstr("units do not fit"));
+    EXPECT_THAT(error.what(), HasSubstr("units do not match"));
   }
 }
 
@@ -147,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"UnknownSize", [](auto* f) { f->parameters[0].sd = "0.5*outptu"; }, "parameters.Fc.sd", 5, "is no size"},
         Wrong{"UnitThatIsNone", [](auto* f) { f->parameters[0].unit = "outptu"; }, "parameters.Fc.unit", 0, "outptu"},
         Wrong{"NothingSaysWhatNothingIs", [](auto* f) { f->parameters[0].none = ""; }, "parameters", 0, "`none`"},
-        Wrong{"UnusedParameter", [](auto* f) { f->terms[0].formula = "v"; }, "parameters.Fc", 0, "used nowhere"},
+        Wrong{"UnusedParameter", [](auto* f) { f->terms[0].formula = "v"; }, "parameters.Fc", 0, "not used"},
         Wrong{"ReservedName", [](auto* f) { f->needs[0].name = "law"; }, "needs.law", 0, "cannot be a name"},
         Wrong{"SameNameTwice", [](auto* f) { f->parameters[0].name = "v"; }, "parameters.v", 0, "already"},
         Wrong{"UnknownKind", [](auto* f) { f->needs[0].kind = "column"; }, "needs.v.kind", 0, "signal, state"},

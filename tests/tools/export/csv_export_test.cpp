@@ -24,6 +24,7 @@
 #include "support/paths.hpp"
 #include "support/process.hpp"
 #include "tools/csv_rows.hpp"
+#include "tools/export/contact_estimate.hpp"
 #include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
 
@@ -40,20 +41,9 @@ using Rows = std::vector<std::map<std::string, std::string>>;
 
 double Number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
 
-estimate_t ContactEstimate(std::int64_t seq) {
-  estimate_t e{};
-  e.seq = seq;
-  e.run_id = 77;
-  e.plant_kind = 1;
-  e.n_params = 3;
-  e.n_modes = 1;
-  const char* const names[] = {"K", "B", "p"};
-  const char* const units[] = {"N/m^p", "N s/m^(p+1)", "-"};
-  for (int i = 0; i < 3; ++i) {
-    std::memcpy(e.param_name[i], names[i], std::strlen(names[i]));
-    std::memcpy(e.param_unit[i], units[i], std::strlen(units[i]));
-    e.ar_map[i] = 0.1 * static_cast<double>(seq) + i;
-  }
+/// A mismatch that is infinite in the first pack, as where nothing is known before it.
+estimate_t EstimateWithMismatch(std::int64_t seq) {
+  estimate_t e = ContactEstimate(seq);
   e.draws_by_mode[0] = 1'000;
   e.zeta = seq == 1 ? std::numeric_limits<double>::infinity() : 0.5;
   return e;
@@ -129,7 +119,7 @@ TEST(Columns, AnActuatorWithEffectsIsFittedToThePressureRate) {
 TEST_F(CsvExport, EstimatesHaveTheNamesAndUnitsOfTheirParameters) {
   {
     LogWriter log(request_.log);
-    for (int k = 1; k <= 3; ++k) log.Write("EST_ESTIMATE", ContactEstimate(k));
+    for (int k = 1; k <= 3; ++k) log.Write("EST_ESTIMATE", EstimateWithMismatch(k));
   }
   const ExportSummary summary = Export();
   ASSERT_EQ(summary.tables.size(), 1u);
@@ -139,9 +129,9 @@ TEST_F(CsvExport, EstimatesHaveTheNamesAndUnitsOfTheirParameters) {
   EXPECT_EQ(TextOf(request_.out / "EST_ESTIMATE.csv").substr(0, 6), "t [s],");
   EXPECT_EQ(rows[0].at("t [s]"), "0");
   EXPECT_NEAR(Number(rows[2].at("t [s]")), 2e-6, 1e-12) << "the log writer counts microseconds";
-  EXPECT_EQ(Number(rows[2].at("ar_map.K [N m^-p]")), ContactEstimate(3).ar_map[0]) << "to the bit";
-  EXPECT_EQ(Number(rows[2].at("ar_map.B [N s m^-(p+1)]")), ContactEstimate(3).ar_map[1]);
-  EXPECT_EQ(Number(rows[2].at("ar_map.p")), ContactEstimate(3).ar_map[2]);
+  EXPECT_EQ(Number(rows[2].at("ar_map.K [N m^-p]")), EstimateWithMismatch(3).ar_map[0]) << "to the bit";
+  EXPECT_EQ(Number(rows[2].at("ar_map.B [N s m^-(p+1)]")), EstimateWithMismatch(3).ar_map[1]);
+  EXPECT_EQ(Number(rows[2].at("ar_map.p")), EstimateWithMismatch(3).ar_map[2]);
   EXPECT_EQ(rows[1].at("draws_by_mode.contact"), "1000");
   EXPECT_EQ(rows[0].at("zeta"), "inf");
   EXPECT_EQ(rows[0].at("run_id"), "77");
@@ -203,7 +193,7 @@ TEST_F(CsvExport, SamplesThatPacksShareHaveOneRow) {
 TEST_F(CsvExport, PosteriorsAreWideOrLong) {
   {
     LogWriter log(request_.log);
-    log.Write("EST_ESTIMATE", ContactEstimate(1));
+    log.Write("EST_ESTIMATE", EstimateWithMismatch(1));
     posterior_t p{};
     p.plant_kind = 1, p.n_params = 3, p.n_bins = 4, p.seq = 1;
     log.Write("EST_POSTERIOR", p);  // nothing is known yet
@@ -234,8 +224,8 @@ TEST_F(CsvExport, PosteriorsAreWideOrLong) {
 TEST_F(CsvExport, EveryPlantHasTablesOfItsOwn) {
   {
     LogWriter log(request_.log);
-    log.Write("A_EST_ESTIMATE", ContactEstimate(1));
-    estimate_t other = ContactEstimate(1);
+    log.Write("A_EST_ESTIMATE", EstimateWithMismatch(1));
+    estimate_t other = EstimateWithMismatch(1);
     std::memcpy(other.param_name[0], "k0", 2);
     log.Write("B_EST_ESTIMATE", other);
     log.Write("B_PLANT_PACK", ContactPack(1));
@@ -256,11 +246,11 @@ TEST_F(CsvExport, ForeignChannelsAndDamageAreCountedAndSaid) {
   {
     LogWriter log(request_.log);
     log.Write("PLANT_PACK", ContactPack(1));
-    log.Write("PLANT_PACK", ContactEstimate(1));  // another type on our channel
+    log.Write("PLANT_PACK", EstimateWithMismatch(1));  // another type on our channel
     log.Write("PLANT_PACK", ContactPack(2));
     log.WriteRaw("CAMERA", "no type of ours");
     log.WriteRaw("CAMERA", "x");
-    log.Write("EST_ESTIMATE", ContactEstimate(2));
+    log.Write("EST_ESTIMATE", EstimateWithMismatch(2));
   }
   std::string bytes = TextOf(request_.log);
   std::ofstream(request_.log, std::ios::binary) << bytes.substr(0, bytes.size() - 10);

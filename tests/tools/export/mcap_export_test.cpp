@@ -17,6 +17,7 @@
 #include "armcmc/posterior_t.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "tools/export/contact_estimate.hpp"
 #include "tools/export/mcap_bytes.hpp"
 #include "tools/file_text.hpp"
 #include "tools/replay_data.hpp"
@@ -33,22 +34,6 @@ using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 constexpr std::int64_t kStart = 1'700'000'000'000'000;  // us
-
-estimate_t Estimate(std::int64_t seq) {
-  estimate_t e{};
-  e.seq = seq;
-  e.plant_kind = 1;
-  e.n_params = 3;
-  e.n_modes = 1;
-  const char* const names[] = {"K", "B", "p"};
-  const char* const units[] = {"N/m^p", "N s/m^(p+1)", "-"};
-  for (int i = 0; i < 3; ++i) {
-    std::memcpy(e.param_name[i], names[i], std::strlen(names[i]));
-    std::memcpy(e.param_unit[i], units[i], std::strlen(units[i]));
-    e.ar_map[i] = 0.1 * static_cast<double>(seq) + i;
-  }
-  return e;
-}
 
 template <typename Message>
 void WriteAt(lcm::LogFile* log, std::int64_t utime, const std::string& channel, const Message& message) {
@@ -104,15 +89,15 @@ class McapExport : public ::testing::Test {
 TEST_F(McapExport, NamesAreNestedAndUnitsStandInTheSchema) {
   {
     LogWriter log(request_.log);
-    for (int k = 1; k <= 2; ++k) log.Write("EST_ESTIMATE", Estimate(k));
+    for (int k = 1; k <= 2; ++k) log.Write("EST_ESTIMATE", ContactEstimate(k));
   }
   EXPECT_EQ(Export().tables.at(0).rows, 2);
   const std::vector<McapMessageRead> messages = Messages("EST_ESTIMATE");
   ASSERT_EQ(messages.size(), 2u);
   const Json message = Json::parse(messages[1].data);
   EXPECT_EQ(message["seq"], 2);
-  EXPECT_EQ(message["ar_map"]["K"].get<double>(), Estimate(2).ar_map[0]) << "to the bit";
-  EXPECT_EQ(message["ar_map"]["p"].get<double>(), Estimate(2).ar_map[2]);
+  EXPECT_EQ(message["ar_map"]["K"].get<double>(), ContactEstimate(2).ar_map[0]) << "to the bit";
+  EXPECT_EQ(message["ar_map"]["p"].get<double>(), ContactEstimate(2).ar_map[2]);
   EXPECT_EQ(message["ar_map"].size(), 3u) << "entries past n_params are left out";
   EXPECT_EQ(messages[1].sequence, 1u);
   ASSERT_EQ(Schemas().size(), 1u);
@@ -128,7 +113,7 @@ TEST_F(McapExport, NamesAreNestedAndUnitsStandInTheSchema) {
 TEST_F(McapExport, HistogramsAreArrays) {
   {
     LogWriter log(request_.log);
-    log.Write("EST_ESTIMATE", Estimate(1));
+    log.Write("EST_ESTIMATE", ContactEstimate(1));
     posterior_t p{};
     p.plant_kind = 1, p.n_params = 3, p.n_bins = 4, p.known = 1, p.hi[1] = 4.0;
     p.density[1][3] = 0.75;
@@ -147,7 +132,7 @@ TEST_F(McapExport, HistogramsAreArrays) {
 TEST_F(McapExport, WhatIsNotFiniteIsNullAndTextIsText) {
   {
     LogWriter log(request_.log);
-    estimate_t e = Estimate(1);
+    estimate_t e = ContactEstimate(1);
     e.zeta = std::numeric_limits<double>::infinity();
     e.ar_map[1] = std::numeric_limits<double>::quiet_NaN();
     log.Write("EST_ESTIMATE", e);
@@ -167,7 +152,7 @@ TEST_F(McapExport, WhatIsNotFiniteIsNullAndTextIsText) {
 TEST_F(McapExport, TimesAreThoseOfTheLogAndOfTheMessageWhereTheyAgree) {
   {
     lcm::LogFile log(request_.log, "w");
-    estimate_t e = Estimate(1);
+    estimate_t e = ContactEstimate(1);
     e.utime = kStart - 1'234;
     WriteAt(&log, kStart, "EST_ESTIMATE", e);
     e.utime = 0;  // does not say
@@ -216,9 +201,9 @@ TEST_F(McapExport, ThereIsNoTimeBeforeZero) {
 TEST_F(McapExport, PlantsShareSchemasUnlessTheyDiffer) {
   {
     LogWriter log(request_.log);
-    log.Write("A_EST_ESTIMATE", Estimate(1));
-    log.Write("B_EST_ESTIMATE", Estimate(1));
-    estimate_t other = Estimate(1);
+    log.Write("A_EST_ESTIMATE", ContactEstimate(1));
+    log.Write("B_EST_ESTIMATE", ContactEstimate(1));
+    estimate_t other = ContactEstimate(1);
     std::memcpy(other.param_name[0], "k0", 2);
     log.Write("C_EST_ESTIMATE", other);
   }
@@ -234,9 +219,9 @@ TEST_F(McapExport, ForeignChannelsAndDamageAreCountedAndSaid) {
   {
     LogWriter log(request_.log);
     log.Write("PLANT_PACK", ContactPack(1));
-    log.Write("PLANT_PACK", Estimate(1));  // another type on our channel
+    log.Write("PLANT_PACK", ContactEstimate(1));  // another type on our channel
     log.WriteRaw("CAMERA", "no type of ours");
-    log.Write("EST_ESTIMATE", Estimate(2));
+    log.Write("EST_ESTIMATE", ContactEstimate(2));
   }
   const std::string bytes = test::TextOf(request_.log);
   std::ofstream(request_.log, std::ios::binary) << bytes.substr(0, bytes.size() - 10);

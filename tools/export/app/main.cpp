@@ -59,8 +59,8 @@ void Print(const ExportSummary& summary) {
   std::cout << table.ToString();
   for (const ChannelScan& channel : summary.foreign)
     std::cout << "foreign: " << support::Printable(channel.name) << ", " << channel.undecodable << " events of type "
-              << Hex(channel.fingerprint) << " (no released type of ours)\n";
-  if (summary.left_out > 0) std::cout << summary.left_out << " channels were not asked for\n";
+              << Hex(channel.fingerprint) << " (not a released type of this project)\n";
+  if (summary.left_out > 0) std::cout << summary.left_out << " channels were not requested\n";
   if (summary.damage.any()) std::cout << "the log is damaged: " << ToString(summary.damage) << '\n';
 }
 

@@ -37,7 +37,7 @@ std::string NewPlantText(const std::string& name, const std::filesystem::path& f
   const bool is_name = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   });
-  if (!is_name) throw support::InputError("NAME \"" + name + "\": expected small letters, digits and _");
+  if (!is_name) throw support::InputError("NAME \"" + name + "\": expected lower-case letters, digits and _");
   (void)support::ReadPlant(from);  // what is wrong there would be wrong here
   std::ifstream file(from, std::ios::binary);
   std::ostringstream text;

@@ -35,7 +35,8 @@ void RequireChannel(const std::filesystem::path& path, const std::string& channe
   }
   std::string names;
   for (const std::string& name : seen) names += (names.empty() ? "" : ", ") + name;
-  throw support::InputError(path.string() + ": holds no event of channel " + channel + " (--prefix?); it has " + names);
+  throw support::InputError(path.string() + ": contains no event of channel " + channel + " (--prefix?); it has " +
+                            names);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class Reader {
     if (result_.num_rows() == 0) throw InputError(path_.string() + ": holds no valid row of numbers");
     if (result_.bad.total() > result_.num_rows())
       throw InputError(path_.string() + ": " + std::to_string(result_.bad.total()) + " rows are bad and only " +
-                       std::to_string(result_.num_rows()) + " good; this is not skipping but guessing");
+                       std::to_string(result_.num_rows()) + " good, too few to continue");
     NoteBadRows();
     if (time_.start() != 0.0)
       result_.notes.push_back("times count from the first one, " + ExactNumber(time_.start()) + " s");

@@ -96,7 +96,7 @@ CsvColumns ReadCsvColumns(const std::filesystem::path& path, const std::vector<s
   if (columns.line.empty()) throw InputError(path.string() + ": holds no valid row of numbers");
   if (columns.skipped > columns.line.size())
     throw InputError(path.string() + ": " + std::to_string(columns.skipped) + " rows are bad and only " +
-                     std::to_string(columns.line.size()) + " good; this is not skipping but guessing");
+                     std::to_string(columns.line.size()) + " good, too few to continue");
   return columns;
 }
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "armcmc/support/csv.hpp"
+#include "description_tables.hpp"
 #include "placed_error.hpp"
 
 namespace armcmc::support {
@@ -70,19 +71,11 @@ EffectForm ReadForm(StrictTable* table) {
   form.reason = table->Text("reason", "");
   ReadNeeds(table->Table("needs"), &form);
   ReadNumbers(table, &form);
-  StrictTable lets = table->Table("let");
-  for (const std::string& name : lets.Keys()) form.lets.push_back({name, lets.RequiredText(name)});
+  form.lets = ReadLets(table);
   StrictTable states = table->Table("states");
   for (const std::string& name : states.Keys()) {
     StrictTable at = states.Table(name);
-    StateDescription state;
-    state.name = name;
-    state.unit = at.RequiredText("unit");
-    state.role = at.Text("role", "");
-    state.rate = at.RequiredText("rate");
-    state.start = at.RequiredText("start");
-    state.substeps = static_cast<int>(at.Integer("substeps", 1, 1, 100));
-    form.states.push_back(std::move(state));
+    form.states.push_back(ReadState(&at, name));
   }
   return form;
 }

@@ -43,7 +43,7 @@ EffectBinding Chosen(const PlantDescription& plant, const EffectEntry& entry, co
   if (fit.empty()) {
     const std::string why = WhyNot(plant, entry);
     throw ConfigError(where + request.name + " does not fit " + plant.name +
-                      (why.empty() ? " in the way that was asked for" : ": " + why));
+                      (why.empty() ? " as requested" : ": " + why));
   }
   std::string ways;
   for (const EffectBinding& binding : fit) ways += (ways.empty() ? "" : "; or ") + BindText(binding);

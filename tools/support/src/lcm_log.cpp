@@ -58,7 +58,7 @@ LcmLogReader::LcmLogReader(const std::filesystem::path& path) {
   bytes_ = {static_cast<const std::uint8_t*>(map), size};
   if (FindSync(0, size) == size) {
     munmap(map, size);
-    throw InputError(path.string() + ": holds no event of an LCM log");
+    throw InputError(path.string() + ": contains no event of an LCM log");
   }
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "armcmc/support/effect_request.hpp"
+#include "description_tables.hpp"
 #include "placed_error.hpp"
 
 namespace armcmc::support {
@@ -75,14 +76,8 @@ void ReadStates(StrictTable root, PlantDescription* plant) {
   StrictTable states = root.Table("states");
   for (const std::string& name : states.Keys()) {
     StrictTable at = states.Table(name);
-    StateDescription state;
-    state.name = name;
-    state.unit = at.RequiredText("unit");
-    state.role = at.Text("role", "");
-    state.rate = at.RequiredText("rate");
-    state.start = at.RequiredText("start");
+    StateDescription state = ReadState(&at, name);
     state.measured_by = at.Text("measured_by", "");
-    state.substeps = static_cast<int>(at.Integer("substeps", 1, 1, 100));
     plant->states.push_back(std::move(state));
   }
 }
@@ -98,8 +93,7 @@ PlantDescription Describe(StrictTable root) {
   ReadSignals(root, &plant);
   ReadConstants(root, &plant);
   ReadParameters(root, &plant);
-  StrictTable lets = root.Table("let");
-  for (const std::string& name : lets.Keys()) plant.lets.push_back({name, lets.RequiredText(name)});
+  plant.lets = ReadLets(&root);
   ReadModes(root, &plant);
   ReadStates(root, &plant);
   StrictTable reports = root.Table("report");

@@ -24,7 +24,13 @@ std::size_t ShownBytes(std::string_view text) {
   const bool is_control = first == 0xC2 && second < 0xA0;
   const bool is_overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
   const bool is_no_character = (first == 0xED && second >= 0xA0) || (first == 0xF4 && second >= 0x90);
-  return is_control || is_overlong || is_no_character ? 0 : size;
+  const unsigned last = ByteAt(text, size - 1);
+  // Separators of lines, and marks that reverse the direction of what follows: U+200E, U+200F, U+2028 to U+202E,
+  // U+2066 to U+2069.
+  const bool is_mark =
+      first == 0xE2 && ((second == 0x80 && (last == 0x8E || last == 0x8F || (last >= 0xA8 && last <= 0xAE))) ||
+                        (second == 0x81 && last >= 0xA6 && last <= 0xA9));
+  return is_control || is_overlong || is_no_character || is_mark ? 0 : size;
 }
 
 std::string Shown(std::string_view text, std::size_t most, std::string_view as_they_are = "") {

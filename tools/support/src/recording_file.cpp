@@ -41,7 +41,7 @@ std::map<std::string, ColumnSource> ReadSources(StrictTable columns, const std::
   std::map<std::string, ColumnSource> sources;
   for (const std::string& name : columns.Keys()) {
     if (name != "t" && std::find(signals.begin(), signals.end(), name) == signals.end())
-      throw columns.Error(name, "is no signal of the plant" + DidYouMean(name, signals));
+      throw columns.Error(name, "is not a signal of the plant" + DidYouMean(name, signals));
     sources[name] = ReadSource(columns, name);
   }
   return sources;
@@ -126,7 +126,7 @@ RecordingFile ReadRecordingFile(const std::filesystem::path& path, const std::ve
   file.filtered_with = derivatives.Texts("filtered_with");
   for (const std::string& name : file.filtered_with)
     if (std::find(signals.begin(), signals.end(), name) == signals.end())
-      throw derivatives.Error("filtered_with", name + " is no signal of the plant" + DidYouMean(name, signals));
+      throw derivatives.Error("filtered_with", name + " is not a signal of the plant" + DidYouMean(name, signals));
   ReadHeldOut(root, signals, &file);
   for (StrictTable& published : root.Tables("published")) {
     PublishedFigure figure;

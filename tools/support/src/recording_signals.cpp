@@ -272,7 +272,7 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
                           " times the derivative of " + plant.signals[s].derivative_of +
                           ": a unit is wrong, of one of them or of the time" + LikelyCause(agreement.factor));
       if (std::fabs(agreement.correlation) <= 0.8)
-        recording->notes.push_back(plant.signals[s].name + " as given is hardly the derivative of " +
+        recording->notes.push_back(plant.signals[s].name + " as given does not look like the derivative of " +
                                    plant.signals[s].derivative_of + " (correlation " +
                                    Significant(agreement.correlation, 2) + ")");
     }

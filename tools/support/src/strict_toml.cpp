@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -32,6 +33,7 @@ std::string ShortNumber(double value) {
 
 std::string ANumber(double lo, double hi) {
   if (std::isinf(lo) && std::isinf(hi)) return "a finite number";
+  if (std::isinf(hi) && lo == std::numeric_limits<double>::min()) return "a positive number";
   if (std::isinf(hi)) return "a number that is at least " + ShortNumber(lo);
   if (std::isinf(lo)) return "a number that is at most " + ShortNumber(hi);
   return "a number in [" + ShortNumber(lo) + ", " + ShortNumber(hi) + "]";
@@ -153,7 +155,7 @@ struct StrictTable::Node {
     return *value;
   }
   std::string CheckedText(std::string_view key, const toml::node& node) const {
-    if (!node.is_string()) throw Wrong(key, node, "a text in quotes");
+    if (!node.is_string()) throw Wrong(key, node, "a string in quotes");
     return *node.value<std::string>();
   }
   std::string CheckedChoice(std::string_view key, const toml::node& node,
@@ -294,7 +296,7 @@ void StrictTable::RequireSchema() {
 
 std::string StrictTable::RequiredText(std::string_view key) {
   const toml::node* node = node_->Ask(key);
-  if (node == nullptr) throw node_->Missing(key, "a text in quotes");
+  if (node == nullptr) throw node_->Missing(key, "a string in quotes");
   return node_->CheckedText(key, *node);
 }
 

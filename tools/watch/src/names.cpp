@@ -49,7 +49,7 @@ std::vector<std::string> DegradedWords(int flags) {
                            {S::DEGRADED_NO_MLOCK, "memory not locked"},
                            {S::DEGRADED_SHARED_CPU, "stages share one CPU"},
                            {S::DEGRADED_NO_WITNESS, "no witness"},
-                           {S::DEGRADED_INJECTED, "faults on purpose"},
+                           {S::DEGRADED_INJECTED, "injected faults"},
                            {S::DEGRADED_CPUS_SLEEP, "CPUs sleep when idle"}}});
 }
 

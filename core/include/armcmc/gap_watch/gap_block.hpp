@@ -12,7 +12,7 @@ namespace armcmc {
 inline constexpr int kGapBlockPacks = 120;  ///< Stretches of data in one block, each of a pack or of a few short ones.
 inline constexpr int kGapColumns = 8;       ///< Parameters of all modes together.
 inline constexpr int kGapSteady = 3;        ///< Each may be constant, change evenly over the block, and step once;
-inline constexpr int kGapDirections = 5;    ///< where drift is believed in, change as a cubic of time, too.
+inline constexpr int kGapDirections = 5;    ///< where drift is probable, change as a cubic of time, too.
 inline constexpr int kGapNuisance = kGapColumns * kGapDirections;
 
 /// Errors and sensitivities of one pack, in units of the noise.

@@ -25,7 +25,7 @@ namespace armcmc {
 /// Errors are looked at in blocks of kGapBlockPacks packs (shorter ones than kShortestPack are joined). A block is
 /// recorded, then, beside the recording of the next one, linearised twice: at the estimate, and along the trajectory of
 /// parameters that fits the block best (constant, plus even drift, plus one step where the estimator saw a change; plus
-/// a drift whose speed changes where the estimator believed in drift).
+/// a drift whose speed changes where the estimator found drift probable).
 /// What no such trajectory explains is scored by region (GapBlock) and turned into anytime-valid evidence
 /// (GapEvidence).
 ///

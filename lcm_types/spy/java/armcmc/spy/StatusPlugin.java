@@ -10,7 +10,7 @@ import javax.swing.JFrame;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** Opens the live panel of the estimator's health, which also shows what is believed about change. */
+/** Opens the live panel of the estimator's health, which also shows the probabilities of change. */
 public class StatusPlugin implements SpyPlugin {
   @Override public boolean canHandle(long fingerprint) {
     return fingerprint == estimator_status_t.LCM_FINGERPRINT || fingerprint == change_t.LCM_FINGERPRINT;

@@ -8,7 +8,7 @@
 
 namespace armcmc::plant_sim::expression {
 
-/// A text that is no expression, or has a name that nothing is called.
+/// The text is not an expression, or contains an unknown name.
 class Error : public std::runtime_error {
  public:
   Error(int column, const std::string& what) : std::runtime_error(what), column_(column) {}

@@ -35,8 +35,8 @@ struct ExportedTable {
 
 struct ExportSummary {
   std::vector<ExportedTable> tables;
-  std::vector<ChannelScan> foreign;  ///< Channels without a message of ours.
-  std::int64_t left_out = 0;         ///< Channels that were not asked for.
+  std::vector<ChannelScan> foreign;  ///< Channels without a message of this project.
+  std::int64_t left_out = 0;         ///< Channels that were not requested.
   support::LcmLogDamage damage;
 };
 

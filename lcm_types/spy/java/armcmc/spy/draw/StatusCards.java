@@ -126,7 +126,7 @@ final class StatusCards {
     change_t c = model.change();
     int mode = model.changeMode();
     String of = c == null || c.n_modes < 2 ? "" : ", " + Text.of(c.mode_name[mode]);
-    Rectangle inner = pen.card(r, "What is believed about change" + of);
+    Rectangle inner = pen.card(r, "Probability of change" + of);
     if (c == null || c.known[mode] == 0) {
       pen.left(c == null ? "no EST_CHANGE on the bus" : "nothing is known yet", Pen.NORMAL, Palette.MUTED, inner.x, inner.y + 18);
       return;

@@ -63,7 +63,7 @@ final class StatusCharts {
   }
 
   void change(Rectangle r) {
-    Rectangle inner = pen.card(r, "What the parameters did");
+    Rectangle inner = pen.card(r, "Changes of the parameters");
     Plot plot = plot(inner, Axis.linear(0, 1.05));
     plot.timeFrame("probability [-]");
     plot.line(model.persisted, now, Palette.MEASURED, Palette.LINE);

@@ -10,7 +10,7 @@ public final class Parameter {
     this.unit = unit;
   }
 
-  /** What it is called before an estimate told its name. */
+  /** Its name before the first estimate gives it one. */
   public static Parameter unnamed(int i) { return new Parameter("parameter " + (i + 1), ""); }
 
   public boolean hasUnit() { return !unit.isEmpty() && !unit.equals("-"); }

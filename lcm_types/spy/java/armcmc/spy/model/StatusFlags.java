@@ -15,7 +15,7 @@ public final class StatusFlags {
     add(words, flags, estimator_status_t.DEGRADED_NO_MLOCK, "memory not locked");
     add(words, flags, estimator_status_t.DEGRADED_SHARED_CPU, "stages share one CPU");
     add(words, flags, estimator_status_t.DEGRADED_NO_WITNESS, "no witness");
-    add(words, flags, estimator_status_t.DEGRADED_INJECTED, "faults on purpose");
+    add(words, flags, estimator_status_t.DEGRADED_INJECTED, "injected faults");
     add(words, flags, estimator_status_t.DEGRADED_CPUS_SLEEP, "CPUs sleep when idle");
     addUnknown(words, flags, 127);
     return words;

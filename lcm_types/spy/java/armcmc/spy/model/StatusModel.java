@@ -76,7 +76,7 @@ public final class StatusModel implements MessageSink {
   /** The newest estimate, or null. */
   public estimate_t estimate() { return estimate; }
 
-  /** What is believed about change, or null. */
+  /** Probabilities of change, or null. */
   public change_t change() { return change; }
 
   /** The mode of it whose parameters are reported. */
