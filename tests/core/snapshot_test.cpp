@@ -135,7 +135,7 @@ TEST(Snapshot, NoDamagedByteCanHarm) {
     }
     ++taken;
     if (taken % 20 != 0) continue;
-    victim.Step(Contact{}.Pack(14));  // under a sanitizer: whatever was believed does no harm
+    victim.Step(Contact{}.Pack(14));  // under a sanitizer: the state that was restored does no harm
     EXPECT_TRUE(std::isfinite(victim.estimate().y_rmse));
   }
   EXPECT_GT(refused, 0);

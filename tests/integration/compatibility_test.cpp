@@ -242,7 +242,9 @@ TEST_F(Version010, MessagesOfANewerTypeAreCountedAndTheRestIsRead) {
   std::ofstream(dir_ / "kept.lcm", std::ios::binary) << log;
   EXPECT_EQ(Exported("PLANT_PACK_V2").size(), 300u);
   const Outcome o = RunProgram(Program("armcmc-export"), {"--data", dir_ / "kept.lcm", "--out", dir_ / "tables"});
-  EXPECT_THAT(o.out, HasSubstr("foreign: EST_ESTIMATE, 3 events of type 2c3f65e4c6443a48 (no released type of ours)"));
+  EXPECT_THAT(
+      o.out,
+      HasSubstr("foreign: EST_ESTIMATE, 3 events of type 2c3f65e4c6443a48 (not a released type of this project)"));
   const Outcome replay = RunProgram(Program("armcmc-replay"), OfLog({"--out", dir_ / "estimates.csv"}));
   ASSERT_EQ(replay.code, 0) << replay.err;
   EXPECT_EQ(RowsOf(TextOf(dir_ / "estimates.csv")).size(), 3u);

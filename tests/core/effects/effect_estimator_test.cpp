@@ -120,7 +120,7 @@ TEST(EffectEstimator, FreeMotionTellsTheBiasAndKeepsTheRest) {
   EXPECT_NEAR(rig.estimate().y_shown[50], 0.7, 0.1);
 }
 
-/// Share of packs, once the drift may be known, whose 95 % interval holds a bias that drifts; what is believed at the
+/// Share of packs, once the drift may be known, whose 95 % interval holds a bias that drifts; the estimate at the
 /// end.
 struct DriftingBias {
   double inside = 0.0;

@@ -94,10 +94,12 @@ FitResult BestFit(const TrajectoryModel& model, const std::vector<std::uint8_t>&
   constexpr int kAlong = 3, kFirst = 2;
   const FitProblem problem = MakeFitProblem(model, rows);
   std::vector<std::unique_ptr<CoordinateSearch>> moved;
+  moved.reserve(starts.size());
   for (const Eigen::VectorXd& start : starts)
     moved.push_back(std::make_unique<CoordinateSearch>(problem, start, along_one ? kAlong : 0));
   RunAll(model, nullptr, moved);
   std::vector<std::unique_ptr<LevenbergMarquardt>> fits;
+  fits.reserve(moved.size());
   for (const std::unique_ptr<CoordinateSearch>& start : moved)
     fits.push_back(std::make_unique<LevenbergMarquardt>(problem, start->theta(), kFirst, LeastGain(problem)));
   RunAll(model, nullptr, fits);

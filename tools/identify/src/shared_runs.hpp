@@ -36,6 +36,7 @@ template <class Kind>
 void RunAll(const TrajectoryModel& model, const std::vector<Eigen::Index>* wanted,
             const std::vector<std::unique_ptr<Kind>>& all) {
   std::vector<PredictionUser*> users;
+  users.reserve(all.size());
   for (const std::unique_ptr<Kind>& one : all) users.push_back(one.get());
   RunTogether(model, wanted, users);
 }

@@ -135,7 +135,7 @@ public class ModelTest {
     c = Messages.change(2);
     c.mode = 1;
     model.accept(c, 1.1);
-    Check.that(Double.isNaN(model.drifted.last()), "of a mode that is not known nothing is believed");
+    Check.that(Double.isNaN(model.drifted.last()), "no probability for a mode that is not known");
   }
 
   public void everyFlagHasAWord() {
