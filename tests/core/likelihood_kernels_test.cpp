@@ -282,8 +282,8 @@ TEST(ScoreNearKernel, WithoutSeriesGivesTheBitsOfTheScoreOfTheFirstLanes) {
         const NoiseModel noise(Noise(kind));
         kernels->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, expected);
         kernels->score_near(kHuntCrossley, noise, b->data, nullptr, b->theta, log_scale, lanes, out);
-        EXPECT_EQ(std::memcmp(out, expected, static_cast<std::size_t>(lanes) * sizeof *out), 0)
-            << kernels->name << " law " << static_cast<int>(kind) << " lanes " << lanes;
+        for (int l = 0; l < lanes; ++l)
+          EXPECT_EQ(out[l], expected[l]) << kernels->name << " law " << static_cast<int>(kind) << " lanes " << lanes;
       }
 }
 
