@@ -173,7 +173,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const bool informed = last.valid && last.informed;  // otherwise the result is complete only after Remember()
   const Nanos fit_start = clock.Now();
   FitLaplace(data, previous, use_previous, stream_of(kStartStream), ws);
-  quadratic_.Prepare(data, use_previous ? fit_persisted_ : fit_fresh_, &ws->quadratic);
+  PrepareScore(data, use_previous, ws);
   const Nanos anchor_ns =
       (clock.Now() - fit_start) / laplace_fits_;  // an upper bound, since they start close to each other
   Proposal proposal;

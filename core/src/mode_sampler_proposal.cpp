@@ -19,6 +19,9 @@ constexpr double kMemoryFactor = 0.4;    // times lambda_q if it is settled: it 
 constexpr double kLaplaceShare = 0.15;   // share of the Laplace fits there, once the pilot's fit exists
 constexpr double kLackingShare = 0.5;    // the same if a part of the posterior has no block of the pilot
 constexpr int kDrawsPerAnchor = 16;      // in a round: with fewer per anchor, more anchors do not help
+constexpr double kNear = 2.0;            // standard deviations of the fit to this pack within which powers are series
+constexpr std::size_t kFarShare = 4;     // 1 / share of the candidates beyond that, for which series do not pay
+constexpr std::size_t kMostFar = Proposal::kMaxBatch / kFarShare;
 constexpr std::array<double, 6> kTempers{0.5, 0.25, 0.1, 0.03, 0.01, 0.003};  // powers of the weights
 constexpr FitOptions kPilotFit{
     .bandwidth_factor = 1.2, .tail_weight = 0.1, .tail_sd = 1.8, .inflation = 1.05, .shrink_to_normal = true};
@@ -259,6 +262,79 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
   return made;
 }
 
+void ModeSampler::PrepareScore(const ModeData& data, bool use_previous, SamplerWorkspace* ws) noexcept {
+  const Gaussian& fit = use_previous ? fit_persisted_ : fit_fresh_;
+  quadratic_.Prepare(data, fit, &ws->quadratic);
+  ws->powers.parameter = -1;
+  if (noise_.kind() == NoiseKind::kGaussian) return;
+  // Candidates are about as wide as the posterior of this pack alone: wider ones are few.
+  const ParamMatrix covariance = Inverse(fit_fresh_.precision);
+  std::array<double, kMaxParams> middle{};
+  std::array<double, kMaxParams> reach{};
+  for (int d = 0; d < space_.num_parameters; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    middle[i] = space_.Theta(d, fit.mean[d]);
+    reach[i] = kNear * space_.scale[i] * std::sqrt(covariance(d, d));
+  }
+  kernels_.expand_power(model_, data, middle.data(), reach.data(), &ws->powers);
+}
+
+bool ModeSampler::ScoreNear(const ModeData& data, int first, int end, double* const* u,
+                            SamplerWorkspace* ws) const noexcept {
+  const PowerSeries& powers = ws->powers;
+  const double* const exponent = u[powers.parameter];
+  std::array<std::int16_t, kMostFar + kTileLanes>
+      far;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before read
+  std::size_t num_far = 0;
+  const std::size_t most = std::min(kMostFar, static_cast<std::size_t>(end - first) / kFarShare);
+  for (int k = first; k < end; ++k) {
+    if (std::fabs(space_.Theta(powers.parameter, exponent[k]) - powers.middle) <= powers.reach) continue;
+    if (num_far == most) return false;
+    far[num_far++] = static_cast<std::int16_t>(k - first);
+  }
+  alignas(64) std::array<double, kTileLanes> log_scale;
+  for (int k = first; k < end; k += kTileLanes) {
+    kernels_.to_physical(space_, u, k, ws->theta.data(), log_scale.data());
+    kernels_.score_near(model_, noise_, data, &powers, ws->theta[0], log_scale.data(), kTileLanes,
+                        &ws->log_likelihood[static_cast<std::size_t>(k)]);
+  }
+  // Those out of reach once more, side by side.
+  for (std::size_t begin = 0; begin < num_far; begin += kTileLanes) {
+    alignas(64) std::array<std::array<double, kTileLanes>, kMaxParams> few;
+    std::array<const double*, kMaxParams> rows{};
+    const auto candidate = [&](std::size_t lane) noexcept {
+      return static_cast<std::size_t>(first + far[std::min(begin + lane, num_far - 1)]);
+    };
+    for (std::size_t d = 0; d < static_cast<std::size_t>(space_.dim); ++d) {
+      for (std::size_t lane = 0; lane < kTileLanes; ++lane) few[d][lane] = u[d][candidate(lane)];
+      rows[d] = few[d].data();
+    }
+    alignas(64) std::array<double, kTileLanes> score;
+    kernels_.to_physical(space_, rows.data(), 0, ws->theta.data(), log_scale.data());
+    const std::size_t lanes = std::min<std::size_t>(num_far - begin, kTileLanes);
+    kernels_.score_near(model_, noise_, data, nullptr, ws->theta[0], log_scale.data(), static_cast<int>(lanes),
+                        score.data());
+    for (std::size_t lane = 0; lane < lanes; ++lane) ws->log_likelihood[candidate(lane)] = score[lane];
+  }
+  return true;
+}
+
+void ModeSampler::ScoreAll(const ModeData& data, int first, int end, double* const* u,
+                           SamplerWorkspace* ws) const noexcept {
+  alignas(64) std::array<double, 2 * kTileLanes> log_scale;
+  for (int k = first; k < end; k += 2 * kTileLanes) {
+    const bool two = k + kTileLanes < end;
+    kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
+    if (two) kernels_.to_physical(space_, u, k + kTileLanes, &ws->theta[1], log_scale.data() + kTileLanes);
+    double* const out_k = &ws->log_likelihood[static_cast<std::size_t>(k)];
+    if (two) {
+      kernels_.score_two(model_, noise_, data, ws->theta, log_scale.data(), &ws->prediction, out_k);
+    } else {
+      kernels_.score(model_, noise_, data, ws->theta[0], log_scale.data(), &ws->prediction, out_k);
+    }
+  }
+}
+
 void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& previous, const ModeData& data,
                                int first, int count, const RandomStream& stream, SamplerWorkspace* ws,
                                ModeDraws* out) const noexcept {
@@ -273,19 +349,11 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
   for (int k = last; k < end; ++k)  // lanes past the end repeat the last candidate; nothing reads their results
     for (int d = 0; d < out->dim; ++d) u[d][k] = u[d][last - 1];
 
-  alignas(64) std::array<double, 2 * kTileLanes> log_scale;
-  for (int k = first; k < end && quadratic_.ready(); k += kTileLanes)
-    quadratic_.Score(u, k, &ws->log_likelihood[static_cast<std::size_t>(k)]);
-  for (int k = first; k < end && !quadratic_.ready(); k += 2 * kTileLanes) {
-    const bool two = k + kTileLanes < end;
-    kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
-    if (two) kernels_.to_physical(space_, u, k + kTileLanes, &ws->theta[1], log_scale.data() + kTileLanes);
-    double* const out_k = &ws->log_likelihood[static_cast<std::size_t>(k)];
-    if (two) {
-      kernels_.score_two(model_, noise_, data, ws->theta, log_scale.data(), &ws->prediction, out_k);
-    } else {
-      kernels_.score(model_, noise_, data, ws->theta[0], log_scale.data(), &ws->prediction, out_k);
-    }
+  if (quadratic_.ready()) {
+    for (int k = first; k < end; k += kTileLanes)
+      quadratic_.Score(u, k, &ws->log_likelihood[static_cast<std::size_t>(k)]);
+  } else if (ws->powers.parameter < 0 || !ScoreNear(data, first, end, u, ws)) {
+    ScoreAll(data, first, end, u, ws);
   }
   for (int k = first; k < end; k += kTileLanes) {
     const auto at = static_cast<std::size_t>(k);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -226,6 +227,90 @@ TEST(ScoreKernel, EqualsPredictionAndLogLikelihood) {
           ASSERT_NEAR(out[l], expected[l], 2e-10 * std::fabs(expected[l]))
               << kernels->name << " law " << static_cast<int>(kind) << " weighted " << weighted;
       }
+}
+
+/// Exponents within `reach` of 1.75, and their powers.
+std::unique_ptr<Batch> NearBatch(double reach, const simd::Kernels& kernels, PowerSeries* series) {
+  auto b = ContactBatch(10);
+  std::mt19937_64 g(11);
+  for (double& p : b->theta.value[2]) p = 1.75 + Uniform(g, -reach, reach);
+  b->theta.value[2][0] = 1.75 - reach;
+  b->theta.value[2][1] = 1.75 + reach;
+  b->data.weight.fill(1.0);
+  std::array<double, kMaxParams> middle{}, reaches{};
+  middle.fill(1.75);
+  reaches.fill(reach);
+  kernels.expand_power(kHuntCrossley, b->data, middle.data(), reaches.data(), series);
+  return b;
+}
+
+TEST(ScoreNearKernel, EqualsPredictionAndLogLikelihood) {
+  const auto series = std::make_unique<PowerSeries>();
+  std::array<int, PowerSeries::kMost + 1> runs{};
+  for (const simd::Kernels* kernels : test::RunnableKernels())
+    for (const double reach : {0.0005, 0.003, 0.01, 0.03, 0.06, 0.1, 0.5})
+      for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture})
+        for (const bool weighted : {false, true}) {
+          const auto b = NearBatch(reach, *kernels, series.get());
+          ASSERT_EQ(series->parameter, 2);
+          for (int run = 0; run * PowerSeries::kRun < b->data.num_samples; ++run)
+            ++runs[static_cast<std::size_t>(series->degree[static_cast<std::size_t>(run)])];
+          for (std::size_t n = 0; n < kMaxPackSamples; ++n)
+            b->data.weight[n] = weighted ? std::exp(-0.01 * static_cast<double>(n)) : 1.0;
+          b->data.weighted = weighted;
+          alignas(64) double log_scale[kTileLanes], expected[kTileLanes], out[kTileLanes];
+          for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -3.0 + 0.1 * l;
+          const NoiseModel noise(Noise(kind));
+          kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
+          kernels->log_likelihood(noise, b->data, b->tile, log_scale, expected);
+          kernels->score_near(kHuntCrossley, noise, b->data, series.get(), b->theta, log_scale, kTileLanes, out);
+          for (std::size_t l = 0; l < kTileLanes; ++l)
+            ASSERT_NEAR(out[l], expected[l], 2e-10 * std::fabs(expected[l]))
+                << kernels->name << " law " << static_cast<int>(kind) << " reach " << reach << " lane " << l;
+        }
+  for (int degree = PowerSeries::kLeast; degree <= PowerSeries::kMost; ++degree)
+    EXPECT_GT(runs[static_cast<std::size_t>(degree)], 0) << degree;
+  EXPECT_GT(runs[0], 0);
+}
+
+TEST(ScoreNearKernel, WithoutSeriesGivesTheBitsOfTheScoreOfTheFirstLanes) {
+  for (const simd::Kernels* kernels : test::RunnableKernels())
+    for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture})
+      for (const int lanes : {1, 9, 16, 17, kTileLanes}) {
+        const auto b = ContactBatch(12);
+        alignas(64) double log_scale[kTileLanes] = {}, expected[kTileLanes], out[kTileLanes];
+        const NoiseModel noise(Noise(kind));
+        kernels->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, expected);
+        kernels->score_near(kHuntCrossley, noise, b->data, nullptr, b->theta, log_scale, lanes, out);
+        for (int l = 0; l < lanes; ++l)
+          EXPECT_EQ(out[l], expected[l]) << kernels->name << " law " << static_cast<int>(kind) << " lanes " << lanes;
+      }
+}
+
+TEST(ScoreNearKernel, FusedInstructionSetsGiveTheSameBits) {
+  const auto sets = test::FusedKernels();
+  if (sets.size() < 2) GTEST_SKIP() << "this CPU runs one fused instruction set only";
+  const auto series_a = std::make_unique<PowerSeries>(), series_b = std::make_unique<PowerSeries>();
+  for (const double reach : {0.003, 0.03, 0.1})
+    for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture}) {
+      const auto a = NearBatch(reach, *sets[0], series_a.get()), b = NearBatch(reach, *sets[1], series_b.get());
+      alignas(64) double log_scale[kTileLanes] = {}, out_a[kTileLanes], out_b[kTileLanes];
+      const NoiseModel noise(Noise(kind));
+      sets[0]->score_near(kHuntCrossley, noise, a->data, series_a.get(), a->theta, log_scale, kTileLanes, out_a);
+      sets[1]->score_near(kHuntCrossley, noise, b->data, series_b.get(), b->theta, log_scale, kTileLanes, out_b);
+      EXPECT_EQ(std::memcmp(out_a, out_b, sizeof out_a), 0) << static_cast<int>(kind) << " reach " << reach;
+    }
+}
+
+TEST(PowerSeries, IsOfNoUseForALawWithoutPowers) {
+  const auto b = ActuatorBatch(3);
+  const auto series = std::make_unique<PowerSeries>();
+  const std::array<double, kMaxParams> numbers{};
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    series->parameter = 0;
+    kernels->expand_power(kSoftActuator, b->data, numbers.data(), numbers.data(), series.get());
+    EXPECT_EQ(series->parameter, -1) << kernels->name;
+  }
 }
 
 TEST(ScoreKernel, MovesALogLikelihoodByLessThanAMillionth) {

@@ -17,6 +17,7 @@
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/posterior_memory.hpp"
+#include "armcmc/power_series.hpp"
 #include "armcmc/proposal.hpp"
 #include "armcmc/quadratic_score.hpp"
 #include "armcmc/ridge.hpp"
@@ -47,6 +48,7 @@ class SamplerWorkspace {
   ThetaPair theta;
   PredictionTile prediction;
   QuadraticScratch quadratic;
+  PowerSeries powers;
   std::array<std::vector<double>, kMaxParams> mismatch_u;
   PredictiveMoments predictive;
   std::array<std::array<MarginalTable, kMaxParams>, PosteriorMemory::kMaxBlocks> pilot_tables;
@@ -235,6 +237,14 @@ class ModeSampler {
   /// impossible.
   void AppendNoiseScale(int first, int count, const double* weight, MarginalTable* table, const ModeDraws& draws,
                         DensityBlock* block) const noexcept ARMCMC_NONBLOCKING;
+  /// What scores most candidates of this pack in less time, if there is such a thing.
+  void PrepareScore(const ModeData& data, bool use_previous, SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
+  /// Log-likelihood of the candidates [first, end), by powers from ws->powers. False, and nothing is scored, if too
+  /// many are out of their reach.
+  bool ScoreNear(const ModeData& data, int first, int end, double* const* u,
+                 SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
+  void ScoreAll(const ModeData& data, int first, int end, double* const* u,
+                SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] int DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
 
   ModeSampler(const ModeSampler&) = delete;  // transition_ refers to other members

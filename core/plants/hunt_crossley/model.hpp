@@ -72,6 +72,10 @@ struct HuntCrossley {
     return power * S::Fma(damping, v, stiffness);
   }
 
+  static constexpr int kExponent = 2;  ///< Parameter that is the exponent of the law's only power.
+  /// log2 of the base of that power at sample n.
+  static double Log2(const ModeData& data, int n) noexcept { return data.feature[0][static_cast<std::size_t>(n)]; }
+
   /// Largest |log2| of a base that S::Power is asked for at sample n.
   static double LargestLog2(const ModeData& data, int n) noexcept {
     return std::fabs(data.feature[0][static_cast<std::size_t>(n)]);
@@ -82,6 +86,14 @@ struct HuntCrossley {
   static typename S::V AddTo(typename S::V base, const typename S::V* theta, const ModeData& data, int n) noexcept {
     const auto in = static_cast<std::size_t>(n);
     return AddLaw<S>(base, theta[0], theta[1], theta[2], data.feature[0][in], data.feature[1][in]);
+  }
+
+  /// AddTo() where the power is known.
+  template <class S>
+  static typename S::V AddPower(typename S::V base, typename S::V power, const typename S::V* theta,
+                                const ModeData& data, int n) noexcept {
+    const auto in = static_cast<std::size_t>(n);
+    return S::Fma(power, S::Fma(theta[1], S::Set(data.feature[1][in]), theta[0]), base);
   }
 
   template <class S>

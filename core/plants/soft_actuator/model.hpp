@@ -79,6 +79,7 @@ struct SoftActuator {
     return S::Fma(theta[1], S::Set(data.feature[1][in]), theta[0] * S::Set(data.feature[0][in]));
   }
 
+  static constexpr int kExponent = -1;  ///< No parameter is an exponent.
   static double LargestLog2(const ModeData&, int) noexcept { return 0.0; }
 
   /// base + Predict: what the scoring loop asks for.

@@ -9,6 +9,7 @@
 #include "armcmc/nonblocking.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/plant/state_run.hpp"
+#include "armcmc/power_series.hpp"
 #include "armcmc/quadratic_form.hpp"
 
 namespace armcmc::simd {
@@ -66,6 +67,18 @@ struct Kernels {
   /// the second tile follow those of the first.
   void (*score_two)(int model, const NoiseModel& noise, const ModeData& data, const ThetaPair& theta,
                     const double* log_scale, PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// The power of a compiled law without effects at the samples of `data`, about middle[d] for exponents within
+  /// reach[d], d the parameter that is the exponent.
+  void (*expand_power)(int model, const ModeData& data, const double* middle, const double* reach,
+                       PowerSeries* series) noexcept ARMCMC_NONBLOCKING;
+
+  /// score() of the first `lanes` candidates, where a PowerSeries of the law has its parameter and the noise is not
+  /// Gaussian, with powers from the series; what stands for a candidate whose exponent is out of reach is of no use.
+  /// series null: the bits of score(). The other lanes of out hold nothing of use.
+  void (*score_near)(int model, const NoiseModel& noise, const ModeData& data, const PowerSeries* series,
+                     const ThetaTile& theta, const double* log_scale, int lanes,
+                     double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// Sums over the samples that make a QuadraticForm, for each lane: of law errors and of what the law changes by from
   /// prediction[0] to prediction[1 + i], weighted, in the form's order and with its factors.

@@ -30,16 +30,20 @@ struct PlantKernels;
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-template <class Model>
+/// Of the first kSize candidates. Several vectors advance together, as in SumSquares().
+template <class Model, int kSize>
 void PredictTile(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   constexpr auto kDim = static_cast<unsigned>(Model::kInfo.num_parameters);
-  for (int v = 0; v < kVectors; ++v) {
-    V parameters[static_cast<unsigned>(kDim)];
-    for (unsigned d = 0; d < kDim; ++d)
-      parameters[d] = Simd::Load(&theta.value[d][static_cast<unsigned>(v * Simd::kLanes)]);
+  constexpr int kGroup = kSize / Simd::kLanes < 4 ? kSize / Simd::kLanes : 4;
+  for (int v0 = 0; v0 < kSize / Simd::kLanes; v0 += kGroup) {
+    V parameters[static_cast<unsigned>(kGroup)][kDim];
+    for (int g = 0; g < kGroup; ++g)
+      for (unsigned d = 0; d < kDim; ++d)
+        parameters[g][d] = Simd::Load(&theta.value[d][static_cast<unsigned>((v0 + g) * Simd::kLanes)]);
     for (int n = 0; n < data.num_samples; ++n)
-      Simd::Store(&tile->value[static_cast<unsigned>(n)][static_cast<unsigned>(v * Simd::kLanes)],
-                  Model::template Predict<Simd>(parameters, data, n));
+      for (int g = 0; g < kGroup; ++g)
+        Simd::Store(&tile->value[static_cast<unsigned>(n)][static_cast<unsigned>((v0 + g) * Simd::kLanes)],
+                    Model::template Predict<Simd>(parameters[g], data, n));
   }
 }
 
@@ -50,9 +54,16 @@ template <class... Models>
 struct PlantTable<ModelList<Models...>> {
   using PredictFn = void (*)(const ModeData&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
   using SquaresFn = SumSquaresFn (*)(const ModeData&) noexcept ARMCMC_NONBLOCKING;
-  static constexpr PredictFn kPlain[] = {&PredictTile<Models>...};
+  static constexpr PredictFn kPlain[] = {&PredictTile<Models, kTileLanes>...};
+  static constexpr PredictFn kPlainHalf[] = {&PredictTile<Models, kTileLanes / 2>...};
   static constexpr SumSquaresFn kPlainSquares[] = {&SumSquaresPlain<Models>...};
   static constexpr ScoreLawFn kPlainScoreLaw[] = {&ScoreLawPlain<Models>...};
+  using ExpandPowerFn = void (*)(const ModeData&, const double*, const double*,
+                                 PowerSeries*) noexcept ARMCMC_NONBLOCKING;
+  using ScoreNearFn = void (*)(const PowerSeries*, const ModeData&, const ThetaTile&, const NoiseModel&, const double*,
+                               int, double*) noexcept ARMCMC_NONBLOCKING;
+  static constexpr ExpandPowerFn kExpandPower[] = {&ExpandPowerPlain<Models>...};
+  static constexpr ScoreNearFn kScoreNear[] = {&ScoreNearPlain<Models>...};
   static constexpr PredictFn kPredict[] = {&PlantKernels<Models>::Predict...};
   static constexpr SquaresFn kSquares[] = {&PlantKernels<Models>::Squares...};
 };
@@ -71,6 +82,8 @@ void PredictHalf(int model, const ModeData& data, const ThetaTile& theta,
                  PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   if (data.tape != nullptr) {
     PredictTape<kTileLanes / 2>(data, theta, tile);
+  } else if (data.compiled == nullptr) {
+    PlantTable<AllModels>::kPlainHalf[model](data, theta, tile);
   } else {
     Predict(model, data, theta, tile);
   }

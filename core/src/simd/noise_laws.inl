@@ -14,7 +14,9 @@ struct LaplaceSum {
   LaplaceSum(const NoiseSettings&, const V* inverse_scale) noexcept { std::copy_n(inverse_scale, kGroup, inverse); }
   static double Slope(const NoiseSettings&) noexcept { return -1.0; }
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
-  [[gnu::always_inline]] void Add(int g, V e) noexcept { sum[g] = sum[g] + Simd::Abs(e); }
+  [[gnu::always_inline]] void Add(const V* e) noexcept {
+    for (int g = 0; g < kGroup; ++g) sum[g] = sum[g] + Simd::Abs(e[g]);
+  }
   void EndRun() noexcept {}
   [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g]; }
 
@@ -27,7 +29,9 @@ struct GaussianSum {
   GaussianSum(const NoiseSettings&, const V* inverse_scale) noexcept { std::copy_n(inverse_scale, kGroup, inverse); }
   static double Slope(const NoiseSettings&) noexcept { return -0.5; }
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
-  [[gnu::always_inline]] void Add(int g, V e) noexcept { sum[g] = Simd::Fma(e, e, sum[g]); }
+  [[gnu::always_inline]] void Add(const V* e) noexcept {
+    for (int g = 0; g < kGroup; ++g) sum[g] = Simd::Fma(e[g], e[g], sum[g]);
+  }
   void EndRun() noexcept {}
   [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g] * inverse[g]; }
 
@@ -67,16 +71,19 @@ struct StudentSum : LogProduct<kGroup> {
   }
   static double Slope(const NoiseSettings& s) noexcept { return -0.5 * (s.dof + 1.0) * kLn2; }
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
-  [[gnu::always_inline]] void Add(int g, V e) noexcept {
-    const V factor = Simd::Fma(e * e, rate[g], Simd::Set(1.0));
-    this->product[g] = this->product[g] * Simd::Min(factor, Simd::Set(1e30));
+  [[gnu::always_inline]] void Add(const V* e) noexcept {
+    V factor[static_cast<unsigned>(kGroup)];
+    for (int g = 0; g < kGroup; ++g) factor[g] = e[g] * e[g];
+    for (int g = 0; g < kGroup; ++g) factor[g] = Simd::Fma(factor[g], rate[g], Simd::Set(1.0));
+    for (int g = 0; g < kGroup; ++g) factor[g] = Simd::Min(factor[g], Simd::Set(1e30));
+    for (int g = 0; g < kGroup; ++g) this->product[g] = this->product[g] * factor[g];
   }
 
   V rate[static_cast<unsigned>(kGroup)];
 };
 
 /// log2 of p(e) = N(e; c) (w / c) [1 + r exp(-e^2/2 (1 - 1/c^2))], r = (1 - w) c / w, but for what every sample has
-/// alike. The bracket lies in [1, 1 + r], which settings keep far from what a run can hold.
+/// alike. The bracket lies in [1, 1 + r], r at most 1e10 by the settings, so that a product holds three runs of them.
 template <class S, int kGroup>
 struct MixtureSum : LogProduct<kGroup> {
   MixtureSum(const NoiseSettings& s, const V* inverse_scale) noexcept
@@ -92,11 +99,17 @@ struct MixtureSum : LogProduct<kGroup> {
   static V Constant(const NoiseSettings& s) noexcept {
     return Simd::Set(kLn2) * Simd::Log2(Simd::Set(s.outlier_weight / s.outlier_scale));
   }
-  [[gnu::always_inline]] void Add(int g, V e) noexcept {
-    const V square = e * e;
-    squares[g] = squares[g] + square;
-    const V power = S::Exp2(Simd::Max(Simd::Fma(square, inlier_rate[g], log2_ratio), Simd::Set(-1000.0)));
-    this->product[g] = Simd::Fma(this->product[g], power, this->product[g]);
+  [[gnu::always_inline]] void Add(const V* e) noexcept {
+    V power[static_cast<unsigned>(kGroup)];
+    for (int g = 0; g < kGroup; ++g) power[g] = e[g] * e[g];
+    for (int g = 0; g < kGroup; ++g) squares[g] = squares[g] + power[g];
+    for (int g = 0; g < kGroup; ++g) power[g] = Simd::Fma(power[g], inlier_rate[g], log2_ratio);
+    for (int g = 0; g < kGroup; ++g) power[g] = Simd::Max(power[g], Simd::Set(-1000.0));
+    S::template Exp2Each<kGroup>(power);
+    for (int g = 0; g < kGroup; ++g) this->product[g] = Simd::Fma(this->product[g], power[g], this->product[g]);
+  }
+  void EndRun() noexcept {
+    if (++runs % 3 == 0) LogProduct<kGroup>::EndRun();
   }
   [[nodiscard]] V Result(int g) const noexcept {
     return Simd::Fma(wide_rate[g], squares[g], LogProduct<kGroup>::Result(g));
@@ -105,6 +118,7 @@ struct MixtureSum : LogProduct<kGroup> {
   V log2_ratio;
   V inlier_rate[static_cast<unsigned>(kGroup)], wide_rate[static_cast<unsigned>(kGroup)];
   V squares[static_cast<unsigned>(kGroup)] = {};
+  int runs = 0;
 };
 
 /// fn.template operator()<Law>(), Law the class template instance of the kind for kGroup vectors.
@@ -154,10 +168,12 @@ void LogLikelihoodBy(const NoiseModel& noise, const ModeData& data, const Predic
           const auto k = static_cast<unsigned>(n);
           const V target = Simd::Set(data.target[k]);
           const V weight = Simd::Set(data.weight[k]);
+          V e[static_cast<unsigned>(kGroup)];
           for (int g = 0; g < kGroup; ++g) {
             const V f = Simd::Load(&tile.value[k][static_cast<unsigned>((v0 + g) * Simd::kLanes)]);
-            law.Add(g, (target - f - mean) * weight);
+            e[g] = (target - f - mean) * weight;
           }
+          law.Add(e);
         }
         law.EndRun();
       }

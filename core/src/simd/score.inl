@@ -40,6 +40,17 @@ void ScoreTiles(int model, const NoiseModel& noise, const ModeData& data, const 
   }
 }
 
+void ExpandPower(int model, const ModeData& data, const double* middle, const double* reach,
+                 PowerSeries* series) noexcept ARMCMC_NONBLOCKING {
+  series->parameter = -1;
+  if (data.tape == nullptr && data.compiled == nullptr)
+    PlantTable<AllModels>::kExpandPower[model](data, middle, reach, series);
+}
+void ScoreNear(int model, const NoiseModel& noise, const ModeData& data, const PowerSeries* series,
+               const ThetaTile& theta, const double* log_scale, int lanes, double* out) noexcept ARMCMC_NONBLOCKING {
+  PlantTable<AllModels>::kScoreNear[model](series, data, theta, noise, log_scale, lanes, out);
+}
+
 void Score(int model, const NoiseModel& noise, const ModeData& data, const ThetaTile& theta, const double* log_scale,
            PredictionTile* scratch, double* out) noexcept ARMCMC_NONBLOCKING {
   ScoreTiles<1>(model, noise, data, &theta, log_scale, scratch, out);

@@ -190,6 +190,10 @@ struct Simd {
                                      1.32154325359123753e-06, 1.52527338415567733e-05, 1.54035304637243530e-04,
                                      1.33335581464064708e-03, 9.61812910758725638e-03, 5.55041086648216248e-02,
                                      2.40226506959101582e-01, 6.93147180559945286e-01, 1.00000000000000000e+00};
+  template <int kCount>
+  static void Exp2Each(V* x) noexcept {
+    for (int i = 0; i < kCount; ++i) x[i] = Exp2(x[i]);
+  }
   static V Exp2OfBounded(V x) noexcept {
     const V magic = Set(6755399441055744.0);  // 1.5 * 2^52
     const V shifted = x + magic;
