@@ -200,14 +200,14 @@ TEST(Climb, ADiffusionThatDoesNotOscillateIsNoFlexibleMode) {
 }
 
 TEST(Climb, NoiseThatNeighboursShareIsNothingMissingThoughTheMotionIsSlow) {
-  // A motion of which the recording shows four periods.
+  // A motion of which the recording shows two and a half periods.
   double w = 0.0, shared = 0.0;
   std::mt19937_64 random(21);
   std::normal_distribution<double> fresh(0.0, 1.0);
   const Dataset data = test::DataOf({.rows = 1000,
                                      .noise = 0.1,
                                      .seed = 11,
-                                     .drive = [](double t) { return 4.0 * std::sin(1.3 * t); },
+                                     .drive = [](double t) { return 4.0 * std::sin(0.75 * t); },
                                      .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.25); },
                                      .shown =
                                          [&] {
