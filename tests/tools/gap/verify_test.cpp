@@ -82,6 +82,22 @@ TEST_F(HeldOutTest, WhatHappensInAFewStretchesIsPutAside) {
   EXPECT_EQ(data.ClosedElsewhere(base_, base_), 0.0);
 }
 
+TEST_F(HeldOutTest, AnEffectIsFoundBesideAnotherThatOnlyTheHeldOutDataShow) {
+  const auto found = [&](const Recording& shown, Eigen::Index first) {
+    return HeldOut(*equation_, *diagnosis_.look, shown, first).FoundAsPredicted(base_, best_, *diagnosis_.bootstrap);
+  };
+  EXPECT_TRUE(found(recording_, kDiagnosed));
+  // A spring that stiffens steeply, beyond what the exponent of the law absorbs.
+  Recording stiffer = recording_;
+  Vector& force = stiffer.columns[3];
+  const Vector& depth = stiffer.columns[1];
+  for (Eigen::Index n = kDiagnosed; n < kRows; ++n)
+    if (depth[n] > 0.0) force[n] += 3.0 * kNoise * (std::exp(3.0 * depth[n] / depth.maxCoeff()) - 1.0);
+  EXPECT_LT(Show(stiffer, kDiagnosed, best_, nullptr).closed_high, 0.5);
+  EXPECT_TRUE(found(stiffer, kDiagnosed));
+  EXPECT_FALSE(found(Measure({}, kRows, kNoise, 99).recording, 0));
+}
+
 TEST_F(HeldOutTest, AHeldOutPartWithoutContactIsNoError) {
   Recording air = recording_;
   air.columns[1].tail(kRows - kDiagnosed + 100).setConstant(-0.2);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -149,6 +150,68 @@ TEST(Climb, NoiseOfADerivedSignalIsNoFlexibleMode) {
     EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty()) << size;
     EXPECT_THAT(ladder.rungs[0].as_if, ::testing::HasSubstr("were smoother")) << size;
   }
+}
+
+/// A cell u, y that gives way at once and, behind a slow pair of its own, later on; it knows nothing of a faster pair.
+Dataset CellData(double faster) {
+  double slow = 0.0, fast = 0.0, current = 0.0;
+  return test::DataOf({.rows = 1200,
+                       .noise = 0.002,
+                       .seed = 9,
+                       .drive =
+                           [](double t) {
+                             const double chaos = 43758.5 * std::sin(12.9898 * std::floor(t / 40.0));
+                             return 4.0 * (chaos - std::floor(chaos)) - 1.5 + std::sin(0.05 * t);
+                           },
+                       .advance =
+                           [&](double u, double step) {
+                             current = u;
+                             slow += step * (0.04 * u - slow) / 70.0;
+                             fast += step * (faster * u - fast) / 9.0;
+                           },
+                       .shown = [&] { return -slow - fast - 0.03 * current; },
+                       .dt = 1.0});
+}
+
+PlantDescription Cell() {
+  PlantDescription plant;
+  plant.name = "cell";
+  plant.output = "y";
+  plant.law = "-pair - R0*u";
+  plant.signals = {{"u", "A", "drive", ""}, {"y", "V", "voltage", ""}};
+  plant.parameters = {{"R0", "Ohm", "normal", 0.03, 0.03, 0.0, 1.0},
+                      {"R1", "Ohm", "normal", 0.03, 0.03, 0.0, 1.0},
+                      {"tau", "s", "lognormal", 60.0, 0.7}};
+  plant.states = {{"pair", "V", "voltage", "(R1*u - pair)/tau", "0", "", 1}};
+  plant.noise.std = 0.002;
+  return plant;
+}
+
+TEST(Climb, ADiffusionThatDoesNotOscillateIsNoFlexibleMode) {
+  EXPECT_THAT(NamesOf(ClimbWith({"flexible_mode"}, CellData(0.02), Cell()).rungs[0]), IsEmpty());
+  EXPECT_THAT(NamesOf(ClimbWith({"flexible_mode", "slow_response"}, CellData(0.02), Cell()).rungs[0]),
+              ElementsAre("slow_response"));
+}
+
+TEST(Climb, NoiseThatNeighboursShareIsNothingMissingThoughTheMotionIsSlow) {
+  // A motion of which the recording shows two and a half periods.
+  double w = 0.0, shared = 0.0;
+  std::mt19937_64 random(21);
+  std::normal_distribution<double> fresh(0.0, 1.0);
+  const Dataset data = test::DataOf({.rows = 1000,
+                                     .noise = 0.1,
+                                     .seed = 11,
+                                     .drive = [](double t) { return 4.0 * std::sin(0.75 * t); },
+                                     .advance = [&](double u, double step) { w += step * (70.0 * u - w / 0.25); },
+                                     .shown =
+                                         [&] {
+                                           shared = 0.6 * shared + 0.8 * fresh(random);
+                                           return w + 0.6 * shared;
+                                         }});
+  const Ladder ladder = ClimbWith({"sensor_lag", "drag"}, data, test::MotorPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_GT(ladder.base.fit.error_sd, 1.2 * ladder.noise_floor);
+  EXPECT_TRUE(ladder.complete);
 }
 
 TEST(Climb, WhatASpringIsOffFromItsFormulaIsNoCogging) {

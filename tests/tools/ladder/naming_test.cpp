@@ -50,9 +50,9 @@ struct Compared {
     presliding->alone = {0.4, 0.3, 0.3};
   }
 
-  std::vector<std::string> Named() {
-    constexpr double kFloor = 0.5;  // N, far below the errors: no formula is exact
-    Name(rung.view, kFloor, false, &rung);
+  /// @param floor  N; by default far below the errors, so that no formula is exact.
+  std::vector<std::string> Named(double floor = 0.5) {
+    Name(rung.view, floor, false, &rung);
     return NamesOf(rung);
   }
 };
@@ -68,6 +68,16 @@ TEST(Name, KinThatExtrapolatesBetterIsNotExcludedByShortSegments) {
   EXPECT_THAT(compared.Named(), UnorderedElementsAre("hysteresis", "presliding_friction"));
   compared.presliding->alone = {0.4, 0.3, 0.1};
   EXPECT_THAT(compared.Named(), ElementsAre("hysteresis"));
+}
+
+TEST(Name, KinThatGainsTheSameIsNotExcludedByAnExactFormula) {
+  Compared compared;
+  compared.hysteresis->trial.beside = compared.hysteresis->trial.alone;  // nothing flexible is left in it
+  const double exact = compared.hysteresis->trial.fit.error_sd;
+  compared.presliding->alone = {0.1004, 0.3, 0.3};
+  EXPECT_THAT(compared.Named(exact), ElementsAre("hysteresis", "presliding_friction"));
+  compared.presliding->alone = {0.102, 0.3, 0.3};
+  EXPECT_THAT(compared.Named(exact), ElementsAre("hysteresis"));
 }
 
 TEST(Name, WhatFewEventsShowIsNotNamedIfOtherFamiliesWinMoreOften) {

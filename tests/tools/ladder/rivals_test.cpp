@@ -92,6 +92,53 @@ TEST(Climb, WhatFollowsAnotherQuantityIsNotProtectedByACurveThatCanCopyIt) {
   }
 }
 
+/// A warm body that loses 0.5 W/K, and by radiation what a black surface of 0.1 m^2 would; its room has 22 degrees.
+/// 40 minutes, a noise of 0.1 K.
+Dataset RadiatorData() {
+  const auto shone = [](double degrees) { return 0.1 * 5.67e-8 * std::pow(degrees + 273.15, 4); };
+  double warmth = 50.0;
+  return test::DataOf(
+      {.rows = 1200,
+       .noise = 0.1,
+       .seed = 5,
+       .drive = [](double t) { return 60.0 + 25.0 * std::sin(0.011 * t) + 15.0 * std::sin(0.037 * t + 1.0); },
+       .advance =
+           [&](double u, double step) {
+             warmth += step * (u - 0.5 * (warmth - 22.0) - shone(warmth) + shone(22.0)) / 90.0;
+           },
+       .shown = [&] { return warmth; },
+       .dt = 2.0});
+}
+
+PlantDescription RadiatorPlant() {
+  PlantDescription plant;
+  plant.name = "radiator";
+  plant.output = "y";
+  plant.law = "T";
+  plant.signals = {{"P", "W", "drive", ""}, {"y", "degC", "temperature", ""}};
+  plant.constants = {{"Ta", 22.0, "degC"}};
+  plant.parameters = {{"C", "J/K", "lognormal", 80.0, 0.7}, {"h", "W/K", "normal", 1.0, 1.0, 0.01, 20.0}};
+  plant.states = {{"T", "degC", "temperature", "(P - h*(T - Ta))/C", "50", "", 1}};
+  plant.noise.std = 0.1;
+  return plant;
+}
+
+TEST(Climb, WhatALawExplainsThatIsBentIsNoOffset) {
+  const Ladder ladder = ClimbWith({"output_bias", "input_bias", "output_drift"}, RadiatorData(), RadiatorPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_GT(1.0 - ladder.rungs[0].contenders[0].alone.folds, 0.5);
+  EXPECT_THAT(ladder.notes,
+              ::testing::Contains(::testing::HasSubstr("output_bias was not named: it acts as if h varied "
+                                                       "with T")));
+}
+
+TEST(Climb, RadiationIsNamedBeforeAnOffset) {
+  const Ladder ladder = ClimbWith({"output_bias", "input_bias", "output_drift", "linear_loss", "radiation"},
+                                  RadiatorData(), RadiatorPlant());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("radiation"));
+  EXPECT_TRUE(ladder.complete);
+}
+
 TEST(Climb, ConstantsThatAreEachALittleOffTogetherRuleOutAnEffect) {
   // Springs for either side, both 4 % stiffer than the file says: neither alone explains what a tilt does.
   PlantDescription plant = test::AxisPlant();

@@ -1,5 +1,6 @@
 #include "armcmc/gap/verify.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -133,6 +134,21 @@ double HeldOut::ClosedElsewhere(const Fitted& before, const Fitted& after) const
       whitener.s2 * whitener.Gain() * static_cast<double>(tail_.rows()) * kKept / static_cast<double>(kNumBlocks);
   const double gap = first(order).sum() - noise;
   return gap > 0.0 ? (first(order).sum() - second(order).sum()) / gap : 0.0;
+}
+
+bool HeldOut::FoundAsPredicted(const Fitted& before, const Fitted& after, const BlockBootstrap& bootstrap) const {
+  constexpr double kOff = 1.5;  // formulas for the same physics differ by a third
+  const Trial trial = Try(before);
+  const Eigen::ColPivHouseholderQR<Matrix> parameters(trial.whitened_jacobian);
+  const auto beyond_parameters = [&](const Vector& y) {
+    return Vector(y - trial.whitened_jacobian * parameters.solve(y));
+  };
+  const Vector first = beyond_parameters(trial.whitened);
+  const Vector added = beyond_parameters(trial.whitened - Try(after).whitened);
+  const Vector size = BlockSquares(added);
+  if (!(size.sum() > 0.0)) return false;
+  const Vector found = 0.25 * (BlockSquares(added + first) - BlockSquares(added - first));
+  return bootstrap.RatioQuantile(found, size, 0.025) > 1.0 / kOff && bootstrap.RatioQuantile(found, size, 0.975) < kOff;
 }
 
 GapSummary ShowGap(const Equation& equation, const HeldOut& data, const BlockBootstrap& bootstrap, const Fitted& before,

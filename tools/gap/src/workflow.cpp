@@ -111,6 +111,13 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
                                     : heldout.ClosedElsewhere(finding.base->fit, c->fit);
     return share > limits.confirmed_elsewhere;
   };
+  // Something else may be at work there, too.
+  const auto found_there = [&](const CandidatePtr& c) {
+    const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
+    const Fitted& after = c->granted ? c->granted->with : c->fit;
+    return heldout.FoundAsPredicted(before, after, *diagnosis->bootstrap) &&
+           closed(c).closed_fraction > limits.at_least_closed;
+  };
   // With such a factor only certain names are given: a set from which a member was rejected is not certain.
   const bool granted = std::any_of(finding.set.begin(), finding.set.end(),
                                    [](const CandidatePtr& member) { return member->granted != nullptr; });
@@ -127,6 +134,12 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     if (other == finding.tried.end() && holds_elsewhere(member)) {
       result->notes.push_back("a few segments of the held-out data show something else that " +
                               Joined(Texts(member), " and ") + " does not explain and the first part does not show");
+      kept.push_back(member);
+      continue;
+    }
+    if (other == finding.tried.end() && found_there(member)) {
+      result->notes.push_back("the held-out data show " + Joined(Texts(member), " and ") +
+                              " as predicted, and beside it something else that the first part does not show");
       kept.push_back(member);
       continue;
     }

@@ -61,6 +61,14 @@ bool AreCurvesOfOneThing(const Candidate& a, const Candidate& b) {
   return one && of_a == ActionOf(b);
 }
 
+bool RespondsToNothing(const Candidate& effect) {
+  const std::optional<Equations> of = ActionOf(effect);
+  return of && !of->empty() && std::all_of(of->begin(), of->end(), [](const auto& e) {
+           return std::all_of(e.second.begin(), e.second.end(),
+                              [](const auto& q) { return q.first == SymbolKind::kTime; });
+         });
+}
+
 bool Reads(const Candidate& effect, const std::string& name) {
   const EffectForm& form = effect.form();
   if (name == "t") return Says(form, name);

@@ -17,6 +17,9 @@ namespace armcmc::ladder {
 /// Whether a name occurs in the formulas of an effect. A parameter that does not occur says only where a state begins.
 [[nodiscard]] bool Says(const EffectForm& form, const std::string& name);
 
+/// Whether it acts the same wherever the plant is: an offset, or what depends on time alone.
+[[nodiscard]] bool RespondsToNothing(const Candidate& effect);
+
 /// Whether it acts on the law as a whole, and so on everything that the law contains.
 [[nodiscard]] bool ActsOnLaw(const Candidate& effect);
 

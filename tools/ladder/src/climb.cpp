@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "armcmc/gap/blocks.hpp"
+#include "bent_law.hpp"
 #include "comparison.hpp"
 #include "constants.hpp"
 #include "curves.hpp"
@@ -60,6 +61,7 @@ struct Rivals {
   Constants constants;
   DerivedNoise noise;
   Curves curves;
+  BentLaw bent;
   StartAlone start;
   Before before;
 
@@ -69,6 +71,7 @@ struct Rivals {
     std::optional<Rival> rival = constants.RivalOf(c);
     if (!rival) rival = start.RivalOf(c, floor);
     if (!rival) rival = noise.RivalOf(c);
+    if (!rival) rival = bent.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
     if (rival || !before.Dwarfs(c)) return rival;
     if (const Candidate* like = before.Like(c))
@@ -316,6 +319,7 @@ Ladder Climb(const ClimbRequest& request) {
                     open,
                     {{own, ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base},
+                     {ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base, scales},
                      {}}};

@@ -31,10 +31,10 @@ double FoldSquares(const View& view, const std::vector<double>& squares) {
 /// Whether the errors decorrelate within a tenth of the period, as noise shared by neighbouring samples does. A missing
 /// part of a law repeats with the motion.
 ///
-/// The mean square of the autocorrelation over lags of 0.1 to 0.6 periods is compared with its value for noise of the
-/// same correlation at short lags: 1/n times 1 + 2 sum r^2.
+/// The mean square of the autocorrelation over lags of 0.1 to 0.6 periods, at most a quarter of the rows, is compared
+/// with its value for noise of the same correlation at short lags: 1/n times 1 + 2 sum r^2.
 bool ForgottenSoon(const View& view, const Trial& trial) {
-  constexpr double kFirst = 0.1, kLast = 0.6, kShare = 0.01;
+  constexpr double kFirst = 0.1, kLast = 0.6, kShare = 0.01, kOfRows = 0.25;
   constexpr int kLags = 40;
   const identify::Series& series = *view.data.series;
   const Eigen::VectorXd error = trial.model->target() - trial.fit.prediction;
@@ -58,14 +58,15 @@ bool ForgottenSoon(const View& view, const Trial& trial) {
     return pairs > 0.0 ? sum / pairs / (all / count + 1e-300) : 0.0;
   };
   const double per_period = view.period / series.dt;
-  if (!(kFirst * per_period > 2.0) || !(kLast * per_period < 0.25 * count)) return false;
+  const double farthest = std::min(kLast * per_period, kOfRows * count);
+  if (!(kFirst * per_period > 2.0) || !(farthest > 2.0 * kFirst * per_period)) return false;
   const auto first = static_cast<std::size_t>(kFirst * per_period);
   double near = 1.0;
   for (std::size_t lag = 1; lag < first; ++lag) near += 2.0 * std::pow(correlation(lag), 2);
   double far = 0.0;
   for (int k = 0; k < kLags; ++k) {
-    const double place = kFirst + (kLast - kFirst) * k / (kLags - 1);
-    far += std::pow(correlation(static_cast<std::size_t>(place * per_period)), 2) / kLags;
+    const double nearest = kFirst * per_period, lag = nearest + (farthest - nearest) * k / (kLags - 1);
+    far += std::pow(correlation(static_cast<std::size_t>(lag)), 2) / kLags;
   }
   return far < kShare + 2.0 * near / count;
 }

@@ -13,7 +13,6 @@ namespace armcmc::ladder {
 namespace {
 
 constexpr double kConstantOff = 0.05;  // of a constant, at most
-constexpr double kExplainsIt = 1.05;   // times the squared error that an effect leaves
 constexpr double kWorthAFold = 1.3;    // times that error in the fit itself: beyond, no data left out make up for it
 
 /// A constant times a number about 1.

@@ -1,14 +1,15 @@
 #include "curves.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "action.hpp"
 #include "armcmc/ladder/features.hpp"
 #include "armcmc/plant/error.hpp"
 #include "armcmc/support/parallel.hpp"
 #include "comparison.hpp"
+#include "one_step.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -17,12 +18,10 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kBumps = 8;
-constexpr std::size_t kFitted = 4;    // number of curves, each with a different action
-constexpr double kAlike = 0.02;       // share of squared explanation in which two curves with the same action differ
-constexpr double kAsMuch = 0.9;       // share of what an effect explains
-constexpr double kAsWell = 1.5;       // times the error of the best curve
-constexpr double kOff = 0.1;          // share of the squared error that an effect leaves: accepted error of its copy
-constexpr double kOutermost = 0.001;  // share of rows at the ends of a range that are ignored
+constexpr std::size_t kFitted = 4;  // number of curves, each with a different action
+constexpr double kAsMuch = 0.9;     // share of what an effect explains
+constexpr double kAsWell = 1.5;     // times the error of the best curve
+constexpr double kOff = 0.1;        // share of the squared error that an effect leaves: accepted error of its copy
 
 /// @param x     Quantity that the curve follows; "t" is time, "law" the value of the law.
 /// @param unit  Unit of the curve.
@@ -62,33 +61,6 @@ EffectNeed Used(const std::string& name, const std::string& kind) {
   EffectNeed need = Need(name, kind);
   need.used = true;
   return need;
-}
-
-/// The scales of the data with the ranges of signals and states, without the outermost rows.
-DataScales WithRanges(DataScales scales, const std::vector<Feature>& features, const std::vector<Index>& rows) {
-  for (const Feature& feature : features) {
-    std::vector<double> sorted;
-    sorted.reserve(rows.size());
-    for (const Index n : rows) sorted.push_back(feature.value[n]);
-    std::sort(sorted.begin(), sorted.end());
-    const auto at = static_cast<std::size_t>(kOutermost * static_cast<double>(sorted.size()));
-    const double low = sorted[at], high = sorted[sorted.size() - 1 - at];
-    QuantityScale& scale = scales.quantity[feature.name];
-    scale.low = high > low ? low : sorted.front();
-    scale.high = high > low ? high : sorted.back();
-  }
-  return scales;
-}
-
-/// Residual of y after a least-squares fit of the columns; columns of zero norm are skipped.
-/// @param pull  [column] Precision of a prior about 0.
-VectorXd LeftOf(const VectorXd& y, const Eigen::MatrixXd& columns, const VectorXd& pull) {
-  const VectorXd size = (columns.colwise().squaredNorm().transpose() + pull).cwiseMax(1e-300).cwiseSqrt();
-  const Eigen::MatrixXd scaled = columns * size.cwiseInverse().asDiagonal();
-  Eigen::MatrixXd matrix = scaled.transpose() * scaled;
-  matrix.diagonal() += pull.cwiseQuotient(size.cwiseAbs2());
-  matrix.diagonal().array() += 1e-9;
-  return y - scaled * matrix.ldlt().solve(scaled.transpose() * y);
 }
 
 /// Name of the signal or state that a curve follows; "t" is time, "law" the value of the law.
@@ -144,50 +116,7 @@ std::vector<Candidate> Curves::MostPromising() const {
     return std::any_of(symbols.begin(), symbols.end(),
                        [&](const auto& symbol) { return IsExplained(plant_->description(), symbol.second); });
   });
-  const Dataset quick = QuickPart(*plant_, data_, base_.model->target() - base_.fit.prediction);
-  const Index own = base_.fit.theta.size();
-  std::vector<VectorXd> left(all.size());
-  VectorXd error;
-  double square = 0.0;
-  std::vector<Index> rows;
-  {
-    const identify::TrajectoryModel model(plant_, quick.series);
-    VectorXd prediction;
-    if (!model.PredictOne(base_.fit.theta, &prediction)) return {};
-    for (Index n = 0; n < prediction.size(); ++n)
-      if (quick.training[static_cast<std::size_t>(n)] != 0 && model.active()[static_cast<std::size_t>(n)] != 0)
-        rows.push_back(n);
-    error = (model.target() - prediction)(rows);
-    square = error.squaredNorm();
-  }
-  support::InParallel(all.size(), [&](std::size_t i) {
-    try {
-      const identify::TrajectoryModel model(all[i].plant, quick.series);
-      VectorXd theta = model.Start(), prediction;
-      theta.head(own) = base_.fit.theta;
-      Eigen::MatrixXd jacobian;
-      if (!model.Linearise(theta, &prediction, &jacobian)) return;
-      const double variance = square / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
-      left[i] = LeftOf(error, jacobian(rows, Eigen::all), variance * identify::PriorPrecision(model));
-    } catch (const PlantError&) {  // beyond the limits of a plant
-    }
-  });
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (left[i].size() > 0 && left[i].squaredNorm() < square) order.push_back(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return left[a].squaredNorm() < left[b].squaredNorm(); });
-  std::vector<std::size_t> chosen;
-  for (const std::size_t i : order) {
-    const bool alike = std::any_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
-      return (left[c] - left[i]).squaredNorm() < kAlike * (square - left[i].squaredNorm());
-    });
-    if (!alike && chosen.size() < kFitted) chosen.push_back(i);
-  }
-  std::vector<Candidate> best;
-  best.reserve(chosen.size());
-  for (const std::size_t i : chosen) best.push_back(std::move(all[i]));
-  return best;
+  return BestByOneStep(std::move(all), kFitted, plant_, data_, base_);
 }
 
 void Curves::FitThem() {

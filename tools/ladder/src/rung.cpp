@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMostJudged =
     8;  // candidates of a rung that are judged, best first: those far behind are not named anyway
 constexpr int kBootstrap = 400;
-constexpr double kAtBound = 1e-3;     // of the logarithm of a frequency
+constexpr double kAtBound = 1e-3;     // of the logarithm of a frequency or damping ratio
 constexpr std::size_t kAnywhere = 8;  // starting points for all parameters of a simulated plant
 constexpr double kSure = 0.99;        // fraction of bootstrap samples in which it is better
 constexpr double kLikely = 0.95;      // the same if few events show it: the name is provisional
@@ -32,17 +32,26 @@ constexpr double kBeside =
     0.95;  // squared error beside a flexible remainder that a name has to reach in two of three tests,
 constexpr double kFarBeside = 0.8;     // or in one, losing in none, if few events show it or the remainder imitates it
 constexpr double kLeavesAsMuch = 1.5;  // times the error of the named one: kin that are not excluded
-constexpr double kLoses = 1.1;         // squared error on regions from which an effect is excluded
-constexpr double kSame = 0.02;         // of the mean square of what one adds: the other adds the same
+constexpr double kSameGain =
+    0.999;  // of the leader's gain: what an integration of the plant errs by, and no formula, decides between kin
+constexpr double kLoses = 1.1;  // squared error on regions from which an effect is excluded
+constexpr double kSame = 0.02;  // of the mean square of what one adds: the other adds the same
 
 double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
 
 int NumParameters(const Contender& c) { return NumFormulaParameters(c.candidate.form()); }
 
-/// Whether a frequency is too low for the data to show an oscillation.
-bool TooSlow(const Contender& c) {
-  const Eigen::VectorXd lower = c.trial.model->Lower();
+/// Whether an oscillation is none: its frequency is too low for the data to show it, or its damping ratio, a lognormal
+/// parameter without a unit, is at the limit beyond which nothing resonates.
+bool OscillatesNot(const Contender& c) {
+  const Eigen::VectorXd lower = c.trial.model->Lower(), upper = c.trial.model->Upper();
   const std::vector<Frequency> frequencies = c.candidate.Frequencies();
+  const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
+  for (std::size_t k = 0; k < parameters.size() && !frequencies.empty(); ++k) {
+    const auto d = static_cast<Eigen::Index>(c.candidate.first_fitted() + k);
+    const bool ratio = parameters[k].unit == "1" && parameters[k].prior == "lognormal" && !parameters[k].upper.empty();
+    if (ratio && c.trial.fit.theta[d] >= upper[d] - kAtBound) return true;
+  }
   return std::any_of(frequencies.begin(), frequencies.end(), [&](const Frequency& frequency) {
     const auto d = static_cast<Eigen::Index>(frequency.parameter);
     return c.trial.fit.theta[d] <= lower[d] + kAtBound;
@@ -296,7 +305,8 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
     const bool beside = below(kBeside) >= 2 || (below(kFarBeside) >= 1 && below(1.0) == 3);
-    c.earned = gains && elsewhere && beside && !TooSlow(c) && IsTold(view, c) && !WorseThanConstant(view, c.trial);
+    c.earned =
+        gains && elsewhere && beside && !OscillatesNot(c) && IsTold(view, c) && !WorseThanConstant(view, c.trial);
   }
 }
 
@@ -338,9 +348,11 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     const bool larger = as_good && NumParameters(all[i]) > fewest &&
                         kFarBetter * all[i].alone.folds < all[leader].alone.folds &&
                         BetterEverywhere(all[i], all[leader]);
-    const bool kin =
-        not_exact && AreKin(*all[i].candidate.entry, *all[leader].candidate.entry) &&
-        (all[i].alone.folds < kLeavesAsMuch * all[leader].alone.folds || ExtrapolatesBetter(all[i], all[leader]));
+    const bool indistinct = NumParameters(all[i]) == NumParameters(all[leader]) &&
+                            1.0 - all[i].alone.folds > kSameGain * (1.0 - all[leader].alone.folds);
+    const bool as_much = not_exact && (all[i].alone.folds < kLeavesAsMuch * all[leader].alone.folds ||
+                                       ExtrapolatesBetter(all[i], all[leader]));
+    const bool kin = AreKin(*all[i].candidate.entry, *all[leader].candidate.entry) && (indistinct || as_much);
     if ((!equal && !larger && !kin) || !families.insert(family).second) continue;
     rung->named.push_back(i);
   }

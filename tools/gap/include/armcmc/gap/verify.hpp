@@ -31,6 +31,10 @@ class HeldOut {
   /// Share of the gap that `after` closes outside the fifth of the blocks with the largest error, with the noise of the
   /// diagnosis.
   [[nodiscard]] double ClosedElsewhere(const Fitted& before, const Fitted& after) const;
+  /// Whether the difference between the predictions of `before` and `after` is present in the held-out data as
+  /// predicted: the regression of the residual of `before` on it, both whitened, has a slope whose 95 % interval lies
+  /// between 2/3 and 3/2. What else these data contain does not matter then.
+  [[nodiscard]] bool FoundAsPredicted(const Fitted& before, const Fitted& after, const BlockBootstrap& bootstrap) const;
   [[nodiscard]] const Signals& signals() const { return tail_; }
 
  private:

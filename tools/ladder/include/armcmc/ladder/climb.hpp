@@ -93,16 +93,18 @@ struct ClimbRequest {
 ///    - removes more than half of the error that is not noise, alone or together with the next effect, unless its
 ///    family has already been named or only noise remains; and one of its amplitudes is more than two standard
 ///    deviations from zero;
+///    - oscillates, if it is a resonance: its damping ratio is below the limit beyond which nothing resonates;
 ///    - leaves less than the output varies.
 /// 2. Simplest first. Among the candidates that close at least 95 % of what the best one closes, those with the fewest
 ///    parameters are kept; among these the best one, or, within 1 % of it, the one that depends on the fewest
 ///    quantities. What a simple effect leaves is examined on the next rung.
 /// 3. Ties. The leader is tied with related effects (`kin`) whose error is less than 1.5 times as large, or smaller
-///    both on blocks and on regions, if its own formula is not exact; with a family of as few parameters that wins one
-///    bootstrap sample in twenty; and with a larger effect of another family that leaves less than half of the error
-///    and is better in every kind of group. Nothing is named after a tie, since it would depend on an undecided choice;
-///    each tied effect is therefore shown in the form that predicts best. A provisional name, or tie, is given only if
-///    its families win half of the bootstrap samples; otherwise too many effects explain the same.
+///    both on blocks and on regions, if its own formula is not exact; with kin of as many parameters that gains as much
+///    up to a thousandth, which is what integrations of a plant differ by; with a family of as few parameters that wins
+///    one bootstrap sample in twenty; and with a larger effect of another family that leaves less than half of the
+///    error and is better in every kind of group. Nothing is named after a tie, since it would depend on an undecided
+///    choice; each tied effect is therefore shown in the form that predicts best. A provisional name, or tie, is given
+///    only if its families win half of the bootstrap samples; otherwise too many effects explain the same.
 /// 4. Unnamed rivals. If more than noise remains, an effect is ruled out by a curve: a part of the law that varies with
 ///    one quantity, in a shape that no formula of the catalogue has, and leaves less than half of the error, is better
 ///    on blocks, is no worse on regions, and cannot represent the effect. A curve can represent an effect without
@@ -112,6 +114,8 @@ struct ClimbRequest {
 ///    effect is also ruled out if the unextended model leaves less error on smoother versions of the derived signals,
 ///    because then the misfit is their noise, or if other values of its constants, up to 5 % away, explain
 ///    as much, or if the response to its free start values does, so that nothing shows how it responds to the motion.
+///    An effect that depends on nothing but time, such as an offset, is ruled out if a parameter that varies with a
+///    signal or state by at most a third explains as much: over a narrow range a law that is bent looks like an offset.
 ///    And an effect of another family that is smaller than a third of those
 ///    named before is ruled out if it acts like one of them, or if a curve of a quantity that one of them reads
 ///    explains as much.
