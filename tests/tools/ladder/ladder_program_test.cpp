@@ -83,6 +83,9 @@ TEST_F(LadderProgram, NamesWhatIsHiddenAndWritesAModelThatLacksNothing) {
   EXPECT_EQ(result["ladder"][0]["effects"][0], "coulomb_friction");
   EXPECT_GT(result["ladder"][0]["closed_fraction"].number(), 0.95);
   EXPECT_GT(result["ladder"][0]["probability"].number(), 0.95);
+  double sum = result["probability"]["none"].number() + result["probability"]["unnamed"].number();
+  for (const Json& candidate : result["candidates"]) sum += candidate["probability"].number();
+  EXPECT_NEAR(sum, 1.0, 1e-9) << "an explanation is counted once";
   EXPECT_EQ(result["complete"], true);
   EXPECT_EQ(result["effects"][0]["name"], "coulomb_friction");
   EXPECT_EQ(result["effects"][0]["family"], "dry friction");
