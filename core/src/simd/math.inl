@@ -297,6 +297,12 @@ struct Math {
 /// hundred samples by less than 1e-6 where the signal is a hundred times the noise.
 struct ScoreSimd : Simd {
   static constexpr double kReach = 60.0;  ///< Largest |log2_x|, for exponents within 16.
+  /// Coefficients of 2^x behind the highest, of PowerEach() and Exp2Each(). Not in there: a static local may block.
+  static constexpr double kPowerSeries[] = {1.54692911308010610e-04, 1.33339225590775254e-03, 9.61802725371136910e-03,
+                                            5.55041035345320843e-02, 2.40226511981572077e-01, 6.93147180728445611e-01,
+                                            9.99999999961681985e-01};
+  static constexpr double kExp2Series[] = {0.0013399930860573837, 0.0096184890475631574, 0.055503287783850101,
+                                           0.24022646889789742,   0.69314720573620581,   1.000000000554256};
 
   /// The same numbers, of which the compiler knows nothing where registers are too few to keep them all: it would make
   /// each an operand in memory of every operation, and loads would be what costs.
@@ -315,9 +321,6 @@ struct ScoreSimd : Simd {
   /// Power() of several exponents, which become the powers, step by step as in Exp2Each().
   template <int kCount>
   [[gnu::always_inline]] static void PowerEach(V* exponent, double log2_x) noexcept {
-    static constexpr double kSeries[] = {1.54692911308010610e-04, 1.33339225590775254e-03, 9.61802725371136910e-03,
-                                         5.55041035345320843e-02, 2.40226511981572077e-01, 6.93147180728445611e-01,
-                                         9.99999999961681985e-01};
     const V magic = Set(6755399441055744.0);
     const V x = Set(log2_x);
     V shifted[static_cast<unsigned>(kCount)];
@@ -325,8 +328,8 @@ struct ScoreSimd : Simd {
     for (int i = 0; i < kCount; ++i) shifted[i] = Fma(exponent[i], x, magic);
     for (int i = 0; i < kCount; ++i) exponent[i] = Fma(exponent[i], x, magic - shifted[i]);
     for (int i = 0; i < kCount; ++i) p[i] = Set(1.52019226419755621e-05);
-    const double* const series = Unknown(kSeries);
-    for (std::size_t k = 0; k < std::size(kSeries); ++k) {
+    const double* const series = Unknown(kPowerSeries);
+    for (std::size_t k = 0; k < std::size(kPowerSeries); ++k) {
       const V c = Set(series[k]);
       for (int i = 0; i < kCount; ++i) p[i] = Fma(p[i], exponent[i], c);
     }
@@ -343,16 +346,14 @@ struct ScoreSimd : Simd {
   /// a hundred of them move a log-likelihood by less than 2e-7.
   template <int kCount>
   [[gnu::always_inline]] static void Exp2Each(V* x) noexcept {
-    static constexpr double kSeries[] = {0.0013399930860573837, 0.0096184890475631574, 0.055503287783850101,
-                                         0.24022646889789742,   0.69314720573620581,   1.000000000554256};
     const V magic = Set(6755399441055744.0);
     V shifted[static_cast<unsigned>(kCount)];
     V p[static_cast<unsigned>(kCount)];
     for (int i = 0; i < kCount; ++i) shifted[i] = x[i] + magic;
     for (int i = 0; i < kCount; ++i) x[i] = x[i] - (shifted[i] - magic);
     for (int i = 0; i < kCount; ++i) p[i] = Set(0.00015345789023112974);
-    const double* const series = Unknown(kSeries);
-    for (std::size_t k = 0; k < std::size(kSeries); ++k) {
+    const double* const series = Unknown(kExp2Series);
+    for (std::size_t k = 0; k < std::size(kExp2Series); ++k) {
       const V c = Set(series[k]);
       for (int i = 0; i < kCount; ++i) p[i] = Fma(p[i], x[i], c);
     }

@@ -188,25 +188,27 @@ void ScoreLaw(const Forward& forward, const Errors& errors, const ModeData& data
   });
 }
 
+/// Minimax coefficients of e^x over |x| <= kSeriesReach, by degree from PowerSeries::kLeast on, lowest first.
+constexpr double kSeriesReach[PowerSeries::kMost - PowerSeries::kLeast + 1] = {0.00936, 0.0377, 0.0986,
+                                                                               0.2,     0.346,  0.537};
+constexpr double kSeriesExp[PowerSeries::kMost - PowerSeries::kLeast + 1][PowerSeries::kMost + 1] = {
+    {0.99999999996002442, 1.0000000000879468, 0.50000365039067241, 0.16666593660132442},
+    {0.99999999999873423, 0.9999999946851782, 0.50000000620229645, 0.16668154912939501, 0.041664186141691359},
+    {1.0000000000397276, 0.99999999983489507, 0.49999992627688372, 0.16666672644632174, 0.041686910703036074,
+     0.0083304379684583946},
+    {1.0000000000069067, 1.0000000013731354, 0.4999999970561233, 0.16666639035418479, 0.041666840114621267,
+     0.008347197513521358, 0.0013871525182686916},
+    {0.99999999996218625, 1.0000000002398988, 0.50000001035144082, 0.16666665141340872, 0.041666228305970818,
+     0.0083335595813436979, 0.0013947989133236956, 0.00019775396744247672},
+    {0.99999999998153488, 0.99999999939224626, 0.50000000202244554, 0.16666669597155379, 0.04166663310967398,
+     0.0083329574978011009, 0.0013890551281333949, 0.00020018216785890402, 2.4623383447828002e-05}};
+
 /// See Kernels::expand_power.
 template <class Model>
 void ExpandPowerPlain(const ModeData& data, const double* middle, const double* reach,
                       PowerSeries* series) noexcept ARMCMC_NONBLOCKING {
   constexpr int kMost = PowerSeries::kMost;
   constexpr int kLeast = PowerSeries::kLeast;
-  // Of e^x over |x| <= kReach by degree, lowest first.
-  constexpr double kReach[kMost - kLeast + 1] = {0.00936, 0.0377, 0.0986, 0.2, 0.346, 0.537};
-  static constexpr double kExp[kMost - kLeast + 1][kMost + 1] = {
-      {0.99999999996002442, 1.0000000000879468, 0.50000365039067241, 0.16666593660132442},
-      {0.99999999999873423, 0.9999999946851782, 0.50000000620229645, 0.16668154912939501, 0.041664186141691359},
-      {1.0000000000397276, 0.99999999983489507, 0.49999992627688372, 0.16666672644632174, 0.041686910703036074,
-       0.0083304379684583946},
-      {1.0000000000069067, 1.0000000013731354, 0.4999999970561233, 0.16666639035418479, 0.041666840114621267,
-       0.008347197513521358, 0.0013871525182686916},
-      {0.99999999996218625, 1.0000000002398988, 0.50000001035144082, 0.16666665141340872, 0.041666228305970818,
-       0.0083335595813436979, 0.0013947989133236956, 0.00019775396744247672},
-      {0.99999999998153488, 0.99999999939224626, 0.50000000202244554, 0.16666669597155379, 0.04166663310967398,
-       0.0083329574978011009, 0.0013890551281333949, 0.00020018216785890402, 2.4623383447828002e-05}};
   static_assert(PowerSeries::kRun == kRun);
   series->parameter = Model::kExponent;
   if constexpr (Model::kExponent >= 0) {
@@ -221,7 +223,7 @@ void ExpandPowerPlain(const ModeData& data, const double* middle, const double* 
       }
       int& degree = series->degree[static_cast<unsigned>(n0 / kRun)];
       degree = kLeast;
-      while (degree <= kMost && !(largest * series->reach * kLn2 <= kReach[degree - kLeast])) ++degree;
+      while (degree <= kMost && !(largest * series->reach * kLn2 <= kSeriesReach[degree - kLeast])) ++degree;
       if (degree > kMost || !(largest * std::fabs(series->middle) <= 960.0)) {
         degree = 0;
         continue;
@@ -230,7 +232,7 @@ void ExpandPowerPlain(const ModeData& data, const double* middle, const double* 
         const V rate = Simd::Load(log2 + i);
         V factor = Simd::Exp2(rate * Simd::Set(series->middle));
         for (int k = 0; k <= degree; ++k) {
-          const V value = factor * Simd::Set(kExp[degree - kLeast][k]);
+          const V value = factor * Simd::Set(kSeriesExp[degree - kLeast][k]);
           for (int lane = 0; lane < Simd::kLanes; ++lane)
             for (int copy = 0; copy < kSeriesCopies; ++copy)
               series->coefficient[static_cast<unsigned>(k)]
