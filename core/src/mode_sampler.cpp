@@ -186,7 +186,8 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
                        {deadline_ns, clock, limit, anchor_ns, informed}, stream, ws, &proposal, out, &in_haste);
   if (in_haste) target = pilot + DrawsInHaste(pilot, wanted);
 
-  // Only the end of the loop depends on `limit`, so that a truncated run is bit-identical up to there.
+  // A truncated run ends between two chunks. Only the end of the loop depends on `limit`: a run limited to as many
+  // draws makes the same chunks, and so repeats it to the bit.
   int made = pilot;
   bool refitted = false;
   double worst_draw_ns = 0.0;

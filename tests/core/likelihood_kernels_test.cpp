@@ -206,6 +206,22 @@ TEST(LogLikelihoodKernel, LogarithmIsAccurateToAFewUnits) {
     }
 }
 
+/// Scales of the noise, and the log-likelihood of predictions under them, to compare with.
+struct Expected {
+  NoiseModel noise;
+  alignas(64) std::array<double, kTileLanes> log_scale{}, log_likelihood{};
+
+  /// Sets the weights of the batch.
+  Expected(const simd::Kernels& kernels, NoiseKind kind, bool weighted, Batch* b) : noise(Noise(kind)) {
+    for (std::size_t n = 0; n < kMaxPackSamples; ++n)
+      b->data.weight[n] = weighted ? std::exp(-0.01 * static_cast<double>(n)) : 1.0;
+    b->data.weighted = weighted;
+    for (std::size_t l = 0; l < kTileLanes; ++l) log_scale[l] = -3.0 + 0.1 * static_cast<double>(l);
+    kernels.predict(kHuntCrossley, b->data, b->theta, &b->tile);
+    kernels.log_likelihood(noise, b->data, b->tile, log_scale.data(), log_likelihood.data());
+  }
+};
+
 TEST(ScoreKernel, EqualsPredictionAndLogLikelihood) {
   // Depths down to 0 and 1e-310: the scoring power and the exact one both have their turn.
   for (const simd::Kernels* kernels : test::RunnableKernels())
@@ -214,17 +230,11 @@ TEST(ScoreKernel, EqualsPredictionAndLogLikelihood) {
         const auto b = ContactBatch(8);
         b->pack.u[12][0] = 1e-310;
         HuntCrossley::Prepare(b->pack, {}, 0, &b->data);
-        for (std::size_t n = 0; n < kMaxPackSamples; ++n)
-          b->data.weight[n] = weighted ? std::exp(-0.01 * static_cast<double>(n)) : 1.0;
-        b->data.weighted = weighted;
-        alignas(64) double log_scale[kTileLanes], expected[kTileLanes], out[kTileLanes];
-        for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -3.0 + 0.1 * l;
-        const NoiseModel noise(Noise(kind));
-        kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
-        kernels->log_likelihood(noise, b->data, b->tile, log_scale, expected);
-        kernels->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, out);
+        const Expected expected(*kernels, kind, weighted, b.get());
+        alignas(64) double out[kTileLanes];
+        kernels->score(kHuntCrossley, expected.noise, b->data, b->theta, expected.log_scale.data(), &b->tile, out);
         for (std::size_t l = 0; l < kTileLanes; ++l)
-          ASSERT_NEAR(out[l], expected[l], 2e-10 * std::fabs(expected[l]))
+          ASSERT_NEAR(out[l], expected.log_likelihood[l], 2e-10 * std::fabs(expected.log_likelihood[l]))
               << kernels->name << " law " << static_cast<int>(kind) << " weighted " << weighted;
       }
 }
@@ -255,17 +265,12 @@ TEST(ScoreNearKernel, EqualsPredictionAndLogLikelihood) {
           ASSERT_EQ(series->parameter, 2);
           for (int run = 0; run * PowerSeries::kRun < b->data.num_samples; ++run)
             ++runs[static_cast<std::size_t>(series->degree[static_cast<std::size_t>(run)])];
-          for (std::size_t n = 0; n < kMaxPackSamples; ++n)
-            b->data.weight[n] = weighted ? std::exp(-0.01 * static_cast<double>(n)) : 1.0;
-          b->data.weighted = weighted;
-          alignas(64) double log_scale[kTileLanes], expected[kTileLanes], out[kTileLanes];
-          for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -3.0 + 0.1 * l;
-          const NoiseModel noise(Noise(kind));
-          kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
-          kernels->log_likelihood(noise, b->data, b->tile, log_scale, expected);
-          kernels->score_near(kHuntCrossley, noise, b->data, series.get(), b->theta, log_scale, kTileLanes, out);
+          const Expected expected(*kernels, kind, weighted, b.get());
+          alignas(64) double out[kTileLanes];
+          kernels->score_near(kHuntCrossley, expected.noise, b->data, series.get(), b->theta, expected.log_scale.data(),
+                              kTileLanes, out);
           for (std::size_t l = 0; l < kTileLanes; ++l)
-            ASSERT_NEAR(out[l], expected[l], 2e-10 * std::fabs(expected[l]))
+            ASSERT_NEAR(out[l], expected.log_likelihood[l], 2e-10 * std::fabs(expected.log_likelihood[l]))
                 << kernels->name << " law " << static_cast<int>(kind) << " reach " << reach << " lane " << l;
         }
   for (int degree = PowerSeries::kLeast; degree <= PowerSeries::kMost; ++degree)

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rung.hpp"
+#include "shares.hpp"
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
@@ -17,6 +19,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 using ::testing::UnorderedElementsAre;
 
 /// A rung on which two effects, which are kin of different families, are compared; neither formula is exact.
@@ -88,6 +91,27 @@ TEST(Name, WhatFewEventsShowIsNotNamedIfOtherFamiliesWinMoreOften) {
   compared.hysteresis->win_share = 0.6;
   EXPECT_THAT(compared.Named(), ElementsAre("hysteresis"));
   EXPECT_TRUE(compared.rung.provisional);
+}
+
+TEST(Shares, AFamilysIsCountedOnceAndSharedInATie) {
+  Compared compared;
+  EffectEntry relative = *compared.presliding->candidate.entry;
+  relative.family = compared.hysteresis->candidate.entry->family;
+  std::vector<Contender>& all = compared.rung.contenders;
+  for (Contender& c : all) {
+    if (c.candidate.entry->name == relative.name) c.candidate.entry = &relative;
+    c.win_share = 0.9;
+  }
+  const auto index = [&](const Contender* c) { return static_cast<std::size_t>(c - all.data()); };
+  const auto shares = [&](std::vector<std::size_t> named) {
+    compared.rung.named = std::move(named);
+    return SharesOf(compared.rung);
+  };
+  EXPECT_THAT(shares({index(compared.hysteresis)}),
+              UnorderedElementsAre(Pair("hysteresis", 0.9), Pair("presliding_friction", 0.0)));
+  EXPECT_THAT(shares({index(compared.hysteresis), index(compared.presliding)}),
+              UnorderedElementsAre(Pair("hysteresis", 0.45), Pair("presliding_friction", 0.45)));
+  EXPECT_THAT(shares({}), UnorderedElementsAre(Pair("hysteresis", 0.0), Pair("presliding_friction", 0.0)));
 }
 
 TEST(Climb, NothingIsNamedThatLeavesMoreThanTheOutputVaries) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "armcmc/gap/separation.hpp"
@@ -12,6 +13,7 @@
 #include "armcmc/support/sha256.hpp"
 #include "held_out.hpp"
 #include "repeated.hpp"
+#include "shares.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -221,30 +223,10 @@ class Teller {
     result_.effects.push_back(std::move(finding));
   }
 
-  /// Share of the bootstrap samples in which a candidate of the first rung explains the data best. A family's share is
-  /// that of its named members, in equal parts. Where nothing is named, no candidate is the explanation.
-  [[nodiscard]] static double ShareOf(const Rung& rung, const Contender& c) {
-    const auto of_family = [&](std::size_t i) {
-      return rung.contenders[i].candidate.entry->family == c.candidate.entry->family;
-    };
-    if (rung.named.empty()) return 0.0;
-    const auto members = std::count_if(rung.named.begin(), rung.named.end(), of_family);
-    if (members == 0) return IsBestOfFamily(rung, c) ? c.win_share : 0.0;
-    const bool is_named = std::any_of(rung.named.begin(), rung.named.end(),
-                                      [&](std::size_t i) { return NameOf(rung.contenders[i]) == NameOf(c); });
-    return is_named ? c.win_share / static_cast<double>(members) : 0.0;
-  }
-  [[nodiscard]] static bool IsBestOfFamily(const Rung& rung, const Contender& c) {
-    return std::none_of(rung.contenders.begin(), rung.contenders.end(), [&](const Contender& other) {
-      return other.trial.judged && other.candidate.entry->family == c.candidate.entry->family &&
-             other.alone.folds < c.alone.folds;
-    });
-  }
-
   void TellCandidates() {
-    result_.probability_none = 1.0;
     for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
       const Rung& rung = ladder_.rungs[r];
+      const std::map<std::string, double> shares = SharesOf(rung);
       const auto looked_at = static_cast<double>(ladder_.view.looked_at.size());
       std::set<std::string> told;
       for (const Contender& c : rung.contenders) {
@@ -254,8 +236,7 @@ class Teller {
         score.effects.push_back(NameOf(c));
         score.log_evidence = -c.trial.fit.cost;
         score.heldout_score = -0.5 * looked_at * std::log(c.alone.folds + 1e-300);
-        score.probability = r == 0 ? ShareOf(rung, c) : 0.0;
-        result_.probability_none -= score.probability;
+        score.probability = r == 0 ? shares.at(NameOf(c)) : 0.0;
         score.closed_fraction = std::clamp(1.0 - c.alone.folds, 0.0, 1.0);
         result_.candidates.push_back(std::move(score));
       }
@@ -304,7 +285,9 @@ class Teller {
     const Rung* first = named > 0 ? &ladder_.rungs.front() : nullptr;
     if (first != nullptr) {
       result_.verdict = first->named.size() > 1 ? Verdict::kAmbiguous : Verdict::kNamed;
-      result_.probability_none = std::max(result_.probability_none, 0.0);  // of the samples that no candidate wins
+      double won = 0.0;
+      for (const auto& [name, share] : SharesOf(*first)) won += share;
+      result_.probability_none = std::max(1.0 - won, 0.0);
       result_.probability_unnamed = 0.0;
     } else {
       result_.verdict = complete_ ? Verdict::kNone : Verdict::kUnnamed;
