@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "expression/virtual_code.hpp"
 
@@ -36,15 +39,70 @@ std::optional<TapeSum> SumOf(const Virtual& v, int num_given) {
   return sum;
 }
 
+/// Takes apart code that adds products with powers to a sum, from its result back.
+class PowerShape {
+ public:
+  PowerShape(const VirtualCode& code, int num_parameters) : code_(code.code), num_parameters_(num_parameters) {}
+
+  /// @return whether `value` is of that shape; fills in what a tape says of it.
+  [[nodiscard]] bool Recognise(int value, Tape* tape) const {
+    const Virtual* v = Of(value);
+    while (v != nullptr && (v->op == TapeOp::kMultiplyAdd || v->op == TapeOp::kMultiplyAddS)) {
+      if (tape->num_powers == kMaxShapePowers) return false;
+      TapePower& power = tape->power[static_cast<std::size_t>(tape->num_powers++)];
+      const int x = v->registers[0];
+      const int y = v->registers[1];
+      if (!IsPowerTimes(x, y, &power) && !IsPowerTimes(y, x, &power)) return false;
+      if (v->op == TapeOp::kMultiplyAddS) {
+        tape->rest.constant = static_cast<std::uint8_t>(v->scalars[0]);
+        return true;
+      }
+      if (v->registers[2] < num_parameters_) {
+        tape->rest = Parameter(v->registers[2]);
+        return true;
+      }
+      v = Of(v->registers[2]);
+    }
+    const std::optional<TapeSum> rest = v == nullptr ? std::nullopt : SumOf(*v, num_parameters_);
+    if (rest) tape->rest = *rest;
+    return rest && tape->num_powers > 0;
+  }
+
+ private:
+  [[nodiscard]] const Virtual* Of(int value) const {
+    const auto it = std::find_if(code_.begin(), code_.end(), [value](const Virtual& v) { return v.to == value; });
+    return it == code_.end() ? nullptr : &*it;
+  }
+  /// Whether x is a power and y a parameter or a sum; beside a parameter the power may have a scalar as factor.
+  bool IsPowerTimes(int x, int y, TapePower* power) const {
+    const Virtual* v = Of(x);
+    const Virtual* const sum = Of(y);
+    std::optional<TapeSum> factor = y < num_parameters_ ? Parameter(y)
+                                    : sum == nullptr    ? std::nullopt
+                                                        : SumOf(*sum, num_parameters_);
+    if (!factor || v == nullptr) return false;
+    if (v->op == TapeOp::kScale && y < num_parameters_) {
+      factor->scalar[0] = static_cast<std::uint8_t>(v->scalars[0]);
+      v = Of(v->registers[0]);
+    }
+    if (v == nullptr || v->op != TapeOp::kExp2S || v->registers[0] >= num_parameters_) return false;
+    power->factor = *factor;
+    power->exponent = static_cast<std::uint8_t>(v->registers[0]);
+    power->log2 = static_cast<std::uint8_t>(v->scalars[0]);
+    return true;
+  }
+
+  const std::vector<Virtual>& code_;
+  int num_parameters_;
+};
+
 }  // namespace
 
 void RecogniseShape(const VirtualCode& code, Tape* tape) {
-  if (code.results.size() != 1 || code.code.empty() || code.code.size() > 4) return;
+  if (code.results.size() != 1 || code.code.empty()) return;
   if (std::any_of(code.code.begin(), code.code.end(), [](const Virtual& v) { return v.once; })) return;
-  const Virtual& last = code.code.back();
-  if (last.to != code.results[0]) return;
-  if (code.code.size() == 1) {
-    const std::optional<TapeSum> sum = SumOf(last, tape->num_parameters + tape->num_states);
+  if (code.code.size() == 1 && code.code[0].to == code.results[0]) {
+    const std::optional<TapeSum> sum = SumOf(code.code[0], tape->num_parameters + tape->num_states);
     if (!sum) return;
     tape->rest = *sum;
     tape->shape = TapeShape::kLinear;
@@ -52,39 +110,10 @@ void RecogniseShape(const VirtualCode& code, Tape* tape) {
   }
   // What powers are part of reads no states: its loop runs from the parameters alone.
   if (tape->num_states > 0) return;
-  const int num_parameters = tape->num_parameters;
-  // A power, its factor (a sum or a parameter), and their product, added to a scalar or a sum; in any order.
-  const bool adds_scalar = last.op == TapeOp::kMultiplyAddS;
-  if (!adds_scalar && last.op != TapeOp::kMultiplyAdd) return;
-  const auto power =
-      std::find_if(code.code.begin(), code.code.end() - 1, [](const Virtual& v) { return v.op == TapeOp::kExp2S; });
-  if (power == code.code.end() - 1 || power->registers[0] >= num_parameters) return;
-  const int x = last.registers[0];
-  const int y = last.registers[1];
-  if (x != power->to && y != power->to) return;
-  const int other = x == power->to ? y : x;
-  std::optional<TapeSum> factor;
-  std::optional<TapeSum> rest;
-  if (other < num_parameters) factor = Parameter(other);
-  if (adds_scalar) rest.emplace().constant = static_cast<std::uint8_t>(last.scalars[0]);
-  for (auto v = code.code.begin(); v != code.code.end() - 1; ++v) {
-    if (v == power) continue;
-    const std::optional<TapeSum> sum = SumOf(*v, num_parameters);
-    if (!sum) return;
-    if (v->to == other && !factor) {
-      factor = sum;
-    } else if (!adds_scalar && v->to == last.registers[2] && !rest) {
-      rest = sum;
-    } else {
-      return;
-    }
-  }
-  if (!factor || !rest) return;
-  tape->factor = *factor;
-  tape->rest = *rest;
-  tape->exponent = static_cast<std::uint8_t>(power->registers[0]);
-  tape->log2 = static_cast<std::uint8_t>(power->scalars[0]);
-  tape->shape = TapeShape::kPower;
+  if (PowerShape(code, tape->num_parameters).Recognise(code.results[0], tape))
+    tape->shape = TapeShape::kPower;
+  else
+    tape->num_powers = 0;
 }
 
 }  // namespace armcmc::expression

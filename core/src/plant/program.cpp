@@ -110,9 +110,15 @@ void PlantProgram::CompileLaw(int law, int target, const std::string& key, std::
                       std::move(*scalars));
       *scalars = std::move(compiled.scalars);
       expression::Tape& tape = tapes.emplace_back(std::move(compiled.tape));
-      const ParameterDescription& exponent = sampled_[tape.exponent];
-      if (tape.shape == expression::TapeShape::kPower && !IsLognormal(exponent))
-        tape.largest_exponent = std::fmax(std::fabs(*exponent.lower), std::fabs(*exponent.upper));
+      if (tape.shape != expression::TapeShape::kPower) continue;
+      double largest = 0.0;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(tape.num_powers); ++k) {
+        const ParameterDescription& exponent = sampled_[tape.power[k].exponent];
+        largest = std::fmax(largest, IsLognormal(exponent)
+                                         ? HUGE_VAL
+                                         : std::fmax(std::fabs(*exponent.lower), std::fabs(*exponent.upper)));
+      }
+      if (largest < HUGE_VAL) tape.largest_exponent = largest;
     }
   } catch (const std::logic_error& error) {  // length_error, invalid_argument
     throw PlantError(key, 0, std::string("the law ") + error.what());

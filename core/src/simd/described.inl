@@ -1,6 +1,7 @@
 // Predicts and scores described plants by their tapes; included by kernels.inl, once per instruction set.
 
 #include <algorithm>
+#include <type_traits>
 
 #include "simd/states.inl"
 
@@ -193,8 +194,8 @@ void SumTapeSquares(const ModeData& data, const ThetaTile* theta, double* out) n
 
 /// The same for tapes with a shape: as many vectors side by side as keep the arithmetic units busy, nothing in memory.
 /// Powers carry a relative error of 4e-11, as those of the compiled laws do.
-/// @tparam kPower  Some have one. @tparam kSeveral  There is more than one tape, and not all need have a power.
-template <bool kWeighted, bool kPower, bool kSeveral>
+/// @tparam kPowers  Most that one has. @tparam kSeveral  There is more than one tape, and not all need have as many.
+template <bool kWeighted, int kPowers, bool kSeveral>
 void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
   constexpr int kGroup = Simd::kLanes == 8 ? 4 : 2;
   constexpr double kReach = 960.0;  // |exponent log2 x| that needs no clamp
@@ -205,11 +206,12 @@ void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) 
       const double* row = data.scalars->Row(data.sample[n]);
       Simd::V e[kGroup];
       TapeSumOf<kGroup>(tape.rest, row, theta.value[0].data() + lane, kTileLanes, e);
-      if (kPower && (!kSeveral || tape.shape == expression::TapeShape::kPower)) {
+      for (int k = 0; k < (kSeveral ? tape.num_powers : kPowers); ++k) {
+        const expression::TapePower& power = tape.power[static_cast<std::size_t>(k)];
         Simd::V factor[kGroup];
-        TapeSumOf<kGroup>(tape.factor, row, theta.value[0].data() + lane, kTileLanes, factor);
-        const double* exponent = theta.value[tape.exponent].data() + lane;
-        const double log2 = row[tape.log2];
+        TapeSumOf<kGroup>(power.factor, row, theta.value[0].data() + lane, kTileLanes, factor);
+        const double* exponent = theta.value[power.exponent].data() + lane;
+        const double log2 = row[power.log2];
         if (std::fabs(log2) * tape.largest_exponent <= kReach) {
           for (int g = 0; g < kGroup; ++g)
             e[g] = Simd::Fma(ScoreSimd::Power(Simd::Load(exponent + g * Simd::kLanes), log2), factor[g], e[g]);
@@ -239,19 +241,22 @@ void SumSquaresOfTapes(const ModeData& data, const ThetaTile* theta, double* out
                                                  [=](const Tape& tape) { return ((tape.shape == shapes) || ...); });
   };
   const bool several = data.num_tapes > 1;
-  const auto shaped = [&](auto power) {  // no pointers to functions: what they do is not known to be bounded
+  const auto shaped = [&](auto powers) {  // no pointers to functions: what they do is not known to be bounded
     for (std::size_t t = 0; t < kTiles; ++t) {
       double* const sums = out + t * kTileLanes;
       if (several)
-        SumShapeSquares<kWeighted, decltype(power)::value, true>(data, theta[t], sums);
+        SumShapeSquares<kWeighted, decltype(powers)::value, true>(data, theta[t], sums);
       else
-        SumShapeSquares<kWeighted, decltype(power)::value, false>(data, theta[t], sums);
+        SumShapeSquares<kWeighted, decltype(powers)::value, false>(data, theta[t], sums);
     }
   };
   if (are(TapeShape::kLinear)) {
-    shaped(std::false_type{});
+    shaped(std::integral_constant<int, 0>());
   } else if (are(TapeShape::kLinear, TapeShape::kPower)) {
-    shaped(std::true_type{});
+    if (several || data.error_tape->num_powers > 1)
+      shaped(std::integral_constant<int, 2>());
+    else
+      shaped(std::integral_constant<int, 1>());
   } else if constexpr (kTapesInPairs) {
     SumTapeSquares<kWeighted, kTiles>(data, theta, out);
   } else {

@@ -333,17 +333,23 @@ TEST_P(Score, IsThatOfThePredictions) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tape, Score,
-                         testing::Values(Scored{"K*x + B*v - p*u", expression::TapeShape::kLinear},
-                                         Scored{"K*x + B*v - p*u + tau*x*v - sin(x)", expression::TapeShape::kLinear},
-                                         Scored{"max(x, 0)^p * (K + B*v) - u", expression::TapeShape::kPower},
-                                         Scored{"max(x, 0)^p * K - u", expression::TapeShape::kPower},
-                                         Scored{"abs(v)^p * (K*u + B*v) + tau*x - u", expression::TapeShape::kPower},
-                                         Scored{"abs(v)^(2*p) * (K*u + x) - tau*x", expression::TapeShape::kPower},
-                                         Scored{"K*x*sin(B) - u", expression::TapeShape::kGeneral},
-                                         Scored{"abs(v)^p * abs(x)^tau + K", expression::TapeShape::kGeneral},
-                                         Scored{"abs(v)^p * (K*sin(B) + x) - u", expression::TapeShape::kGeneral}),
-                         [](const auto& info) { return "n" + std::to_string(info.index); });
+INSTANTIATE_TEST_SUITE_P(
+    Tape, Score,
+    testing::Values(Scored{"K*x + B*v - p*u", expression::TapeShape::kLinear},
+                    Scored{"K*x + B*v - p*u + tau*x*v - sin(x)", expression::TapeShape::kLinear},
+                    Scored{"max(x, 0)^p * (K + B*v) - u", expression::TapeShape::kPower},
+                    Scored{"max(x, 0)^p * K - u", expression::TapeShape::kPower},
+                    Scored{"abs(v)^p * (K*u + B*v) + tau*x - u", expression::TapeShape::kPower},
+                    Scored{"abs(v)^(2*p) * (K*u + x) - tau*x", expression::TapeShape::kPower},
+                    Scored{"K*max(x, 0)^p + B*v*abs(x)^tau - u", expression::TapeShape::kPower},
+                    Scored{"K*abs(x)^p + (B*v + u)*abs(v)^tau + p*x - u", expression::TapeShape::kPower},
+                    Scored{"K*abs(x)^p + B*abs(v)^p + tau", expression::TapeShape::kPower},
+                    Scored{"K*abs(x)^p + B*abs(x)^p*v - u", expression::TapeShape::kPower},
+                    Scored{"K*abs(x)^p + B*abs(v)^p + tau*abs(u)^p - u", expression::TapeShape::kGeneral},
+                    Scored{"K*x*sin(B) - u", expression::TapeShape::kGeneral},
+                    Scored{"abs(v)^p * abs(x)^tau + K", expression::TapeShape::kGeneral},
+                    Scored{"abs(v)^p * (K*sin(B) + x) - u", expression::TapeShape::kGeneral}),
+    [](const auto& info) { return "n" + std::to_string(info.index); });
 
 TEST(Tape, IsAsShortAsTheLawAllows) {
   EXPECT_EQ(Law("K*x + B*v + p").compiled.tape.size(), 2) << "one sum of two terms";

@@ -82,9 +82,10 @@ struct TapeInstruction {
 enum class TapeShape : std::uint8_t {
   kGeneral,
   kLinear,  ///< scalar + sum of scalars x parameters or states.
-  kPower,   ///< 2^(parameter x scalar) x (scalar + sum) + scalar + sum.
+  kPower,   ///< One or two of 2^(parameter x scalar) x (scalar + sum), + scalar + sum.
 };
-inline constexpr int kMaxShapeTerms = 8;  ///< Of all sums of a shape.
+inline constexpr int kMaxShapeTerms = 8;   ///< Of every sum of a shape.
+inline constexpr int kMaxShapePowers = 2;  ///< Of a shape.
 
 /// scalar `constant` + sum of scalars x parameters or states.
 struct TapeSum {
@@ -93,6 +94,12 @@ struct TapeSum {
   std::uint8_t count = 0;
   std::array<std::uint8_t, kMaxShapeTerms> parameter{};  ///< Register of it.
   std::array<std::uint8_t, kMaxShapeTerms> scalar{};     ///< kNone: 1.
+};
+
+/// 2^(parameter x scalar) x factor.
+struct TapePower {
+  TapeSum factor;
+  std::uint8_t exponent = 0, log2 = 0;  ///< Parameter and scalar.
 };
 
 /// Straight-line code for all candidates of a tile at one sample. Registers 0 to num_parameters - 1 hold the
@@ -108,9 +115,10 @@ struct Tape {
   std::array<std::uint8_t, kMaxTapeResults> result{};  ///< Registers.
 
   TapeShape shape = TapeShape::kGeneral;  ///< Of the first result.
-  TapeSum factor, rest;                   ///< kLinear: `rest` alone.
-  std::uint8_t exponent = 0, log2 = 0;    ///< kPower: parameter and scalar.
-  double largest_exponent = 1e300;        ///< Upper bound of its magnitude, if known when the tape is made.
+  TapeSum rest;                           ///< kLinear: `rest` alone.
+  int num_powers = 0;
+  std::array<TapePower, kMaxShapePowers> power{};
+  double largest_exponent = 1e300;  ///< Upper bound of the magnitude of all, if known when the tape is made.
 
   /// Instructions a sample.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(code.size()) - once; }
