@@ -198,13 +198,13 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
     // A replay infers the number of pilot rounds from the draws after the pilot: at least those of a hurried pack.
     const int several = made == pilot ? std::max(DrawsInHaste(pilot, wanted), ChunkDraws(wanted)) : ChunkDraws(wanted);
     const int chunk = std::min(several, (made < target ? target : wanted) - made);
-    const Nanos before = clock.Now();
+    const Nanos start = clock.Now();
     const double ahead = worst_draw_ns * chunk + slowness * static_cast<double>(TimeAfter(made + chunk, informed));
-    if (made > pilot && before + static_cast<Nanos>(ahead) > deadline_ns) break;
+    if (made > pilot && start + static_cast<Nanos>(ahead) > deadline_ns) break;
     DrawAndScore(proposal, previous, data, made, chunk, stream, ws, out);
     made += chunk;
     timed += chunk;
-    const Nanos spent = clock.Now() - before;
+    const Nanos spent = clock.Now() - start;
     draw_ns += spent;
     worst_draw_ns = std::max(worst_draw_ns, static_cast<double>(spent) / chunk);
     slowness = draw_pace_.Slowness(draw_ns, timed);

@@ -16,7 +16,7 @@
 
 namespace armcmc::app {
 
-/// What the process does for one of its plants beside the real-time threads: it owns the estimator, keeps the file of
+/// What the process does for one of its plants outside the real-time threads: it owns the estimator, keeps the file of
 /// --resume and the data around a gap, prints events, and writes summary and report.
 class PlantRun {
  public:
@@ -34,7 +34,7 @@ class PlantRun {
 
   /// Reads the file of --resume. Before the pipeline starts. @param lane  Of this plant; outlives this.
   void Resume(rt::Lane* lane, const Say& say);
-  /// The threads beside the pipeline. After that has started.
+  /// The threads other than the pipeline's. After that has started.
   void Start(Nanos start_ns, bool verbose, const Say& say);
   /// Prints what has happened. @param each_second  A second has passed since it was true the last time.
   void PrintEvents(Nanos now_ns, bool each_second);

@@ -22,7 +22,7 @@ struct SnapshotCounts {
 [[nodiscard]] std::string ReportJson(const Pipeline& pipeline, const Lane& lane, const std::string& gap_window = "",
                                      const std::optional<SnapshotCounts>& snapshot = std::nullopt);
 
-/// Writes it through a temporary file beside the target, so that no reader sees half a report.
+/// Writes it through a temporary file in the same folder, so that no reader sees half a report.
 /// @throws std::runtime_error naming the file.
 void WriteReport(const Pipeline& pipeline, const Lane& lane, const std::string& path,
                  const std::string& gap_window = "", const std::optional<SnapshotCounts>& snapshot = std::nullopt);

@@ -11,6 +11,7 @@
 #include "armcmc/estimator.hpp"
 #include "armcmc/settings.hpp"
 #include "support/packs.hpp"
+#include "support/same_bits.hpp"
 
 namespace armcmc::test {
 
@@ -42,8 +43,6 @@ class Rig {
  private:
   std::unique_ptr<Estimate> estimate_;
 };
-
-inline bool SameBits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 /// Everything that is computed, to the bit.
 inline void ExpectSameBits(const Estimate& a, const Estimate& b) {

@@ -2,13 +2,22 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
 #include <memory>
 #include <random>
-#include <string>
 
+#include "armcmc/data_pack.hpp"
+#include "armcmc/mode_data.hpp"
 #include "armcmc/models/registry.hpp"
+#include "armcmc/noise_model.hpp"
+#include "armcmc/power_series.hpp"
+#include "armcmc/settings.hpp"
 #include "core/kernel_sets.hpp"
+#include "plants/hunt_crossley/model.hpp"
+#include "plants/soft_actuator/constants.hpp"
+#include "plants/soft_actuator/model.hpp"
+#include "simd/kernels.hpp"
+#include "support/same_bits.hpp"
 
 namespace armcmc::likelihood_kernels_test {
 namespace {
@@ -120,8 +129,8 @@ TEST(LogLikelihoodKernel, EqualsTheSummedLogDensity) {
         const auto b = ContactBatch(4);
         b->data.num_samples = samples;
         kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
-        alignas(64) double log_scale[kTileLanes];
-        alignas(64) double out[kTileLanes];
+        alignas(64) double log_scale[kTileLanes] = {};
+        alignas(64) double out[kTileLanes] = {};
         for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -4.0 + 0.25 * l;  // scales from 0.02 to 40
         for (std::size_t n = 0; n < kMaxPackSamples; ++n) b->data.weight[n] = std::exp(-0.01 * static_cast<double>(n));
         const NoiseModel noise(Noise(kind));
@@ -148,7 +157,7 @@ TEST(LogLikelihoodKernel, FarOutliersStayFiniteUnderHeavyTails) {
       kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
       b->data.weight.fill(1.0);
       alignas(64) double log_scale[kTileLanes] = {};
-      alignas(64) double out[kTileLanes];
+      alignas(64) double out[kTileLanes] = {};
       kernels->log_likelihood(NoiseModel(Noise(kind)), b->data, b->tile, log_scale, out);
       for (const double v : out) EXPECT_TRUE(std::isfinite(v)) << kernels->name;
     }
@@ -156,7 +165,7 @@ TEST(LogLikelihoodKernel, FarOutliersStayFiniteUnderHeavyTails) {
 
 TEST(RelativeLikelihoodKernel, IsTheExponentialOfTheDifference) {
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
-    alignas(64) double value[64], out[64];
+    alignas(64) double value[64] = {}, out[64] = {};
     for (int k = 0; k < 64; ++k) value[k] = 1234.5 - 11.0 * k;
     kernels->relative_likelihood(value, 1234.5, 64, out);
     for (int k = 0; k < 64; ++k) {
@@ -173,7 +182,7 @@ TEST(RelativeLikelihoodKernel, IsTheExponentialOfTheDifference) {
 
 TEST(RelativeLikelihoodKernel, ExponentialIsAccurateToTwoUnits) {
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
-    alignas(64) double value[1024], out[1024];
+    alignas(64) double value[1024] = {}, out[1024] = {};
     for (int k = 0; k < 1024; ++k) value[k] = -k / 1024.0;
     kernels->relative_likelihood(value, 0.0, 1024, out);
     for (int k = 0; k < 1024; ++k) {
@@ -195,7 +204,7 @@ TEST(LogLikelihoodKernel, LogarithmIsAccurateToAFewUnits) {
   b->data.weight[0] = 1.0;
   for (const simd::Kernels* kernels : test::RunnableKernels())
     for (int block = 0; block < 32; ++block) {
-      alignas(64) double log_scale[kTileLanes] = {}, out[kTileLanes];
+      alignas(64) double log_scale[kTileLanes] = {}, out[kTileLanes] = {};
       for (std::size_t l = 0; l < kTileLanes; ++l) b->tile.value[0][l] = (block + static_cast<double>(l) / 32.0) / 16.0;
       kernels->log_likelihood(noise, b->data, b->tile, log_scale, out);
       for (std::size_t l = 0; l < kTileLanes; ++l) {
@@ -231,7 +240,7 @@ TEST(ScoreKernel, EqualsPredictionAndLogLikelihood) {
         b->pack.u[12][0] = 1e-310;
         HuntCrossley::Prepare(b->pack, {}, 0, &b->data);
         const Expected expected(*kernels, kind, weighted, b.get());
-        alignas(64) double out[kTileLanes];
+        alignas(64) double out[kTileLanes] = {};
         kernels->score(kHuntCrossley, expected.noise, b->data, b->theta, expected.log_scale.data(), &b->tile, out);
         for (std::size_t l = 0; l < kTileLanes; ++l)
           ASSERT_NEAR(out[l], expected.log_likelihood[l], 2e-10 * std::fabs(expected.log_likelihood[l]))
@@ -266,7 +275,7 @@ TEST(ScoreNearKernel, EqualsPredictionAndLogLikelihood) {
           for (int run = 0; run * PowerSeries::kRun < b->data.num_samples; ++run)
             ++runs[static_cast<std::size_t>(series->degree[static_cast<std::size_t>(run)])];
           const Expected expected(*kernels, kind, weighted, b.get());
-          alignas(64) double out[kTileLanes];
+          alignas(64) double out[kTileLanes] = {};
           kernels->score_near(kHuntCrossley, expected.noise, b->data, series.get(), b->theta, expected.log_scale.data(),
                               kTileLanes, out);
           for (std::size_t l = 0; l < kTileLanes; ++l)
@@ -283,7 +292,7 @@ TEST(ScoreNearKernel, WithoutSeriesGivesTheBitsOfTheScoreOfTheFirstLanes) {
     for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture})
       for (const int lanes : {1, 9, 16, 17, kTileLanes}) {
         const auto b = ContactBatch(12);
-        alignas(64) double log_scale[kTileLanes] = {}, expected[kTileLanes], out[kTileLanes];
+        alignas(64) double log_scale[kTileLanes] = {}, expected[kTileLanes] = {}, out[kTileLanes] = {};
         const NoiseModel noise(Noise(kind));
         kernels->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, expected);
         kernels->score_near(kHuntCrossley, noise, b->data, nullptr, b->theta, log_scale, lanes, out);
@@ -299,11 +308,11 @@ TEST(ScoreNearKernel, FusedInstructionSetsGiveTheSameBits) {
   for (const double reach : {0.003, 0.03, 0.1})
     for (const NoiseKind kind : {NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture}) {
       const auto a = NearBatch(reach, *sets[0], series_a.get()), b = NearBatch(reach, *sets[1], series_b.get());
-      alignas(64) double log_scale[kTileLanes] = {}, out_a[kTileLanes], out_b[kTileLanes];
+      alignas(64) double log_scale[kTileLanes] = {}, out_a[kTileLanes] = {}, out_b[kTileLanes] = {};
       const NoiseModel noise(Noise(kind));
       sets[0]->score_near(kHuntCrossley, noise, a->data, series_a.get(), a->theta, log_scale, kTileLanes, out_a);
       sets[1]->score_near(kHuntCrossley, noise, b->data, series_b.get(), b->theta, log_scale, kTileLanes, out_b);
-      EXPECT_EQ(std::memcmp(out_a, out_b, sizeof out_a), 0) << static_cast<int>(kind) << " reach " << reach;
+      EXPECT_TRUE(test::SameBits(out_a, out_b)) << static_cast<int>(kind) << " reach " << reach;
     }
 }
 
@@ -330,7 +339,7 @@ TEST(ScoreKernel, MovesALogLikelihoodByLessThanAMillionth) {
     for (std::size_t l = 0; l < kTileLanes; ++l) b->theta.value[2][l] += 1e-4 * Uniform(g, -1.0, 1.0);
     kernels->predict(kHuntCrossley, b->data, b->theta, &b->tile);
     for (std::size_t n = 0; n < 100; ++n) b->data.target[n] = b->tile.value[n][0] + Uniform(g, -0.1, 0.1);
-    alignas(64) double log_scale[kTileLanes], expected[kTileLanes], out[kTileLanes];
+    alignas(64) double log_scale[kTileLanes] = {}, expected[kTileLanes] = {}, out[kTileLanes] = {};
     for (double& s : log_scale) s = std::log(0.1);
     NoiseSettings settings;
     settings.std = 0.1;
@@ -347,20 +356,20 @@ TEST(LikelihoodKernels, FusedInstructionSetsGiveTheSameBits) {
   for (const NoiseKind kind : {NoiseKind::kGaussian, NoiseKind::kStudentT, NoiseKind::kLaplace, NoiseKind::kMixture}) {
     const NoiseModel noise(Noise(kind));
     const auto a = ContactBatch(6), b = ContactBatch(6);
-    alignas(64) double log_scale[kTileLanes], out_a[kTileLanes], out_b[kTileLanes];
+    alignas(64) double log_scale[kTileLanes] = {}, out_a[kTileLanes] = {}, out_b[kTileLanes] = {};
     for (int l = 0; l < kTileLanes; ++l) log_scale[l] = -3.0 + 0.1 * l;
     a->data.weight.fill(1.0);
     b->data.weight.fill(1.0);
     sets[0]->predict(kHuntCrossley, a->data, a->theta, &a->tile);
     sets[1]->predict(kHuntCrossley, b->data, b->theta, &b->tile);
     const auto rows = static_cast<std::size_t>(a->data.num_samples);
-    EXPECT_EQ(std::memcmp(a->tile.value.data(), b->tile.value.data(), rows * sizeof(a->tile.value[0])), 0);
+    for (std::size_t n = 0; n < rows; ++n) EXPECT_TRUE(test::SameBits(a->tile.value[n], b->tile.value[n])) << n;
     sets[0]->log_likelihood(noise, a->data, a->tile, log_scale, out_a);
     sets[1]->log_likelihood(noise, b->data, b->tile, log_scale, out_b);
-    EXPECT_EQ(std::memcmp(out_a, out_b, sizeof out_a), 0) << static_cast<int>(kind);
+    EXPECT_TRUE(test::SameBits(out_a, out_b)) << static_cast<int>(kind);
     sets[0]->score(kHuntCrossley, noise, a->data, a->theta, log_scale, &a->tile, out_a);
     sets[1]->score(kHuntCrossley, noise, b->data, b->theta, log_scale, &b->tile, out_b);
-    EXPECT_EQ(std::memcmp(out_a, out_b, sizeof out_a), 0) << "score " << static_cast<int>(kind);
+    EXPECT_TRUE(test::SameBits(out_a, out_b)) << "score " << static_cast<int>(kind);
   }
 }
 

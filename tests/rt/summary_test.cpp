@@ -101,6 +101,12 @@ TEST_F(SummaryTest, OfARunWithoutPacksHasNoTimes) {
   EXPECT_THAT(text, Not(HasSubstr("draws per posterior")));
 }
 
+TEST_F(SummaryTest, SaysThatTooFewPacksWereJudged) {
+  engine_.gap.watched = true;
+  EXPECT_THAT(AfterPacks(1),
+              HasSubstr("gap between model and plant: not judged, since too few packs were of use for that\n"));
+}
+
 TEST_F(SummaryTest, SaysThatNoGapIsSuspected) {
   engine_.gap.watched = true;
   engine_.gap.num_blocks = 7;

@@ -21,8 +21,9 @@ function(armcmc_npm_package name version)
   set(unpacked "${PROJECT_BINARY_DIR}/npm/${archive_name}-${version}")
   set(${arg_OUTPUT_DIR} "${unpacked}/package" PARENT_SCOPE)
 
-  set(way_out "With a network later, configure again. Without one: fetch ${url} elsewhere, put it into a folder as "
-    "${file_name}, and configure with -DARMCMC_NPM_CACHE=FOLDER. Another mirror: -DARMCMC_NPM_REGISTRY=URL.")
+  set(way_out "With a network later, try again. Without one: fetch ${url} elsewhere, put it into a folder as "
+    "${file_name}, run cmake --preset release -DARMCMC_NPM_CACHE=FOLDER once, and try again. "
+    "Another mirror: -DARMCMC_NPM_REGISTRY=URL.")
   string(CONCAT way_out ${way_out})
 
   file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/npm")

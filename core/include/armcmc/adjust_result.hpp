@@ -32,7 +32,7 @@ struct ModeDraws {
   std::array<double, kMaxParams> widening{};
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
-  bool point_is_mode = false;               ///< mode_u is the point estimate whatever the decision (least squares).
+  bool point_is_mode = false;               ///< mode_u is the point estimate after every decision (least squares).
   int dim = 0;                              ///< Sampled parameters of the mode.
   // Structure of arrays, `draws` entries each.
   std::array<double*, kMaxParams> u{};  ///< Standardised coordinates.

@@ -44,7 +44,7 @@ struct alignas(64) ModeData {
   const double* past = nullptr;      ///< PastLines::value of the pack.
   const StateRun* states = nullptr;  ///< Of a plant that has some: what they do over the pack.
   const StartFit* start_fit =
-      nullptr;  ///< Errors are those that remain beside an uncertain start; null: it is certain.
+      nullptr;  ///< Removes from the errors what an uncertain start can explain; null: the start is certain.
   std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of `compiled` and tape: where in the pack it stands.
 };
 

@@ -34,7 +34,7 @@ class Proposal {
   void Normalise() noexcept ARMCMC_NONBLOCKING;
 
   /// Draws candidates u[d][first .. first + count) by inverse CDF, and their component into component_of. Candidate k
-  /// uses numbers k * kNumbersPerDraw + ... of the stream, whatever the batch it is drawn in.
+  /// uses numbers k * kNumbersPerDraw + ... of the stream, in any batch.
   /// @pre count <= kMaxBatch; u has room for count rounded up to a multiple of 8, scratch dim rows of kMaxBatch + 8.
   void Draw(const simd::Kernels& kernels, const RandomStream& stream, int first, int count, double* const* u,
             std::int8_t* component_of, double* const* scratch) const noexcept ARMCMC_NONBLOCKING;

@@ -18,7 +18,7 @@ class RandomStream {
     return Mix(counter_);
   }
 
-  /// Number `index` of the stream, whatever was drawn before.
+  /// Number `index` of the stream, independent of what was drawn before.
   [[nodiscard]] static constexpr std::uint64_t At(std::uint64_t origin, std::uint64_t index) noexcept {
     return Mix(origin + kGolden * (index + 1));
   }

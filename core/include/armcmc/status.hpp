@@ -6,7 +6,7 @@
 namespace armcmc {
 
 /// Outcome of a function on the step path. Such functions never throw. They set their outputs as documented for each
-/// value, and leave the estimator in a valid state whatever the outcome: the next pack can be processed.
+/// value, and leave the estimator in a valid state in every case: the next pack can be processed.
 ///
 /// kOk, kTruncated and kHeld are normal operation. After kBadPack and kNonFinite the pipeline raises the fault flag for
 /// numeric trouble, records the number in the event log, and goes on with the next pack. On the bus, estimate_t has

@@ -14,7 +14,7 @@ inline constexpr int kMaxPackInputs = 8;     ///< Measured inputs in one pack.
 inline constexpr int kMaxDraws = 150'000;    ///< Upper end of the configurable number of draws.
 inline constexpr int kHistogramBins = 64;    ///< Bins of a published marginal.
 
-using Nanos = std::int64_t;  ///< Time in nanoseconds; the clock is whatever the caller passes in.
+using Nanos = std::int64_t;  ///< Time in nanoseconds; the caller chooses the clock.
 
 /// The clock of a step, handed in by the caller: core never asks the operating system for the time.
 /// A default-constructed clock always reads 0, so that no deadline is ever reached (replay).

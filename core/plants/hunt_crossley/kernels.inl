@@ -12,7 +12,6 @@ namespace {
 template <std::size_t kAdditive>
 void PredictAdditive(const ContactPack& pack, const ThetaTile& theta,
                      PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  using V = Simd::V;
   for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
     const V stiffness = Simd::Load(&theta.value[0][at]);
@@ -34,7 +33,6 @@ Simd::V Gated(double gate, Simd::V yes, Simd::V no) noexcept { return gate != 0.
 
 /// Plant forces of one vector of candidates, history included: input map, constitutive law, additive terms.
 void PlantForces(const ContactPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
-  using V = Simd::V;
   const auto amplitude_of = [&](int parameter) noexcept {
     return parameter < 0 ? V{} : Simd::Load(&theta.value[static_cast<std::size_t>(parameter)][at]);
   };
@@ -61,7 +59,6 @@ void PlantForces(const ContactPack& pack, const ThetaTile& theta, std::size_t at
 
 /// What the sensor makes of them, in place: delay, low pass, limit.
 void Sense(const ContactPack& pack, const ThetaTile& theta, std::size_t at, double* series) noexcept {
-  using V = Simd::V;
   const int rows = pack.rows();
   const auto amplitude_of = [&](int parameter) noexcept {
     return Simd::Load(&theta.value[static_cast<std::size_t>(parameter)][at]);

@@ -80,12 +80,12 @@ template <std::size_t kSize, class Place>
 /// Adds to the law of kSize candidates what makes its errors independent beside an uncertain start.
 template <std::size_t kSize>
 void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) noexcept {
-  constexpr std::size_t kVectors = kSize / Simd::kLanes;
-  Simd::V along[kMaxStates][kVectors] = {};
+  constexpr std::size_t kVectorsPerRow = kSize / Simd::kLanes;
+  Simd::V along[kMaxStates][kVectorsPerRow] = {};
   const auto count = static_cast<std::size_t>(fit.count);
   const auto samples = static_cast<std::size_t>(data.num_samples);
   for (std::size_t n = 0; n < samples; ++n)
-    for (std::size_t v = 0; v < kVectors; ++v) {
+    for (std::size_t v = 0; v < kVectorsPerRow; ++v) {
       const Simd::V law = Simd::Load(tile->value[n].data() + v * Simd::kLanes);
       const Simd::V error = (Simd::Set(data.target[n]) - law) * Simd::Set(data.weight[n]);
       for (std::size_t j = 0; j < count; ++j)
@@ -94,7 +94,7 @@ void FitStart(const StartFit& fit, const ModeData& data, PredictionTile* tile) n
   for (std::size_t n = 0; n < samples; ++n)
     for (std::size_t j = 0; j < count; ++j) {
       const Simd::V part = Simd::Set(fit.shrink[j] * fit.direction[j][n] / data.weight[n]);
-      for (std::size_t v = 0; v < kVectors; ++v) {
+      for (std::size_t v = 0; v < kVectorsPerRow; ++v) {
         double* law = tile->value[n].data() + v * Simd::kLanes;
         Simd::Store(law, Simd::Fma(along[j][v], part, Simd::Load(law)));
       }

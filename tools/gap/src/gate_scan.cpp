@@ -76,11 +76,11 @@ class Scan {
       so_far += c[i] * basis_.row(i).transpose();
     }
     for (const GateCandidate& candidate : {from_best, until_best}) {
-      const bool from = candidate.term.when.kind == When::Kind::kFrom;
+      const bool starts = candidate.term.when.kind == When::Kind::kFrom;
       Vector active = energy;
       for (int b = 0; b < kNumBlocks; ++b) {
         const double start = signals_.t[edges[static_cast<std::size_t>(b)]];
-        if (from != (start >= candidate.term.when.time_s)) active[b] = 0.0;
+        if (starts != (start >= candidate.term.when.time_s)) active[b] = 0.0;
       }
       if (candidate.gain > 0.0 && ActiveBlocks(active) >= min_active_) Keep(candidate, best);
     }

@@ -56,9 +56,11 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
                           : std::string("gap between model and plant: none suspected"))
         << "; log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
         << '\n';
-  } else if (!gap.watched) {
-    out << "gap between model and plant: not watched (switched off, or too many parameters); armcmc-gap judges a "
-           "recording\n";
+  } else {
+    out << "gap between model and plant: "
+        << (gap.watched ? "not judged, since too few packs were of use for that"
+                        : "not watched (switched off, or too many parameters)")
+        << "; armcmc-gap judges a recording\n";
   }
   out << (any_known ? table.ToString() : std::string("nothing is known: no pack said anything about a parameter\n"));
   if (summary.packs > 0 && summary.compute_s > 0.0)

@@ -23,7 +23,7 @@ namespace armcmc {
 ///
 ///   phi_d = (F(z + sd_d) - F(z - sd_d)) / (2 sd_d),   y = target - F(z) + phi' z
 ///
-/// States start where the file or the pack before says, and errors are those that remain beside an uncertain start, as
+/// States start where the file or the pack before says, and errors are those that an uncertain start cannot explain, as
 /// for the ARMCMC estimator.
 ///
 /// Saturation: after every sample the parameters are held inside the bounds. Noise is taken as Gaussian, whatever its

@@ -44,7 +44,7 @@ inline constexpr int kMaxNesting = 64;  ///< Of parentheses, signs and powers.
 ///     power    := atom [ "^" signed ]                       right associative, binds more than the sign before it
 ///     atom     := number | name | name "(" [ or { "," or } ] ")" | "(" or ")"
 ///
-/// a > b becomes b < a. Names are not looked up here. Numbers are read as in C whatever the locale.
+/// a > b becomes b < a. Names are not looked up here. Numbers are read as in the C locale.
 ///
 /// @throws Error with what was found and what was expected.
 [[nodiscard]] Syntax Parse(std::string_view text);

@@ -34,7 +34,7 @@ struct Unit {
 ///     unit   := factor { [" " | "*" | "/"] factor }       "/" divides by the next factor only
 ///     factor := name | number | "sqrt(" unit ")" | "(" unit ")", each with [ "^" exponent ]
 ///
-/// Names are those of the SI with their prefixes, and a few that laboratories use beside them.
+/// Names are those of the SI with their prefixes, and a few others that laboratories use.
 ///
 /// @return nothing where an exponent depends on a name, as in "N/m^p": such a unit is right, but cannot be checked.
 /// @throws Error with the column.

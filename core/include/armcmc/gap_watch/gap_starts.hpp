@@ -14,13 +14,14 @@ namespace simd {
 struct Kernels;
 }
 
-/// Orthonormal directions u_j in the samples of one pack, and the projection Q = I - sum_j u_j u_j' beside them.
+/// Orthonormal directions u_j in the samples of one pack, and the projection Q = I - sum_j u_j u_j' onto their
+/// orthogonal complement.
 class GapDirections {
  public:
   using Samples = std::array<double, kMaxPackSamples>;
 
   void Clear(int num_samples) noexcept ARMCMC_NONBLOCKING;
-  /// Adds what `direction` has beside those before; nothing where that is rounding error, or where there is no room.
+  /// Adds the part of `direction` that is orthogonal to the others; nothing if that is rounding error, or without room.
   void Add(const Samples& direction) noexcept ARMCMC_NONBLOCKING;
   /// values <- Q values; zero where nothing but rounding error is left. @rt O(samples x directions).
   void Remove(Samples* values) const noexcept ARMCMC_NONBLOCKING;
@@ -54,7 +55,7 @@ class GapStarts {
   /// @param pack       Whose law is in `data`, in order: the guess for the next one is where this one ends.
   /// @param theta      Sampled parameters.
   /// @param noise_std  Unit of what is explained.
-  /// @param run        Of data->states; on return it begins with the starts, whatever the parameters.
+  /// @param run        Of data->states; on return it begins with the starts, for all parameters.
   /// @return false when no trajectory is finite, or when the fit has not converged: what a start explains is then not
   /// linear. @rt No heap, no lock, no throw. A few tiles of candidates.
   [[nodiscard]] bool Fit(const DataPack& pack, const std::array<double, kMaxParams>& theta, double noise_std,

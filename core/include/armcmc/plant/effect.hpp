@@ -17,7 +17,7 @@ struct EffectNeed {
   /// "signal" (never the output), "state", "parameter", or "constant": one that a law, a target or a rate reads
   /// together with all other needs.
   std::string kind = "signal";
-  std::vector<std::string> roles;  ///< One of these; none: whatever it is.
+  std::vector<std::string> roles;  ///< One of these; empty: any role.
   std::string unit;                ///< That it must have; empty: any.
   std::string per;                 ///< Its unit is the output's over a power above 0 of what this need is bound to.
   std::string reads;               ///< Of a state: its rate reads what this need is bound to.

@@ -21,7 +21,7 @@ class Remembered;
 
 /// What no parameter changes of one pack of a described plant.
 struct PlantPack {
-  expression::TapeScalars scalars;                    ///< Of every sample, whatever its mode.
+  expression::TapeScalars scalars;                    ///< Of every sample, in any mode.
   std::array<std::int8_t, kMaxPackSamples> mode{};    ///< That acts: of those that are sampled, their number for none.
   std::array<std::uint8_t, kMaxPackSamples> law{};    ///< Of those that such a mode has.
   std::array<double, kMaxPackSamples> target{};       ///< What the law of that mode explains.

@@ -80,7 +80,7 @@ class PlantStates {
 
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] int substeps() const noexcept { return substeps_; }
-  /// The state begins with a signal, whatever the pack before left.
+  /// The state begins with a signal, not with its value at the end of the previous pack.
   [[nodiscard]] bool is_measured(int state) const noexcept {
     return measured_by_[static_cast<std::size_t>(state)] >= 0;
   }
