@@ -123,6 +123,32 @@ double RmsDifference(const std::vector<double>& a, const std::vector<double>& b)
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
+TEST(EffectCatalogue, WhatSlowsAStateResistsWhereTheLawIsAForce) {
+  int resisting = 0;
+  for (const EffectEntry& entry : Catalogue()) {
+    bool slows = false, adds = false;
+    for (const EffectForm& form : entry.forms)
+      for (const EffectTerm& term : form.terms) {
+        adds = adds || term.slot == "output";
+        slows = slows || (term.slot == "rate" && term.formula.starts_with('-') && form.needs[0].roles[0] == "velocity");
+      }
+    EXPECT_TRUE(entry.resists || !slows || !adds) << entry.name;
+    if (entry.resists) ++resisting;
+  }
+  EXPECT_GE(resisting, 11);
+}
+
+TEST(EffectCatalogue, IsAddedInThePlantsThatComeAlong) {
+  for (const char* name : {"friction_element", "servo_axis"}) {
+    const PlantDescription plant = Described(name);
+    for (const EffectEntry& entry : Catalogue()) {
+      if (entry.name != "coulomb_friction" && entry.name != "drag") continue;
+      const std::string law = AddEffect(plant, entry, Bindings(plant, entry).at(0), DefaultScales(plant)).law;
+      EXPECT_NE(law.find(" + " + entry.name), std::string::npos) << law;
+    }
+  }
+}
+
 TEST(EffectCatalogue, HasTheEffectsOfTheFieldWithWordsForPeople) {
   std::set<std::string> names;
   for (const EffectEntry& entry : Catalogue()) {

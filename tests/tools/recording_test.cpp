@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include "support/paths.hpp"
@@ -161,6 +162,37 @@ TEST_F(RecordingFile, SegmentsAndGapsAreRuns) {
   EXPECT_DOUBLE_EQ(r.t[300], 0.0);
   EXPECT_THAT(ErrorOf(""), HasSubstr("data.csv:302: t = 0: expected more than 0.299"));
   EXPECT_THAT(ErrorOf("[rows]\nonly = { part = [\"up\"] }\n"), StartsWith("no error"));
+}
+
+TEST_F(RecordingFile, SaysThatMemoryBeginsEachRunAtRest) {
+  const auto gap = [](int n) { return n < 300 ? n : n + 100; };
+  const auto begins = ::testing::Contains(HasSubstr("lowpass() begins each run at rest"));
+  WriteCsv(600, gap);
+  EXPECT_THAT(Read().notes, ::testing::Not(begins));
+  std::stringstream plant;
+  plant << std::ifstream(dir_ / "plant.toml").rdbuf();
+  std::string text = plant.str();
+  Write("plant.toml", text.replace(text.find("Fv*v"), 4, "lowpass(Fv*v, 0.1)"));
+  EXPECT_THAT(Read().notes, begins);
+  WriteCsv(600);
+  EXPECT_THAT(Read().notes, ::testing::Not(begins)) << "one run";
+}
+
+TEST_F(RecordingFile, SaysThatABandwidthAboveHalfTheSampleRateFiltersNothing) {
+  WriteCsv(600);
+  EXPECT_THAT(Read("[derivatives]\nbandwidth_hz = 500\n").notes,
+              ::testing::Contains(HasSubstr("not below half the sample rate, 500 Hz")));
+  EXPECT_THAT(Read("[derivatives]\nbandwidth_hz = 499\n").notes,
+              ::testing::Not(::testing::Contains(HasSubstr("half"))));
+}
+
+TEST_F(RecordingFile, SaysWhereASignalWithoutAColumnBelongs) {
+  WriteCsv(100);
+  EXPECT_THAT(ErrorOf("", "[columns]\nt = \"time_ms\"\nq = \"pos_mm\"\n"),
+              HasSubstr("recording.toml:4:1: columns.F: which"));
+  EXPECT_THAT(ErrorOf("", "[columns]\nq = \"pos_mm\"\nF = \"volt\"\n"),
+              HasSubstr("recording.toml:4:1: columns.t: which"));
+  EXPECT_THAT(ErrorOf("[rows]\nfrom = 95\n"), HasSubstr("recording.toml:8:1: rows: uses 5 rows of the 100 of"));
 }
 
 TEST_F(RecordingFile, UnevenTimeIsInterpolated) {

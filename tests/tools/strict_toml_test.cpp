@@ -108,6 +108,13 @@ TEST(StrictToml, MissingRequiredKeysNameTheirTableAndALikelyTypo) {
   EXPECT_THROW(t.RequiredChoice("a", {"x"}), ConfigError);
 }
 
+TEST(StrictToml, AMissingKeyOfATableThatIsMisspeltNamesTheTable) {
+  StrictTable root = Toml("a = 1\n[noize]\nstd = 1.0\n");
+  StrictTable noise = root.Table("noise");
+  EXPECT_EQ(MessageOf([&] { noise.RequiredNumber("std", 0.0, 1.0); }),
+            "f.toml:2:1: noise.std is missing: expected a number in [0, 1] (noize is set; is it a typo?)");
+}
+
 TEST(StrictToml, FinishNamesTheFirstUnknownKeyItsLineAndTheNearest) {
   auto t = Toml("[timing]\nperiod_ms = 5\nperiod_mss = 6\n[other]\nx = 1\n");
   auto timing = t.Table("timing");

@@ -4,6 +4,7 @@
 
 #include "armcmc/plant/plant.hpp"
 #include "effect_reading.hpp"
+#include "effect_sense.hpp"
 #include "effect_targets.hpp"
 #include "effect_text.hpp"
 #include "effect_units.hpp"
@@ -67,7 +68,8 @@ class Composer {
         form_(entry.forms[binding.form]),
         binding_(binding),
         scales_(scales),
-        prefix_(PrefixOf(plant_, entry)) {}
+        prefix_(PrefixOf(plant_, entry)),
+        subtracted_(entry.resists && SenseOfResistance(plant_) < 0) {}
 
   PlantDescription Composed() {
     MakeNames();
@@ -237,7 +239,8 @@ class Composer {
       NameMap names = names_;
       names["law"] = law;
       const std::string text = Inserted(term.formula, names);
-      return term.slot == "law" ? text : SumText(law, text);
+      if (term.slot == "law") return text;
+      return SumText(law, subtracted_ ? NegativeText(text) : text);
     };
     if (!plant_.predicts.empty()) {
       plant_.predicts = changed(plant_.predicts);
@@ -260,6 +263,7 @@ class Composer {
   const EffectBinding& binding_;
   const DataScales& scales_;
   const std::string prefix_;
+  const bool subtracted_;  ///< From the output: see EffectEntry::resists.
   NameMap names_, units_;
 };
 

@@ -111,6 +111,14 @@ std::string SumText(const std::string& first, const std::string& second) {
   return first + " + " + second;
 }
 
+std::string NegativeText(const std::string& text) {
+  const expression::Syntax syntax = expression::Parse(text);
+  const expression::Op op = syntax.at(syntax.root()).op;
+  const bool product = op == expression::Op::kMultiply || op == expression::Op::kDivide;
+  if (!product) return '-' + Bracketed(text);
+  return text.starts_with('-') ? text.substr(1) : '-' + text;
+}
+
 double ShortNumber(double value) {
   if (value == 0.0) return value;
   std::array<char, 32> text{};

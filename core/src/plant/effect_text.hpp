@@ -24,6 +24,9 @@ namespace armcmc {
 /// first + second in the usual notation: a sum with a negative term is a difference.
 [[nodiscard]] std::string SumText(const std::string& first, const std::string& second);
 
+/// -text in the usual notation.
+[[nodiscard]] std::string NegativeText(const std::string& text);
+
 /// The value with four digits, which a person reads.
 [[nodiscard]] double ShortNumber(double value);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "armcmc/plant/effect.hpp"
 #include "armcmc/plant/plant.hpp"
@@ -30,6 +31,45 @@ TEST(EffectComposition, AddsATermWithItsParameterInTheUnitOfTheOutput) {
   EXPECT_EQ(added.sd, 15.0) << "half of 30 standard deviations of the noise, which is 1 N";
   EXPECT_EQ(*added.lower, 0.0);
   EXPECT_EQ(Plant(composed).fingerprint(), Plant(test::DescribedAxis()).fingerprint());
+}
+
+/// What friction that resists motion adds to a law of v, a, a force P, a parameter k >= 0, and numbers c > 0 and n < 0.
+std::string Resistance(const std::string& law, const std::string& formula = "Fc*sign(v)") {
+  EffectEntry entry = Friction();
+  entry.resists = true;
+  entry.forms[0].terms[0].formula = formula;
+  PlantDescription plant = test::DescribedAxis();
+  plant.law = law;
+  plant.signals.push_back({"P", "N", "", ""});
+  plant.parameters = {{"k", "N", "normal", 0.0, 1.0, 0.0, 8.0}};
+  plant.constants = {{"c", 3.0, ""}, {"n", -2.0, ""}};
+  const std::string composed = Added(plant, entry).law;
+  EXPECT_TRUE(composed.starts_with(law)) << composed;
+  return composed.substr(law.size());
+}
+
+TEST(EffectComposition, SubtractsWhatResistsMotionFromAForceThatThePlantPassesOn) {
+  for (const char* law : {"c*k*a + k", "P + c*k*v", "k - c*(-k*v)", "c*k*a - c*k*v", "k*tanh(c*v)", "k + k*c*v/c",
+                          "k*(c*v)^3", "k*c*v - n*k*c*v"})
+    EXPECT_EQ(Resistance(law), " + friction_Fc*sign(v)") << law;
+  for (const char* law : {"P - c*k*a - k", "k - c*k*(c*v + P)", "P - lowpass(c*k*a, 0.1)", "n*k*v", "k - exp(-c)*c*k*v",
+                          "if(P > 0, k - c*a, -k - c*a)", "k + min(P, -c*k*v)", "k*v/n", "k - (c*v)^3"})
+    EXPECT_EQ(Resistance(law), " - friction_Fc*sign(v)") << law;
+  // Laws that fall and rise, or that read no motion, do not tell.
+  for (const char* law : {"k - c*k*v^2", "P*v*c*k", "k + P", "n*k*v*abs(v)", "k*c*v + n*k*v", "-k*abs(c*v)"})
+    EXPECT_EQ(Resistance(law), " + friction_Fc*sign(v)") << law;
+}
+
+TEST(EffectComposition, SubtractsInTheUsualNotation) {
+  EXPECT_EQ(Resistance("P - c*k*v", "Fc + Fc*sign(v)"), " - (friction_Fc + friction_Fc*sign(v))");
+  EXPECT_EQ(Resistance("P - c*k*v", "-Fc*sign(v)"), " + friction_Fc*sign(v)");
+  EXPECT_EQ(Resistance("P - c*k*v", "if(v > 0, Fc, -Fc)"), " - if(v > 0, friction_Fc, -friction_Fc)");
+}
+
+TEST(EffectComposition, KeepsTheSignOfAnEffectThatDoesNotSayThatItResists) {
+  PlantDescription plant = test::DescribedAxis();
+  plant.law = "off - M*a - Fv*v";
+  EXPECT_EQ(Added(plant, Friction()).law, "off - M*a - Fv*v + friction_Fc*sign(v)");
 }
 
 TEST(EffectComposition, TakesNoNameFromANumber) {

@@ -6,11 +6,12 @@
 #include <map>
 #include <set>
 
-#include "armcmc/gap/separation.hpp"
+#include "armcmc/gap/result.hpp"
 #include "armcmc/ladder/evidence.hpp"
 #include "armcmc/ladder/experiment.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/sha256.hpp"
+#include "estimates.hpp"
 #include "held_out.hpp"
 #include "repeated.hpp"
 #include "shares.hpp"
@@ -27,31 +28,6 @@ std::string Number(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.4g", value);
   return text;
-}
-
-struct Estimated {
-  std::vector<ParameterEstimate> parameters;  ///< Of a lognormal one the median and its standard deviation.
-  std::vector<gap::Combination> determined;
-};
-
-/// Estimates for the report.
-Estimated Estimates(const Trial& trial, const std::vector<std::uint8_t>& rows) {
-  const Eigen::MatrixXd covariance = identify::Covariance(*trial.model, rows, trial.fit);
-  Estimated out;
-  std::vector<gap::FittedParameter> fitted;
-  for (Index d = 0; d < trial.fit.theta.size(); ++d) {
-    const ParameterDescription& p = trial.model->parameters()[static_cast<std::size_t>(d)];
-    const bool logarithmic = p.prior == "lognormal";
-    const double value = trial.model->Shown(d, trial.fit.theta[d]);
-    const double sd = std::sqrt(std::max(covariance(d, d), 0.0));
-    fitted.push_back({p.name, p.unit, value, logarithmic});
-    out.parameters.push_back({p.name, p.unit, value, logarithmic ? value * sd : sd});
-  }
-  gap::Separation separation = gap::Separate(fitted, covariance);
-  for (std::size_t d = 0; d < fitted.size(); ++d)
-    out.parameters[d].confounded_with = std::move(separation.confounded_with[d]);
-  out.determined = std::move(separation.combinations);
-  return out;
 }
 
 std::string WithSd(double value, double sd, const std::string& unit) {

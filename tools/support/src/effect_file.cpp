@@ -88,6 +88,7 @@ EffectEntry ReadEntry(StrictTable* table) {
   entry.family = table->RequiredText("family");
   entry.kin = table->Texts("kin");
   entry.single = table->Boolean("single", false);
+  entry.resists = table->Boolean("resists", false);
   entry.experiment = table->Text("experiment", "");
   entry.forms.push_back(ReadForm(table));
   for (StrictTable& at : table->Tables("form")) entry.forms.push_back(ReadForm(&at));

@@ -264,7 +264,9 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
     throw ConfigError(NoColumn("t", csv_path, header) + ", expected t and the signals of " + plant.name +
                       "; a recording file gives the columns of other names");
   if (!time && file.rate_hz == 0.0)
-    throw ConfigError(name + ": columns.t: which column is the time? Or say rate_hz = .. where there is none");
+    throw StrictTable(*file.root)
+        .Table("columns")
+        .Error("t", "which column is the time? Or say rate_hz = .. where there is none");
   want(time);
   std::vector<std::optional<Source>> signals;
   for (const SignalDescription& signal : plant.signals) {
@@ -273,8 +275,9 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
       throw ConfigError(NoColumn(signal.name, csv_path, header) + ", expected t and the signals of " + plant.name +
                         "; a recording file gives the columns of other names");
     if (!signals.back() && signal.derivative_of.empty())
-      throw ConfigError(name + ": columns." + signal.name + ": which column is it? " +
-                        NoColumn(signal.name, csv_path, header));
+      throw StrictTable(*file.root)
+          .Table("columns")
+          .Error(signal.name, "which column is it? " + NoColumn(signal.name, csv_path, header));
     want(signals.back());
   }
   const std::vector<std::string> texts = TextColumns(file, csv_path, header);
@@ -337,9 +340,13 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
     }
     before = n;
   }
-  if (rows.t.size() < 10)
-    throw ConfigError(name + ": uses " + std::to_string(rows.t.size()) + " rows of " + csv_path.string() +
-                      ", at least 10 are needed; see [rows]");
+  if (rows.t.size() < 10) {
+    const std::string problem = "uses " + std::to_string(rows.t.size()) + " rows of the " +
+                                std::to_string(csv.num_rows()) + " of " + csv_path.string() +
+                                ", at least 10 are needed";
+    if (file.root) throw StrictTable(*file.root).Error("rows", problem);
+    throw ConfigError(name + ": " + problem);
+  }
   return rows;
 }
 

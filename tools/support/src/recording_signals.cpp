@@ -7,6 +7,8 @@
 #include <map>
 #include <numbers>
 
+#include "armcmc/expression/operation.hpp"
+#include "armcmc/expression/syntax.hpp"
 #include "armcmc/support/csv.hpp"
 #include "armcmc/support/text_table.hpp"
 #include "zero_phase.hpp"
@@ -228,6 +230,20 @@ double Roughness(const Recording& recording, const std::vector<double>& value) {
   return count > 0 ? std::sqrt(square / (20.0 * static_cast<double>(count))) : 0.0;
 }
 
+/// The first function in a law whose past a run does not have; empty: there is none.
+std::string MemoryOf(const PlantDescription& plant) {
+  std::vector<std::string> texts{plant.law, plant.predicts};
+  for (const ModeDescription& mode : plant.modes) texts.push_back(mode.law);
+  for (const LetDescription& let : plant.lets) texts.push_back(let.text);
+  for (const std::string& text : texts) {
+    if (text.empty()) continue;
+    for (const expression::SyntaxNode& node : expression::Parse(text).nodes)
+      if (node.op == expression::Op::kLowpass || node.op == expression::Op::kDelay)
+        return std::string(expression::InfoOf(node.op).name);
+  }
+  return "";
+}
+
 }  // namespace
 
 void Derive(const RecordingFile& file, const PlantDescription& plant, const std::string& name, Recording* recording) {
@@ -246,6 +262,13 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
       value = Filtered(*recording, value, file.bandwidth_hz);
       recording->notes.push_back(signal + ": zero-phase low pass, " + ExactNumber(file.bandwidth_hz) + " Hz");
     }
+  if (file.bandwidth_hz * recording->dt >= 0.5)
+    recording->notes.push_back("bandwidth_hz = " + ExactNumber(file.bandwidth_hz) +
+                               " is not below half the sample rate, " + Significant(0.5 / recording->dt, 4) +
+                               " Hz: it filters nothing");
+  if (const std::string memory = MemoryOf(plant); recording->runs.size() > 1 && !memory.empty())
+    recording->notes.push_back(memory + "() begins each run at rest: where runs begin in motion, write it as a state " +
+                               "that starts from a signal");
   // One may be derived from another that is derived itself.
   for (std::size_t round = 0; round < plant.signals.size(); ++round)
     for (std::size_t s = 0; s < plant.signals.size(); ++s) {
@@ -267,10 +290,13 @@ void Derive(const RecordingFile& file, const PlantDescription& plant, const std:
       }
       const Agreement agreement = Compare(value, rate);
       const bool off = agreement.factor < 0.8 || agreement.factor > 1.25;
-      if (std::fabs(agreement.correlation) > 0.8 && off)
-        throw ConfigError(name + ": columns." + plant.signals[s].name + ": is " + Significant(agreement.factor, 4) +
-                          " times the derivative of " + plant.signals[s].derivative_of +
-                          ": a unit is wrong, of one of them or of the time" + LikelyCause(agreement.factor));
+      if (std::fabs(agreement.correlation) > 0.8 && off) {
+        const std::string problem = "is " + Significant(agreement.factor, 4) + " times the derivative of " +
+                                    plant.signals[s].derivative_of +
+                                    ": a unit is wrong, of one of them or of the time" + LikelyCause(agreement.factor);
+        if (file.root) throw StrictTable(*file.root).Table("columns").Error(plant.signals[s].name, problem);
+        throw ConfigError(name + ": columns." + plant.signals[s].name + ": " + problem);
+      }
       if (std::fabs(agreement.correlation) <= 0.8)
         recording->notes.push_back(plant.signals[s].name + " as given does not look like the derivative of " +
                                    plant.signals[s].derivative_of + " (correlation " +

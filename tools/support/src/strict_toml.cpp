@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "armcmc/support/printable.hpp"
@@ -80,6 +81,7 @@ struct StrictTable::Node {
   const toml::table* table = nullptr;  ///< Null when the file does not have it.
   std::string path;                    ///< "timing", empty for the root.
   toml::source_position at{1, 1};      ///< Of the table itself; of one that is absent, of that around it.
+  std::string hint;                    ///< Of one that is absent: the key that may have been meant for it.
   std::vector<std::string> asked;      ///< Keys that a getter asked for, in order.
   std::vector<std::pair<std::string, std::shared_ptr<Node>>> children;
 
@@ -100,14 +102,15 @@ struct StrictTable::Node {
     return ConfigError(Place(node.source().begin) + PathOf(key) + " = " + Shown(node) + ": expected " + expected);
   }
   [[nodiscard]] ConfigError Missing(std::string_view key, const std::string& expected) const {
-    std::string hint;
-    toml::source_position place = at;
-    for (const std::string& name : Unasked()) {
-      if (Nearest(name, {std::string(key)}) != key) continue;
-      hint = " (" + PathOf(name) + " is set; is it a typo?)";
-      place = table->get(name)->source().begin;
-    }
-    return ConfigError(Place(place) + PathOf(key) + " is missing: expected " + expected + hint);
+    const auto [typo, place] = MeantFor(key);
+    return ConfigError(Place(place) + PathOf(key) + " is missing: expected " + expected + (typo.empty() ? hint : typo));
+  }
+  /// What is said of an unknown key that is nearly `key`, and where it stands; nothing, and where the table stands.
+  [[nodiscard]] std::pair<std::string, toml::source_position> MeantFor(std::string_view key) const {
+    for (const std::string& name : Unasked())
+      if (Nearest(name, {std::string(key)}) == key)
+        return {" (" + PathOf(name) + " is set; is it a typo?)", table->get(name)->source().begin};
+    return {"", at};
   }
   [[nodiscard]] std::vector<std::string> Unasked() const {
     std::vector<std::string> names;
@@ -126,7 +129,10 @@ struct StrictTable::Node {
     child->document = document;
     child->table = child_table;
     child->path = PathOf(key) + index;
-    child->at = child_table == nullptr ? at : child_table->source().begin;
+    if (child_table == nullptr)
+      std::tie(child->hint, child->at) = MeantFor(key);
+    else
+      child->at = child_table->source().begin;
     children.emplace_back(whole, child);
     return child;
   }
@@ -383,7 +389,7 @@ ConfigError StrictTable::Error(std::string_view key, std::string_view problem) c
 
 ConfigError StrictTable::ErrorInText(std::string_view key, int character, std::string_view problem) const {
   const toml::node* node = node_->Peek(key);
-  const std::string shown = node == nullptr ? "" : " = " + Shown(*node);
+  const std::string shown = node == nullptr || node->is_table() ? "" : " = " + Shown(*node);
   toml::source_position place = node == nullptr ? node_->at : node->source().begin;
   // Behind the quote; a text over several lines is found by its first.
   if (node != nullptr && character > 0 && place.line == node->source().end.line)

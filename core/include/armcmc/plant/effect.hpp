@@ -45,7 +45,8 @@ struct EffectConstant {
 };
 
 /// Where a formula goes.
-///   output     added to what explains the output
+///   output     added to what explains the output; of an effect that resists motion, subtracted where the output is the
+///              force that the plant passes on, as in F = p A - m a - c v
 ///   law        takes the place of what explains the output
 ///   rate       added to the rate of the state `of`; where it says `rate`, it takes that one's place
 ///   input      takes the place of the input `of` wherever the plant reads it, or of the state `of` wherever the law
@@ -93,7 +94,8 @@ struct EffectEntry {
   std::string family;
   std::vector<std::string> kin;  ///< Effects that act alike.
   bool single = false;           ///< Two of them in one place are pieces of some curve.
-  std::string experiment;        ///< That would show it.
+  bool resists = false;    ///< Its terms of the slot `output` resist motion: subtracted where the law falls with it.
+  std::string experiment;  ///< That would show it.
   std::vector<EffectForm> forms;
 };
 

@@ -1,0 +1,124 @@
+// The prior of a pack where parameters may drift.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "armcmc/density_fit.hpp"
+#include "armcmc/drift.hpp"
+#include "core/estimator_rig.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc::drift_prior_test {
+namespace {
+
+/// A bank that has learnt from nothing yet, around a Gaussian posterior of the contact's parameters.
+class Bank {
+ public:
+  explicit Bank(double share)
+      : settings_(BuiltinSettings("hunt_crossley")),
+        space_(settings_, settings_.noise[0]),
+        noise_(settings_.noise[0]),
+        normal_(MarginalTable::Normal()),
+        drift(simd::Best(), 0, space_, noise_, share) {
+    posterior.valid = posterior.informed = true;
+    posterior.num_blocks = 1;
+    posterior.weight = {1.0, 0.0};
+    posterior.mean = ParamVector::Zero(3);
+    posterior.mean << 0.4, -0.1, 0.2;
+    posterior.covariance = ParamMatrix::Zero(3, 3);
+    posterior.covariance << 0.04, -0.03, 0.004, -0.03, 0.05, 0.001, 0.004, 0.001, 0.002;
+    SetElliptic(posterior.mean, posterior.covariance, 1.0, &normal_, &posterior.block[0]);
+    scratch_ = std::make_unique<LaplaceScratch>();
+    drift.Learn(data, posterior, Drift::Part::kRest, false, true, scratch_.get());
+  }
+
+ private:
+  EstimatorSettings settings_;
+  ParameterSpace space_;
+  NoiseModel noise_;
+  MarginalTable normal_;
+  std::unique_ptr<LaplaceScratch> scratch_;
+
+ public:
+  Drift drift;
+  PosteriorMemory posterior;
+  ModeData data;
+};
+
+TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
+  Bank bank(0.3);
+  bank.data.time_s = 2.0;
+  const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+  ASSERT_TRUE(bank.drift.Splits(carried));
+  ASSERT_EQ(carried.num_blocks, 2);
+  EXPECT_EQ(bank.drift.drifting_block(), 1);
+  EXPECT_NEAR(carried.weight[0], 0.7, 1e-12);
+  EXPECT_NEAR(bank.drift.share(), 0.3, 1e-12);
+  // Rest is as it was; drift as wide as the mean over its hypotheses of an integrated Ornstein-Uhlenbeck process.
+  double grown = 0.0;
+  for (int h = 1; h < Drift::kHypotheses; ++h) {
+    const Drift::Hypothesis law = Drift::Of(h, 1.0);
+    const double t = law.persistence;
+    grown += law.prior * 2.0 * law.rate * law.rate * t * (2.0 - t * (1.0 - std::exp(-2.0 / t)));
+  }
+  const ParamMatrix rest = CovarianceOf(carried.block[0]), drift = CovarianceOf(carried.block[1]);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_NEAR(rest(i, j), bank.posterior.covariance(i, j), 1e-6);
+      // Pulled back to P_0 by what was lost: by the fastest walk a fifth of its growth.
+      EXPECT_NEAR(drift(i, j) - bank.posterior.covariance(i, j), i == j ? grown : 0.0, 0.25 * grown) << i << j;
+    }
+}
+
+TEST(DriftPrior, DensitiesAreThoseOfTheirDraws) {
+  Bank bank(0.3);
+  bank.data.time_s = 1.0;
+  const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+  ASSERT_EQ(carried.num_blocks, 2);
+  test::Normal random(3);
+  // E[g(u) / p(u)] = 1 of draws from p, for any density g inside it.
+  for (std::size_t b = 0; b < 2; ++b) {
+    const DensityBlock& block = carried.block[b];
+    const ParamVector mean = MeanOf(block);
+    const ParamMatrix precision = Inverse(CovarianceOf(block)) * 1.3;
+    const double norm = std::sqrt(Determinant(precision) / std::pow(2.0 * M_PI, 3.0));
+    constexpr int kDraws = 20'000;
+    double sum = 0.0;
+    for (int k = 0; k < kDraws; ++k) {
+      const std::array<double, 3> uniforms{random.Uniform(), random.Uniform(), random.Uniform()};
+      std::array<double, 3> u{};
+      block.Draw(uniforms.data(), u.data());
+      const ParamVector apart = ParamVector(Eigen::Map<const Eigen::Vector3d>(u.data())) - mean;
+      sum += norm * std::exp(-0.5 * apart.dot(precision * apart)) / block.Density(u.data());
+    }
+    EXPECT_NEAR(sum / kDraws, 1.0, 0.02) << b;
+  }
+}
+
+TEST(DriftPrior, IsThePosteriorItselfWhereDriftIsImprobable) {
+  Bank bank(0.5 * Drift::kNegligible);
+  bank.data.time_s = 0.1;
+  EXPECT_EQ(&bank.drift.Carry(bank.data, bank.posterior), &bank.posterior);
+  Bank never(0.0);
+  never.data.time_s = 1e6;
+  EXPECT_EQ(&never.drift.Carry(never.data, never.posterior), &never.posterior);
+}
+
+TEST(DriftPrior, NeverGetsWiderThanTheInitialOne) {
+  for (const double hours : {0.01, 1.0, 1e6}) {
+    Bank bank(0.9);
+    bank.data.time_s = 3600.0 * hours;
+    const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+    ASSERT_TRUE(bank.drift.Splits(carried));
+    const ParamMatrix c = CovarianceOf(carried.block[static_cast<std::size_t>(bank.drift.drifting_block())]);
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_LT(c(d, d), 1.1) << hours;
+      EXPECT_GT(c(d, d), hours > 1e3 ? 0.9 : 0.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace armcmc::drift_prior_test
