@@ -240,7 +240,9 @@ class Composer {
       names["law"] = law;
       const std::string text = Inserted(term.formula, names);
       if (term.slot == "law") return text;
-      return SumText(law, subtracted_ ? NegativeText(text) : text);
+      // What is made of the law has the sign of the law already.
+      const bool subtracted = subtracted_ && !Mentions(term.formula, "law");
+      return SumText(law, subtracted ? NegativeText(text) : text);
     };
     if (!plant_.predicts.empty()) {
       plant_.predicts = changed(plant_.predicts);

@@ -66,6 +66,10 @@ TEST(EffectComposition, SubtractsInTheUsualNotation) {
   EXPECT_EQ(Resistance("P - c*k*v", "if(v > 0, Fc, -Fc)"), " - if(v > 0, friction_Fc, -friction_Fc)");
 }
 
+TEST(EffectComposition, AddsWhatIsMadeOfALawThatFalls) {
+  EXPECT_EQ(Resistance("P - c*k*v", "Fc*(law/k - 1)"), " + friction_Fc*((P - c*k*v)/k - 1)");
+}
+
 TEST(EffectComposition, KeepsTheSignOfAnEffectThatDoesNotSayThatItResists) {
   PlantDescription plant = test::DescribedAxis();
   plant.law = "off - M*a - Fv*v";
