@@ -189,6 +189,17 @@ TEST(Fitter, AStateAtTheStartIsTakenAsKnown) {
   EXPECT_GT(fit.Covariance(fitter.whitener().s2)(k, k), 0.0) << "fitted, so not exactly known";
 }
 
+TEST(Fitter, NeitherOfTwoBranchesForgetsSoonerThanOneAlone) {
+  const Bench bench(Measure({}, kRows, kNoise, 3).recording);
+  const EffectForm& two = bench.Form("stress_relaxation", "two_time_constants");
+  const Coordinate& tau = two.coordinates[2];
+  ASSERT_EQ(tau.name, "time_constant");
+  const double shape[] = {tau.lower, std::log(16.0)};
+  const Vector depth = bench.signals.at(Role::kPosition).cwiseMax(0.0);
+  const Vector fast = two.filter(bench.signals, depth, 0, shape), slow = two.filter(bench.signals, depth, 1, shape);
+  EXPECT_LT((fast - slow).norm(), 1e-9 * slow.norm()) << "a branch without memory is a damping";
+}
+
 /// A delay, fitted to a force that comes so many samples late.
 Fitted WithDelay(double samples, const char* effect) {
   constexpr double kLittleNoise = 1e-3;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,26 @@ TEST(WeakEffects, ANameThatClosesNothingOnHeldOutDataIsTakenBack) {
   // The error with the bias is a third of a percent more or less there: all that such an effect can do.
   EXPECT_EQ(NameWithRest(0.009), "force_bias");
   EXPECT_EQ(NameWithRest(0.0), "");
+}
+
+TEST(Withdraw, WhatIsProbableButNotAdequateGivesWayToWhatHasNoName) {
+  Finding finding;
+  finding.verdict = Verdict::kNamed;
+  finding.p_missing = 1.0;
+  finding.p_unnamed = 0.1;
+  for (const double probability : {0.81, 0.09}) {
+    finding.tried.push_back(std::make_shared<Candidate>());
+    finding.tried.back()->probability = probability;
+  }
+  finding.set = {finding.tried[1]};
+  Withdraw(0.5, &finding);
+  EXPECT_EQ(finding.verdict, Verdict::kUnnamed);
+  EXPECT_TRUE(finding.set.empty());
+  EXPECT_DOUBLE_EQ(finding.p_unnamed, 0.5);
+  EXPECT_DOUBLE_EQ(finding.tried[0]->probability, 0.45);
+  EXPECT_DOUBLE_EQ(finding.tried[1]->probability, 0.05);
+  Withdraw(0.2, &finding);
+  EXPECT_DOUBLE_EQ(finding.p_unnamed, 0.5) << "it is never made less probable";
 }
 
 }  // namespace

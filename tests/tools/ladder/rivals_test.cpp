@@ -139,6 +139,59 @@ TEST(Climb, RadiationIsNamedBeforeAnOffset) {
   EXPECT_TRUE(ladder.complete);
 }
 
+/// The axis against a stop that its file puts at zero.
+PlantDescription StoppedAxis() {
+  PlantDescription plant = test::AxisPlant();
+  const std::string free = plant.law;
+  plant.modes = {{"stop", "q >= 0", free + " + k*q^p", "", false}, {"free", "", free, "", false}};
+  plant.law.clear();
+  plant.parameters.push_back({"k", "N/m^p", "normal", 5000.0, 5000.0, 0.0, 1e5});
+  plant.parameters.push_back({"p", "1", "normal", 1.5, 0.3, 1.0, 2.5});
+  return plant;
+}
+
+/// @param stop  Where it is, m.
+Dataset StoppedData(double stop, double cubic) {
+  return test::AxisData(
+      [=](const AxisSample& s) { return 2500.0 * std::pow(std::max(s.q - stop, 0.0), 1.5) + cubic * s.q * s.q * s.q; });
+}
+
+TEST(Climb, ALawThatBeginsElsewhereIsNoSpring) {
+  const Ladder ladder = ClimbWith({"cubic_stiffness", "quadratic_stiffness"}, StoppedData(-0.04, 0.0), StoppedAxis());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if the modes changed at another q")));
+}
+
+TEST(Climb, ALawThatBeginsElsewhereIsNamedWhereTheCatalogueHasIt) {
+  const Ladder ladder =
+      ClimbWith({"cubic_stiffness", "quadratic_stiffness", "contact_offset"}, StoppedData(-0.04, 0.0), StoppedAxis());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("contact_offset"));
+}
+
+TEST(Climb, ASpringBesideALawThatBeginsWhereItSaysIsNamed) {
+  const Ladder ladder = ClimbWith({"cubic_stiffness"}, StoppedData(0.0, 3e4), StoppedAxis());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("cubic_stiffness"));
+}
+
+/// A spring under tension that weakens or stiffens by a fifth of its force, weak enough for the noise to hide that the
+/// force does not drift everywhere by the same.
+Dataset WeakeningData() {
+  return test::AxisData([](const AxisSample& s) { return 150.0 * (1.0 + 0.01 * s.t) * (s.q + 0.2); });
+}
+
+PlantDescription TensedAxis() {
+  PlantDescription plant = test::AxisPlant();
+  plant.law += " + k*(q + 0.2)";
+  plant.parameters.push_back({"k", "N/m", "normal", 150.0, 100.0, 0.0, 1e4});
+  return plant;
+}
+
+TEST(Climb, WhatAParameterExplainsThatFollowsTimeIsNoDriftOfTheForce) {
+  const Ladder ladder = ClimbWith({"output_drift"}, WeakeningData(), TensedAxis());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if k drifted")));
+}
+
 TEST(Climb, ConstantsThatAreEachALittleOffTogetherRuleOutAnEffect) {
   // Springs for either side, both 4 % stiffer than the file says: neither alone explains what a tilt does.
   PlantDescription plant = test::AxisPlant();

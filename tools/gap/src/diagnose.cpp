@@ -116,7 +116,8 @@ void MeanProbabilities(const Finding& other, Finding* finding) {
 }
 
 /// Applies the vote of the narrow look.
-void Vote(const Finding& other, Finding* finding) {
+/// @param doubt  Probability below which a name is withdrawn.
+void Vote(const Finding& other, double doubt, Finding* finding) {
   if (!Names(*finding)) return;
   const auto mine = NamesOf(*finding), theirs = NamesOf(other);
   if (mine == theirs) return;
@@ -127,10 +128,8 @@ void Vote(const Finding& other, Finding* finding) {
     MeanProbabilities(other, finding);
     finding->verdict = Verdict::kAmbiguous;
   } else if (finding->approximate || finding->best->added().size() > 1) {
-    finding->verdict = Verdict::kUnnamed;
-    finding->approximate = false;
-    finding->set.clear();
     MeanProbabilities(other, finding);
+    Withdraw(1.0 - doubt, finding);
   }
 }
 
@@ -144,7 +143,7 @@ Diagnosis Diagnose(const Equation& equation, const Recording& recording, const D
   diagnosis.finding = diagnosis.look->finding;
   if (Names(diagnosis.finding) && window > 1) {
     diagnosis.narrow = LookAt(equation, recording, NarrowWindow(window), options, *diagnosis.bootstrap);
-    Vote(diagnosis.narrow->finding, &diagnosis.finding);
+    Vote(diagnosis.narrow->finding, options.thresholds.doubt, &diagnosis.finding);
   }
   return diagnosis;
 }

@@ -118,8 +118,17 @@ void Search::Doubt(Finding* finding) const {
   double sum = 0.0;
   for (const CandidatePtr& member : finding->set) sum += member->probability;
   if (sum >= limits_.doubt) return;
+  Withdraw(1.0 - limits_.doubt, finding);
+}
+
+void Withdraw(double least, Finding* finding) {
   finding->verdict = Verdict::kUnnamed;
+  finding->approximate = false;
   finding->set.clear();
+  if (finding->p_unnamed >= least) return;
+  const double kept = (1.0 - least) / (1.0 - finding->p_unnamed);
+  for (const CandidatePtr& candidate : finding->tried) candidate->probability *= kept;
+  finding->p_unnamed = least;
 }
 
 void Search::AssignProbabilities(Finding* finding) const {

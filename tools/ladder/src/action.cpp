@@ -78,6 +78,14 @@ bool Reads(const Candidate& effect, const std::string& name) {
   });
 }
 
+bool ActsOn(const Candidate& effect, const std::string& slot, const std::string& name) {
+  const std::vector<EffectTerm>& terms = effect.form().terms;
+  return std::any_of(terms.begin(), terms.end(), [&](const EffectTerm& term) {
+    const auto of = effect.binding.symbols.find(term.of);
+    return term.slot == slot && of != effect.binding.symbols.end() && of->second == name;
+  });
+}
+
 bool Remembers(const Candidate& effect) {
   const EffectForm& form = effect.form();
   return !form.states.empty() ||

@@ -11,6 +11,9 @@ namespace armcmc::ladder {
 /// Whether an effect depends on the signal or state `name`, or, for "t", on time.
 [[nodiscard]] bool Reads(const Candidate& effect, const std::string& name);
 
+/// Whether it replaces a signal (slot "input") or a parameter (slot "parameter") of that name.
+[[nodiscard]] bool ActsOn(const Candidate& effect, const std::string& slot, const std::string& name);
+
 /// Whether it has memory: a state of its own, or a function such as delay().
 [[nodiscard]] bool Remembers(const Candidate& effect);
 

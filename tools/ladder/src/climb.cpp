@@ -16,6 +16,7 @@
 #include "derived_noise.hpp"
 #include "free_starts.hpp"
 #include "held_out.hpp"
+#include "plain_rivals.hpp"
 #include "rung.hpp"
 #include "start_alone.hpp"
 
@@ -62,6 +63,7 @@ struct Rivals {
   DerivedNoise noise;
   Curves curves;
   BentLaw bent;
+  PlainRivals plain;
   StartAlone start;
   Before before;
 
@@ -72,6 +74,7 @@ struct Rivals {
     if (!rival) rival = start.RivalOf(c, floor);
     if (!rival) rival = noise.RivalOf(c);
     if (!rival) rival = bent.RivalOf(c);
+    if (!rival) rival = plain.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
     if (rival || !before.Dwarfs(c)) return rival;
     if (const Candidate* like = before.Like(c))
@@ -321,6 +324,7 @@ Ladder Climb(const ClimbRequest& request) {
                      {ladder.plant, data, ladder.view, base},
                      {ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base, scales},
+                     {ladder.plant, data, ladder.view, base, scales, rung.contenders},
                      {ladder.plant, data, ladder.view, base, scales},
                      {}}};
     Before& before = hearing.rivals.before;

@@ -12,6 +12,8 @@
 namespace armcmc::gap {
 namespace {
 
+constexpr double kFastest = 15.0;  // samples: a branch that forgets sooner is a damping
+
 /// Probability that the true speed is negative, given the smoothed one. It depends on nothing that is fitted, so that
 /// the last is kept. Threads may share it.
 class Retracting {
@@ -38,7 +40,7 @@ class Retracting {
 void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
   const double force = s.output_scale, length = s.scale_of(Role::kPosition);
   const Coordinate stiffness = AmplitudeOf("stiffness", "N/m", force / length, true, 0.5, 20.0);
-  const Coordinate tau = UpTo(ShapeOf("time_constant", "s", 1.0, 15.0 * s.dt, 0.4 * s.duration));
+  const Coordinate tau = UpTo(ShapeOf("time_constant", "s", 1.0, kFastest * s.dt, 0.4 * s.duration));
   // What the branch remembers of the time before the recording: 1 it had relaxed, 0 it had seen nothing.
   const Coordinate start = UpTo({"start", "-", 0.0, 1.3, 1.0, 0.5, 1.0, false, true});
   EffectForm relaxation = FromCore("stress_relaxation", {stiffness, tau, start});
@@ -72,7 +74,8 @@ void AddMaterial(const Signals& s, std::vector<EffectForm>* out) {
     // The slow one is the coordinate, and at its bound the branch is another effect: it must not hide behind a fast one
     // that takes no share.
     const double slow = ShapeValue(two, 0, shape);
-    const double tau_s = amplitude == 0 ? slow / ShapeValue(two, 1, shape) : slow;
+    // Nor must a fast one be faster than a branch alone may be: it would be a damping.
+    const double tau_s = amplitude == 0 ? std::max(slow / ShapeValue(two, 1, shape), kFastest * in.dt) : slow;
     return series - Leaky(series, tau_s / in.dt);
   };
   SetStarts(&two, {4, 1});

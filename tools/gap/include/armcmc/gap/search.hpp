@@ -63,6 +63,10 @@ struct Finding {
 /// Effects of every hypothesis that remains.
 [[nodiscard]] std::set<std::vector<std::string>> NamesOf(const Finding& finding);
 
+/// Withdraws the names of a finding: what is probable, but not adequate, is no explanation. That no effect of the
+/// catalogue explains the misfit then has at least the probability `least`, at the expense of all candidates.
+void Withdraw(double least, Finding* finding);
+
 /// The third step: names the missing effects.
 class Search {
  public:

@@ -1,0 +1,142 @@
+#include "plain_rivals.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "action.hpp"
+#include "armcmc/ladder/features.hpp"
+#include "armcmc/plant/error.hpp"
+#include "armcmc/support/parallel.hpp"
+#include "comparison.hpp"
+#include "one_step.hpp"
+
+namespace armcmc::ladder {
+namespace {
+
+constexpr const char* kMostDrift = "0.33";  // of a parameter, on either side: what drifts by more is a change of state
+constexpr std::size_t kMostDrifting = 2;    // parameters of different action that are fitted
+
+EffectEntry ShiftedLimit() {
+  EffectNeed x;
+  x.name = "x";
+  x.kind = "signal";
+  x.used = true;
+  EffectForm form;
+  form.needs = {x};
+  form.parameters.push_back({"d", "x", "normal", "0", "0.2*x", "", "", "0"});
+  form.terms.push_back({"input", "x", "x - d"});
+  EffectEntry entry;
+  entry.name = entry.family = "limit";
+  entry.forms = {form};
+  return entry;
+}
+
+EffectEntry DriftingParameter() {
+  EffectNeed p;
+  p.name = "p";
+  p.kind = "parameter";
+  p.used = true;
+  EffectForm form;
+  form.needs = {p};
+  form.constants = {{"m", "s", "start + 0.5*record"}, {"w", "s", "0.5*record"}};
+  form.parameters.push_back({"e", "1", "uniform", "0", "", std::string("-") + kMostDrift, kMostDrift, "0"});
+  form.terms.push_back({"parameter", "p", "p*(1 + e*(t - m)/w)"});
+  EffectEntry entry;
+  entry.name = entry.family = "drifting";
+  entry.forms = {form};
+  return entry;
+}
+
+std::string Bound(const Candidate& rival, const char* need) {
+  const auto at = rival.binding.symbols.find(need);
+  return at == rival.binding.symbols.end() ? "" : at->second;
+}
+
+/// "K drifted"
+std::string AsIf(const Candidate& rival) {
+  if (const std::string p = Bound(rival, "p"); !p.empty()) return p + " drifted";
+  return "the modes changed at another " + Bound(rival, "x");
+}
+
+/// Whether the condition of a mode reads a signal.
+bool Limits(const Plant& plant, const std::string& name) {
+  const std::vector<SignalDescription>& signals = plant.description().signals;
+  const auto at = std::find_if(signals.begin(), signals.end(), [&](const auto& signal) { return signal.name == name; });
+  if (at == signals.end()) return false;
+  const int node = plant.NodeOf(expression::SymbolKind::kSignal, static_cast<int>(at - signals.begin()));
+  return std::any_of(plant.modes().begin(), plant.modes().end(),
+                     [&](const PlantMode& mode) { return mode.when >= 0 && plant.graph().DependsOn(mode.when, node); });
+}
+
+}  // namespace
+
+PlainRivals::PlainRivals(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view,
+                         const Trial& base, const DataScales& scales, const std::vector<Contender>& contenders)
+    : plant_(plant),
+      data_(data),
+      view_(view),
+      base_(base),
+      scales_(scales),
+      contenders_(contenders),
+      limit_{ShiftedLimit()},
+      drifting_{DriftingParameter()} {}
+
+bool PlainRivals::Lacked(const Candidate& rival) const {
+  const std::string signal = Bound(rival, "x"), parameter = Bound(rival, "p");
+  if (!signal.empty() && (IsExplained(plant_->description(), signal) || !Limits(*plant_, signal))) return false;
+  // A constant of the law that drifts is no other than an output that does.
+  if (!parameter.empty() && RespondsToNothing(rival)) return false;
+  return std::none_of(contenders_.begin(), contenders_.end(), [&](const Contender& c) {
+    if (!parameter.empty()) return ActsOn(c.candidate, "parameter", parameter) && Reads(c.candidate, "t");
+    return ActsOn(c.candidate, "input", signal) && !Remembers(c.candidate);
+  });
+}
+
+std::vector<Contender> PlainRivals::Fitted(std::vector<Candidate> candidates) const {
+  std::vector<Contender> fitted;
+  for (Candidate& candidate : candidates)
+    fitted.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
+  support::InParallel(fitted.size(), [&](std::size_t i) {
+    Contender& rival = fitted[i];
+    try {
+      Eigen::VectorXd theta = identify::TrajectoryModel(rival.candidate.plant, data_.series).Start();
+      theta.head(base_.fit.theta.size()) = base_.fit.theta;
+      rival.trial = Refine(rival.candidate.plant, data_, theta);
+      rival.refined = rival.trial.fit.valid;
+    } catch (const PlantError&) {  // beyond the limits of a plant
+    }
+  });
+  return fitted;
+}
+
+Contender* PlainRivals::AsGood(std::vector<Contender>* rivals, const Contender& c) const {
+  for (Contender& rival : *rivals) {
+    if (!rival.refined) continue;
+    if (!rival.trial.judged) {
+      LeaveOut(view_, &rival.trial);
+      rival.alone = Compare(view_, rival, base_, false);
+    }
+    if (rival.alone.folds <= kExplainsIt * c.alone.folds) return &rival;
+  }
+  return nullptr;
+}
+
+std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
+  const auto lacked = [&](const std::vector<EffectEntry>& entries) {
+    std::vector<std::string> notes;  // what does not fit a limit of plants is no rival
+    std::vector<Candidate> all = Candidates(plant_->description(), entries, scales_, &notes);
+    std::erase_if(all, [&](const Candidate& candidate) { return !Lacked(candidate); });
+    return all;
+  };
+  if (!plain_) plain_ = Fitted(lacked(limit_));
+  const Contender* rival = AsGood(&*plain_, c);
+  if (rival == nullptr && (Remembers(c.candidate) || RespondsToNothing(c.candidate))) {
+    if (!slow_) slow_ = Fitted(BestByOneStep(lacked(drifting_), kMostDrifting, plant_, data_, base_));
+    rival = AsGood(&*slow_, c);
+  }
+  if (rival == nullptr) return std::nullopt;
+  return Rival{AsIf(rival->candidate), "explains as much"};
+}
+
+}  // namespace armcmc::ladder

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "armcmc/ladder/climb.hpp"
+#include "rival.hpp"
+
+namespace armcmc::ladder {
+
+/// Rivals of an effect that are as plain as errors of a model can be, each with one parameter:
+///
+/// - the modes of the law change elsewhere: a signal s that the condition of a mode reads is s - d in the whole plant.
+///   The condition takes its limit for granted, as a contact its surface, and a law that begins elsewhere looks like a
+///   spring that stiffens;
+/// - a parameter p drifts, p (1 + e (t - m) / w) with |e| <= 1/3, m the middle and w half of the recording. A stiffness
+///   that changes with time looks like a force that drifts, or like a slow memory. So it is a rival of effects that
+///   remember, or respond to nothing.
+///
+/// Where an effect of the catalogue does the same, that competes by its name, and the rival is left out.
+class PlainRivals {
+ public:
+  /// All outlive it.
+  /// @param contenders  Of the same rung.
+  PlainRivals(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, const Trial& base,
+              const DataScales& scales, const std::vector<Contender>& contenders);
+
+  /// A rival that explains as much as an effect. Fitted when it is first asked for.
+  /// @pre c.trial.judged.
+  [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
+
+ private:
+  /// Whether the rival is one in this plant that no contender is.
+  [[nodiscard]] bool Lacked(const Candidate& rival) const;
+  [[nodiscard]] std::vector<Contender> Fitted(std::vector<Candidate> candidates) const;
+  /// Of those, one that explains as much.
+  [[nodiscard]] Contender* AsGood(std::vector<Contender>* rivals, const Contender& c) const;
+
+  const std::shared_ptr<const Plant>& plant_;
+  const Dataset& data_;
+  const View& view_;
+  const Trial& base_;
+  const DataScales& scales_;
+  const std::vector<Contender>& contenders_;
+  std::vector<EffectEntry> limit_, drifting_;
+  std::optional<std::vector<Contender>> plain_, slow_;
+};
+
+}  // namespace armcmc::ladder
