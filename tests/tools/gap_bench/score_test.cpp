@@ -142,16 +142,6 @@ TEST(LabelRight, ARelativeWillDoWhereThePlantIsNotTheCatalogue) {
   EXPECT_FALSE(LabelRight(what, Hidden({"sensor_delay"}), "inertia"));
 }
 
-TEST(LabelRight, SomethingWithoutANameIsMissingWhereThePlantIsNotItsFormula) {
-  Case what;
-  what.stratum = "near_null";
-  EXPECT_TRUE(LabelRight(what, {}, "unnamed"));
-  EXPECT_TRUE(LabelRight(what, {}, "none"));
-  EXPECT_FALSE(LabelRight(what, {}, "inertia"));
-  what.stratum = "null";
-  EXPECT_FALSE(LabelRight(what, {}, "unnamed"));
-}
-
 TEST(GradeOf, WhatARealRecordingHoldsByItselfIsNotJudgedBesideWhatIsHidden) {
   Case real;
   real.own = {"periodic_disturbance"};

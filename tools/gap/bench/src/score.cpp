@@ -185,11 +185,8 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
 
 bool LabelRight(const Case& what, const Truth& all, const std::string& label) {
   const Truth truth = ToBeNamed(all);
-  if (truth.effects.empty()) {
-    // Where the plant is not its formula, something is missing that has no name, however little.
-    if (label == "unnamed") return Imperfect(what.stratum);
+  if (truth.effects.empty())
     return label == "none" || std::find(what.own.begin(), what.own.end(), label) != what.own.end();
-  }
   if (label == "none") return false;
   if (label == "unnamed") return !Nameable(what, truth);
   const Names names = NamesOf(truth);

@@ -35,9 +35,8 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 /// What the tool holds most probable, of: "none", "unnamed", and each set of names ("a + b", summed over formulas and
 /// times), with the probability that it prints.
 [[nodiscard]] std::pair<std::string, double> TopLabel(const gap::Result& result);
-/// Whether that label is true. Where nothing is hidden, but the plant is not the catalogue, both "none" and "unnamed"
-/// are: what differs has no name, and may be far below the noise. A relative of the family counts where the catalogue
-/// lacks the effect or its formula, and where the plant is not the catalogue.
+/// Whether that label is true. A relative of the family counts where the catalogue lacks the effect or its formula, and
+/// where the plant is not the catalogue.
 [[nodiscard]] bool LabelRight(const Case& what, const Truth& truth, const std::string& label);
 
 /// Times at which an effect could have begun without the data knowing: between them the effect would have changed the
