@@ -96,9 +96,9 @@ TEST(BendSimulation, IsExactForAConstantPressure) {
   const Vector t = Vector::LinSpaced(rows, 0.0, dt * static_cast<double>(rows - 1));
   Vector angle(rows);
   BendSimulation(c, dt).Run(t, Vector::Constant(rows, p), {}, {}, rows, &angle, nullptr);
-  const double root = std::sqrt(0.25 * c.q2 * c.q2 - c.q3), s1 = -0.5 * c.q2 + root, s2 = -0.5 * c.q2 - root;
+  const double root = std::sqrt(0.25 * c.q2 * c.q2 - c.q3), s1 = -0.5 * c.q2 + root, variance = -0.5 * c.q2 - root;
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const double part = (s2 * std::exp(s1 * t[i]) - s1 * std::exp(s2 * t[i])) / (s1 - s2);
+    const double part = (variance * std::exp(s1 * t[i]) - s1 * std::exp(variance * t[i])) / (s1 - variance);
     ASSERT_NEAR(angle[i], c.q1 * p / c.q3 * (1.0 + part), 1e-12) << i;
   }
 }

@@ -40,7 +40,7 @@ struct Named {
     signals = equation->Prepare(RecordPlant(kModel, {{effect, 3.0, {}}}, 61, 8.0), 15);
     catalogue = equation->Catalogue(signals);
     Whitener white;
-    white.s2 = kNoise * kNoise;
+    white.variance = kNoise * kNoise;
     fitter = std::make_unique<Fitter>(*equation, signals, white);
     const Fitted base = fitter->Fit({}, equation->Start(signals));
     for (const EffectForm& form : catalogue)

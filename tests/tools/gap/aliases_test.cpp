@@ -37,12 +37,12 @@ struct Asked {
 Asked Ask(const Recording& recording) {
   const auto equation = MakeEquation("hunt_crossley");
   const Diagnosis diagnosis = CompareOnly(*equation, recording);
-  Look& look = *diagnosis.look;
-  look.catalogue = equation->Catalogue(look.signals);
-  Asked asked{Aliases(*equation, look), 0.0};
-  const Vector& theta = look.finding.base->fit.theta;
-  if (look.signals.law_seen)
-    asked.stiffness = equation->Report(look.signals, theta, Matrix::Zero(theta.size(), theta.size()))[0].mean;
+  Analysis& analysis = *diagnosis.wide;
+  analysis.catalogue = equation->Catalogue(analysis.signals);
+  Asked asked{Aliases(*equation, analysis), 0.0};
+  const Vector& theta = analysis.finding.base->fit.theta;
+  if (analysis.signals.law_seen)
+    asked.stiffness = equation->Report(analysis.signals, theta, Matrix::Zero(theta.size(), theta.size()))[0].mean;
   return asked;
 }
 

@@ -24,26 +24,26 @@ constexpr double kNoise = 0.1;  // N
 class SeparatingExperimentTest : public ::testing::Test {
  protected:
   SeparatingExperimentTest() {
-    look_.signals = bench_.signals;
-    look_.fitter = std::make_unique<Fitter>(*bench_.equation, look_.signals, test::White(kNoise));
-    base_ = bench_.Base(*look_.fitter);
-    look_.finding.best = std::make_shared<Candidate>();
-    look_.finding.best->fit = base_;
+    analysis_.signals = bench_.signals;
+    analysis_.fitter = std::make_unique<Fitter>(*bench_.equation, analysis_.signals, test::White(kNoise));
+    base_ = bench_.Base(*analysis_.fitter);
+    analysis_.finding.best = std::make_shared<Candidate>();
+    analysis_.finding.best->fit = base_;
   }
   /// The law with one effect of that size, SI.
   [[nodiscard]] CandidatePtr With(const std::string& effect, double size, When::Kind kind) const {
     auto candidate = std::make_shared<Candidate>();
-    candidate->fit = look_.fitter->Add(base_, {&bench_.Form(effect), {kind, 0.0}});
+    candidate->fit = analysis_.fitter->Add(base_, {&bench_.Form(effect), {kind, 0.0}});
     candidate->fit.theta[3] = size / candidate->fit.coordinates[3].unit_size;
     candidate->probability = 0.5;
     return candidate;
   }
   [[nodiscard]] Experiment Between(const CandidatePtr& a, const CandidatePtr& b) const {
-    return SeparatingExperiment(*bench_.equation, look_, {a, b});
+    return SeparatingExperiment(*bench_.equation, analysis_, {a, b});
   }
 
   const test::Bench bench_{test::Measure({}, 1200, kNoise, 3, 5e-3).recording};
-  Look look_;
+  Analysis analysis_;
   Fitted base_;
 };
 
@@ -71,7 +71,7 @@ TEST_F(SeparatingExperimentTest, SaysThatNoMotionWouldHelp) {
 TEST_F(SeparatingExperimentTest, IsAScenarioThatThePlantRuns) {
   const Experiment experiment =
       Between(With("force_bias", kNoise, When::Kind::kFree), With("viscous_friction", kNoise, When::Kind::kFree));
-  const std::string text = ScenarioText(*bench_.equation, look_, experiment);
+  const std::string text = ScenarioText(*bench_.equation, analysis_, experiment);
   for (const char* line :
        {"sample_interval_s = 0.005\n", "pack_period_s = 0.5\n", "program = \"free_air_chirp\"\n", "std = 0.1   # N\n"})
     EXPECT_THAT(text, HasSubstr(line));

@@ -18,9 +18,9 @@ using test::White;
 constexpr double kNoise = 0.1;  // N
 constexpr int kRows = 4000;
 
-void ExpectBase(const Bench& bench, const Fitted& fit, double s2) {
+void ExpectBase(const Bench& bench, const Fitted& fit, double variance) {
   const double truth[] = {4.0, 2.3, 1.7};
-  const auto reported = bench.equation->Report(bench.signals, fit.theta, fit.Covariance(s2));
+  const auto reported = bench.equation->Report(bench.signals, fit.theta, fit.Covariance(variance));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_GT(reported[i].sd, 0.0);
     EXPECT_LT(std::abs(reported[i].mean - truth[i]), 4.0 * reported[i].sd)
@@ -76,11 +76,11 @@ TEST_P(FitterRecovers, TheEffectAndTheBase) {
   const Fitter fitter(*bench.equation, bench.signals, White(kNoise));
   const EffectForm& form = bench.Form(truth.name);
   const Fitted fit = fitter.Add(bench.Base(fitter), {&form, {}});
-  const double s2 = kNoise * kNoise;
-  EXPECT_NEAR(fit.squares / (s2 * kRows), 1.0, 4.0 * std::sqrt(2.0 / kRows));
+  const double variance = kNoise * kNoise;
+  EXPECT_NEAR(fit.squares / (variance * kRows), 1.0, 4.0 * std::sqrt(2.0 / kRows));
   // The recording's drifts count from its start, the reference's from the shape: K and the zero differ by that alone.
-  if (truth.name != "stiffness_drift" && truth.name != "force_drift") ExpectBase(bench, fit, s2);
-  const Matrix covariance = fit.Covariance(s2);
+  if (truth.name != "stiffness_drift" && truth.name != "force_drift") ExpectBase(bench, fit, variance);
+  const Matrix covariance = fit.Covariance(variance);
   std::vector<double> values = truth.amplitude;
   if (form.size() > static_cast<int>(values.size())) values.push_back(truth.shape.at(0));
   if (truth.name == "stiffness_drift") values[0] /= 1.0 - values[0] * truth.shape[0];
@@ -182,11 +182,12 @@ TEST(Fitter, AStateAtTheStartIsTakenAsKnown) {
   const Fitted fit = fitter.Add(base, {&bench.Form("stress_relaxation"), {}});
   const Fitted stateless = fitter.Add(base, {&bench.Form("stress_relaxation", "two_time_constants"), {}});
   EXPECT_GT(fit.score(), stateless.score());
-  EXPECT_NEAR(fit.score(), -0.5 * fit.squares / fitter.whitener().s2, 3.0 * static_cast<double>(fit.theta.size()));
+  EXPECT_NEAR(fit.score(), -0.5 * fit.squares / fitter.whitener().variance,
+              3.0 * static_cast<double>(fit.theta.size()));
   const auto start = std::find_if(fit.coordinates.begin(), fit.coordinates.end(),
                                   [](const Coordinate& c) { return c.name == "start"; });
   const auto k = static_cast<Eigen::Index>(start - fit.coordinates.begin());
-  EXPECT_GT(fit.Covariance(fitter.whitener().s2)(k, k), 0.0) << "fitted, so not exactly known";
+  EXPECT_GT(fit.Covariance(fitter.whitener().variance)(k, k), 0.0) << "fitted, so not exactly known";
 }
 
 TEST(Fitter, NeitherOfTwoBranchesForgetsSoonerThanOneAlone) {
@@ -273,9 +274,9 @@ TEST(Fitter, CorrelatedNoiseIsWhitened) {
   const Bench bench(recording);
   const Fitter fitter(*bench.equation, bench.signals, whitener);
   const Fitted fit = fitter.Add(bench.Base(fitter), {&bench.Form("coulomb_friction"), {}});
-  ExpectBase(bench, fit, whitener.s2);
+  ExpectBase(bench, fit, whitener.variance);
   EXPECT_NEAR(fit.squares / (0.01 * kRows), 1.0, 4.0 * std::sqrt(2.0 / kRows));
-  const double sd = std::sqrt(fit.Covariance(whitener.s2)(3, 3)) * fit.coordinates[3].unit_size;
+  const double sd = std::sqrt(fit.Covariance(whitener.variance)(3, 3)) * fit.coordinates[3].unit_size;
   EXPECT_LT(std::abs(fit.coordinates[3].Value(fit.theta[3]) - 0.6), 4.0 * sd);
 }
 

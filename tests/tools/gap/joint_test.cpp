@@ -119,7 +119,7 @@ TEST_F(JoinTest, EachRecordingHasItsOwnStart) {
   ASSERT_EQ(fit.coordinates.back().name, "start");
   EXPECT_NEAR(before, 1.0, 0.15);
   EXPECT_LT(fit.theta.tail<1>()[0], before - 0.2);
-  EXPECT_NEAR(fit.squares / (second_.look->fitter->whitener().s2 * 3000.0), 1.0, 0.08);
+  EXPECT_NEAR(fit.squares / (second_.wide->fitter->whitener().variance * 3000.0), 1.0, 0.08);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A law that is not quite its formula: what it is granted, and what still earns a name beside it.
+// A law that is not quite its formula: what it is granted, and what still earns a name in spite of it.
 
 #include <gtest/gtest.h>
 
@@ -108,7 +108,7 @@ TEST(Granted, IsTakenBackFromWhatTheVerdictTellsOf) {
   EXPECT_LT(grant.with.squares, (*granted)->fit.squares);
 }
 
-// A line of the sensor with an odd harmonic: beside the bias a bent law stands in for it, but takes less of it.
+// A line of the sensor with an odd harmonic: together with the bias a bent law stands in for it, but takes less of it.
 TEST(Granted, IsNotNeededWhereTheSecondEffectDoesBetter) {
   Recording recording = test::Measure({}, 6000, kNoise, 21).recording;
   for (Eigen::Index i = 0; i < recording.rows(); ++i) {

@@ -84,15 +84,15 @@ TEST(FindWhere, SaysInWhichModeTheErrorIsAndOnWhatItDepends) {
   friction.gate = EffectGate::kFree;
   const Bench bench(Measure({friction}, kRows, kNoise, 3).recording);
   const BlockBootstrap bootstrap(1);
-  Look look;
-  look.signals = bench.signals;
-  look.catalogue = bench.catalogue;
-  look.fitter = std::make_unique<Fitter>(*bench.equation, look.signals, White(kNoise));
-  look.search =
-      std::make_unique<Search>(*look.fitter, look.catalogue, bootstrap, Thresholds{}, bench.Base(*look.fitter));
-  look.finding.base = look.search->base();
-  look.finding.gap = 1.0;
-  const std::vector<Where> found = FindWhere(*bench.equation, look, bootstrap, 1);
+  Analysis analysis;
+  analysis.signals = bench.signals;
+  analysis.catalogue = bench.catalogue;
+  analysis.fitter = std::make_unique<Fitter>(*bench.equation, analysis.signals, White(kNoise));
+  analysis.search = std::make_unique<Search>(*analysis.fitter, analysis.catalogue, bootstrap, Thresholds{},
+                                             bench.Base(*analysis.fitter));
+  analysis.finding.base = analysis.search->base();
+  analysis.finding.gap = 1.0;
+  const std::vector<Where> found = FindWhere(*bench.equation, analysis, bootstrap, 1);
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().feature, "direction of motion");
   EXPECT_LT(found.front().p_value, 0.01);

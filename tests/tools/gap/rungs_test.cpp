@@ -68,7 +68,7 @@ TEST(Rungs, OfATieAreWhatIsSureAndThenWhatIsOpen) {
   const Recording recording = test::Measure({friction, bias}, 4000, 0.02, 21).recording;
   const std::unique_ptr<Equation> equation = std::move(MakeEquations("hunt_crossley").front());
   Diagnosis diagnosis = Diagnose(*equation, recording.Slice(0, kDiagnosed), {});
-  const HeldOut heldout(*equation, *diagnosis.look, recording, kDiagnosed);
+  const HeldOut heldout(*equation, *diagnosis.wide, recording, kDiagnosed);
   // As if these hypotheses were equally good, the first the best.
   const auto rungs_of = [&](const Sets& sets) {
     Finding& finding = diagnosis.finding;

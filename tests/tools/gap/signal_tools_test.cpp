@@ -111,14 +111,14 @@ TEST(FitNoise, RecoversTheCoefficients) {
     ASSERT_GE(fitted.phi.size(), phi.size());
     for (Eigen::Index k = 0; k < fitted.phi.size(); ++k)
       EXPECT_NEAR(fitted.phi[k], k < phi.size() ? phi[k] : 0.0, 4.0 / std::sqrt(kRows)) << "lag " << k + 1;
-    EXPECT_NEAR(fitted.s2 / 4e-4, 1.0, 4.0 * std::sqrt(2.0 / kRows));
+    EXPECT_NEAR(fitted.variance / 4e-4, 1.0, 4.0 * std::sqrt(2.0 / kRows));
   }
 }
 
 TEST(FitNoise, WhiteNoiseIsWhiteAndNothingIsNothing) {
   for (unsigned seed = 1; seed <= 20; ++seed) EXPECT_EQ(FitNoise(Noise(5000, seed)).phi.size(), 0) << seed;
   const Whitener silent = FitNoise(Vector::Zero(1000));
-  EXPECT_GT(silent.s2, 0.0);
+  EXPECT_GT(silent.variance, 0.0);
   EXPECT_TRUE(silent.phi.allFinite());
   EXPECT_TRUE(FitNoise(Vector::Constant(1000, 3.0)).phi.allFinite());
 }

@@ -26,10 +26,10 @@ std::vector<SparseTerm> Described(const std::function<double(double, double)>& e
   for (Eigen::Index i = 0; i < f.size(); ++i) f[i] += extra(x[i], v[i]);
   Diagnosis diagnosis = CompareOnly(*equation, test::MakeRecording(recording.t, x, v, f));
   // The noise is known here, so that what is added cannot be taken for it.
-  diagnosis.look->fitter = std::make_unique<Fitter>(*equation, diagnosis.look->signals, test::White(kNoise));
-  Fitted base = diagnosis.look->fitter->Fit({}, diagnosis.look->finding.base->fit.theta, 30);
+  diagnosis.wide->fitter = std::make_unique<Fitter>(*equation, diagnosis.wide->signals, test::White(kNoise));
+  Fitted base = diagnosis.wide->fitter->Fit({}, diagnosis.wide->finding.base->fit.theta, 30);
   diagnosis.finding.gap = base.squares / (kRows * kNoise * kNoise) - 1.0;
-  diagnosis.look->finding.base->fit = std::move(base);
+  diagnosis.wide->finding.base->fit = std::move(base);
   return DescribeSparsely(*equation, diagnosis);
 }
 

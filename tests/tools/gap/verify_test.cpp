@@ -24,17 +24,17 @@ constexpr int kRows = 6000, kDiagnosed = 4200;
 class HeldOutTest : public ::testing::Test {
  protected:
   HeldOutTest() {
-    Look& look = *diagnosis_.look;
-    look.fitter = std::make_unique<Fitter>(*equation_, look.signals, test::White(kNoise));
-    look.catalogue = equation_->Catalogue(look.signals);
-    base_ = look.fitter->Fit({}, equation_->Start(look.signals), 30);
-    const auto friction = std::find_if(look.catalogue.begin(), look.catalogue.end(), [](const EffectForm& form) {
-      return form.exact() && form.effect == "coulomb_friction";
-    });
-    best_ = look.fitter->Add(base_, {&*friction, {}});
+    Analysis& analysis = *diagnosis_.wide;
+    analysis.fitter = std::make_unique<Fitter>(*equation_, analysis.signals, test::White(kNoise));
+    analysis.catalogue = equation_->Catalogue(analysis.signals);
+    base_ = analysis.fitter->Fit({}, equation_->Start(analysis.signals), 30);
+    const auto friction =
+        std::find_if(analysis.catalogue.begin(), analysis.catalogue.end(),
+                     [](const EffectForm& form) { return form.exact() && form.effect == "coulomb_friction"; });
+    best_ = analysis.fitter->Add(base_, {&*friction, {}});
   }
   GapSummary Show(const Recording& shown, Eigen::Index first, const Fitted& after, const Fitted* control) const {
-    const HeldOut data(*equation_, *diagnosis_.look, shown, first);
+    const HeldOut data(*equation_, *diagnosis_.wide, shown, first);
     return ShowGap(*equation_, data, *diagnosis_.bootstrap, base_, after, control);
   }
 
@@ -77,14 +77,14 @@ TEST_F(HeldOutTest, AnotherRunShowsTheSame) {
 TEST_F(HeldOutTest, WhatHappensInAFewStretchesIsPutAside) {
   Recording shown = recording_;
   shown.columns[3].segment(kDiagnosed + 200, 200).array() += 10.0 * kNoise;
-  const HeldOut data(*equation_, *diagnosis_.look, shown, kDiagnosed);
+  const HeldOut data(*equation_, *diagnosis_.wide, shown, kDiagnosed);
   EXPECT_GT(data.ClosedElsewhere(base_, best_), 0.97);
   EXPECT_EQ(data.ClosedElsewhere(base_, base_), 0.0);
 }
 
 TEST_F(HeldOutTest, AnEffectIsFoundBesideAnotherThatOnlyTheHeldOutDataShow) {
   const auto found = [&](const Recording& shown, Eigen::Index first) {
-    return HeldOut(*equation_, *diagnosis_.look, shown, first).FoundAsPredicted(base_, best_, *diagnosis_.bootstrap);
+    return HeldOut(*equation_, *diagnosis_.wide, shown, first).FoundAsPredicted(base_, best_, *diagnosis_.bootstrap);
   };
   EXPECT_TRUE(found(recording_, kDiagnosed));
   // A spring that stiffens steeply, beyond what the exponent of the law absorbs.
@@ -143,8 +143,8 @@ TEST(Units, DoNotChangeTheVerdict) {
     const Fitted& a = reference.finding.best->fit;
     const Fitted& b = other.finding.best->fit;
     EXPECT_LT((a.theta - b.theta).cwiseAbs().maxCoeff(), 1e-3) << c.words << ": coordinates are free of units";
-    const auto first = equation->Report(reference.look->signals, a.theta, Matrix::Zero(a.theta.size(), a.theta.size()));
-    const auto second = equation->Report(other.look->signals, b.theta, Matrix::Zero(b.theta.size(), b.theta.size()));
+    const auto first = equation->Report(reference.wide->signals, a.theta, Matrix::Zero(a.theta.size(), a.theta.size()));
+    const auto second = equation->Report(other.wide->signals, b.theta, Matrix::Zero(b.theta.size(), b.theta.size()));
     EXPECT_NEAR(second[0].mean / (first[0].mean * c.force * std::pow(c.length, -first[2].mean)), 1.0, 1e-2) << c.words;
     EXPECT_NEAR(second[2].mean, first[2].mean, 1e-3) << c.words;
   }

@@ -75,7 +75,7 @@ TEST(Name, KinThatExtrapolatesBetterIsNotExcludedByShortSegments) {
 
 TEST(Name, KinThatGainsTheSameIsNotExcludedByAnExactFormula) {
   Compared compared;
-  compared.hysteresis->trial.beside = compared.hysteresis->trial.alone;  // nothing flexible is left in it
+  compared.hysteresis->trial.with_flexible = compared.hysteresis->trial.alone;  // nothing flexible is left in it
   const double exact = compared.hysteresis->trial.fit.error_sd;
   compared.presliding->alone = {0.1004, 0.3, 0.3};
   EXPECT_THAT(compared.Named(exact), ElementsAre("hysteresis", "presliding_friction"));

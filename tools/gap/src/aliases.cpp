@@ -47,11 +47,11 @@ class Tangent {
 };
 
 /// "K +1.2 %, B -0.4 %": parameters that move by more than a thousandth.
-std::string BiasText(const Equation& equation, const Look& look, const Vector& change) {
-  const Fitted& base = look.finding.base->fit;
+std::string BiasText(const Equation& equation, const Analysis& analysis, const Vector& change) {
+  const Fitted& base = analysis.finding.base->fit;
   const Matrix none = Matrix::Zero(base.theta.size(), base.theta.size());
-  const auto before = equation.Report(look.signals, base.theta, none);
-  const auto after = equation.Report(look.signals, Vector(base.theta + change), none);
+  const auto before = equation.Report(analysis.signals, base.theta, none);
+  const auto after = equation.Report(analysis.signals, Vector(base.theta + change), none);
   std::string text;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const double percent = 100.0 * (after[i].mean / before[i].mean - 1.0);
@@ -63,35 +63,35 @@ std::string BiasText(const Equation& equation, const Look& look, const Vector& c
   return text.empty() ? "no parameter by a thousandth" : text;
 }
 
-std::vector<Signatures> SignaturesOf(const Look& look) {
-  const Fitted& base = look.finding.base->fit;
+std::vector<Signatures> SignaturesOf(const Analysis& analysis) {
+  const Fitted& base = analysis.finding.base->fit;
   std::vector<const EffectForm*> forms;
-  for (const EffectForm& form : look.catalogue) {
+  for (const EffectForm& form : analysis.catalogue) {
     const bool known = std::any_of(base.hypothesis.terms.begin(), base.hypothesis.terms.end(),
                                    [&](const Term& term) { return term.form->effect == form.effect; });
     if (form.exact() && !known) forms.push_back(&form);
   }
   std::vector<Signatures> all(forms.size());
   support::InParallel(forms.size(), [&](std::size_t i) {
-    all[i] = {forms[i]->effect, Templates(*look.fitter, base, *forms[i], nullptr)};
+    all[i] = {forms[i]->effect, Templates(*analysis.fitter, base, *forms[i], nullptr)};
   });
   return all;
 }
 
 }  // namespace
 
-std::vector<std::string> Aliases(const Equation& equation, const Look& look) {
-  const Fitted& base = look.finding.base->fit;
+std::vector<std::string> Aliases(const Equation& equation, const Analysis& analysis) {
+  const Fitted& base = analysis.finding.base->fit;
   const Tangent tangent(base);
-  const Vector predicted = look.fitter->whitener().Apply(base.predicted);
-  const double noise = std::sqrt(look.fitter->whitener().s2 * static_cast<double>(predicted.size()));
+  const Vector predicted = analysis.fitter->whitener().Apply(base.predicted);
+  const double noise = std::sqrt(analysis.fitter->whitener().variance * static_cast<double>(predicted.size()));
   std::vector<std::string> texts;
   if (predicted.squaredNorm() > 0.0 && tangent.Absorbed(predicted) > kAbsorbed)
     texts.push_back("a wrong gain or unit of the " + equation.output_name() +
                     ": the parameters absorb it. One percent too much looks like " +
-                    BiasText(equation, look, Vector(0.01 * tangent.Bias(predicted))));
+                    BiasText(equation, analysis, Vector(0.01 * tangent.Bias(predicted))));
   std::vector<std::pair<std::string, std::vector<Outside>>> visible;
-  for (const Signatures& signatures : SignaturesOf(look)) {
+  for (const Signatures& signatures : SignaturesOf(analysis)) {
     std::vector<Outside> outside;
     const Vector* strongest = nullptr;
     bool absorbed = true;
@@ -105,7 +105,7 @@ std::vector<std::string> Aliases(const Equation& equation, const Look& look) {
       texts.push_back(signatures.effect + ": never acts in this motion");
     else if (absorbed)
       texts.push_back(signatures.effect + ": the parameters absorb it. As strong as the noise it looks like " +
-                      BiasText(equation, look, Vector(tangent.Bias(*strongest) * (noise / strongest->norm()))));
+                      BiasText(equation, analysis, Vector(tangent.Bias(*strongest) * (noise / strongest->norm()))));
     else
       visible.emplace_back(signatures.effect, std::move(outside));
   }

@@ -35,8 +35,8 @@ Separation SeparationOf(const Fitted& fit, const std::vector<Term>& added, const
 /// @param determined  What the fit determines in place of parameters that are confounded is appended.
 std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePtr& candidate, int min_active,
                                    std::vector<Combination>* determined) {
-  const Fitter& fitter = *diagnosis.look->fitter;
-  const Matrix covariance = candidate->fit.Covariance(fitter.whitener().s2);
+  const Fitter& fitter = *diagnosis.wide->fitter;
+  const Matrix covariance = candidate->fit.Covariance(fitter.whitener().variance);
   std::vector<EffectFinding> effects;
   int num_added = 0;
   for (const Term& term : candidate->added()) num_added += term.form->size();
@@ -140,7 +140,7 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
     for (std::vector<std::string>& names : BothOfAFamily(finding)) result->ambiguous_set.push_back(std::move(names));
   }
   const double full = std::max(finding.gap, 1e-12);
-  const auto rows = static_cast<double>(diagnosis.look->signals.rows());
+  const auto rows = static_cast<double>(diagnosis.wide->signals.rows());
   for (std::size_t i = 0; i < finding.tried.size(); ++i) {
     const CandidatePtr& c = finding.tried[i];
     // What shows in few events only may be probable although no score on blocks left out says so.

@@ -22,7 +22,7 @@ namespace armcmc::gap {
 /// @param min_active  Blocks of data that an effect must be seen in, or it is provisional.
 void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active, Result* result);
 
-/// What the equations beside the carrier lack: named effects join the verdict, anything else is said.
+/// What the equations other than the carrier lack: named effects join the verdict, anything else is said.
 void DescribeOthers(const PlantDiagnosis& plant, int min_active, Result* result);
 
 }  // namespace armcmc::gap

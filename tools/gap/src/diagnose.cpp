@@ -43,40 +43,40 @@ int WideWindow(const Equation& equation, const Recording& recording) {
 /// About half as wide, odd.
 int NarrowWindow(int wide) { return wide / 2 < 5 ? 1 : wide / 2 / 2 * 2 + 1; }
 
-std::unique_ptr<Look> LookAt(const Equation& equation, const Recording& recording, int window,
-                             const DiagnoseOptions& options, const BlockBootstrap& bootstrap) {
-  auto look = std::make_unique<Look>();
-  look->signals = equation.Prepare(recording, window);
-  look->signals.window = window;
-  look->catalogue = equation.Catalogue(look->signals);
-  std::erase_if(look->catalogue, [&](const EffectForm& form) {
+std::unique_ptr<Analysis> Analyse(const Equation& equation, const Recording& recording, int window,
+                                  const DiagnoseOptions& options, const BlockBootstrap& bootstrap) {
+  auto analysis = std::make_unique<Analysis>();
+  analysis->signals = equation.Prepare(recording, window);
+  analysis->signals.window = window;
+  analysis->catalogue = equation.Catalogue(analysis->signals);
+  std::erase_if(analysis->catalogue, [&](const EffectForm& form) {
     return std::find(options.without.begin(), options.without.end(), form.effect) != options.without.end();
   });
   Whitener whitener;
   for (int pass = 0; pass < kNoisePasses; ++pass) {
-    const Fitter fitter(equation, look->signals, whitener);
-    const Fitted base = FitModel(fitter, look->catalogue, options);
+    const Fitter fitter(equation, analysis->signals, whitener);
+    const Fitted base = FitModel(fitter, analysis->catalogue, options);
     whitener = NoiseLeftBy(fitter, Referee(fitter, base.predicted).Judge(base));
   }
   // What no additive basis expresses (an onset, a clipped force) hides in the first noise model.
   for (int pass = 0; pass < kSearchPasses; ++pass) {
-    look->fitter = std::make_unique<Fitter>(equation, look->signals, whitener);
-    look->search = std::make_unique<Search>(*look->fitter, look->catalogue, bootstrap, options.thresholds,
-                                            FitModel(*look->fitter, look->catalogue, options));
-    look->finding = look->search->Run(options.pairs);
-    if (look->finding.verdict == Verdict::kNone || !look->finding.best->remainder) break;
-    const Whitener cleaner = NoiseLeftBy(*look->fitter, *look->finding.best->remainder);
-    if (!(cleaner.s2 < kCleaner * whitener.s2)) break;
+    analysis->fitter = std::make_unique<Fitter>(equation, analysis->signals, whitener);
+    analysis->search = std::make_unique<Search>(*analysis->fitter, analysis->catalogue, bootstrap, options.thresholds,
+                                                FitModel(*analysis->fitter, analysis->catalogue, options));
+    analysis->finding = analysis->search->Run(options.pairs);
+    if (analysis->finding.verdict == Verdict::kNone || !analysis->finding.best->remainder) break;
+    const Whitener cleaner = NoiseLeftBy(*analysis->fitter, *analysis->finding.best->remainder);
+    if (!(cleaner.variance < kCleaner * whitener.variance)) break;
     whitener = cleaner;
   }
-  return look;
+  return analysis;
 }
 
 bool Names(const Finding& finding) {
   return finding.verdict == Verdict::kNamed || finding.verdict == Verdict::kAmbiguous;
 }
 
-/// The same hypothesis with its scores counted from another base, as those of its look are.
+/// The same hypothesis with its scores counted from another base, as those of its analysis are.
 CandidatePtr CountedFrom(const Candidate& base, const Candidate& own_base, const Candidate& candidate) {
   auto counted = std::make_shared<Candidate>(candidate);
   counted->fit.log_evidence += base.fit.log_evidence - own_base.fit.log_evidence;
@@ -115,7 +115,7 @@ void MeanProbabilities(const Finding& other, Finding* finding) {
                    [](const auto& a, const auto& b) { return a->fit.score() > b->fit.score(); });
 }
 
-/// Applies the vote of the narrow look.
+/// Applies the vote of the analysis with the narrower smoother.
 /// @param doubt  Probability below which a name is withdrawn.
 void Vote(const Finding& other, double doubt, Finding* finding) {
   if (!Names(*finding)) return;
@@ -139,10 +139,10 @@ Diagnosis Diagnose(const Equation& equation, const Recording& recording, const D
   Diagnosis diagnosis;
   diagnosis.bootstrap = std::make_unique<BlockBootstrap>(options.seed);
   const int window = WideWindow(equation, recording);
-  diagnosis.look = LookAt(equation, recording, window, options, *diagnosis.bootstrap);
-  diagnosis.finding = diagnosis.look->finding;
+  diagnosis.wide = Analyse(equation, recording, window, options, *diagnosis.bootstrap);
+  diagnosis.finding = diagnosis.wide->finding;
   if (Names(diagnosis.finding) && window > 1) {
-    diagnosis.narrow = LookAt(equation, recording, NarrowWindow(window), options, *diagnosis.bootstrap);
+    diagnosis.narrow = Analyse(equation, recording, NarrowWindow(window), options, *diagnosis.bootstrap);
     Vote(diagnosis.narrow->finding, options.thresholds.doubt, &diagnosis.finding);
   }
   return diagnosis;
@@ -151,22 +151,22 @@ Diagnosis Diagnose(const Equation& equation, const Recording& recording, const D
 Diagnosis CompareOnly(const Equation& equation, const Recording& recording, const DiagnoseOptions& options) {
   Diagnosis diagnosis;
   diagnosis.bootstrap = std::make_unique<BlockBootstrap>(options.seed);
-  diagnosis.look = std::make_unique<Look>();
-  Look& look = *diagnosis.look;
+  diagnosis.wide = std::make_unique<Analysis>();
+  Analysis& analysis = *diagnosis.wide;
   const int window = WideWindow(equation, recording);
-  look.signals = equation.Prepare(recording, window);
-  look.signals.window = window;
+  analysis.signals = equation.Prepare(recording, window);
+  analysis.signals.window = window;
   Whitener whitener;
   for (int pass = 0; pass < kNoisePasses; ++pass) {
-    look.fitter = std::make_unique<Fitter>(equation, look.signals, whitener);
-    look.finding.base = std::make_shared<Candidate>();
-    look.finding.base->fit = look.fitter->Fit({}, equation.Start(look.signals), 30);
-    whitener = FitNoise(whitener.Colour(look.finding.base->fit.whitened_residual));
+    analysis.fitter = std::make_unique<Fitter>(equation, analysis.signals, whitener);
+    analysis.finding.base = std::make_shared<Candidate>();
+    analysis.finding.base->fit = analysis.fitter->Fit({}, equation.Start(analysis.signals), 30);
+    whitener = FitNoise(whitener.Colour(analysis.finding.base->fit.whitened_residual));
   }
-  look.fitter = std::make_unique<Fitter>(equation, look.signals, whitener);
-  look.finding.base->fit = look.fitter->Fit({}, look.finding.base->fit.theta, 30);
-  look.finding.best = look.finding.base;
-  diagnosis.finding = look.finding;
+  analysis.fitter = std::make_unique<Fitter>(equation, analysis.signals, whitener);
+  analysis.finding.base->fit = analysis.fitter->Fit({}, analysis.finding.base->fit.theta, 30);
+  analysis.finding.best = analysis.finding.base;
+  diagnosis.finding = analysis.finding;
   return diagnosis;
 }
 

@@ -28,9 +28,9 @@ std::vector<SplitVariable> Equation::SplitVariables(const Signals& s) const {
   return variables;
 }
 
-Experiment Equation::Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const {
-  Experiment experiment = SeparatingExperiment(*this, look, candidates);
-  experiment.scenario_text = ScenarioText(*this, look, experiment);
+Experiment Equation::Separate(const Analysis& analysis, const std::vector<CandidatePtr>& candidates) const {
+  Experiment experiment = SeparatingExperiment(*this, analysis, candidates);
+  experiment.scenario_text = ScenarioText(*this, analysis, experiment);
   return experiment;
 }
 

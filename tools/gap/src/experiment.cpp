@@ -87,7 +87,7 @@ double Separation(const Equation& equation, Signals* s, const Whitener& whitener
                   const Fitted& rival) {
   s->output = Evaluate(equation, *s, truth.hypothesis, truth.theta, Slopes::None()).y;
   const Fitter fitter(equation, *s, whitener);
-  return 0.5 * fitter.Fit(rival.hypothesis, rival.theta, kSteps).squares / whitener.s2;
+  return 0.5 * fitter.Fit(rival.hypothesis, rival.theta, kSteps).squares / whitener.variance;
 }
 
 /// The same noise, sampled more often: its correlation over a time stays, as that of a process of first order.
@@ -99,7 +99,7 @@ Whitener Refined(const Whitener& whitener, int refine) {
   const double next =
       std::max(response.head(kResponse - 1).dot(response.tail(kResponse - 1)) / response.squaredNorm(), 0.0);
   const double keep = std::pow(next, 1.0 / refine);
-  return {Vector::Constant(1, keep), whitener.s2 * whitener.Gain() * (1.0 - keep * keep)};
+  return {Vector::Constant(1, keep), whitener.variance * whitener.Gain() * (1.0 - keep * keep)};
 }
 
 /// What a motion would bring.
@@ -127,24 +127,25 @@ Prospect Expect(const Equation& equation, Signals* s, const Whitener& whitener,
 
 }  // namespace
 
-Experiment SeparatingExperiment(const Equation& equation, const Look& look,
+Experiment SeparatingExperiment(const Equation& equation, const Analysis& analysis,
                                 const std::vector<CandidatePtr>& candidates) {
   const std::vector<CandidatePtr> compared(
       candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(std::min(candidates.size(), kCompared)));
-  const double depth = std::max(look.signals.at(Role::kPosition).maxCoeff(), look.signals.scale_of(Role::kPosition));
+  const double depth =
+      std::max(analysis.signals.at(Role::kPosition).maxCoeff(), analysis.signals.scale_of(Role::kPosition));
   Experiment best;
   const ContactProgram* chosen = nullptr;
   double most = -1.0;
   const auto consider = [&](const ContactProgram& program, double pace, int refine, double worth) {
-    Signals s = Simulate(program, pace, look.signals, depth, refine);
-    const Prospect prospect = Expect(equation, &s, Refined(look.fitter->whitener(), refine), compared);
+    Signals s = Simulate(program, pace, analysis.signals, depth, refine);
+    const Prospect prospect = Expect(equation, &s, Refined(analysis.fitter->whitener(), refine), compared);
     if (prospect.decided <= worth * most) return;
     most = prospect.decided;
     best.nats = prospect.least;
     best.pace = pace;
     best.program = program.name;
     best.words = program.words;
-    best.sample_interval_s = look.signals.dt / refine;
+    best.sample_interval_s = analysis.signals.dt / refine;
     chosen = &program;
   };
   for (const double pace : kPaces) {
@@ -164,17 +165,17 @@ Experiment SeparatingExperiment(const Equation& equation, const Look& look,
   char quicker[48] = "";
   if (best.pace > 1.0) std::snprintf(quicker, sizeof(quicker), ", all %.0f times as fast", best.pace);
   char finer[80] = "";
-  if (best.sample_interval_s < look.signals.dt)
+  if (best.sample_interval_s < analysis.signals.dt)
     std::snprintf(finer, sizeof(finer), ", sampled %d times as often, every %.4g ms", kRefine,
                   1e3 * best.sample_interval_s);
   best.words = "To separate them: " + best.words + quicker + finer + evidence + ".";
   return best;
 }
 
-std::string ScenarioText(const Equation& equation, const Look& look, const Experiment& experiment) {
-  const Whitener& whitener = look.fitter->whitener();
-  const Fitted& fit = look.finding.best->fit;
-  const auto base = equation.Report(look.signals, fit.theta, fit.Covariance(whitener.s2));
+std::string ScenarioText(const Equation& equation, const Analysis& analysis, const Experiment& experiment) {
+  const Whitener& whitener = analysis.fitter->whitener();
+  const Fitted& fit = analysis.finding.best->fit;
+  const auto base = equation.Report(analysis.signals, fit.theta, fit.Covariance(whitener.variance));
   std::ostringstream out;
   out.precision(10);
   out << "# " << experiment.words << "\nschema = 1\nplant = \"" << equation.plant()
@@ -185,7 +186,7 @@ std::string ScenarioText(const Equation& equation, const Look& look, const Exper
   out << "\n[motion]\ntracking = \"prescribed\"\nprogram = \"" << experiment.program
       << "\"\ndepth = " << experiment.depth << "   # m\npace = " << experiment.pace
       << "\nband_hz = " << kBand_hz * experiment.pace
-      << "\n\n[noise.f]\nkind = \"gaussian\"\nstd = " << std::sqrt(whitener.s2 * whitener.Gain()) << "   # N\n";
+      << "\n\n[noise.f]\nkind = \"gaussian\"\nstd = " << std::sqrt(whitener.variance * whitener.Gain()) << "   # N\n";
   return out.str();
 }
 

@@ -91,7 +91,7 @@ Matrix Hats(const Vector& series, const Vector& knots) {
 
 Matrix Gated(const Matrix& columns, const Vector& weight) { return weight.asDiagonal() * columns; }
 
-Matrix Beside(const Matrix& left, const Matrix& right) {
+Matrix JoinColumns(const Matrix& left, const Matrix& right) {
   Matrix both(left.rows(), left.cols() + right.cols());
   both << left, right;
   return both;

@@ -64,7 +64,7 @@ Curve Binned(const std::string& label, const Vector& feature, const Vector& valu
 }
 
 /// Power of the whitened residual over that of white noise, averaged over segments.
-Curve Spectrum(const std::string& label, const Vector& white, double s2, double dt) {
+Curve Spectrum(const std::string& label, const Vector& white, double variance, double dt) {
   const auto length = static_cast<std::size_t>(white.size() / kSegments);
   Curve curve;
   curve.label = label;
@@ -86,7 +86,7 @@ Curve Spectrum(const std::string& label, const Vector& white, double s2, double 
   }
   for (std::size_t k = 1; k < power.size(); ++k) {
     curve.x.push_back(static_cast<double>(k) / (static_cast<double>(length) * dt));
-    curve.y.push_back(power[k] / (s2 * window_power));
+    curve.y.push_back(power[k] / (variance * window_power));
   }
   return curve;
 }
@@ -115,9 +115,9 @@ MapFigure Map(const std::string& x_title, const std::string& y_title, const Vect
 
 }  // namespace
 
-Figures MakeFigures(const Equation& equation, const Signals& signals, const Look& look, const Fitted& before,
+Figures MakeFigures(const Equation& equation, const Signals& signals, const Analysis& analysis, const Fitted& before,
                     const Fitted& after) {
-  const Whitener& whitener = look.fitter->whitener();
+  const Whitener& whitener = analysis.fitter->whitener();
   const Vector first = Evaluate(equation, signals, before.hypothesis, before.theta, Slopes::None()).y;
   const Vector second = Evaluate(equation, signals, after.hypothesis, after.theta, Slopes::None()).y;
   const Vector error_before = signals.output - first, error_after = signals.output - second;
@@ -141,12 +141,12 @@ Figures MakeFigures(const Equation& equation, const Signals& signals, const Look
     figures.features.push_back(std::move(figure));
   }
   const Vector white_before = whitener.Apply(error_before), white_after = whitener.Apply(error_after);
-  figures.spectrum_before = Spectrum("before", white_before, whitener.s2, signals.dt);
-  figures.spectrum_after = Spectrum("after", white_after, whitener.s2, signals.dt);
+  figures.spectrum_before = Spectrum("before", white_before, whitener.variance, signals.dt);
+  figures.spectrum_after = Spectrum("after", white_after, whitener.variance, signals.dt);
   const std::vector<PlotFeature> axes = equation.PlotFeatures(signals);
   if (axes.size() >= 2)
     figures.where = Map(axes[0].title, axes[1].title, axes[0].value, axes[1].value,
-                        Vector(white_before.array().square() / whitener.s2));
+                        Vector(white_before.array().square() / whitener.variance));
   return figures;
 }
 

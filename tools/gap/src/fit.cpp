@@ -148,7 +148,7 @@ bool Fitted::on_edge() const {
   return false;
 }
 
-Matrix Fitted::Covariance(double s2) const {
+Matrix Fitted::Covariance(double variance) const {
   std::vector<bool> fixed = at_bound;
   for (std::size_t i = 0; i < fixed.size(); ++i)
     if (coordinates[i].event) fixed[i] = whitened_jacobian.col(static_cast<Eigen::Index>(i)).isZero(0.0);
@@ -158,7 +158,7 @@ Matrix Fitted::Covariance(double s2) const {
   const Matrix columns = whitened_jacobian(Eigen::all, free);
   Matrix gram = columns.transpose() * columns;
   gram.diagonal() *= 1.0 + 1e-12;
-  covariance(free, free) = s2 * gram.ldlt().solve(Matrix::Identity(gram.rows(), gram.cols()));
+  covariance(free, free) = variance * gram.ldlt().solve(Matrix::Identity(gram.rows(), gram.cols()));
   return covariance;
 }
 
@@ -208,7 +208,8 @@ Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& star
   at.prediction = Predict(hypothesis, at.theta);
   at.residual = whitener_.Apply(Vector(signals_->output - at.prediction.y));
   const auto penalty = [&](const Vector& theta) {
-    return prior == nullptr ? 0.0 : whitener_.s2 * (theta - prior->mean).dot(prior->precision * (theta - prior->mean));
+    return prior == nullptr ? 0.0
+                            : whitener_.variance * (theta - prior->mean).dot(prior->precision * (theta - prior->mean));
   };
   double squares = at.residual.squaredNorm() + penalty(at.theta);
   double damping = kLeastDamping;
@@ -217,15 +218,15 @@ Fitter::Descent Fitter::Descend(const Hypothesis& hypothesis, const Vector& star
     Vector ascent = at.columns.transpose() * at.residual;
     Matrix gram = GramOf(at.columns, 0, at.columns.rows());
     if (prior != nullptr) {
-      ascent += whitener_.s2 * (prior->precision * (prior->mean - at.theta));
-      gram += whitener_.s2 * prior->precision;
+      ascent += whitener_.variance * (prior->precision * (prior->mean - at.theta));
+      gram += whitener_.variance * prior->precision;
     }
     const std::vector<Eigen::Index> free = FreeOf(Blocked(at.coordinates, at.theta, ascent));
     if (free.empty()) break;
     if (rival != nullptr) {
       const Vector way = rival->theta - at.theta;
       const Vector promised = BoundedStep(gram, ascent, kLeastDamping, at.coordinates, at.theta, free);
-      at.hopeless = way.dot(gram * way) < kSameMinimum * whitener_.s2 ||
+      at.hopeless = way.dot(gram * way) < kSameMinimum * whitener_.variance ||
                     (step >= kStepsForHope && squares - kHope * ascent.dot(promised) > rival->squares);
       if (at.hopeless) return at;
     }
@@ -283,11 +284,11 @@ void Fitter::Score(Fitted* fitted) const {
       fitted->at_bound[i] = true;
   const std::vector<Eigen::Index> free = FreeOf(fitted->at_bound);
   const BlockGrams grams = MakeGrams(fitted->whitened_jacobian, fitted->whitened_residual);
-  const Vector ridge = whitener_.s2 * ShapePrecision(*fitted)(free);
-  fitted->heldout = -0.5 / whitener_.s2 * LeaveBlockOut(grams.Only(free), ridge);
+  const Vector ridge = whitener_.variance * ShapePrecision(*fitted)(free);
+  fitted->heldout = -0.5 / whitener_.variance * LeaveBlockOut(grams.Only(free), ridge);
 
   // Laplace: the Hessian of the log posterior at the fit, prior included.
-  Matrix hessian = grams.TotalGram() / whitener_.s2;
+  Matrix hessian = grams.TotalGram() / whitener_.variance;
   double log_prior = 0.0;
   for (std::size_t i = 0; i < fitted->coordinates.size(); ++i) {
     const Coordinate& c = fitted->coordinates[i];
@@ -298,7 +299,7 @@ void Fitter::Score(Fitted* fitted) const {
     log_prior += 0.5 * std::log(precision) - 0.5 * off * off * precision;
   }
   const Vector pivots = hessian.ldlt().vectorD().cwiseMax(1e-300);
-  fitted->log_evidence = -0.5 * fitted->squares / whitener_.s2 + log_prior - 0.5 * pivots.array().log().sum();
+  fitted->log_evidence = -0.5 * fitted->squares / whitener_.variance + log_prior - 0.5 * pivots.array().log().sum();
 }
 
 void Fitter::Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const {

@@ -87,8 +87,8 @@ void AddFeatures(const Signals& signals, const Placed& term, const LawInput& inp
     if (out->wanted.Has(term.first + c)) out->jacobian.col(term.first + c) += sum.Slope(c, term.form->num_amplitudes);
   if (!moves || out->jacobian.cols() == 0) return;
   for (const LawInput::Slope& slope : input.shift_slopes) {
-    const Signals beside = Moved(seen, kShapeStep * slope.rows);
-    out->jacobian.col(slope.coordinate) += (Evaluate(beside, term, Slopes::None()).value - sum.value) / kShapeStep;
+    const Signals moved = Moved(seen, kShapeStep * slope.rows);
+    out->jacobian.col(slope.coordinate) += (Evaluate(moved, term, Slopes::None()).value - sum.value) / kShapeStep;
   }
 }
 

@@ -123,23 +123,23 @@ std::vector<Eigen::Index> RowsOf(const Mask& mask) {
 
 }  // namespace
 
-std::vector<Where> FindWhere(const Equation& equation, const Look& look, const BlockBootstrap& bootstrap,
+std::vector<Where> FindWhere(const Equation& equation, const Analysis& analysis, const BlockBootstrap& bootstrap,
                              unsigned long long seed) {
-  const Fitted& base = look.finding.base->fit;
-  const auto rows = static_cast<double>(look.signals.rows());
-  const double s2 = look.fitter->whitener().s2;
-  const Referee& referee = look.search->referee();
+  const Fitted& base = analysis.finding.base->fit;
+  const auto rows = static_cast<double>(analysis.signals.rows());
+  const double variance = analysis.fitter->whitener().variance;
+  const Referee& referee = analysis.search->referee();
   std::vector<Where> found;
-  const double explainable = std::max(look.finding.gap, 1e-12);
+  const double explainable = std::max(analysis.finding.gap, 1e-12);
   found.resize(referee.groups().size());
   support::InParallel(found.size(), [&](std::size_t i) {
     const std::string& name = referee.groups()[i].name;
-    const Vector gain = referee.GainOf(base, {name}, Matrix(look.signals.rows(), 0));
+    const Vector gain = referee.GainOf(base, {name}, Matrix(analysis.signals.rows(), 0));
     const double size = std::max(2.0 * gain.sum() / rows, 0.0);
     found[i] = {name, "", std::clamp(size / explainable, 0.0, 1.0), size, 1.0 - bootstrap.ProbabilityAbove(gain, 0.0)};
   });
-  const Line line = StrongestLine(base.whitened_residual, look.signals.dt);
-  const Vector gain = referee.GainOf(base, {}, Waves(look.signals.t, line.frequency, 1, 1));
+  const Line line = StrongestLine(base.whitened_residual, analysis.signals.dt);
+  const Vector gain = referee.GainOf(base, {}, Waves(analysis.signals.t, line.frequency, 1, 1));
   char words[64];
   std::snprintf(words, sizeof(words), "a line at %.3g Hz", line.frequency);
   const double size = std::max(2.0 * gain.sum() / rows, 0.0);
@@ -148,9 +148,9 @@ std::vector<Where> FindWhere(const Equation& equation, const Look& look, const B
   std::stable_sort(found.begin(), found.end(),
                    [](const Where& a, const Where& b) { return a.effect_size > b.effect_size; });
 
-  const Vector excess = base.whitened_residual.array().square() / s2 - 1.0;
+  const Vector excess = base.whitened_residual.array().square() / variance - 1.0;
   if (excess.sum() <= 0.0) return found;
-  const Tree tree(equation.SplitVariables(look.signals), excess);
+  const Tree tree(equation.SplitVariables(analysis.signals), excess);
   std::vector<Where> regions;
   std::mt19937_64 engine(seed);
   const Shifted shifted(excess);

@@ -55,7 +55,7 @@ EstimatorSettings AugmentedSettings(const std::string& model, const Fitter& fitt
   const Signals& signals = fitter.signals();
   EstimatorSettings settings = BuiltinSettings(model);
   const ModelInfo& plant = *CompiledModels()[static_cast<std::size_t>(FindModel(settings.model))];
-  const Matrix covariance = fitted.Covariance(fitter.whitener().s2);
+  const Matrix covariance = fitted.Covariance(fitter.whitener().variance);
   if (signals.law_seen)
     fitter.equation().SetPriors(fitter.equation().Report(signals, fitted.theta, covariance), &settings);
   for (NoiseSettings& noise : settings.noise) {

@@ -16,7 +16,7 @@ std::vector<Term> Found(const PlantDiagnosis& plant) {
 }
 
 const EffectForm* OwnFormula(const EquationDiagnosis& one, const std::string& effect) {
-  for (const EffectForm& form : one.diagnosis.look->catalogue)
+  for (const EffectForm& form : one.diagnosis.wide->catalogue)
     if (form.exact() && form.effect == effect) return &form;
   return nullptr;
 }
@@ -42,7 +42,7 @@ OnlinePart OnlinePartOf(const PlantDiagnosis& plant) {
       }
       part.equation = &*online;
       part.other_formula = part.other_formula || !term.form->variant.empty();
-      if (!as_it_is) part.fit = online->diagnosis.look->fitter->Add(part.fit, {form, term.when});
+      if (!as_it_is) part.fit = online->diagnosis.wide->fitter->Add(part.fit, {form, term.when});
     }
   } else {
     for (const Term& term : found) part.left_out.push_back(term.form->effect);

@@ -17,8 +17,8 @@ bool HasGap(const EquationDiagnosis& one) { return one.diagnosis.finding.verdict
 /// Log-likelihood ratio of an effect at a value that another equation found, over its absence.
 std::optional<double> Evidence(const EquationDiagnosis& asked, const std::string& effect,
                                const std::vector<double>& values) {
-  const Look& look = *asked.diagnosis.look;
-  for (const EffectForm& listed : look.catalogue) {
+  const Analysis& analysis = *asked.diagnosis.wide;
+  for (const EffectForm& listed : analysis.catalogue) {
     if (!listed.exact() || listed.effect != effect || listed.coordinates.size() != values.size()) continue;
     EffectForm form = listed;
     std::vector<double> start;
@@ -27,11 +27,11 @@ std::optional<double> Evidence(const EquationDiagnosis& asked, const std::string
       start.push_back(values[c] / form.coordinates[c].unit_size);
       form.coordinates[c].lower = form.coordinates[c].upper = start.back();
     }
-    const Fitted& base = look.finding.base->fit;
+    const Fitted& base = analysis.finding.base->fit;
     Vector theta(base.theta.size() + form.size());
     theta << base.theta, Eigen::Map<const Vector>(start.data(), form.size());
-    const double squares = look.fitter->Fit({{{&form, {}}}}, theta).squares;
-    return 0.5 * (base.squares - squares) / look.fitter->whitener().s2;
+    const double squares = analysis.fitter->Fit({{{&form, {}}}}, theta).squares;
+    return 0.5 * (base.squares - squares) / analysis.fitter->whitener().variance;
   }
   return std::nullopt;
 }

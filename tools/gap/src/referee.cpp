@@ -106,7 +106,7 @@ Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* une
   if (unexplained != nullptr)
     *unexplained =
         fitted.whitened_residual - own * best.coefficients.head(f + e) - columns_ * best.coefficients.tail(p);
-  return -0.5 / fitter_->whitener().s2 * best.squares - fitted.heldout;
+  return -0.5 / fitter_->whitener().variance * best.squares - fitted.heldout;
 }
 
 Remainder Referee::Judge(const Fitted& fitted) const {
@@ -139,7 +139,7 @@ Vector Referee::GainOf(const Fitted& fitted, const std::vector<std::string>& gro
   columns << free, UnitRms(fitter_->whitener().Apply(extra)), columns_(Eigen::all, chosen);
   const Best best =
       ChooseRidge(MakeGrams(columns, fitted.whitened_residual), free.cols(), static_cast<double>(free.rows()));
-  return -0.5 / fitter_->whitener().s2 * best.squares - fitted.heldout;
+  return -0.5 / fitter_->whitener().variance * best.squares - fitted.heldout;
 }
 
 }  // namespace armcmc::gap

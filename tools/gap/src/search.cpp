@@ -134,7 +134,7 @@ Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candida
   for (std::size_t i = 0; i < always.size(); ++i)
     for (const GateCandidate& gate : found[i]) {
       const double ungated = std::max(parent->fit.squares - always[i]->fit.squares, gate.always_gain);
-      if (gate.gain - ungated > limits_.min_gain * rows_ * fitter_->whitener().s2) gates.push_back(gate);
+      if (gate.gain - ungated > limits_.min_gain * rows_ * fitter_->whitener().variance) gates.push_back(gate);
     }
   std::sort(gates.begin(), gates.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   if (gates.size() > kMaxGated) gates.resize(kMaxGated);
@@ -260,11 +260,11 @@ Finding Search::Run(bool pairs) const {
       if (!Better(all_pairs.front()->fit, candidate->fit) && Adequate(candidate, gap)) good.push_back(candidate);
     SortByScore(&good);
   }
-  Candidates beside;
+  Candidates corrected;
   if (good.empty() && !all_pairs.empty()) {
-    beside = Beside(listed, unlisted);
+    corrected = WithCorrection(listed, unlisted);
     Candidates two = all_pairs;
-    two.insert(two.end(), beside.begin(), beside.end());
+    two.insert(two.end(), corrected.begin(), corrected.end());
     SortByScore(&two);
     for (const CandidatePtr& pair : Near(two, gap)) {
       const auto earned = [&](const CandidatePtr& single) {
@@ -273,7 +273,7 @@ Finding Search::Run(bool pairs) const {
       // What is granted is not claimed: only the effect has to earn its name.
       const bool all_earned =
           pair->granted ? Better(pair->fit, pair->granted->without) : std::all_of(listed.begin(), listed.end(), earned);
-      if (all_earned && (Adequate(pair, gap) || StandsOut(pair, beside))) good.push_back(pair);
+      if (all_earned && (Adequate(pair, gap) || StandsOut(pair, corrected))) good.push_back(pair);
     }
     DropUnsure(&good);
     // The best fit gives the best estimate of the noise.
@@ -291,7 +291,7 @@ Finding Search::Run(bool pairs) const {
     finding.unlisted = top = law;
   }
   finding.tried.insert(finding.tried.end(), all_pairs.begin(), all_pairs.end());
-  finding.tried.insert(finding.tried.end(), beside.begin(), beside.end());
+  finding.tried.insert(finding.tried.end(), corrected.begin(), corrected.end());
   SortByScore(&finding.tried);
   PreferCatalogue(&good);
   finding.set = OnePerName(good);

@@ -10,11 +10,11 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr std::size_t kBesideGrant = 6;  // effects that are fitted with a grant, most promising first
+constexpr std::size_t kWithCorrection = 6;  // effects that are fitted with a grant, most promising first
 
 }  // namespace
 
-Search::Candidates Search::Beside(const Candidates& listed, const Candidates& unlisted) const {
+Search::Candidates Search::WithCorrection(const Candidates& listed, const Candidates& unlisted) const {
   std::vector<Term> grants;
   for (const CandidatePtr& physics : unlisted) grants.push_back(physics->fit.hypothesis.terms.back());
   for (const EffectForm& form : *catalogue_)
@@ -41,16 +41,16 @@ Search::Candidates Search::Beside(const Candidates& listed, const Candidates& un
                       [&](std::size_t i) { promises[i].first = fitter_->Promise(parent->fit, promises[i].second); });
   std::stable_sort(promises.begin(), promises.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Term> terms;
-  for (std::size_t i = 0; i < std::min(kBesideGrant, promises.size()); ++i) terms.push_back(promises[i].second);
-  Candidates beside = AddEach(parent, terms);
-  SortByScore(&beside);
-  return beside;
+  for (std::size_t i = 0; i < std::min(kWithCorrection, promises.size()); ++i) terms.push_back(promises[i].second);
+  Candidates corrected = AddEach(parent, terms);
+  SortByScore(&corrected);
+  return corrected;
 }
 
-bool Search::StandsOut(const CandidatePtr& candidate, const Candidates& beside) const {
+bool Search::StandsOut(const CandidatePtr& candidate, const Candidates& corrected) const {
   if (!candidate->granted || candidate->fit.on_edge() || Closure(candidate) < limits_.granted_closure) return false;
   const auto beyond = [](const CandidatePtr& c) { return c->fit.score() - c->granted->without.score(); };
-  return std::all_of(beside.begin(), beside.end(), [&](const CandidatePtr& rival) {
+  return std::all_of(corrected.begin(), corrected.end(), [&](const CandidatePtr& rival) {
     return rival->families() == candidate->families() ||
            (beyond(rival) < limits_.granted_lead * beyond(candidate) && Better(candidate->fit, rival->fit));
   });

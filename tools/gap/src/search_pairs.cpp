@@ -76,7 +76,7 @@ CandidatePtr Search::Refined(const CandidatePtr& pair) const {
         for (const GateCandidate& gate :
              ScanGates(*fitter_, parent->fit, form, Templates(*fitter_, parent->fit, form, nullptr),
                        limits_.min_active_blocks))
-          if (gate.gain - gate.always_gain > limits_.min_gain * rows_ * fitter_->whitener().s2)
+          if (gate.gain - gate.always_gain > limits_.min_gain * rows_ * fitter_->whitener().variance)
             tries.push_back(gate.term);
       for (const Term& term : tries) {
         CandidatePtr other = Make(fitter_->Add(parent->fit, term));

@@ -40,7 +40,7 @@ Vector Delayed(const Vector& f, double lag_samples) {
 /// Applies a linear filter to the prediction and to every wanted column that it has so far; the filter's own column is
 /// the difference quotient by its coordinate.
 template <class Filter>
-void Pass(const Filter& filter, double coordinate, int own, Prediction* out) {
+void ApplyFilter(const Filter& filter, double coordinate, int own, Prediction* out) {
   constexpr double kStep = 1e-4;
   const Vector before = out->y;
   out->y = filter(before, coordinate);
@@ -74,17 +74,17 @@ std::vector<EffectForm> LatencyForms(const Signals& signals) {
   const auto samples_of_one = [dt = signals.dt](const Signals& in) { return kUnitSamples * (dt / in.dt); };
   EffectForm delay = Latency("sensor_delay", "f(t - time)", Slot::kDelay, signals, "time");
   delay.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
-    Pass([one = samples_of_one(in)](const Vector& f, double at) { return Delayed(f, one * at); }, c[0], own, out);
+    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return Delayed(f, one * at); }, c[0], own, out);
   };
   EffectForm lag = Latency("sensor_lag", "g, time_constant g' + g = f", Slot::kLag, signals, "time_constant");
   lag.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
-    Pass([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(f, one * at); }, c[0], own, out);
+    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(f, one * at); }, c[0], own, out);
   };
   EffectForm second = lag;
   second.variant = "second_order";
   second.formula = "g, (time_constant d/dt + 1)^2 g = f";
   second.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
-    Pass([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(LowPass(f, one * at), one * at); },
+    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(LowPass(f, one * at), one * at); },
          c[0], own, out);
   };
   return {delay, lag, second};

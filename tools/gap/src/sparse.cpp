@@ -45,10 +45,10 @@ void AddProducts(const PlotFeature& a, const PlotFeature& b, bool first, std::ve
 }
 
 /// The terms that may be chosen; those that act in one mode only behind those that act always.
-std::vector<SimpleTerm> Library(const Equation& equation, const Look& look, std::size_t* num_always) {
-  std::vector<PlotFeature> variables = equation.PlotFeatures(look.signals);
-  variables.push_back({"", look.finding.base->fit.predicted, equation.output_name() + "_model"});
-  std::vector<SimpleTerm> terms = {{"1", Vector::Ones(look.signals.rows())}};
+std::vector<SimpleTerm> Library(const Equation& equation, const Analysis& analysis, std::size_t* num_always) {
+  std::vector<PlotFeature> variables = equation.PlotFeatures(analysis.signals);
+  variables.push_back({"", analysis.finding.base->fit.predicted, equation.output_name() + "_model"});
+  std::vector<SimpleTerm> terms = {{"1", Vector::Ones(analysis.signals.rows())}};
   for (std::size_t i = 0; i < variables.size(); ++i) {
     AddPowers(variables[i], &terms);
     for (std::size_t j = 0; j < variables.size(); ++j)
@@ -57,9 +57,9 @@ std::vector<SimpleTerm> Library(const Equation& equation, const Look& look, std:
   *num_always = terms.size();
   for (std::size_t i = 0; i < *num_always; ++i) {
     terms.push_back(
-        {terms[i].text + " [" + equation.active_name() + "]", terms[i].value.cwiseProduct(look.signals.active)});
+        {terms[i].text + " [" + equation.active_name() + "]", terms[i].value.cwiseProduct(analysis.signals.active)});
     terms.push_back({terms[i].text + " [" + equation.passive_name() + "]",
-                     (terms[i].value.array() * (1.0 - look.signals.active.array())).matrix()});
+                     (terms[i].value.array() * (1.0 - analysis.signals.active.array())).matrix()});
   }
   return terms;
 }
@@ -71,14 +71,14 @@ struct Columns {
   Eigen::Index num_base = 0;
 };
 
-Columns Whiten(const Look& look, const std::vector<SimpleTerm>& terms) {
-  const Fitted& base = look.finding.base->fit;
+Columns Whiten(const Analysis& analysis, const std::vector<SimpleTerm>& terms) {
+  const Fitted& base = analysis.finding.base->fit;
   std::vector<Eigen::Index> free;
   for (std::size_t i = 0; i < base.at_bound.size(); ++i)
     if (!base.at_bound[i]) free.push_back(static_cast<Eigen::Index>(i));
-  Matrix library(look.signals.rows(), static_cast<Eigen::Index>(terms.size()));
+  Matrix library(analysis.signals.rows(), static_cast<Eigen::Index>(terms.size()));
   for (std::size_t k = 0; k < terms.size(); ++k) library.col(static_cast<Eigen::Index>(k)) = terms[k].value;
-  Matrix all = Beside(base.whitened_jacobian(Eigen::all, free), look.fitter->whitener().Apply(library));
+  Matrix all = JoinColumns(base.whitened_jacobian(Eigen::all, free), analysis.fitter->whitener().Apply(library));
   Columns columns;
   columns.num_base = static_cast<Eigen::Index>(free.size());
   columns.rms = (all.colwise().norm() / std::sqrt(static_cast<double>(all.rows()))).transpose();
@@ -90,12 +90,12 @@ Columns Whiten(const Look& look, const std::vector<SimpleTerm>& terms) {
 }  // namespace
 
 std::vector<SparseTerm> DescribeSparsely(const Equation& equation, const Diagnosis& diagnosis) {
-  const Look& look = *diagnosis.look;
+  const Analysis& analysis = *diagnosis.wide;
   std::size_t num_always = 0;
-  const std::vector<SimpleTerm> terms = Library(equation, look, &num_always);
-  const Columns columns = Whiten(look, terms);
-  const auto rows = static_cast<double>(look.signals.rows());
-  const double s2 = look.fitter->whitener().s2;
+  const std::vector<SimpleTerm> terms = Library(equation, analysis, &num_always);
+  const Columns columns = Whiten(analysis, terms);
+  const auto rows = static_cast<double>(analysis.signals.rows());
+  const double variance = analysis.fitter->whitener().variance;
   const auto ridge_of = [rows](std::size_t n) -> Vector {
     return Vector::Constant(static_cast<Eigen::Index>(n), kRidge * rows);
   };
@@ -120,7 +120,7 @@ std::vector<SparseTerm> DescribeSparsely(const Equation& equation, const Diagnos
       best_squares = std::move(left);
     }
     if (!(most > 0.0)) break;
-    const Vector gain = 0.5 / s2 * (squares - best_squares);
+    const Vector gain = 0.5 / variance * (squares - best_squares);
     const double share = 2.0 * gain.sum() / rows / std::max(diagnosis.finding.gap, 1e-12);
     if (share < kMinShare || diagnosis.bootstrap->ProbabilityAbove(gain, 0.0) < kSure) break;
     found.push_back({terms[best].text, 0.0, std::min(share, 1.0)});

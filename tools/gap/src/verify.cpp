@@ -63,10 +63,10 @@ ModeFit OfMode(const std::string& name, const Vector& mask, const Vector& before
 
 }  // namespace
 
-HeldOut::HeldOut(const Equation& equation, const Look& look, const Recording& recording, Eigen::Index first)
+HeldOut::HeldOut(const Equation& equation, const Analysis& analysis, const Recording& recording, Eigen::Index first)
     : equation_(&equation),
-      look_(&look),
-      all_(equation.PrepareLike(recording, look.signals.window, look.signals)),
+      analysis_(&analysis),
+      all_(equation.PrepareLike(recording, analysis.signals.window, analysis.signals)),
       tail_(Tail(all_, first)),
       first_(first) {
   if (tail_.rows() < kNumBlocks)
@@ -75,7 +75,7 @@ HeldOut::HeldOut(const Equation& equation, const Look& look, const Recording& re
 }
 
 Trial HeldOut::Try(const Fitted& fitted) const {
-  const Whitener& whitener = look_->fitter->whitener();
+  const Whitener& whitener = analysis_->fitter->whitener();
   const Prediction p = Evaluate(*equation_, all_, fitted.hypothesis, fitted.theta);
   Trial trial;
   trial.predicted = Rows(p.y, first_);
@@ -84,8 +84,8 @@ Trial HeldOut::Try(const Fitted& fitted) const {
   trial.whitened_jacobian = RowsOf(whitener.Apply(p.jacobian), first_);
   const Matrix tail = RowsOf(p.jacobian, first_);
   Vector parameters = Vector::Zero(tail.rows());
-  if (tail.cols() > 0) parameters = (tail * fitted.Covariance(whitener.s2)).cwiseProduct(tail).rowwise().sum();
-  trial.band_sd = (parameters.cwiseMax(0.0).array() + whitener.s2 * whitener.Gain()).sqrt();
+  if (tail.cols() > 0) parameters = (tail * fitted.Covariance(whitener.variance)).cwiseProduct(tail).rowwise().sum();
+  trial.band_sd = (parameters.cwiseMax(0.0).array() + whitener.variance * whitener.Gain()).sqrt();
   return trial;
 }
 
@@ -109,29 +109,29 @@ double HeldOut::NoiseFloor(const Trial& after) const {
 
 double HeldOut::MeasureNoiseFloor(const Trial& after) const {
   // The parameters may be wrong on these data, too: their columns are among those that are penalised, none is free.
-  const Whitener& whitener = look_->fitter->whitener();
+  const Whitener& whitener = analysis_->fitter->whitener();
   const Fitter fitter(*equation_, tail_, whitener);
   const Referee referee(fitter, after.predicted);
   Fitted as_it_is;
   as_it_is.whitened_residual = after.whitened;
   as_it_is.whitened_jacobian = Matrix(after.whitened.size(), 0);
-  as_it_is.heldout = -0.5 / whitener.s2 * BlockSquares(after.whitened);
+  as_it_is.heldout = -0.5 / whitener.variance * BlockSquares(after.whitened);
   const Vector gain = referee.GainOfAll(as_it_is, after.whitened_jacobian);
   const double squares = after.whitened.squaredNorm();
-  const double explained = std::clamp(2.0 * whitener.s2 * gain.sum(), 0.0, squares);
+  const double explained = std::clamp(2.0 * whitener.variance * gain.sum(), 0.0, squares);
   return Rms(after.residual) * std::sqrt(1.0 - explained / squares);
 }
 
 double HeldOut::ClosedElsewhere(const Fitted& before, const Fitted& after) const {
   constexpr Eigen::Index kKept = kNumBlocks - kNumBlocks / 5;
-  const Whitener& whitener = look_->fitter->whitener();
+  const Whitener& whitener = analysis_->fitter->whitener();
   const Vector first = BlockSquares(Try(before).residual), second = BlockSquares(Try(after).residual);
   std::vector<Eigen::Index> order(kNumBlocks);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return second[a] < second[b]; });
   order.resize(kKept);
   const double noise =
-      whitener.s2 * whitener.Gain() * static_cast<double>(tail_.rows()) * kKept / static_cast<double>(kNumBlocks);
+      whitener.variance * whitener.Gain() * static_cast<double>(tail_.rows()) * kKept / static_cast<double>(kNumBlocks);
   const double gap = first(order).sum() - noise;
   return gap > 0.0 ? (first(order).sum() - second(order).sum()) / gap : 0.0;
 }

@@ -44,12 +44,12 @@ double Search::LogOdds(const CandidatePtr& candidate) const {
   const EffectForm& form = *fit.hypothesis.terms.back().form;
   const double evidence = fit.log_evidence - base_->fit.log_evidence;
   if (!form.linear || form.num_amplitudes == 0) return evidence;
-  const double s2 = fitter_->whitener().s2;
+  const double variance = fitter_->whitener().variance;
   const Matrix columns = AmplitudeColumns(fit, form);
   const Vector strengths = columns.colwise().squaredNorm();
   if (!(strengths.minCoeff() > 0.0)) return evidence;
   // Without the prior of the amplitudes, the likelihood at the best amplitudes remains.
-  Matrix information = columns.transpose() * columns / s2;
+  Matrix information = columns.transpose() * columns / variance;
   const Eigen::Index first = fit.theta.size() - form.size();
   double likelihood = evidence;
   for (Eigen::Index a = 0; a < form.num_amplitudes; ++a) {
@@ -59,16 +59,17 @@ double Search::LogOdds(const CandidatePtr& candidate) const {
   }
   likelihood += 0.5 * information.ldlt().vectorD().cwiseMax(1e-300).array().log().sum();
   const Vector column = columns.col(0);
-  const double noise = std::sqrt(s2 * fitter_->whitener().Gain());
+  const double noise = std::sqrt(variance * fitter_->whitener().Gain());
   const double per_ratio =
-      column.norm() / std::sqrt(s2) * noise * std::sqrt(rows_) / fitter_->whitener().Colour(column).norm();
+      column.norm() / std::sqrt(variance) * noise * std::sqrt(rows_) / fitter_->whitener().Colour(column).norm();
   return LogScaleFree(std::sqrt(2.0 * std::max(likelihood, 0.0)), per_ratio, form.num_amplitudes > 1,
                       limits_.tie_effect, limits_.largest_ratio);
 }
 
 double Search::Ratio(const CandidatePtr& candidate) const {
   const Whitener& whitener = fitter_->whitener();
-  return (candidate->fit.predicted - base_->fit.predicted).norm() / std::sqrt(rows_ * whitener.s2 * whitener.Gain());
+  return (candidate->fit.predicted - base_->fit.predicted).norm() /
+         std::sqrt(rows_ * whitener.variance * whitener.Gain());
 }
 
 double Search::WeighNothing(const Candidates& singles) const {

@@ -36,7 +36,7 @@ Vector QuietCovariance(const Vector& series) {
   return covariance / count;
 }
 
-/// Lower Cholesky factor of the covariance of the first phi.size() values of e, in units of s2: nothing before them is
+/// Lower Cholesky factor of the covariance of the first phi.size() values of e, in units of s^2: nothing before them is
 /// known, and they vary by more than w. Identity where phi is no stationary process.
 Matrix StartFactor(const Vector& phi) {
   const Eigen::Index order = phi.size();
@@ -107,21 +107,21 @@ Whitener FitNoise(const Vector& residual) {
   const Eigen::Index n = residual.size() / 2;  // rows that the covariances are from
   const Vector covariance = QuietCovariance(residual.array() - residual.mean());
   Whitener best{Vector(), std::max(covariance[0], 1e-300)};
-  double best_criterion = static_cast<double>(n) * std::log(best.s2);
+  double best_criterion = static_cast<double>(n) * std::log(best.variance);
   for (int order = 1; order <= kMaxOrder; ++order) {
     Matrix toeplitz(order, order);
     for (int i = 0; i < order; ++i)
       for (int j = 0; j < order; ++j) toeplitz(i, j) = covariance[std::abs(i - j)];
     const Vector phi = toeplitz.ldlt().solve(covariance.segment(1, order));
-    const double s2 = covariance[0] - phi.dot(covariance.segment(1, order));
-    if (!(s2 > 0.0)) break;
-    const double criterion = static_cast<double>(n) * std::log(s2) + order * std::log(static_cast<double>(n));
+    const double variance = covariance[0] - phi.dot(covariance.segment(1, order));
+    if (!(variance > 0.0)) break;
+    const double criterion = static_cast<double>(n) * std::log(variance) + order * std::log(static_cast<double>(n));
     if (criterion < best_criterion - kMinLagGain) {
       best_criterion = criterion;
-      best = {phi, s2};
+      best = {phi, variance};
     }
   }
-  best.s2 = std::max(best.Apply(residual).squaredNorm() / static_cast<double>(residual.size()), 1e-300);
+  best.variance = std::max(best.Apply(residual).squaredNorm() / static_cast<double>(residual.size()), 1e-300);
   return best;
 }
 

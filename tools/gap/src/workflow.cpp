@@ -60,8 +60,8 @@ class Clock {
 
 /// Standard deviation of the noise, in the unit of the output.
 double NoiseSd(const Diagnosis& diagnosis) {
-  const Whitener& whitener = diagnosis.look->fitter->whitener();
-  return std::sqrt(whitener.s2 * whitener.Gain());
+  const Whitener& whitener = diagnosis.wide->fitter->whitener();
+  return std::sqrt(whitener.variance * whitener.Gain());
 }
 
 const Fitted* Control(const Finding& finding) {
@@ -99,7 +99,7 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
       const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
       const Fitted& after = c->granted ? c->granted->with : c->fit;
       return gap.after.rmse < kWorse * gap.before.rmse &&
-             !HeldOutDataContradict(heldout, before, after, diagnosis->look->fitter->whitener().s2);
+             !HeldOutDataContradict(heldout, before, after, diagnosis->wide->fitter->whitener().variance);
     }
     // The smooth factor is fitted to the first part and errs on the rest, so the effect is judged by what it adds to
     // it.
@@ -196,7 +196,7 @@ std::optional<EstimatorSettings> Add(const WorkflowRequest& request, const Plant
                 .closed_fraction);
     result->notes.emplace_back(note);
   }
-  return AugmentedSettings(request.model, *diagnosis.look->fitter, part.fit, NoiseSd(diagnosis));
+  return AugmentedSettings(request.model, *diagnosis.wide->fitter, part.fit, NoiseSd(diagnosis));
 }
 
 /// The rows to diagnose, and the recording whose rows from `first_shown` on are held out.
@@ -216,7 +216,7 @@ Parts Divide(const WorkflowRequest& request) {
 /// The held-out rows, in the equation that carries the diagnosis.
 HeldOut RestOf(const PlantDiagnosis& plant, const Parts& parts) {
   const EquationDiagnosis& carrying = plant.carrying();
-  return {*carrying.equation, *carrying.diagnosis.look, parts.shown, parts.first_shown};
+  return {*carrying.equation, *carrying.diagnosis.wide, parts.shown, parts.first_shown};
 }
 
 /// Whether the held-out rows contradict the model that explains the first part: the coverage of its 95 % bands is far
@@ -321,19 +321,19 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   const std::string in = equation->name().empty() ? "" : " in the " + equation->name();
   result.equation = equation->name();
   result.notes.insert(result.notes.end(), plant.notes.begin(), plant.notes.end());
-  const Look& look = *diagnosis.look;
+  const Analysis& analysis = *diagnosis.wide;
   result.notes.insert(result.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
-  if (!look.signals.law_seen)
+  if (!analysis.signals.law_seen)
     result.notes.push_back("hardly any " + equation->active_name() +
                            " in these data: they say nothing on the law and its parameters");
   const bool can_name = plant.carrying().suitability.can_name;
   if (request.until >= Step::kFind && can_name) {
     clock.Begin("find where", 0.6);
-    result.where = FindWhere(*equation, look, *diagnosis.bootstrap, request.diagnose.seed);
+    result.where = FindWhere(*equation, analysis, *diagnosis.bootstrap, request.diagnose.seed);
     for (Where& where : result.where)
       if (!equation->name().empty()) where.feature = equation->name() + ": " + where.feature;
   }
-  if (can_name) result.aliases = Aliases(*equation, look);
+  if (can_name) result.aliases = Aliases(*equation, analysis);
   if (!whole_note.empty() || earlier) rest.emplace(RestOf(plant, parts));
   const HeldOut& heldout = *rest;
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
@@ -355,11 +355,11 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   if (request.until >= Step::kName && mute != plant.equations.end()) {
     // No verdict on this equation: these data could not have shown an effect.
     if (result.verdict == Verdict::kNone) result.sentence = "Nothing is named. " + mute->suitability.note + ".";
-    result.separate_by = mute->equation->Separate(*mute->diagnosis.look, {});
+    result.separate_by = mute->equation->Separate(*mute->diagnosis.wide, {});
   }
   if (request.until >= Step::kName && diagnosis.finding.verdict == Verdict::kAmbiguous) {
     clock.Begin("choose an experiment", 0.7);
-    result.separate_by = equation->Separate(look, diagnosis.finding.set);
+    result.separate_by = equation->Separate(analysis, diagnosis.finding.set);
   }
   const bool adds = !diagnosis.finding.set.empty();
   const Fitted after = adds ? diagnosis.finding.best->fit : diagnosis.finding.base->fit;
@@ -373,13 +373,13 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     result.gap =
         ShowGap(*equation, heldout, *diagnosis.bootstrap, before, after, adds ? Control(diagnosis.finding) : nullptr);
     const auto report = [&](const Fitted& fit) {
-      return equation->Report(look.signals, fit.theta, fit.Covariance(look.fitter->whitener().s2));
+      return equation->Report(analysis.signals, fit.theta, fit.Covariance(analysis.fitter->whitener().variance));
     };
     const auto first = report(before), second = report(after);
-    for (std::size_t i = 0; look.signals.law_seen && i < first.size(); ++i)
+    for (std::size_t i = 0; analysis.signals.law_seen && i < first.size(); ++i)
       result.parameters.push_back({first[i], second[i]});
-    const Signals all = equation->PrepareLike(parts.shown, look.signals.window, look.signals);
-    result.figures = MakeFigures(*equation, all, look, before, after);
+    const Signals all = equation->PrepareLike(parts.shown, analysis.signals.window, analysis.signals);
+    result.figures = MakeFigures(*equation, all, analysis, before, after);
     if (can_name) TellRungs(*equation, heldout, diagnosis, &result);
     // A gap in another equation, or one that these data could not have shown, remains as well.
     const std::vector<const EquationDiagnosis*> others = plant.Others();

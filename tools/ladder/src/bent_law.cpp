@@ -46,7 +46,7 @@ BentLaw::BentLaw(const std::shared_ptr<const Plant>& plant, const Dataset& data,
 void BentLaw::FitThem() {
   constexpr std::size_t kMostFitted = 4;  // of different action
   fitted_.emplace();
-  const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.looked_at);
+  const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.active_rows);
   std::vector<std::string> notes;  // what does not fit a limit is no rival
   std::vector<Candidate> all = Candidates(plant_->description(), entries_, scales, &notes);
   std::erase_if(all, [&](const Candidate& candidate) {

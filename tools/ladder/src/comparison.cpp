@@ -73,9 +73,9 @@ bool ForgottenSoon(const View& view, const Trial& trial) {
 
 }  // namespace
 
-Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool beside) {
-  const std::vector<double>& mine = beside ? c.trial.beside : c.trial.alone;
-  const std::vector<double>& base = beside ? base_trial.beside : base_trial.alone;
+Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool with_flexible) {
+  const std::vector<double>& mine = with_flexible ? c.trial.with_flexible : c.trial.alone;
+  const std::vector<double>& base = with_flexible ? base_trial.with_flexible : base_trial.alone;
   std::map<GroupKind, double> sum, sum_base;
   std::map<GroupKind, std::vector<double>> ratios;
   for (std::size_t g = 0; g < mine.size(); ++g) {
@@ -104,7 +104,7 @@ bool BetterEverywhere(const Contender& a, const Contender& b) {
 }
 
 double FlexibleGain(const View& view, const Trial& trial) {
-  return 1.0 - FoldSquares(view, trial.beside) / (FoldSquares(view, trial.alone) + 1e-300);
+  return 1.0 - FoldSquares(view, trial.with_flexible) / (FoldSquares(view, trial.alone) + 1e-300);
 }
 
 double NoiseIn(const View& view, const Trial& trial, double floor) {
@@ -113,9 +113,9 @@ double NoiseIn(const View& view, const Trial& trial, double floor) {
 }
 
 double UnexplainedShare(const View& view, const Trial& trial) {
-  const Eigen::VectorXd target = trial.model->target()(view.looked_at);
+  const Eigen::VectorXd target = trial.model->target()(view.active_rows);
   const double varies = (target.array() - target.mean()).matrix().squaredNorm();
-  return (target - trial.fit.prediction(view.looked_at)).squaredNorm() / (varies + 1e-300);
+  return (target - trial.fit.prediction(view.active_rows)).squaredNorm() / (varies + 1e-300);
 }
 
 bool WorseThanConstant(const View& view, const Trial& trial) { return UnexplainedShare(view, trial) > 1.0; }

@@ -5,13 +5,13 @@
 namespace armcmc::ladder {
 
 inline constexpr double kLeastGain = 0.1;    // share of the squared error that a named effect must remove
-inline constexpr double kLargerPart = 0.5;   // share, beside the noise, that the first effect of a family may leave
+inline constexpr double kLargerPart = 0.5;   // share, apart from the noise, that the first effect of a family may leave
 inline constexpr double kFarBetter = 2.0;    // factor by which a larger effect must beat a simpler one
 inline constexpr double kExplainsIt = 1.05;  // squared error of a rival that explains as much, over that of an effect
 
 /// Error of a contender on left-out rows, relative to its base model.
-/// @param beside  With the flexible function added to both.
-[[nodiscard]] Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool beside);
+/// @param with_flexible  With the flexible function added to both.
+[[nodiscard]] Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool with_flexible);
 
 /// "leaves 4.5 times less squared error on data left out"
 [[nodiscard]] std::string LeavesLess(double times);

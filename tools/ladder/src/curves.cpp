@@ -108,7 +108,7 @@ Curves::Curves(const std::shared_ptr<const Plant>& plant, const Dataset& data, c
     : plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{CurveEntry()} {}
 
 std::vector<Candidate> Curves::MostPromising() const {
-  const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.looked_at);
+  const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.active_rows);
   std::vector<std::string> notes;  // curves beyond a limit of plants are no rivals
   std::vector<Candidate> all = Candidates(plant_->description(), entries_, scales, &notes);
   std::erase_if(all, [&](const Candidate& candidate) {
@@ -143,7 +143,7 @@ bool Curves::Holds(const Contender& curve, const Contender& c) const {
   if (Remembers(c.candidate)) return false;
   if (AreCurvesOfOneThing(c.candidate, curve.candidate)) return true;
   if (!Reads(c.candidate, FollowedBy(curve)) && !ActsOnLaw(c.candidate)) return false;
-  const std::vector<Index>& rows = view_.looked_at;
+  const std::vector<Index>& rows = view_.active_rows;
   const VectorXd apart = (c.trial.fit.prediction - curve.trial.fit.prediction)(rows);
   const VectorXd base = (base_.model->target() - base_.fit.prediction)(rows);
   const Eigen::MatrixXd columns = curve.trial.fit.jacobian(rows, Eigen::all);

@@ -52,7 +52,7 @@ std::vector<Feature> FeaturesOf(const identify::TrajectoryModel& model, const Ei
 }
 
 Eigen::MatrixXd FlexibleFeatures(const Dataset& data, const std::vector<Feature>& features,
-                                 const std::vector<Eigen::Index>& looked_at, double period, int count) {
+                                 const std::vector<Eigen::Index>& active_rows, double period, int count) {
   std::vector<Eigen::VectorXd> columns;
   for (const Feature& feature : features) {
     columns.push_back(feature.value);
@@ -61,7 +61,7 @@ Eigen::MatrixXd FlexibleFeatures(const Dataset& data, const std::vector<Feature>
   }
   std::vector<Eigen::VectorXd> standard;
   for (const Eigen::VectorXd& column : columns) {
-    Eigen::VectorXd x = column(looked_at);
+    Eigen::VectorXd x = column(active_rows);
     x.array() -= x.mean();
     const double size = std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
     if (size > 0.0) standard.emplace_back(x / size);
@@ -71,7 +71,7 @@ Eigen::MatrixXd FlexibleFeatures(const Dataset& data, const std::vector<Feature>
   const auto normal = [&] {
     return std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
   };
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(looked_at.size()), count);
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(active_rows.size()), count);
   for (Eigen::Index c = 0; c < count; ++c) {
     Eigen::VectorXd phase = Eigen::VectorXd::Constant(out.rows(), 2.0 * std::numbers::pi * uniform());
     // Few quantities in each basis function: a random function of eight at once fits noise.

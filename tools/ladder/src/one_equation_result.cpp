@@ -142,7 +142,7 @@ class Teller {
     return true;
   }
 
-  /// Says which errors other constants alone would leave, if effects were named beside them.
+  /// Says which errors other constants alone would leave, if effects were named as well.
   void TellConstants() {
     if (!ladder_.free_constants) return;
     const double alone = FitOn(RunWhole(data_, ladder_.rungs.front().base), rows_, 0.0).rmse;
@@ -203,7 +203,7 @@ class Teller {
     for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
       const Rung& rung = ladder_.rungs[r];
       const std::map<std::string, double> shares = SharesOf(rung);
-      const auto looked_at = static_cast<double>(ladder_.view.looked_at.size());
+      const auto active_rows = static_cast<double>(ladder_.view.active_rows.size());
       std::set<std::string> told;
       for (const Contender& c : rung.contenders) {
         if (!c.trial.judged || !told.insert(NameOf(c)).second) continue;
@@ -211,7 +211,7 @@ class Teller {
         score.effects = NamesBefore(ladder_, r);
         score.effects.push_back(NameOf(c));
         score.log_evidence = -c.trial.fit.cost;
-        score.heldout_score = -0.5 * looked_at * std::log(c.alone.folds + 1e-300);
+        score.heldout_score = -0.5 * active_rows * std::log(c.alone.folds + 1e-300);
         score.probability = r == 0 ? shares.at(NameOf(c)) : 0.0;
         score.closed_fraction = std::clamp(1.0 - c.alone.folds, 0.0, 1.0);
         result_.candidates.push_back(std::move(score));
@@ -321,7 +321,7 @@ class Teller {
     return known ? " It acts as if " + ladder_.rungs.back().as_if + "." : "";
   }
 
-  /// The constants that were fitted beside the effects.
+  /// The constants that were fitted together with the effects.
   [[nodiscard]] std::string WithConstants() const {
     if (!ladder_.free_constants) return "";
     return " Besides, the plant acts as if " + AsIf(*ladder_.free_constants, ladder_.final_trial, training_) + ".";

@@ -28,9 +28,10 @@ constexpr double kAsGood = 0.95;      // of the best's gain: a simpler effect th
 constexpr double kAlike = 1.01;       // times the smallest error: equally good
 constexpr double kTie = 0.05;         // fraction of bootstrap samples that another family may win
 constexpr double kMostly = 0.5;       // fraction of bootstrap samples that a provisional name has to win
-constexpr double kBeside =
-    0.95;  // squared error beside a flexible remainder that a name has to reach in two of three tests,
-constexpr double kFarBeside = 0.8;     // or in one, losing in none, if few events show it or the remainder imitates it
+constexpr double kWithFlexible =
+    0.95;  // squared error with a flexible remainder that a name has to reach in two of three tests,
+constexpr double kFarWithFlexible =
+    0.8;                               // or in one, losing in none, if few events show it or the remainder imitates it
 constexpr double kLeavesAsMuch = 1.5;  // times the error of the named one: kin that are not excluded
 constexpr double kSameGain =
     0.999;  // of the leader's gain: what an integration of the plant errs by, and no formula, decides between kin
@@ -67,7 +68,7 @@ bool IsTold(const View& view, const Contender& c) {
   const auto first = static_cast<Eigen::Index>(c.candidate.first_fitted());
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const identify::FitResult& fit = c.trial.fit;
-  const Eigen::MatrixXd columns = fit.jacobian(view.looked_at, Eigen::all).middleCols(first, count);
+  const Eigen::MatrixXd columns = fit.jacobian(view.active_rows, Eigen::all).middleCols(first, count);
   const double thinned =
       static_cast<double>(view.data.num_training()) / static_cast<double>(std::max<Eigen::Index>(1, columns.rows()));
   Eigen::MatrixXd precision = thinned / (fit.error_sd * fit.error_sd) * (columns.transpose() * columns);
@@ -135,8 +136,8 @@ bool IsTheSameWithMore(const View& view, const Trial& base, const Contender& c, 
   if (fewer.empty() || !std::includes(needs.begin(), needs.end(), fewer.begin(), fewer.end())) return false;
   const int parameters = NumParameters(c), least = NumParameters(simple);
   if (parameters < least || (parameters == least && needs.size() == fewer.size())) return false;
-  const Eigen::VectorXd apart = (c.trial.fit.prediction - simple.trial.fit.prediction)(view.looked_at);
-  const Eigen::VectorXd added = (simple.trial.fit.prediction - base.fit.prediction)(view.looked_at);
+  const Eigen::VectorXd apart = (c.trial.fit.prediction - simple.trial.fit.prediction)(view.active_rows);
+  const Eigen::VectorXd added = (simple.trial.fit.prediction - base.fit.prediction)(view.active_rows);
   return apart.squaredNorm() < kSame * added.squaredNorm();
 }
 
@@ -239,7 +240,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     const std::size_t i = judged[k];
     LeaveOut(view, &all[i].trial);
     all[i].alone = Compare(view, all[i], rung->base, false);
-    all[i].beside = Compare(view, all[i], rung->base, true);
+    all[i].with_flexible = Compare(view, all[i], rung->base, true);
   });
 }
 
@@ -300,13 +301,13 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
     c.larger_part = before * c.alone.folds - noise < kLargerPart * (1.0 - noise) ||
                     families.contains(c.candidate.entry->family) || !LeavesMore(view, c.trial, floor);
     const bool elsewhere = c.alone.blocks < 1.0 && c.alone.regions < kLoses;
-    const std::array<double, 3> bent{c.beside.folds, c.beside.blocks, c.beside.regions};
+    const std::array<double, 3> bent{c.with_flexible.folds, c.with_flexible.blocks, c.with_flexible.regions};
     const auto below = [&](double limit) {
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
-    const bool beside = below(kBeside) >= 2 || (below(kFarBeside) >= 1 && below(1.0) == 3);
+    const bool survives = below(kWithFlexible) >= 2 || (below(kFarWithFlexible) >= 1 && below(1.0) == 3);
     c.earned =
-        gains && elsewhere && beside && !OscillatesNot(c) && IsTold(view, c) && !WorseThanConstant(view, c.trial);
+        gains && elsewhere && survives && !OscillatesNot(c) && IsTold(view, c) && !WorseThanConstant(view, c.trial);
   }
 }
 

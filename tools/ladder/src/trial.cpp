@@ -32,9 +32,9 @@ std::vector<double> PlacesOf(const identify::TrajectoryModel& model, const Datas
 }
 
 /// Law and flexible function fitted together, linearised about fits that leave out one group each.
-class Beside {
+class JointFit {
  public:
-  Beside(const identify::TrajectoryModel& model, const View& view)
+  JointFit(const identify::TrajectoryModel& model, const View& view)
       : flexible_(view.flexible),
         gram_(view.flexible.transpose() * view.flexible),
         precision_(identify::PriorPrecision(model)),
@@ -166,20 +166,20 @@ Trial Refine(const std::shared_ptr<const Plant>& plant, const Dataset& data, con
 
 void LeaveOut(const View& view, Trial* trial) {
   trial->alone.clear();
-  trial->beside.clear();
+  trial->with_flexible.clear();
   trial->rest.clear();
   trial->stretches.assign(static_cast<std::size_t>(view.num_stretches), 0.0);
   trial->judged = true;
   std::vector<std::vector<Index>> groups;
   for (const RowGroup& group : view.groups) groups.push_back(group.rows);
-  const identify::FitsWithout fits = identify::FitWithoutEach(*trial->model, trial->fit, view.looked_at, groups);
-  const Beside beside(*trial->model, view);
+  const identify::FitsWithout fits = identify::FitWithoutEach(*trial->model, trial->fit, view.active_rows, groups);
+  const JointFit joint(*trial->model, view);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const VectorXd theta = fits.theta.col(static_cast<Index>(g)), error = fits.error.col(static_cast<Index>(g));
     const RowGroup& group = view.groups[g];
     trial->alone.push_back(error(group.rows).squaredNorm());
     trial->rest.push_back(error.squaredNorm() - trial->alone.back());
-    trial->beside.push_back(beside.Square(theta, error, fits.jacobian[g], group));
+    trial->with_flexible.push_back(joint.Square(theta, error, fits.jacobian[g], group));
     if (group.kind != GroupKind::kFold) continue;
     for (const Index k : group.rows)
       trial->stretches[static_cast<std::size_t>(view.stretch[static_cast<std::size_t>(k)])] += error[k] * error[k];

@@ -23,7 +23,7 @@ double Squared(double value) { return value * value; }
 double BaseError(const gap::Equation& equation, const gap::Recording& recording) {
   const auto rows = static_cast<Eigen::Index>(kDiagnosed * static_cast<double>(recording.rows()));
   const gap::Diagnosis diagnosis = gap::CompareOnly(equation, recording.Slice(0, rows));
-  const gap::HeldOut heldout(equation, *diagnosis.look, recording, rows);
+  const gap::HeldOut heldout(equation, *diagnosis.wide, recording, rows);
   return Squared(heldout.Judge(heldout.Try(diagnosis.finding.base->fit)).rmse);
 }
 

@@ -95,7 +95,7 @@ Truth Found(const Truth& truth, const Names& answer) {
 }
 
 /// Of what the effects add to those that were found.
-double StrengthBeside(const PlantProcess& plant, const Case& what, const Truth& truth, const Truth& found) {
+double StrengthGiven(const PlantProcess& plant, const Case& what, const Truth& truth, const Truth& found) {
   constexpr double kDiagnosed = 0.7;  // of the recording
   const std::vector<std::vector<double>> outputs = Contributions(plant, what, truth, found, true);
   double strength = 0.0;
@@ -111,13 +111,13 @@ double StrengthBeside(const PlantProcess& plant, const Case& what, const Truth& 
   return strength;
 }
 
-/// Of what was not found, beside the answer that lacks most.
+/// Of what was not found, given the answer that lacks most.
 double DiagnosedStrength(const PlantProcess& plant, const Outcome& outcome) {
   std::vector<Names> answers = SetsOf(outcome.answer.result);
   if (answers.empty()) answers.emplace_back();
   double strength = 0.0;
   for (const Names& answer : answers)
-    strength = std::max(strength, StrengthBeside(plant, outcome.what, outcome.truth, Found(outcome.truth, answer)));
+    strength = std::max(strength, StrengthGiven(plant, outcome.what, outcome.truth, Found(outcome.truth, answer)));
   return strength;
 }
 

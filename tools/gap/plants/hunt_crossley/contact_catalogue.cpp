@@ -20,7 +20,7 @@ void AddSensorZero(const Signals& s, std::vector<EffectForm>* out) {
   out->push_back(bias);
   EffectForm drift = FromCore("force_drift", {AmplitudeOf("rate", "N/s", force / s.duration, false),
                                               {"origin", "s", 0.0, 0.0, 0.0, 1.0, 1.0, false}});
-  // The origin is the start of the recording: a constant beside the drift is another effect.
+  // The origin is the start of the recording: a constant in addition to the drift is another effect.
   drift.coordinates.pop_back();
   drift.features = [](const Signals& in, const double*) -> Matrix { return in.output_scale * in.Elapsed(); };
   SetStarts(&drift, {});
@@ -168,7 +168,7 @@ void AddPeriodic(const Signals& s, std::vector<EffectForm>* out) {
       Reformulated(sine, "odd_harmonics", "f + first, third and fifth harmonic of frequency", coordinates, 6);
   square.features = [square](const Signals& in, const double* shape) -> Matrix {
     const double f = ShapeValue(square, 0, shape);
-    return in.output_scale * Beside(Waves(in.t, f, 1, 1), Beside(Waves(in.t, f, 3, 3), Waves(in.t, f, 5, 5)));
+    return in.output_scale * JoinColumns(Waves(in.t, f, 1, 1), JoinColumns(Waves(in.t, f, 3, 3), Waves(in.t, f, 5, 5)));
   };
   square.find_starts = find_starts(6);
   out->push_back(square);

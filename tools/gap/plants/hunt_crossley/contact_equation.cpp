@@ -259,15 +259,15 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
   const std::vector<double> x_inside = Sorted(x, s.active), v_inside = Sorted(v, s.active);
 
   std::vector<FeatureGroup> groups;
-  groups.push_back({"depth", Beside(Gated(Hats(x, QuantileKnots(x_inside, 8)), s.active), free)});
+  groups.push_back({"depth", JoinColumns(Gated(Hats(x, QuantileKnots(x_inside, 8)), s.active), free)});
   groups.push_back({"speed", Hats(v, QuantileKnots(v, all, 9))});
   groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v_inside, 5)), s.active)});
   groups.push_back({"time", Hats(time, EvenKnots(9))});
   groups.push_back({"time x force", Gated(Hats(time, EvenKnots(4)), predicted)});
   groups.push_back({"acceleration", Hats(a, QuantileKnots(a, all, 6))});
   groups.push_back(
-      {"direction of motion", Beside(Gated(Hats(x, QuantileKnots(x_inside, 5)), direction.cwiseProduct(s.active)),
-                                     direction.cwiseProduct(free))});
+      {"direction of motion", JoinColumns(Gated(Hats(x, QuantileKnots(x_inside, 5)), direction.cwiseProduct(s.active)),
+                                          direction.cwiseProduct(free))});
   Matrix memory(s.rows(), 4);
   for (int i = 0; i < 4; ++i) memory.col(i) = depth - Leaky(depth, 30.0 * std::pow(samples / 300.0, i / 3.0));
   groups.push_back({"memory of the past", memory});

@@ -147,7 +147,7 @@ class BendEquation final : public Equation {
         {s.t, "before t = %s s", "after t = %s s", SplitQuantiles(s.t)}};
   }
 
-  Experiment Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const override;
+  Experiment Separate(const Analysis& analysis, const std::vector<CandidatePtr>& candidates) const override;
 
  private:
   static std::vector<double> Values(const LawInput::Force& force) {
@@ -245,8 +245,8 @@ std::vector<FeatureGroup> BendEquation::Groups(const Signals& s, const Vector& p
   return groups;
 }
 
-Experiment BendEquation::Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const {
-  return ActuatorExperiment(look.signals, constants_, candidates);
+Experiment BendEquation::Separate(const Analysis& analysis, const std::vector<CandidatePtr>& candidates) const {
+  return ActuatorExperiment(analysis.signals, constants_, candidates);
 }
 
 }  // namespace

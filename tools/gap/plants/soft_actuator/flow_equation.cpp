@@ -166,7 +166,7 @@ class FlowEquation final : public Equation {
             {s.t, "before t = %s s", "after t = %s s", SplitQuantiles(s.t)}};
   }
 
-  Experiment Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const override;
+  Experiment Separate(const Analysis& analysis, const std::vector<CandidatePtr>& candidates) const override;
 
  private:
   static constexpr double kTypicalPressure = 5e4;  // Pa
@@ -209,11 +209,11 @@ std::vector<FeatureGroup> FlowEquation::Groups(const Signals& s, const Vector& p
   const Matrix pressure = Hats(gauge, QuantileKnots(gauge, all, 7));
   groups.push_back({"pressure", pressure});
   groups.push_back({"pressure while filling", Gated(pressure, s.active)});
-  groups.push_back({"pressure x rate", Beside(Gated(pressure, s.active.cwiseProduct(predicted)),
-                                              Gated(pressure, vent.cwiseProduct(predicted)))});
+  groups.push_back({"pressure x rate", JoinColumns(Gated(pressure, s.active.cwiseProduct(predicted)),
+                                                   Gated(pressure, vent.cwiseProduct(predicted)))});
   const Matrix opening = Hats(size, QuantileKnots(size, all, 9));
   groups.push_back(
-      {"opening", Beside(Gated(opening, s.active.cwiseProduct(flow)), Gated(opening, vent.cwiseProduct(flow)))});
+      {"opening", JoinColumns(Gated(opening, s.active.cwiseProduct(flow)), Gated(opening, vent.cwiseProduct(flow)))});
   Matrix changes(s.rows(), 8);
   Eigen::Index at = 0;
   for (const double samples : {2.0, 6.0, 20.0, 60.0}) {
@@ -226,18 +226,18 @@ std::vector<FeatureGroup> FlowEquation::Groups(const Signals& s, const Vector& p
   rates.col(0) = SavitzkyGolay(predicted, 3, 1);
   for (int i = 0; i < 3; ++i) rates.col(i + 1) = predicted - Leaky(predicted, 4.0 * std::pow(6.0, i));
   groups.push_back({"change of the rate", rates});
-  groups.push_back({"filling or venting", Beside(s.active, vent)});
+  groups.push_back({"filling or venting", JoinColumns(s.active, vent)});
   groups.push_back({"time", Hats(time, EvenKnots(9))});
-  groups.push_back({"time x rate", Beside(Gated(Hats(time, EvenKnots(4)), predicted.cwiseProduct(s.active)),
-                                          Gated(Hats(time, EvenKnots(4)), predicted.cwiseProduct(vent)))});
+  groups.push_back({"time x rate", JoinColumns(Gated(Hats(time, EvenKnots(4)), predicted.cwiseProduct(s.active)),
+                                               Gated(Hats(time, EvenKnots(4)), predicted.cwiseProduct(vent)))});
   Matrix memory(s.rows(), 3);
   for (int i = 0; i < 3; ++i) memory.col(i) = gauge - Leaky(gauge, 30.0 * std::pow(6.0, i));
   groups.push_back({"memory of the pressure", memory});
   return groups;
 }
 
-Experiment FlowEquation::Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const {
-  return ActuatorExperiment(look.signals, constants_, candidates);
+Experiment FlowEquation::Separate(const Analysis& analysis, const std::vector<CandidatePtr>& candidates) const {
+  return ActuatorExperiment(analysis.signals, constants_, candidates);
 }
 
 }  // namespace

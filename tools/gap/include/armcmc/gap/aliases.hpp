@@ -20,7 +20,7 @@ namespace armcmc::gap {
 /// indistinguishable from another effect if any of them is. A gain error of the sensor, whose signature is the
 /// prediction, is treated alike.
 ///
-/// @param look  Provides the base fit and the catalogue.
-[[nodiscard]] std::vector<std::string> Aliases(const Equation& equation, const Look& look);
+/// @param analysis  Provides the base fit and the catalogue.
+[[nodiscard]] std::vector<std::string> Aliases(const Equation& equation, const Analysis& analysis);
 
 }  // namespace armcmc::gap

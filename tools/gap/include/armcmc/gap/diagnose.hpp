@@ -22,7 +22,7 @@ struct DiagnoseOptions {
 };
 
 /// The analysis of a recording with one smoother: the finding, and everything that it refers to.
-struct Look {
+struct Analysis {
   Signals signals;
   std::vector<EffectForm> catalogue;
   std::unique_ptr<Fitter> fitter;
@@ -33,10 +33,10 @@ struct Look {
 /// The diagnosis of a recording, independent of the smoother.
 struct Diagnosis {
   std::unique_ptr<BlockBootstrap> bootstrap;
-  std::unique_ptr<Look> look;    ///< With the wider smoother.
-  std::unique_ptr<Look> narrow;  ///< With the narrower one; null if it was not needed. Candidates of `finding`
-                                 ///< may refer to it.
-  Finding finding;               ///< The finding of `look`, checked against that of `narrow`.
+  std::unique_ptr<Analysis> wide;    ///< With the wider smoother.
+  std::unique_ptr<Analysis> narrow;  ///< With the narrower one; null if it was not needed. Candidates of `finding`
+                                     ///< may refer to it.
+  Finding finding;                   ///< The finding of `wide`, checked against that of `narrow`.
   std::vector<std::string> notes;
 };
 
@@ -47,7 +47,7 @@ struct Diagnosis {
 [[nodiscard]] Diagnosis Diagnose(const Equation& equation, const Recording& recording,
                                  const DiagnoseOptions& options = {});
 
-/// Fits the base model only: for a recording that the equation's Check finds unsuitable. Its `look` contains no search.
+/// Fits the base model only: for a recording that the equation's Check finds unsuitable. Its `wide` contains no search.
 [[nodiscard]] Diagnosis CompareOnly(const Equation& equation, const Recording& recording,
                                     const DiagnoseOptions& options = {});
 

@@ -43,7 +43,7 @@ struct Suitability {
   bool needs_excitation = false;  ///< Another experiment would help: Equation::Separate proposes it.
 };
 
-struct Look;
+struct Analysis;
 struct Candidate;
 using CandidatePtr = std::shared_ptr<Candidate>;
 
@@ -105,7 +105,8 @@ class Equation {
   [[nodiscard]] virtual std::vector<SplitVariable> SplitVariables(const Signals& signals) const;
   /// The experiment that separates candidates best, with the plant's scenario; without candidates, one that makes the
   /// equation identifiable.
-  [[nodiscard]] virtual Experiment Separate(const Look& look, const std::vector<CandidatePtr>& candidates) const;
+  [[nodiscard]] virtual Experiment Separate(const Analysis& analysis,
+                                            const std::vector<CandidatePtr>& candidates) const;
 };
 
 /// The equations of a built-in model: each is diagnosed on the same recording.

@@ -26,7 +26,7 @@ namespace armcmc::gap {
 /// Every column times `weight`.
 [[nodiscard]] Matrix Gated(const Matrix& columns, const Vector& weight);
 /// Columns of both.
-[[nodiscard]] Matrix Beside(const Matrix& left, const Matrix& right);
+[[nodiscard]] Matrix JoinColumns(const Matrix& left, const Matrix& right);
 /// Products of every column of a with every column of b.
 [[nodiscard]] Matrix Products(const Matrix& a, const Matrix& b);
 /// Bristle deflection of dry friction over a distance, from speed:  z' = v / distance (1 - z sign v),  in [-1, 1].

@@ -6,7 +6,7 @@
 namespace armcmc::gap {
 
 /// Everything that the report plots, from the fits of the diagnosis.
-[[nodiscard]] Figures MakeFigures(const Equation& equation, const Signals& signals, const Look& look,
+[[nodiscard]] Figures MakeFigures(const Equation& equation, const Signals& signals, const Analysis& analysis,
                                   const Fitted& before, const Fitted& after);
 
 }  // namespace armcmc::gap

@@ -37,8 +37,8 @@ struct Fitted {
   /// Orthonormal basis of whitened_jacobian; computed once, by one thread before others ask for it, since every
   /// extension of the fit projects it out.
   [[nodiscard]] const Matrix& basis() const;
-  /// s2 H^-1 of the whitened fit, zero for coordinates at a bound. Events are included.
-  [[nodiscard]] Matrix Covariance(double s2) const;
+  /// variance H^-1 of the whitened fit, zero for coordinates at a bound. Events are included.
+  [[nodiscard]] Matrix Covariance(double variance) const;
 
  private:
   mutable std::shared_ptr<const Matrix> basis_;

@@ -12,7 +12,7 @@ namespace armcmc::gap {
 /// Each member of the first recording's set is fitted to the second, with the first posterior of the effect's
 /// coordinates phi as prior; the parameters of the law are fitted to each recording separately:
 ///
-///   log p(b | a) = max_theta [ -|w|^2 / (2 s2) - (phi - phi_a)' P (phi - phi_a) / 2 ] + (log |P| - log |H|) / 2
+///   log p(b | a) = max_theta [ -|w|^2 / (2 s^2) - (phi - phi_a)' P (phi - phi_a) / 2 ] + (log |P| - log |H|) / 2
 ///
 /// The second recording can decide between a few effects even if it is too short or too noisy to find one on its own.
 /// The effect must have the same strength in both; an effect that began during the first continues in the second.

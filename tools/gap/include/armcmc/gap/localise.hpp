@@ -14,7 +14,7 @@ namespace armcmc::gap {
 /// share of the squared error beyond the noise, with a p-value by shifting the error in time against the inputs, which
 /// preserves its autocorrelation.
 /// @param seed  Seed of the shifts.
-[[nodiscard]] std::vector<Where> FindWhere(const Equation& equation, const Look& look, const BlockBootstrap& bootstrap,
-                                           unsigned long long seed);
+[[nodiscard]] std::vector<Where> FindWhere(const Equation& equation, const Analysis& analysis,
+                                           const BlockBootstrap& bootstrap, unsigned long long seed);
 
 }  // namespace armcmc::gap

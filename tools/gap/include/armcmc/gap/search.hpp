@@ -107,10 +107,10 @@ class Search {
   [[nodiscard]] Candidates Pairs(const Candidates& order, const CandidatePtr& parent, const Candidates& extended) const;
   /// Single effects in combination with a flexible correction: that of `unlisted`, or the model error of the law,
   /// whichever adds most to the best of `listed`.
-  [[nodiscard]] Candidates Beside(const Candidates& listed, const Candidates& unlisted) const;
+  [[nodiscard]] Candidates WithCorrection(const Candidates& listed, const Candidates& unlisted) const;
   /// Whether an effect is confirmed although it leaves a remainder even with a flexible correction: it closes most of
   /// the gap, and no effect of another family has a similar gain beyond the correction.
-  [[nodiscard]] bool StandsOut(const CandidatePtr& candidate, const Candidates& beside) const;
+  [[nodiscard]] bool StandsOut(const CandidatePtr& candidate, const Candidates& corrected) const;
   /// The law with its smooth model error; null: the equation has none.
   [[nodiscard]] CandidatePtr LawError() const;
   /// Removes hypotheses with a flexible correction if one without it is better, or if their families are not in all of

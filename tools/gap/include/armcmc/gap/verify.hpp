@@ -22,7 +22,7 @@ class HeldOut {
  public:
   /// @param recording  Rows [first, end) are held out; earlier rows only initialise the memory of effects.
   /// @throws std::invalid_argument if too few rows are held out.
-  HeldOut(const Equation& equation, const Look& look, const Recording& recording, Eigen::Index first);
+  HeldOut(const Equation& equation, const Analysis& analysis, const Recording& recording, Eigen::Index first);
 
   [[nodiscard]] Trial Try(const Fitted& fitted) const;
   [[nodiscard]] Fit Judge(const Trial& trial) const;
@@ -41,7 +41,7 @@ class HeldOut {
   [[nodiscard]] double MeasureNoiseFloor(const Trial& after) const;
 
   const Equation* equation_;
-  const Look* look_;
+  const Analysis* analysis_;
   Signals all_, tail_;
   Eigen::Index first_;
   mutable std::vector<std::pair<Vector, double>>

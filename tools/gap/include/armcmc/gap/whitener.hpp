@@ -4,14 +4,14 @@
 
 namespace armcmc::gap {
 
-/// Autoregressive noise:  e_t = sum_k phi_k e_{t-k} + w_t,  w white with variance s2.
+/// Autoregressive noise:  e_t = sum_k phi_k e_{t-k} + w_t,  w white with variance s^2.
 ///
 /// The first values are whitened by their stationary covariance.
 ///
 /// Whitened residuals and derivatives are those of w, so that least squares is maximum likelihood.
 struct Whitener {
-  Vector phi;       ///< Empty: e is white.
-  double s2 = 1.0;  ///< Variance of w, squared unit of the output.
+  Vector phi;             ///< Empty: e is white.
+  double variance = 1.0;  ///< s^2, of w, squared unit of the output.
 
   [[nodiscard]] Vector Apply(const Vector& series) const;
   [[nodiscard]] Matrix Apply(const Matrix& columns) const;

@@ -29,7 +29,7 @@ struct Contender {
   bool refined = false;      ///< Fitted to all training rows.
   double closed = 0.0;       ///< Share of the base model's squared error that the fit removes, [0, 1].
   Comparison alone;          ///< Relative to the base model, if trial.judged.
-  Comparison beside;         ///< The same with the flexible function added to both.
+  Comparison with_flexible;  ///< The same with the flexible function added to both.
   double gain_share = 0.0;   ///< Share of bootstrap samples of segments in which it gains at least a tenth.
   double win_share = 0.0;    ///< Share in which its family has the smallest error.
   bool larger_part = false;  ///< It removes more than half of the unexplained error.

@@ -26,9 +26,9 @@ struct Feature {
 /// Basis of a flexible function of the features and their recent past: `count` random Fourier features sqrt(2 / count)
 /// cos(w'x + b) of the standardised quantities, w ~ N(0, 1), b ~ U(0, 2 pi), with a fixed seed (Rahimi and Recht,
 /// 2007).
-/// @param looked_at  Rows of the result. @param period  s, of the motion: sets the delays of the past values.
-/// @return [looked_at][count].
+/// @param active_rows  Rows of the result. @param period  s, of the motion: sets the delays of the past values.
+/// @return [active_rows][count].
 [[nodiscard]] Eigen::MatrixXd FlexibleFeatures(const Dataset& data, const std::vector<Feature>& features,
-                                               const std::vector<Eigen::Index>& looked_at, double period, int count);
+                                               const std::vector<Eigen::Index>& active_rows, double period, int count);
 
 }  // namespace armcmc::ladder

@@ -15,11 +15,11 @@ namespace armcmc::ladder {
 struct Trial {
   std::shared_ptr<const identify::TrajectoryModel> model;
   identify::FitResult fit;
-  bool judged = false;            ///< The members below are set.
-  std::vector<double> alone;      ///< [group] Squared error of the law on a left-out group.
-  std::vector<double> beside;     ///< [group] The same with the flexible function added.
-  std::vector<double> rest;       ///< [group] Squared error of that fit on its training rows.
-  std::vector<double> stretches;  ///< [segment] Squared error of the law, from the folds.
+  bool judged = false;                ///< The members below are set.
+  std::vector<double> alone;          ///< [group] Squared error of the law on a left-out group.
+  std::vector<double> with_flexible;  ///< [group] The same with the flexible function added.
+  std::vector<double> rest;           ///< [group] Squared error of that fit on its training rows.
+  std::vector<double> stretches;      ///< [segment] Squared error of the law, from the folds.
 };
 
 /// Starting points of a fit: the centre of the prior, points around it, and, for a parameter with the unit of a signal,

@@ -20,18 +20,18 @@ enum class GroupKind {
 struct RowGroup {
   std::string name;
   GroupKind kind = GroupKind::kBlock;
-  std::vector<Eigen::Index> rows;  ///< Indices into View::looked_at.
+  std::vector<Eigen::Index> rows;  ///< Indices into View::active_rows.
 };
 
 /// Rows, groups and flexible function with which all models of a rung are compared.
 struct View {
-  Dataset data;                         ///< Training rows only.
-  double period = 0.0;                  ///< s, dominant period of the output.
-  std::vector<Eigen::Index> looked_at;  ///< Training rows on which a mode acts, thinned to a few thousand.
+  Dataset data;                           ///< Training rows only.
+  double period = 0.0;                    ///< s, dominant period of the output.
+  std::vector<Eigen::Index> active_rows;  ///< Training rows on which a mode acts, thinned to a few thousand.
   std::vector<RowGroup> groups;
-  std::vector<int> stretch;  ///< [looked_at] Short segment to which the row belongs.
+  std::vector<int> stretch;  ///< [active_rows] Short segment to which the row belongs.
   int num_stretches = 0;
-  Eigen::MatrixXd flexible;  ///< [looked_at][feature] See FlexibleFeatures().
+  Eigen::MatrixXd flexible;  ///< [active_rows][feature] See FlexibleFeatures().
 };
 
 /// Makes the groups from the features of a fitted base model.

@@ -27,7 +27,7 @@ struct Case {
   double strength = 1.0;
   std::uint64_t seed = 1;
   Part part = Part::kWhole;
-  /// Effects that a real recording is known to hold by itself: naming them beside what is hidden is not judged.
+  /// Effects that a real recording is known to hold by itself: naming them in addition to what is hidden is not judged.
   std::vector<std::string> own;
   std::vector<std::string> without;  ///< Effects that are taken out of the catalogue of the tool.
   /// The case whose tie this one is to resolve, the tool is given both recordings. Null: none.
