@@ -63,7 +63,11 @@ EffectForm Latency(const char* effect, const char* formula, Slot slot, const Sig
   form.coordinates = {
       {parameter, "s", kShortestSamples / kUnitSamples, longest / kUnitSamples, 0.0, 0.7, kUnitSamples * signals.dt}};
   form.coordinates.front().other_below = true;
-  for (double start = 0.05; start < longest / kUnitSamples; start *= 2.5) form.starts.push_back({start});
+  double start = 0.05;
+  while (start < longest / kUnitSamples) {
+    form.starts.push_back({start});
+    start *= 2.5;
+  }
   return form;
 }
 
@@ -74,18 +78,21 @@ std::vector<EffectForm> LatencyForms(const Signals& signals) {
   const auto samples_of_one = [dt = signals.dt](const Signals& in) { return kUnitSamples * (dt / in.dt); };
   EffectForm delay = Latency("sensor_delay", "f(t - time)", Slot::kDelay, signals, "time");
   delay.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
-    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return Delayed(f, one * at); }, c[0], own, out);
+    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return Delayed(f, one * at); }, c[0], own,
+                out);
   };
   EffectForm lag = Latency("sensor_lag", "g, time_constant g' + g = f", Slot::kLag, signals, "time_constant");
   lag.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
-    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(f, one * at); }, c[0], own, out);
+    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(f, one * at); }, c[0], own,
+                out);
   };
   EffectForm second = lag;
   second.variant = "second_order";
   second.formula = "g, (time_constant d/dt + 1)^2 g = f";
   second.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
-    ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(LowPass(f, one * at), one * at); },
-         c[0], own, out);
+    ApplyFilter(
+        [one = samples_of_one(in)](const Vector& f, double at) { return LowPass(LowPass(f, one * at), one * at); },
+        c[0], own, out);
   };
   return {delay, lag, second};
 }
@@ -99,7 +106,11 @@ std::vector<EffectForm> SaturationForms(const Signals& signals) {
   clip.num_amplitudes = 0;
   clip.linear = false;
   clip.coordinates = {{"limit", "N", 0.05, 1.05, 0.8, 0.3, signals.output_peak, false}};
-  for (double start = 0.985; start > 0.2; start *= 0.91) clip.starts.push_back({start});
+  double start = 0.985;
+  while (start > 0.2) {
+    clip.starts.push_back({start});
+    start *= 0.91;
+  }
   clip.own_groups = {"force"};
   const double peak = signals.output_peak;
   clip.sense = [peak](const Signals&, const double* c, int own, Prediction* out) {
