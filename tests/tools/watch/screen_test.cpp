@@ -49,7 +49,7 @@ TEST(Screen, ShowsStagesAgainstTheDeadlineAndTheSampler) {
 TEST(Screen, ShowsTheProbabilitiesOfChangeAndTheRatesOfDrift) {
   WatchState state = test::SomeState();
   const std::string text = Render(state, Plain(), 1.1);
-  for (const char* part : {"posterior persisted 25 %   drifted 62.5 %   changed 12.5 %   drifted of late",
+  for (const char* part : {"posterior persisted 25 %   drifted 62.5 %   changed 12.5 %   drifted, recent",
                            "drift per s", "         3.5      0.0375 "}) {
     EXPECT_THAT(text, HasSubstr(part));
   }

@@ -92,7 +92,7 @@ TextLine Head(const WatchState& state, const Pictures& pictures) {
   head.To(kRight).AddRight(state.truth ? "truth" : "", kTruth, Ink::kDim);
   if (pictures.below) return head;
   head.AddRight(state.change ? "drift per s" : "", kDrift, Ink::kDim);
-  head.To(pictures.mean_at).AddLeft("mean of late", pictures.mean, Ink::kDim);
+  head.To(pictures.mean_at).AddLeft("recent mean", pictures.mean, Ink::kDim);
   head.To(pictures.density_at).AddLeft("density", pictures.density, Ink::kDim);
   return head;
 }

@@ -60,7 +60,7 @@ void AddStages(const WatchState& state, const View& view, std::vector<TextLine>*
   lines->push_back(StageLine("collect", s.collect_ns, s, view));
   lines->push_back(StageLine("adjust", s.adjust_ns, s, view));
   lines->push_back(StageLine("execute", s.execute_ns, s, view));
-  TextLine all = StageLine("in all", s.end_to_end_ns, s, view);
+  TextLine all = StageLine("total", s.end_to_end_ns, s, view);
   all.Add(" deadline " + Ms(s.deadline_ns) + " ms", Ink::kDim);
   lines->push_back(all);
   TextLine slack = Begin("slack");
@@ -71,7 +71,7 @@ void AddStages(const WatchState& state, const View& view, std::vector<TextLine>*
   } else {
     slack.AddRight(Ms(s.slack_ns), 10, Ink::kBold).Add(" ms");
   }
-  slack.To(kLabel + 15).Add("in all, of late ", Ink::kDim);
+  slack.To(kLabel + 15).Add("total, recent   ", Ink::kDim);
   const int room = std::clamp(view.columns - slack.columns() - 1, 0, 80);
   slack.Add(Sparkline(state.end_to_end_ms.Newest(static_cast<std::size_t>(room)), view.glyphs), Ink::kGood);
   lines->push_back(slack);
@@ -96,7 +96,7 @@ void AddChangeProbabilities(const WatchState& state, const View& view, std::vect
     Item("drifted", Probability(c.p_drifted[m]), &line);
     Item("changed", Probability(c.p_changed[m]), &line, c.p_changed[m] > 0.5 ? Ink::kWarning : Ink::kBold);
     if (m == c.mode) {
-      line.Add("   drifted of late ", Ink::kDim);
+      line.Add("   drifted, recent ", Ink::kDim);
       const int room = std::clamp(view.columns - line.columns() - 1, 0, 60);
       line.Add(Sparkline(state.drifted.Newest(static_cast<std::size_t>(room)), 0.0, 1.0, view.glyphs), Ink::kGood);
     }
@@ -120,7 +120,7 @@ void AddSampler(const WatchState& state, const View& view, std::vector<TextLine>
        above ? Ink::kWarning : Ink::kBold);
   Item("lambda", Significant(e.lambda, 4), &change);
   Item("decision", DecisionName(e.decision), &change);
-  change.Add("   zeta of late ", Ink::kDim);
+  change.Add("   zeta, recent ", Ink::kDim);
   const int room = std::clamp(view.columns - change.columns() - 1, 0, 60);
   change.Add(Sparkline(state.zeta.Newest(static_cast<std::size_t>(room)), view.glyphs), Ink::kGood);
   lines->push_back(change);

@@ -38,7 +38,7 @@ final class StatusCharts {
     legend.line(Palette.COLLECT, Palette.LINE, "collect");
     legend.line(Palette.ADJUST, Palette.LINE, "adjust");
     legend.line(Palette.EXECUTE, Palette.LINE, "execute");
-    legend.line(Palette.INK, Palette.LINE, "in all");
+    legend.line(Palette.INK, Palette.LINE, "total");
     legend.line(Palette.BAD, Palette.DASHED, "deadline");
   }
 
