@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "action.hpp"
 #include "armcmc/ladder/features.hpp"
-#include "armcmc/plant/error.hpp"
-#include "armcmc/support/parallel.hpp"
-#include "comparison.hpp"
+#include "fitted_rivals.hpp"
 #include "one_step.hpp"
 
 namespace armcmc::ladder {
@@ -45,42 +44,22 @@ BentLaw::BentLaw(const std::shared_ptr<const Plant>& plant, const Dataset& data,
 
 void BentLaw::FitThem() {
   constexpr std::size_t kMostFitted = 4;  // of different action
-  fitted_.emplace();
   const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.active_rows);
   std::vector<std::string> notes;  // what does not fit a limit is no rival
   std::vector<Candidate> all = Candidates(plant_->description(), entries_, scales, &notes);
   std::erase_if(all, [&](const Candidate& candidate) {
     return IsExplained(plant_->description(), candidate.binding.symbols.at("x"));
   });
-  for (Candidate& candidate : BestByOneStep(std::move(all), kMostFitted, plant_, data_, base_))
-    fitted_->push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
-  support::InParallel(fitted_->size(), [&](std::size_t i) {
-    Contender& c = (*fitted_)[i];
-    try {
-      Eigen::VectorXd theta = identify::TrajectoryModel(c.candidate.plant, data_.series).Start();
-      theta.head(base_.fit.theta.size()) = base_.fit.theta;
-      c.trial = Refine(c.candidate.plant, data_, theta);
-      c.refined = c.trial.fit.valid;
-    } catch (const PlantError&) {  // beyond the limits of a plant
-    }
-  });
+  fitted_ = FittedRivals(BestByOneStep(std::move(all), kMostFitted, plant_, data_, base_), data_, base_);
 }
 
 std::optional<Rival> BentLaw::RivalOf(const Contender& c) {
   if (!RespondsToNothing(c.candidate)) return std::nullopt;
   if (!fitted_) FitThem();
-  for (Contender& bent : *fitted_) {
-    if (!bent.refined) continue;
-    if (!bent.trial.judged) {
-      LeaveOut(view_, &bent.trial);
-      bent.alone = Compare(view_, bent, base_, false);
-    }
-    if (bent.alone.folds <= kExplainsIt * c.alone.folds) {
-      const std::map<std::string, std::string>& symbols = bent.candidate.binding.symbols;
-      return Rival{symbols.at("p") + " varied with " + symbols.at("x"), "explains as much"};
-    }
-  }
-  return std::nullopt;
+  const Contender* const bent = FirstAsGood(&*fitted_, view_, base_, c);
+  if (bent == nullptr) return std::nullopt;
+  const std::map<std::string, std::string>& symbols = bent->candidate.binding.symbols;
+  return Rival{symbols.at("p") + " varied with " + symbols.at("x"), "explains as much"};
 }
 
 }  // namespace armcmc::ladder

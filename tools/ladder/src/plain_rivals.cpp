@@ -5,10 +5,7 @@
 #include <utility>
 
 #include "action.hpp"
-#include "armcmc/ladder/features.hpp"
-#include "armcmc/plant/error.hpp"
-#include "armcmc/support/parallel.hpp"
-#include "comparison.hpp"
+#include "fitted_rivals.hpp"
 #include "one_step.hpp"
 
 namespace armcmc::ladder {
@@ -93,35 +90,6 @@ bool PlainRivals::Lacked(const Candidate& rival) const {
   });
 }
 
-std::vector<Contender> PlainRivals::Fitted(std::vector<Candidate> candidates) const {
-  std::vector<Contender> fitted;
-  for (Candidate& candidate : candidates)
-    fitted.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
-  support::InParallel(fitted.size(), [&](std::size_t i) {
-    Contender& rival = fitted[i];
-    try {
-      Eigen::VectorXd theta = identify::TrajectoryModel(rival.candidate.plant, data_.series).Start();
-      theta.head(base_.fit.theta.size()) = base_.fit.theta;
-      rival.trial = Refine(rival.candidate.plant, data_, theta);
-      rival.refined = rival.trial.fit.valid;
-    } catch (const PlantError&) {  // beyond the limits of a plant
-    }
-  });
-  return fitted;
-}
-
-Contender* PlainRivals::AsGood(std::vector<Contender>* rivals, const Contender& c) const {
-  for (Contender& rival : *rivals) {
-    if (!rival.refined) continue;
-    if (!rival.trial.judged) {
-      LeaveOut(view_, &rival.trial);
-      rival.alone = Compare(view_, rival, base_, false);
-    }
-    if (rival.alone.folds <= kExplainsIt * c.alone.folds) return &rival;
-  }
-  return nullptr;
-}
-
 std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
   const auto lacked = [&](const std::vector<EffectEntry>& entries) {
     std::vector<std::string> notes;  // what does not fit a limit of plants is no rival
@@ -129,11 +97,12 @@ std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
     std::erase_if(all, [&](const Candidate& candidate) { return !Lacked(candidate); });
     return all;
   };
-  if (!plain_) plain_ = Fitted(lacked(limit_));
-  const Contender* rival = AsGood(&*plain_, c);
+  if (!plain_) plain_ = FittedRivals(lacked(limit_), data_, base_);
+  const Contender* rival = FirstAsGood(&*plain_, view_, base_, c);
   if (rival == nullptr && (Remembers(c.candidate) || RespondsToNothing(c.candidate))) {
-    if (!slow_) slow_ = Fitted(BestByOneStep(lacked(drifting_), kMostDrifting, plant_, data_, base_));
-    rival = AsGood(&*slow_, c);
+    if (!slow_)
+      slow_ = FittedRivals(BestByOneStep(lacked(drifting_), kMostDrifting, plant_, data_, base_), data_, base_);
+    rival = FirstAsGood(&*slow_, view_, base_, c);
   }
   if (rival == nullptr) return std::nullopt;
   return Rival{AsIf(rival->candidate), "explains as much"};

@@ -33,9 +33,6 @@ class PlainRivals {
  private:
   /// Whether the rival is one in this plant that no contender is.
   [[nodiscard]] bool Lacked(const Candidate& rival) const;
-  [[nodiscard]] std::vector<Contender> Fitted(std::vector<Candidate> candidates) const;
-  /// Of those, one that explains as much.
-  [[nodiscard]] Contender* AsGood(std::vector<Contender>* rivals, const Contender& c) const;
 
   const std::shared_ptr<const Plant>& plant_;
   const Dataset& data_;
