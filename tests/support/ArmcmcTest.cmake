@@ -71,6 +71,7 @@ function(armcmc_add_room room)
   armcmc_compile_in_batches(${target} SIZE 12)
   add_dependencies(all_tests ${target})
   if(ARMCMC_SANITIZER)
+    target_sources(${target} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/sanitized_room.cpp")
     add_test(NAME ${room} COMMAND ${target})
     # The whole room, at a tenth of the speed, on a machine that may be busy.
     set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 3600 COST 100
