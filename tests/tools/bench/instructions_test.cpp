@@ -52,7 +52,7 @@ Counted Count(const std::string& name, int steps) {
   const test::Outcome run = test::RunProgram("/usr/bin/valgrind",
                                              {"--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null",
                                               test::Program("count_steps").string(), name, std::to_string(steps)},
-                                             std::chrono::minutes(1), std::filesystem::temp_directory_path());
+                                             std::chrono::minutes(10), std::filesystem::temp_directory_path());
   Counted counted;
   std::smatch match;
   if (run.code == 0 && std::regex_search(run.err, match, std::regex("I +refs: +([0-9,]+)"))) {
