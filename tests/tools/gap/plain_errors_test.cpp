@@ -2,11 +2,34 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/plant_diagnosis.hpp"
 #include "tools/gap/actuator_rig.hpp"
 
 namespace armcmc::gap::test::plain_errors_test {
 namespace {
+
+/// A recording of a contact with an effect, as the first 70 % of one that the workflow diagnoses.
+Recording Contact(const std::string& effect, const std::string& variant, double gap_ratio, unsigned long long seed) {
+  const Recording all = RecordPlant("contact_rich", {{effect, gap_ratio, {}, variant}}, seed, 10.0, true, true);
+  return all.Slice(0, 7000);
+}
+
+PlantDiagnosis DiagnoseWithout(const std::string& effect, const Recording& recording) {
+  DiagnoseOptions options;
+  options.without = {effect};
+  return DiagnosePlant("hunt_crossley", recording, options);
+}
+
+TEST(Granted, AFormulaThatIsAnotherEffectsOnceTheGrantIsTakenBackIsNotNamed) {
+  // Beside a law that may err, presliding is fitted within its bounds; without that it is a spring that never yields.
+  const PlantDiagnosis plant =
+      DiagnoseWithout("stress_relaxation", Contact("stress_relaxation", "linear", 1.0, 766258191));
+  EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
+}
 
 TEST(Hedge, AnUncertainNameIsWithdrawnWherePhysicsWithoutANameBelongsToTheSet) {
   // As if q3 were a thousandth smaller: a weight explains it by chance as well as the constants.
