@@ -24,6 +24,30 @@ PlantDiagnosis DiagnoseWithout(const std::string& effect, const Recording& recor
   return DiagnosePlant("hunt_crossley", recording, options);
 }
 
+struct Case {
+  const char *effect, *variant, *looks_like;
+  double gap_ratio;
+  unsigned long long seed;
+};
+
+class PlainError : public ::testing::TestWithParam<Case> {};
+
+TEST_P(PlainError, CompetesThoughItIsExcludedFromTheCatalogue) {
+  const Case& at = GetParam();
+  const PlantDiagnosis plant = DiagnoseWithout(at.effect, Contact(at.effect, at.variant, at.gap_ratio, at.seed));
+  const Finding& finding = plant.carrying().diagnosis.finding;
+  EXPECT_EQ(finding.verdict, Verdict::kUnnamed);
+  ASSERT_TRUE(finding.unlisted);
+  EXPECT_EQ(finding.unlisted->names(), std::vector<std::string>{at.looks_like});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Contact, PlainError,
+    ::testing::Values(Case{"force_bias", "constant", "a zero of the force that is off", 1.0, 590662734},
+                      Case{"force_drift", "linear", "a zero of the force that drifts", 3.0, 809991582},
+                      Case{"stiffness_drift", "linear", "a stiffness that drifts", 0.3, 971003214}),
+    [](const auto& at) { return std::string(at.param.effect); });
+
 TEST(Granted, AFormulaThatIsAnotherEffectsOnceTheGrantIsTakenBackIsNotNamed) {
   // Beside a law that may err, presliding is fitted within its bounds; without that it is a spring that never yields.
   const PlantDiagnosis plant =
