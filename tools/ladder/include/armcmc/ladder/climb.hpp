@@ -116,9 +116,10 @@ struct ClimbRequest {
 ///    as much, or if the response to its free start values does, so that nothing shows how it responds to the motion.
 ///    An effect that depends on nothing but time, such as an offset, is ruled out if a parameter that varies with a
 ///    signal or state by at most a third explains as much: over a narrow range a law that is bent looks like an offset.
-///    Any effect is ruled out if a law whose modes change elsewhere explains as much; and
-///    one that remembers, or depends on nothing but time, if a parameter that drifts does. These are no rivals where
-///    the catalogue has an effect that does the same, since that competes by its name. And an effect of another family
+///    Any effect is ruled out if a law whose modes change elsewhere explains as much, or an output whose zero is
+///    elsewhere or drifts; and one that remembers, or depends on nothing but time, if a parameter that drifts does.
+///    These are no rivals where the catalogue has an effect that does the same, since that competes by its name. And
+///    an effect of another family
 ///    that is smaller than a third of those named before is ruled out if it acts like one of them, or if a curve of a
 ///    quantity that one of them reads explains as much.
 /// 5. Confirmation. A name is withdrawn if the held-out rows show neither half of its gain nor, where noise is most of
