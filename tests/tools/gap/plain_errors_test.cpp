@@ -7,6 +7,8 @@
 
 #include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/plant_diagnosis.hpp"
+#include "armcmc/gap/workflow.hpp"
+#include "armcmc/ladder/second_search.hpp"
 #include "tools/gap/actuator_rig.hpp"
 
 namespace armcmc::gap::test::plain_errors_test {
@@ -53,6 +55,15 @@ TEST(Granted, AFormulaThatIsAnotherEffectsOnceTheGrantIsTakenBackIsNotNamed) {
   const PlantDiagnosis plant =
       DiagnoseWithout("stress_relaxation", Contact("stress_relaxation", "linear", 1.0, 766258191));
   EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
+}
+
+TEST(SecondSearch, WhatExplainsLessIsNotNamedInPlaceOfWhatIsWithdrawn) {
+  // Noise that neighbours share makes the held-out data contradict every friction; two branches explain half as much.
+  WorkflowRequest request;
+  request.model = "hunt_crossley";
+  request.data = RecordPlant("contact_rich", {{"viscous_friction", 1.0, {}, "linear"}}, 894535750, 10.0, true, true);
+  request.diagnose.without = {"viscous_friction"};
+  EXPECT_FALSE(ladder::SearchAgain(request));
 }
 
 TEST(Hedge, AnUncertainNameIsWithdrawnWherePhysicsWithoutANameBelongsToTheSet) {

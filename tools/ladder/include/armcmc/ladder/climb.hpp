@@ -123,9 +123,10 @@ struct ClimbRequest {
 ///    that is smaller than a third of those named before is ruled out if it acts like one of them, or if a curve of a
 ///    quantity that one of them reads explains as much.
 /// 5. Confirmation. A name is withdrawn if the held-out rows show neither half of its gain nor, where noise is most of
-///    their error, surely half of the rest, or if the model diverges on them, unless it does not with the next effect;
-///    and if a later rung names the same effect again in the same place, for effects of which two can be pieces of a
-///    curve that is neither (two backlashes approximate a hardening spring).
+///    their error, surely half of the rest, or if the model diverges on them, unless it does not with the next effect.
+///    What gains less than 95 % of what an effect so withdrawn gained is not named in its place. A name is also
+///    withdrawn if a later rung names the same effect again in the same place, for effects of which two can be pieces
+///    of a curve that is neither (two backlashes approximate a hardening spring).
 ///
 /// If the first rung names nothing, the constants of the plant may hide an effect: they are a few percent off in most
 /// files. If all of them together, each up to 5 % from the file, remove a tenth of the squared error on left-out data,
