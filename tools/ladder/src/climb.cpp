@@ -19,6 +19,7 @@
 #include "plain_rivals.hpp"
 #include "rung.hpp"
 #include "start_alone.hpp"
+#include "superseded.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -370,6 +371,7 @@ Ladder Climb(const ClimbRequest& request) {
     if (named && open != nullptr) ladder.rungs.back().open = false;
     ladder.rungs.push_back(std::move(rung));
     if (!named) break;
+    DropSuperseded(data, &ladder);
     const Contender& leader = ladder.rungs.back().leader();
     ladder.plant = leader.candidate.plant;
     families.insert(leader.candidate.entry->family);

@@ -127,6 +127,8 @@ struct ClimbRequest {
 ///    What gains less than 95 % of what an effect so withdrawn gained is not named in its place. A name is also
 ///    withdrawn if a later rung names the same effect again in the same place, for effects of which two can be pieces
 ///    of a curve that is neither (two backlashes approximate a hardening spring).
+/// 6. Once. If a rung names another formula of the effect that the rung before named, on the same quantities, and it
+///    explains as much without that, it takes its place.
 ///
 /// If the first rung names nothing, the constants of the plant may hide an effect: they are a few percent off in most
 /// files. If all of them together, each up to 5 % from the file, remove a tenth of the squared error on left-out data,
