@@ -4,19 +4,22 @@
 
 #include "armcmc/plant_sim/effects/hide.hpp"
 #include "armcmc/plant_sim/simulation.hpp"
-#include "builtin_scenario.hpp"
+#include "scenario_file.hpp"
+#include "support/paths.hpp"
 
 namespace armcmc::gap::test {
 
 Recording RecordPlant(const std::string& name, const std::vector<HiddenInPlant>& hidden, unsigned long long seed,
-                      double seconds, bool noisy) {
-  plant_sim::Scenario scenario = plant_sim::BuiltinScenario(name);
+                      double seconds, bool noisy, bool drawn) {
+  plant_sim::Scenario scenario = plant_sim::LoadScenario(
+      armcmc::test::SourceDir() / "plant_sim" / "scenarios" / (name + ".toml"), {}, drawn ? seed : 1);
   scenario.duration_s = seconds;
   std::vector<plant_sim::EffectRequest> requests;
   for (const HiddenInPlant& effect : hidden) {
     if (effect.values.empty()) {
       plant_sim::EffectRequest request;
       request.name = effect.name;
+      request.variant = effect.variant;
       request.gap_ratio = effect.gap_ratio;
       requests.push_back(request);
       continue;
@@ -33,14 +36,17 @@ Recording RecordPlant(const std::string& name, const std::vector<HiddenInPlant>&
   Recording recording;
   recording.source = name;
   recording.dt = scenario.sample_interval_s;
-  recording.names = {"t", "u_c", "u_d", "p", "pdot", "alpha"};
+  const std::size_t inputs = scenario.family->inputs.size();
+  recording.names = {"t"};
+  for (const plant_sim::ChannelSpec& input : scenario.family->inputs) recording.names.push_back(input.name);
+  recording.names.push_back(scenario.family->output.name);
   recording.columns.assign(recording.names.size(), Vector(rows));
   for (Eigen::Index i = 0; i < rows; ++i) {
     if (!simulation.Next()) throw std::runtime_error(name + ": the plant leaves the finite range");
     const plant_sim::PlantSample& s = simulation.measured();
     recording.columns[0][i] = s.t_s;
-    for (std::size_t c = 0; c < 4; ++c) recording.columns[c + 1][i] = s.inputs[c];
-    recording.columns[5][i] = s.output;
+    for (std::size_t c = 0; c < inputs; ++c) recording.columns[c + 1][i] = s.inputs[c];
+    recording.columns.back()[i] = s.output;
   }
   recording.t = recording.columns[0];
   return recording;

@@ -13,10 +13,12 @@ struct HiddenInPlant {
   std::string name;
   double gap_ratio = 1.0;
   std::vector<double> values;
+  std::string variant = {};  ///< Empty: drawn, or the first with these values.
 };
 
-/// The first seconds of a scenario of the plant, with effects hidden; `noisy` false: without any noise.
+/// The first seconds of a scenario of the plant, with effects hidden; `noisy` false: without any noise; `drawn` true:
+/// what the scenario leaves to chance, such as parameters, is as this seed draws it.
 [[nodiscard]] Recording RecordPlant(const std::string& scenario, const std::vector<HiddenInPlant>& hidden,
-                                    unsigned long long seed, double seconds, bool noisy = true);
+                                    unsigned long long seed, double seconds, bool noisy = true, bool drawn = false);
 
 }  // namespace armcmc::gap::test

@@ -76,6 +76,16 @@ TEST(Climb, WhatDataKeptApartDoNotShowIsWithdrawn) {
   EXPECT_THAT(ladder.notes.back(), ::testing::HasSubstr("output_drift was not named"));
 }
 
+TEST(Climb, AFormulaThatMakesAnEarlierOneNeedlessReplacesIt) {
+  const Dataset data = test::AxisData([](const AxisSample& s) { return 60.0 * std::tanh(s.v / 0.005); });
+  const Ladder ladder = ClimbWith({"coulomb_friction"}, data);
+  ASSERT_EQ(ladder.rungs.size(), 2U);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("coulomb_friction"));
+  EXPECT_EQ(ladder.rungs[0].leader().candidate.form().name, "smooth");
+  EXPECT_TRUE(ladder.complete);
+  EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty());
+}
+
 TEST(BetterBase, IsFoundFromWhereAnEffectHasItsParameters) {
   const Dataset data = test::MotorData([](double, double) { return 1.0; });
   const auto plant = std::make_shared<const Plant>(test::MotorPlant());

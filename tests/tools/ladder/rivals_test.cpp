@@ -192,6 +192,21 @@ TEST(Climb, WhatAParameterExplainsThatFollowsTimeIsNoDriftOfTheForce) {
   EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if k drifted")));
 }
 
+TEST(Climb, AZeroThatIsElsewhereIsNoSpring) {
+  // Far from the place about which it stiffens, a spring is an offset.
+  const Ladder ladder = ClimbWith({"cubic_stiffness"}, test::AxisData([](const AxisSample&) { return 100.0; }));
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if the output had another zero")));
+}
+
+TEST(Climb, AZeroThatDriftsIsNoPlay) {
+  const Dataset data = test::AxisData([](const AxisSample& s) { return 150.0 * (s.q + 0.2) + 1.5 * s.t; });
+  const Ladder ladder = ClimbWith(
+      {"backlash", "hysteresis", "presliding_friction", "stiffness_drift", "stress_relaxation"}, data, TensedAxis());
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), IsEmpty());
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr("as if the zero of the output drifted")));
+}
+
 TEST(Climb, ConstantsThatAreEachALittleOffTogetherRuleOutAnEffect) {
   // Springs for either side, both 4 % stiffer than the file says: neither alone explains what a tilt does.
   PlantDescription plant = test::AxisPlant();

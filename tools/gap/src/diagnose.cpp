@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "armcmc/gap/smoothing.hpp"
 
@@ -43,15 +45,26 @@ int WideWindow(const Equation& equation, const Recording& recording) {
 /// About half as wide, odd.
 int NarrowWindow(int wide) { return wide / 2 < 5 ? 1 : wide / 2 / 2 * 2 + 1; }
 
+/// Takes effects out of a catalogue. A plain error stays as a rival that is not named.
+void Exclude(const std::vector<std::string>& without, std::vector<EffectForm>* catalogue) {
+  const auto excluded = [&](const EffectForm& form) {
+    return std::find(without.begin(), without.end(), form.effect) != without.end();
+  };
+  std::erase_if(*catalogue, [&](const EffectForm& form) { return excluded(form) && form.plain_error.empty(); });
+  for (EffectForm& form : *catalogue) {
+    if (!excluded(form)) continue;
+    form.listed = false;
+    form.effect = form.family = form.plain_error;
+  }
+}
+
 std::unique_ptr<Analysis> Analyse(const Equation& equation, const Recording& recording, int window,
                                   const DiagnoseOptions& options, const BlockBootstrap& bootstrap) {
   auto analysis = std::make_unique<Analysis>();
   analysis->signals = equation.Prepare(recording, window);
   analysis->signals.window = window;
   analysis->catalogue = equation.Catalogue(analysis->signals);
-  std::erase_if(analysis->catalogue, [&](const EffectForm& form) {
-    return std::find(options.without.begin(), options.without.end(), form.effect) != options.without.end();
-  });
+  Exclude(options.without, &analysis->catalogue);
   Whitener whitener;
   for (int pass = 0; pass < kNoisePasses; ++pass) {
     const Fitter fitter(equation, analysis->signals, whitener);

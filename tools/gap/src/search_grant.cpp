@@ -105,6 +105,9 @@ void Search::TakeBack(Finding* finding) const {
     candidate->fit = fitter_->Fit(plain, start);
     candidate->num_known = base_->num_known;
   }
+  // Without it, some formulas are at the bound at which they are another effect's.
+  const auto other_effect = [](const CandidatePtr& c) { return c->granted && c->fit.on_edge(); };
+  if (std::any_of(finding->set.begin(), finding->set.end(), other_effect)) Withdraw(1.0 - limits_.doubt, finding);
   if (finding->set.empty() || !finding->best->granted) return;
   finding->approximate = true;
   finding->remainder = std::max(2.0 * referee_->Judge(finding->best->fit).total() / rows_, 0.0);

@@ -19,6 +19,7 @@
 #include "plain_rivals.hpp"
 #include "rung.hpp"
 #include "start_alone.hpp"
+#include "superseded.hpp"
 
 namespace armcmc::ladder {
 namespace {
@@ -141,6 +142,7 @@ struct Hearing {
 
 /// Gives a name unless a rival rules it out or the held-out data contradict it.
 void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* notes) {
+  double gained = 0.0;  // most of what is withdrawn
   for (bool contradicted = false;;) {
     NameOne(hearing->view, hearing->floor, false, &hearing->rivals, rung, notes);
     // Of two effects of the same size neither explains the larger part: the first may be named if the next completes
@@ -151,6 +153,13 @@ void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* note
     }
     if (rung->named.empty()) return;
     Contender& leader = rung->contenders[rung->named.front()];
+    // What explains clearly less than an effect that is not there is not there either.
+    if (1.0 - leader.alone.folds < kAsGood * gained) {
+      notes->push_back(leader.candidate.entry->name + " was not named: it explains less than what was not named");
+      rung->open = false;
+      rung->named.clear();
+      return;
+    }
     const Rung* const open = hearing->open;
     const double left = leader.alone.folds * (open != nullptr ? open->leader().alone.folds : 1.0);
     const KeptApart apart = AskedApart(hearing->data, open != nullptr ? open->base : rung->base, leader.trial,
@@ -164,6 +173,7 @@ void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* note
     std::snprintf(text, sizeof(text), " was not named: on the held-out data the error changes only from %.4g to %.4g",
                   apart.before, apart.after);
     notes->push_back(leader.candidate.entry->name + text);
+    gained = std::max(gained, 1.0 - leader.alone.folds);
     leader.earned = rung->open = false;
     rung->named.clear();
     contradicted = true;
@@ -361,6 +371,7 @@ Ladder Climb(const ClimbRequest& request) {
     if (named && open != nullptr) ladder.rungs.back().open = false;
     ladder.rungs.push_back(std::move(rung));
     if (!named) break;
+    DropSuperseded(data, &ladder);
     const Contender& leader = ladder.rungs.back().leader();
     ladder.plant = leader.candidate.plant;
     families.insert(leader.candidate.entry->family);

@@ -7,6 +7,7 @@ namespace armcmc::ladder {
 inline constexpr double kLeastGain = 0.1;    // share of the squared error that a named effect must remove
 inline constexpr double kLargerPart = 0.5;   // share, apart from the noise, that the first effect of a family may leave
 inline constexpr double kFarBetter = 2.0;    // factor by which a larger effect must beat a simpler one
+inline constexpr double kAsGood = 0.95;      // of the best's gain: a simpler effect that reaches it comes first
 inline constexpr double kExplainsIt = 1.05;  // squared error of a rival that explains as much, over that of an effect
 
 /// Error of a contender on left-out rows, relative to its base model.

@@ -29,6 +29,22 @@ EffectEntry ShiftedLimit() {
   return entry;
 }
 
+/// @param drifts  Or is off by a constant.
+EffectEntry ShiftedZero(bool drifts) {
+  EffectForm form;
+  form.parameters.push_back({"b", "output", "normal", "0", "0.3*output", "", "", "0"});
+  form.terms.push_back({"output", "", "b"});
+  if (drifts) {
+    form.constants = {{"m", "s", "start + 0.5*record"}, {"w", "s", "0.5*record"}};
+    form.parameters.push_back({"r", "output", "normal", "0", "0.3*output", "", "", "0"});
+    form.terms.front().formula = "b + r*(t - m)/w";
+  }
+  EffectEntry entry;
+  entry.name = entry.family = "zero";
+  entry.forms = {form};
+  return entry;
+}
+
 EffectEntry DriftingParameter() {
   EffectNeed p;
   p.name = "p";
@@ -50,8 +66,12 @@ std::string Bound(const Candidate& rival, const char* need) {
   return at == rival.binding.symbols.end() ? "" : at->second;
 }
 
+/// Whether it is the zero of the output that is elsewhere.
+bool IsOfZero(const Candidate& rival) { return rival.form().needs.empty(); }
+
 /// "K drifted"
 std::string AsIf(const Candidate& rival) {
+  if (IsOfZero(rival)) return Reads(rival, "t") ? "the zero of the output drifted" : "the output had another zero";
   if (const std::string p = Bound(rival, "p"); !p.empty()) return p + " drifted";
   return "the modes changed at another " + Bound(rival, "x");
 }
@@ -76,10 +96,15 @@ PlainRivals::PlainRivals(const std::shared_ptr<const Plant>& plant, const Datase
       base_(base),
       scales_(scales),
       contenders_(contenders),
-      limit_{ShiftedLimit()},
-      drifting_{DriftingParameter()} {}
+      plain_entries_{ShiftedZero(false), ShiftedZero(true), ShiftedLimit()},
+      slow_entries_{DriftingParameter()} {}
 
 bool PlainRivals::Lacked(const Candidate& rival) const {
+  if (IsOfZero(rival))
+    return std::none_of(contenders_.begin(), contenders_.end(), [&](const Contender& c) {
+      return c.candidate.form().terms.front().slot == "output" && RespondsToNothing(c.candidate) &&
+             Reads(c.candidate, "t") == Reads(rival, "t") && c.candidate.Frequencies().empty();
+    });
   const std::string signal = Bound(rival, "x"), parameter = Bound(rival, "p");
   if (!signal.empty() && (IsExplained(plant_->description(), signal) || !Limits(*plant_, signal))) return false;
   // A constant of the law that drifts is no other than an output that does.
@@ -97,11 +122,11 @@ std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
     std::erase_if(all, [&](const Candidate& candidate) { return !Lacked(candidate); });
     return all;
   };
-  if (!plain_) plain_ = FittedRivals(lacked(limit_), data_, base_);
+  if (!plain_) plain_ = FittedRivals(lacked(plain_entries_), data_, base_);
   const Contender* rival = FirstAsGood(&*plain_, view_, base_, c);
   if (rival == nullptr && (Remembers(c.candidate) || RespondsToNothing(c.candidate))) {
     if (!slow_)
-      slow_ = FittedRivals(BestByOneStep(lacked(drifting_), kMostDrifting, plant_, data_, base_), data_, base_);
+      slow_ = FittedRivals(BestByOneStep(lacked(slow_entries_), kMostDrifting, plant_, data_, base_), data_, base_);
     rival = FirstAsGood(&*slow_, view_, base_, c);
   }
   if (rival == nullptr) return std::nullopt;

@@ -9,8 +9,10 @@
 
 namespace armcmc::ladder {
 
-/// Rivals of an effect that are as plain as errors of a model can be, each with one parameter:
+/// Rivals of an effect that are as plain as errors of a model and of its data can be, each with one parameter or two:
 ///
+/// - the zero of the output is elsewhere, y + b, or drifts, y + b + r (t - m) / w. Far from the place about which it is
+///   curved, a cubic spring is an offset; and what a slow drift moves back and forth looks like a play;
 /// - the modes of the law change elsewhere: a signal s that the condition of a mode reads is s - d in the whole plant.
 ///   The condition takes its limit for granted, as a contact its surface, and a law that begins elsewhere looks like a
 ///   spring that stiffens;
@@ -40,7 +42,7 @@ class PlainRivals {
   const Trial& base_;
   const DataScales& scales_;
   const std::vector<Contender>& contenders_;
-  std::vector<EffectEntry> limit_, drifting_;
+  std::vector<EffectEntry> plain_entries_, slow_entries_;
   std::optional<std::vector<Contender>> plain_, slow_;
 };
 

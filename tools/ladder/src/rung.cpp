@@ -24,7 +24,6 @@ constexpr double kAtBound = 1e-3;     // of the logarithm of a frequency or damp
 constexpr std::size_t kAnywhere = 8;  // starting points for all parameters of a simulated plant
 constexpr double kSure = 0.99;        // fraction of bootstrap samples in which it is better
 constexpr double kLikely = 0.95;      // the same if few events show it: the name is provisional
-constexpr double kAsGood = 0.95;      // of the best's gain: a simpler effect that reaches it comes first
 constexpr double kAlike = 1.01;       // times the smallest error: equally good
 constexpr double kTie = 0.05;         // fraction of bootstrap samples that another family may win
 constexpr double kMostly = 0.5;       // fraction of bootstrap samples that a provisional name has to win

@@ -17,6 +17,7 @@ void AddSensorZero(const Signals& s, std::vector<EffectForm>* out) {
   EffectForm bias = FromCore("force_bias", {AmplitudeOf("force", "N", force, false)});
   SetStarts(&bias, {});
   bias.own_groups = {"time"};
+  bias.plain_error = "a zero of the force that is off";
   out->push_back(bias);
   EffectForm drift = FromCore("force_drift", {AmplitudeOf("rate", "N/s", force / s.duration, false),
                                               {"origin", "s", 0.0, 0.0, 0.0, 1.0, 1.0, false}});
@@ -25,6 +26,7 @@ void AddSensorZero(const Signals& s, std::vector<EffectForm>* out) {
   drift.features = [](const Signals& in, const double*) -> Matrix { return in.output_scale * in.Elapsed(); };
   SetStarts(&drift, {});
   drift.own_groups = {"time"};
+  drift.plain_error = "a zero of the force that drifts";
   out->push_back(drift);
   EffectForm exponential = Reformulated(
       drift, "exponential", "f + force (1 - exp(-t / time_constant))",

@@ -138,6 +138,7 @@ void AddSurfaceAndStiffness(const Signals& s, std::vector<EffectForm>* out) {
   drift.slot = Slot::kParameter;
   drift.features = [](const Signals& in, const double*) -> Matrix { return in.Elapsed(); };
   drift.own_groups = {"time x force"};
+  drift.plain_error = "a stiffness that drifts";
   SetStarts(&drift, {});
   out->push_back(drift);
   EffectForm exponential = Reformulated(

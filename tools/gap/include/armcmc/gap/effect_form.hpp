@@ -44,9 +44,11 @@ struct EffectForm {
   std::string variant;  ///< Empty: the catalogue's own formula.
   std::string family;
   std::string formula;
-  bool listed = true;    ///< Whether it belongs to the catalogue. An unlisted effect is never named: it competes with
-                         ///< the others, so that nothing is named that it explains better.
-  bool regular = false;  ///< Many small amplitudes, fitted with their prior (ridge regression).
+  bool listed = true;  ///< Whether it belongs to the catalogue. An unlisted effect is never named: it competes with
+                       ///< the others, so that nothing is named that it explains better.
+  std::string plain_error;  ///< What it is called as an error of the model or of its data, so plain that it competes,
+                            ///< unlisted, even where it is excluded from the catalogue; empty: it is left out there.
+  bool regular = false;     ///< Many small amplitudes, fitted with their prior (ridge regression).
   Slot slot = Slot::kAdditive;
   std::vector<Coordinate> coordinates;      ///< Amplitudes first, then shapes.
   int num_amplitudes = 1;                   ///< Coordinates that multiply features.

@@ -116,15 +116,19 @@ struct ClimbRequest {
 ///    as much, or if the response to its free start values does, so that nothing shows how it responds to the motion.
 ///    An effect that depends on nothing but time, such as an offset, is ruled out if a parameter that varies with a
 ///    signal or state by at most a third explains as much: over a narrow range a law that is bent looks like an offset.
-///    Any effect is ruled out if a law whose modes change elsewhere explains as much; and
-///    one that remembers, or depends on nothing but time, if a parameter that drifts does. These are no rivals where
-///    the catalogue has an effect that does the same, since that competes by its name. And an effect of another family
+///    Any effect is ruled out if a law whose modes change elsewhere explains as much, or an output whose zero is
+///    elsewhere or drifts; and one that remembers, or depends on nothing but time, if a parameter that drifts does.
+///    These are no rivals where the catalogue has an effect that does the same, since that competes by its name. And
+///    an effect of another family
 ///    that is smaller than a third of those named before is ruled out if it acts like one of them, or if a curve of a
 ///    quantity that one of them reads explains as much.
 /// 5. Confirmation. A name is withdrawn if the held-out rows show neither half of its gain nor, where noise is most of
-///    their error, surely half of the rest, or if the model diverges on them, unless it does not with the next effect;
-///    and if a later rung names the same effect again in the same place, for effects of which two can be pieces of a
-///    curve that is neither (two backlashes approximate a hardening spring).
+///    their error, surely half of the rest, or if the model diverges on them, unless it does not with the next effect.
+///    What gains less than 95 % of what an effect so withdrawn gained is not named in its place. A name is also
+///    withdrawn if a later rung names the same effect again in the same place, for effects of which two can be pieces
+///    of a curve that is neither (two backlashes approximate a hardening spring).
+/// 6. Once. If a rung names another formula of the effect that the rung before named, on the same quantities, and it
+///    explains as much without that, it takes its place.
 ///
 /// If the first rung names nothing, the constants of the plant may hide an effect: they are a few percent off in most
 /// files. If all of them together, each up to 5 % from the file, remove a tenth of the squared error on left-out data,

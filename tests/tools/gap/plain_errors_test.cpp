@@ -1,0 +1,78 @@
+// Names that are not given: what is missing may be an error of the model or of its data, or physics without a name.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "armcmc/gap/diagnose.hpp"
+#include "armcmc/gap/plant_diagnosis.hpp"
+#include "armcmc/gap/workflow.hpp"
+#include "armcmc/ladder/second_search.hpp"
+#include "tools/gap/actuator_rig.hpp"
+
+namespace armcmc::gap::test::plain_errors_test {
+namespace {
+
+/// A recording of a contact with an effect, as the first 70 % of one that the workflow diagnoses.
+Recording Contact(const std::string& effect, const std::string& variant, double gap_ratio, unsigned long long seed) {
+  const Recording all = RecordPlant("contact_rich", {{effect, gap_ratio, {}, variant}}, seed, 10.0, true, true);
+  return all.Slice(0, 7000);
+}
+
+PlantDiagnosis DiagnoseWithout(const std::string& effect, const Recording& recording) {
+  DiagnoseOptions options;
+  options.without = {effect};
+  return DiagnosePlant("hunt_crossley", recording, options);
+}
+
+struct Case {
+  const char *effect, *variant, *looks_like;
+  double gap_ratio;
+  unsigned long long seed;
+};
+
+class PlainError : public ::testing::TestWithParam<Case> {};
+
+TEST_P(PlainError, CompetesThoughItIsExcludedFromTheCatalogue) {
+  const Case& at = GetParam();
+  const PlantDiagnosis plant = DiagnoseWithout(at.effect, Contact(at.effect, at.variant, at.gap_ratio, at.seed));
+  const Finding& finding = plant.carrying().diagnosis.finding;
+  EXPECT_EQ(finding.verdict, Verdict::kUnnamed);
+  ASSERT_TRUE(finding.unlisted);
+  EXPECT_EQ(finding.unlisted->names(), std::vector<std::string>{at.looks_like});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Contact, PlainError,
+    ::testing::Values(Case{"force_bias", "constant", "a zero of the force that is off", 1.0, 590662734},
+                      Case{"force_drift", "linear", "a zero of the force that drifts", 3.0, 809991582},
+                      Case{"stiffness_drift", "linear", "a stiffness that drifts", 0.3, 971003214}),
+    [](const auto& at) { return std::string(at.param.effect); });
+
+TEST(Granted, AFormulaThatIsAnotherEffectsOnceTheGrantIsTakenBackIsNotNamed) {
+  // Beside a law that may err, presliding is fitted within its bounds; without that it is a spring that never yields.
+  const PlantDiagnosis plant =
+      DiagnoseWithout("stress_relaxation", Contact("stress_relaxation", "linear", 1.0, 766258191));
+  EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
+}
+
+TEST(SecondSearch, WhatExplainsLessIsNotNamedInPlaceOfWhatIsWithdrawn) {
+  // Noise that neighbours share makes the held-out data contradict every friction; two branches explain half as much.
+  WorkflowRequest request;
+  request.model = "hunt_crossley";
+  request.data = RecordPlant("contact_rich", {{"viscous_friction", 1.0, {}, "linear"}}, 894535750, 10.0, true, true);
+  request.diagnose.without = {"viscous_friction"};
+  EXPECT_FALSE(ladder::SearchAgain(request));
+}
+
+TEST(Hedge, AnUncertainNameIsWithdrawnWherePhysicsWithoutANameBelongsToTheSet) {
+  // As if q3 were a thousandth smaller: a weight explains it by chance as well as the constants.
+  Recording recording = RecordPlant("soft_actuator_excited", {}, 2, 14.0);
+  recording.columns[5] *= 0.999;
+  const PlantDiagnosis plant = DiagnosePlant("soft_actuator_excited", recording);
+  EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
+}
+
+}  // namespace
+}  // namespace armcmc::gap::test::plain_errors_test
