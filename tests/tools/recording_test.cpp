@@ -240,6 +240,12 @@ TEST_F(RecordingFile, RowsAreThoseThatAreAskedFor) {
   EXPECT_THAT(Read("[rows]\ndrop = [[0, 15], [500, 600]]\n").runs, ElementsAre(0u, 485u));
   const Recording held = Read("[held_out]\nrows = [[10, 20], [900, 1000]]\n");
   EXPECT_EQ(std::count(held.held_out.begin(), held.held_out.end(), 1), 110);
+  EXPECT_THAT(held.notes, Not(testing::Contains(HasSubstr("clipped"))));
+  const Recording clipped = Read("[held_out]\nrows = [[10, 20], [900, 1001]]\n");
+  EXPECT_EQ(std::count(clipped.held_out.begin(), clipped.held_out.end(), 1), 110);
+  EXPECT_THAT(clipped.notes, testing::Contains(AllOf(HasSubstr("recording.toml:9:8: held_out.rows = "),
+                                                     HasSubstr("900 to 1000: clipped at the last row"),
+                                                     HasSubstr("data.csv has the rows 0 to 999"))));
   const Recording columns = Read("[held_out.columns]\nF = { column = \"volt\", scale = 2.0 }\n");
   ASSERT_EQ(columns.num_rows(), 2000u);
   EXPECT_NEAR(columns.signals[3].value[1000], 1.0, 1e-12);
@@ -290,6 +296,9 @@ TEST_F(RecordingFile, AMistakeInAColumnStandsWhereItIs) {
   EXPECT_THAT(ErrorOf("[rows]\nsegment_column = \"part\"\n[held_out]\nsegments = [\"onne\"]\n"),
               HasSubstr("did you mean one"));
   EXPECT_THAT(ErrorOf("[held_out]\nfrom = 5000\n"), HasSubstr("no row that is used is among"));
+  EXPECT_THAT(
+      ErrorOf("[held_out]\nrows = [[10, 20], [1000, 1100]]\n"),
+      AllOf(HasSubstr("recording.toml:9:8: held_out.rows = "), HasSubstr("1000 to 1099: there are no such rows")));
   EXPECT_THAT(ErrorOf("[rows]\nfrom = 10\nfrom_s = 0.1\n"), HasSubstr("a row or a time, not both"));
   Write("data.csv", "time_ms;part;pos_mm;volt\n0;a;1,5;2\n");
   EXPECT_THAT(ErrorOf(""), HasSubstr("data.csv:2: pos_mm = 1,5: expected a finite number with a point as decimal"));

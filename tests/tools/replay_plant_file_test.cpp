@@ -135,6 +135,26 @@ TEST_F(ReplayOfAPlantFile, MakesPacksOfAHundredSamplesOfASlowRecording) {
   EXPECT_THAT(run.out, HasSubstr("10 packs (50 s)"));
 }
 
+TEST_F(ReplayOfAPlantFile, SaysWhyThereIsNoVerdictAboutAGap) {
+  WriteMotion("motion.csv", "q", 1e-3, 1001);
+  std::ofstream(dir_ / "off.toml") << "schema = 1\n[model]\nname = \"servo_axis\"\n[gap_watch]\nenabled = false\n";
+  EXPECT_THAT(Replay({"--config", "off.toml", "--data", "motion.csv"}).out,
+              HasSubstr("gap between model and plant: not watched, since [gap_watch] enabled = false; armcmc-gap"));
+  std::ofstream file(dir_ / "modes.toml");
+  file << "schema = 1\nname = \"modes\"\noutput = \"F\"\n[signals]\nq = { unit = \"m\", role = \"position\" }\n"
+          "v = { unit = \"m/s\", role = \"velocity\", derivative_of = \"q\" }\n"
+          "a = { unit = \"m/s^2\", role = \"acceleration\", derivative_of = \"v\" }\n"
+          "F = { unit = \"N\", role = \"force\" }\n[parameters]\n"
+          "M = { unit = \"kg\", mean = 90.0, sd = 30.0, per_mode = true }\n"
+          "Fv = { unit = \"N s/m\", mean = 200.0, sd = 100.0, per_mode = true }\n"
+          "off = { unit = \"N\", mean = 0.0, sd = 10.0, per_mode = true }\n[noise]\nstd = 1.0\n";
+  for (const char* mode : {"ahead\"\nwhen = \"v > 0.1", "back\"\nwhen = \"v < -0.1", "slow"})
+    file << "[[mode]]\nname = \"" << mode << "\"\nlaw = \"M*a + Fv*v + off\"\n";
+  file.close();
+  EXPECT_THAT(Replay({"--model", "modes.toml", "--data", "motion.csv"}).out,
+              HasSubstr("not watched, since there are more than 8 parameters in all modes together; armcmc-gap"));
+}
+
 /// The packs of a CSV as a log holds them.
 void WriteLog(const std::filesystem::path& path, const SourceRequest& csv, const std::string& plant) {
   LogWriter log(path);

@@ -10,9 +10,9 @@ namespace {
 
 /// Additive effects: one FMA each a sample, their number known to the compiler.
 template <std::size_t kAdditive>
-void PredictAdditive(const ContactPack& pack, const ThetaTile& theta,
+void PredictAdditive(const ContactPack& pack, const ThetaTile& theta, int lanes,
                      PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-  for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
+  for (int lane = 0; lane < lanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
     const V stiffness = Simd::Load(&theta.value[0][at]);
     const V damping = Simd::Load(&theta.value[1][at]);
@@ -91,9 +91,10 @@ void Sense(const ContactPack& pack, const ThetaTile& theta, std::size_t at, doub
   }
 }
 
-void PredictSensed(const ContactPack& pack, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+void PredictSensed(const ContactPack& pack, const ThetaTile& theta, int lanes,
+                   PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   alignas(64) double series[kMaxEffectSamples * Simd::kLanes];
-  for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
+  for (int lane = 0; lane < lanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
     PlantForces(pack, theta, at, series);
     Sense(pack, theta, at, series);
@@ -103,7 +104,8 @@ void PredictSensed(const ContactPack& pack, const ThetaTile& theta, PredictionTi
   }
 }
 
-using PredictComposedFn = void (*)(const ContactPack&, const ThetaTile&, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
+using PredictComposedFn = void (*)(const ContactPack&, const ThetaTile&, int lanes,
+                                   PredictionTile*) noexcept ARMCMC_NONBLOCKING;
 constexpr PredictComposedFn kPredictAdditive[] = {&PredictSensed,      &PredictAdditive<1>, &PredictAdditive<2>,
                                                   &PredictAdditive<3>, &PredictAdditive<4>, &PredictAdditive<5>};
 static_assert(std::size(kPredictAdditive) == kMaxAdditive + 1);
@@ -139,9 +141,10 @@ static_assert(std::size(kSumSquaresAdditive) == kMaxAdditive + 1);
 
 template <>
 struct PlantKernels<HuntCrossley> {
-  static void Predict(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+  static void Predict(const ModeData& data, const ThetaTile& theta, int lanes,
+                      PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
     const auto& pack = static_cast<const ContactPack&>(*data.compiled);
-    (pack.additive_only() ? kPredictAdditive[pack.num_additive] : kPredictAdditive[0])(pack, theta, tile);
+    (pack.additive_only() ? kPredictAdditive[pack.num_additive] : kPredictAdditive[0])(pack, theta, lanes, tile);
   }
   static SumSquaresFn Squares(const ModeData& data) noexcept ARMCMC_NONBLOCKING {
     const auto& pack = static_cast<const ContactPack&>(*data.compiled);

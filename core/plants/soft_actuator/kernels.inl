@@ -49,11 +49,12 @@ Simd::V FlowRow(const FlowPack& pack, const ThetaTile& theta, std::size_t row, s
 /// Every sample depends on its own command only.
 bool ValvesAreFast(const FlowPack& pack) noexcept { return pack.amplitude[FlowEffects::kIndexOf<ValveLag>] < 0; }
 
-void PredictFlow(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+void PredictFlow(const ModeData& data, const ThetaTile& theta, int lanes,
+                 PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   const FlowPack& pack = FlowOf(data);
   const bool fast = ValvesAreFast(pack);
   alignas(64) double spool[kMaxPackSamples * Simd::kLanes];
-  for (int lane = 0; lane < kTileLanes; lane += Simd::kLanes) {
+  for (int lane = 0; lane < lanes; lane += Simd::kLanes) {
     const auto at = static_cast<std::size_t>(lane);
     Simd::V row[kFlowRows];
     for (std::size_t r = 0; r < kFlowRows; ++r) row[r] = FlowRow(pack, theta, r, at);
@@ -88,8 +89,9 @@ void SumSquaresFlow(const ModeData& data, const ThetaTile& theta, double noise_m
 
 template <>
 struct PlantKernels<SoftActuator> {
-  static void Predict(const ModeData& data, const ThetaTile& theta, PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
-    PredictFlow(data, theta, tile);
+  static void Predict(const ModeData& data, const ThetaTile& theta, int lanes,
+                      PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
+    PredictFlow(data, theta, lanes, tile);
   }
   static SumSquaresFn Squares(const ModeData& data) noexcept ARMCMC_NONBLOCKING {
     return ValvesAreFast(FlowOf(data)) ? &SumSquaresFlow : nullptr;

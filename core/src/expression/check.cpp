@@ -1,7 +1,10 @@
 #include "armcmc/expression/check.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <string>
 
 namespace armcmc::expression {
 namespace {
@@ -18,6 +21,7 @@ struct Known {
   UnitState unit;
   Interval range;
   bool condition = false, sampled = false, fixed = false, memory = false;
+  int doubtful_power = 0;  ///< See Meaning.
 };
 
 /// lower <= name <= upper, while a condition holds.
@@ -61,6 +65,37 @@ Interval Raise(Interval base, Interval exponent) noexcept {
   return {0.0, kInf};
 }
 
+/// a over b, in the words of a and b or in those of the quotient, whichever is shorter.
+std::string QuotientText(const Unit& a, const Unit& b) {
+  const std::string below = b.Text();
+  const bool one_word = below.find_first_of(" /") == std::string::npos;
+  const std::string words = a.Text() + (one_word ? "/" + below : "/(" + below + ")");
+  const std::string own = a.Over(b).Text();
+  return own.size() <= words.size() ? own : words;
+}
+
+std::string HintText(double value, const std::string& unit) {
+  std::array<char, 32> digits{};
+  const std::string number(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  return "; a number in a product has no unit: if " + number + " is in " + unit +
+         ", name it: [constants] NAME = { value = " + number + ", unit = \"" + unit + "\" }";
+}
+
+/// What to do about a literal number in the product `node`, in `found` instead of `wanted`; empty if there is none.
+std::string NumberHint(const Syntax& syntax, int node, const Unit& found, const Unit& wanted) {
+  if (wanted.SameDimension(found)) return "";
+  while (syntax.at(node).op == Op::kNegate) node = syntax.at(node).argument[0];
+  for (; syntax.at(node).op == Op::kMultiply || syntax.at(node).op == Op::kDivide; node = syntax.at(node).argument[0])
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      const SyntaxNode* factor = &syntax.at(syntax.at(node).argument[side]);
+      if (factor->op == Op::kNegate) factor = &syntax.at(factor->argument[0]);
+      if (factor->op != Op::kNumber) continue;
+      const bool divides = syntax.at(node).op == Op::kDivide && side == 1;
+      return HintText(factor->value, divides ? QuotientText(found, wanted) : QuotientText(wanted, found));
+    }
+  return "";
+}
+
 class Checker {
  public:
   Checker(const Syntax& syntax, const Scope& scope) : syntax_(syntax), scope_(scope) {}
@@ -89,7 +124,9 @@ class Checker {
       known.sampled = known.sampled || a[k].sampled;
       known.fixed = known.fixed && a[k].fixed;
       known.memory = known.memory || a[k].memory;
+      if (known.doubtful_power == 0) known.doubtful_power = a[k].doubtful_power;
     }
+    if (at.op == Op::kPower && CanBeNoNumber(a[0], a[1])) known.doubtful_power = at.column;
     known.unit = UnitOf(node, a);
     known.range = RangeOf(node, a);
     return known;
@@ -152,6 +189,8 @@ class Checker {
     known.sampled = condition.sampled || yes.sampled || no.sampled;
     known.fixed = condition.fixed && yes.fixed && no.fixed;
     known.memory = condition.memory || yes.memory || no.memory;
+    for (const Known* part : {&condition, &yes, &no})
+      if (known.doubtful_power == 0) known.doubtful_power = part->doubtful_power;
     return known;
   }
 
@@ -160,6 +199,18 @@ class Checker {
   }
 
   static std::string Name(const UnitState& state) { return state.unit ? state.unit->Text() : "an unknown unit"; }
+
+  /// Alike() of the two sides of a sum or comparison.
+  [[nodiscard]] UnitState SidesAlike(const SyntaxNode& at, const UnitState& a, const UnitState& b,
+                                     std::string_view what) const {
+    try {
+      return Alike(at.column, a, b, what);
+    } catch (const Error& error) {
+      std::string hint = NumberHint(syntax_, at.argument[1], *b.unit, *a.unit);
+      if (hint.empty()) hint = NumberHint(syntax_, at.argument[0], *a.unit, *b.unit);
+      throw Error(error.column(), error.what() + hint);
+    }
+  }
 
   static UnitState Alike(int column, const UnitState& a, const UnitState& b, std::string_view what) {
     if (a.number || b.number) return a.number && !b.number ? b : a;
@@ -192,13 +243,13 @@ class Checker {
     const UnitState plain{Unit{}, false};
     switch (at.op) {
       case Op::kAdd:
-      case Op::kSubtract: return Alike(at.column, x, y, at.op == Op::kAdd ? "the sum is of " : "the difference is of ");
+      case Op::kSubtract: return SidesAlike(at, x, y, at.op == Op::kAdd ? "the sum is of " : "the difference is of ");
       case Op::kMin:
       case Op::kMax: return Alike(at.column, x, y, "the comparison is of ");
       case Op::kLess:
       case Op::kLessEqual:
       case Op::kEqual:
-      case Op::kNotEqual: (void)Alike(at.column, x, y, "the comparison is of "); return plain;
+      case Op::kNotEqual: (void)SidesAlike(at, x, y, "the comparison is of "); return plain;
       case Op::kClamp:
         return Alike(at.column, Alike(at.column, x, y, "a value and its bound"), a[2].unit, "a value and its bound");
       case Op::kMultiply:
@@ -287,9 +338,13 @@ class Checker {
     }
   }
 
-  void CheckPower(const SyntaxNode& at, const Known& base, const Known& exponent) const {
+  static bool CanBeNoNumber(const Known& base, const Known& exponent) noexcept {
     const bool whole = exponent.fixed && exponent.range.lower == exponent.range.upper && IsWhole(exponent.range.lower);
-    if (whole || base.sampled || base.range.lower >= 0.0) return;
+    return !whole && base.range.lower < 0.0;
+  }
+
+  void CheckPower(const SyntaxNode& at, const Known& base, const Known& exponent) const {
+    if (base.sampled || !CanBeNoNumber(base, exponent)) return;
     throw Error(at.column,
                 "the base of this power can be negative, and its exponent is not a whole number: write max(.., 0)^.., "
                 "abs(..)^.., or guard it with a mode or an if of x >= 0");
@@ -330,13 +385,15 @@ Meaning Check(const Syntax& syntax, const Scope& scope, const Syntax* given) {
   meaning.sampled = known.sampled;
   meaning.fixed = known.fixed;
   meaning.memory = known.memory;
+  meaning.doubtful_power = known.doubtful_power;
   return meaning;
 }
 
 void Expect(const Meaning& meaning, const std::optional<Unit>& unit, const Syntax& syntax, std::string_view what) {
   if (!unit || !meaning.unit || unit->Same(*meaning.unit)) return;
-  throw Error(syntax.FirstColumn(syntax.root()),
-              std::string(what) + " is " + meaning.unit->Text() + ", expected " + unit->Text());
+  throw Error(syntax.FirstColumn(syntax.root()), std::string(what) + " is " + meaning.unit->Text() + ", expected " +
+                                                     unit->Text() +
+                                                     NumberHint(syntax, syntax.root(), *meaning.unit, *unit));
 }
 
 }  // namespace armcmc::expression

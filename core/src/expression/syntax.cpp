@@ -99,7 +99,8 @@ class Parser {
     if (token_.kind == TokenKind::kEnd) return std::move(syntax_);
     if (token_.Is(")")) throw Error(token_.column, "\")\" without \"(\" before it");
     if (token_.kind != TokenKind::kSign || token_.Is("("))
-      throw Error(token_.column, "expected an operator before " + token_.Shown() + "; a product is written with *");
+      throw Error(token_.column,
+                  "expected an operator before " + token_.Shown() + "; a product is written with *" + UnitHint());
     throw Error(token_.column, "expected the end, found " + token_.Shown());
   }
 
@@ -119,7 +120,17 @@ class Parser {
     int* depth_;
   };
 
-  void Advance() { token_ = lexer_.Next(); }
+  void Advance() {
+    before_ = token_;
+    token_ = lexer_.Next();
+  }
+
+  /// How to write what seems to be a number with a unit behind it.
+  [[nodiscard]] std::string UnitHint() const {
+    if (before_.kind != TokenKind::kNumber || token_.kind != TokenKind::kName) return "";
+    return "; a number with a unit needs a name: [constants] NAME = { value = " + std::string(before_.text) +
+           ", unit = \"..\" }";
+  }
 
   int Add(Op op, int column, std::array<int, kMaxArguments> argument = {-1, -1, -1}) {
     SyntaxNode node;
@@ -275,7 +286,7 @@ class Parser {
 
   [[nodiscard]] std::string Expected(std::string_view what, const Token& open) const {
     return "expected \"" + std::string(what) + "\" to close \"(\" of column " + std::to_string(open.column) +
-           ", found " + token_.Shown();
+           ", found " + token_.Shown() + UnitHint();
   }
 
   static std::string WrongCount(std::string_view name, Op op, const std::string& found) {
@@ -287,7 +298,7 @@ class Parser {
   }
 
   Lexer lexer_;
-  Token token_;
+  Token before_, token_;
   Syntax syntax_;
   int depth_ = 0;
 };

@@ -235,6 +235,10 @@ Plant::Lowered Plant::Lower(const std::string& key, const std::string& text, con
     const std::optional<Syntax> condition = given.empty() ? std::nullopt : std::optional(expression::Parse(given));
     const Meaning meaning = Check(syntax, scope_, condition ? &*condition : nullptr);
     Expect(meaning, unit, syntax, what);
+    if (meaning.doubtful_power > 0)
+      notes_.push_back({key, meaning.doubtful_power,
+                        "the base of this power can be negative, and its exponent is not a whole number: candidates "
+                        "for which that happens at any sample are rejected; max(.., 0)^.. keeps them"});
     return {graph_.Lower(syntax, scope_, lets_), meaning};
   } catch (const expression::UnknownName& error) {
     std::string message = error.what();

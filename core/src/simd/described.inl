@@ -230,6 +230,37 @@ void SumShapeSquares(const ModeData& data, const ThetaTile& theta, double* out) 
   }
 }
 
+/// SumShapeSquares() of one tape without powers that has kTerms terms: the same bits, with the parameters in hardware
+/// registers.
+template <bool kWeighted, std::size_t kTerms>
+void SumLinearSquares(const ModeData& data, const ThetaTile& theta, double* out) noexcept {
+  using expression::TapeSum;
+  constexpr int kGroup = Simd::kLanes == 8 ? 4 : 2;
+  const TapeSum& terms = data.error_tape->rest;
+  for (int lane = 0; lane < kTileLanes; lane += kGroup * Simd::kLanes) {
+    Simd::V parameter[kTerms][kGroup];
+    for (std::size_t t = 0; t < kTerms; ++t)
+      for (int g = 0; g < kGroup; ++g)
+        parameter[t][g] = Simd::Load(theta.value[terms.parameter[t]].data() + lane + g * Simd::kLanes);
+    Simd::V sum[kGroup] = {};
+    for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n) {
+      const double* row = data.scalars->Row(data.sample[n]);
+      const Simd::V constant = terms.constant == TapeSum::kNone ? Simd::V{} : Simd::Set(row[terms.constant]);
+      Simd::V e[kGroup];
+      for (int g = 0; g < kGroup; ++g) e[g] = constant;
+      for (std::size_t t = 0; t < kTerms; ++t) {
+        const Simd::V scalar = Simd::Set(terms.scalar[t] == TapeSum::kNone ? 1.0 : row[terms.scalar[t]]);
+        for (int g = 0; g < kGroup; ++g) e[g] = Simd::Fma(parameter[t][g], scalar, e[g]);
+      }
+      for (int g = 0; g < kGroup; ++g) {
+        if constexpr (kWeighted) e[g] = e[g] * Simd::Set(data.weight[n]);
+        sum[g] = Simd::Fma(e[g], e[g], sum[g]);
+      }
+    }
+    for (int g = 0; g < kGroup; ++g) Simd::Store(out + lane + g * Simd::kLanes, sum[g]);
+  }
+}
+
 /// Instruction sets whose vectors of one tile leave half of the hardware registers unused run two tiles side by side.
 constexpr bool kTapesInPairs = kTapeVectors < 8;
 
@@ -250,8 +281,18 @@ void SumSquaresOfTapes(const ModeData& data, const ThetaTile* theta, double* out
         SumShapeSquares<kWeighted, decltype(powers)::value, false>(data, theta[t], sums);
     }
   };
+  const auto linear = [&](auto terms) {
+    for (std::size_t t = 0; t < kTiles; ++t)
+      SumLinearSquares<kWeighted, decltype(terms)::value>(data, theta[t], out + t * kTileLanes);
+  };
   if (are(TapeShape::kLinear)) {
-    shaped(std::integral_constant<int, 0>());
+    switch (several ? 0 : data.error_tape->rest.count) {
+      case 1: linear(std::integral_constant<std::size_t, 1>()); break;
+      case 2: linear(std::integral_constant<std::size_t, 2>()); break;
+      case 3: linear(std::integral_constant<std::size_t, 3>()); break;
+      case 4: linear(std::integral_constant<std::size_t, 4>()); break;
+      default: shaped(std::integral_constant<int, 0>());
+    }
   } else if (are(TapeShape::kLinear, TapeShape::kPower)) {
     if (several || data.error_tape->num_powers > 1)
       shaped(std::integral_constant<int, 2>());

@@ -12,8 +12,8 @@ constexpr double kLn2 = 0.69314718055994530942;
 constexpr double kLog2E = 1.44269504088896340736;
 
 /// The loops of a compiled plant with effects, whose slice specialises this in its kernels.inl:
-///   Predict(data, theta, tile)   predictions from data.compiled
-///   Squares(data)                the loop that sums squared errors; null where that takes the predictions
+///   Predict(data, theta, lanes, tile)   predictions from data.compiled, of that many lanes, half a tile or all of it
+///   Squares(data)                       the loop that sums squared errors; null where that takes the predictions
 template <class Model>
 struct PlantKernels;
 
@@ -64,7 +64,8 @@ struct PlantTable<ModelList<Models...>> {
                                int, double*) noexcept ARMCMC_NONBLOCKING;
   static constexpr ExpandPowerFn kExpandPower[] = {&ExpandPowerPlain<Models>...};
   static constexpr ScoreNearFn kScoreNear[] = {&ScoreNearPlain<Models>...};
-  static constexpr PredictFn kPredict[] = {&PlantKernels<Models>::Predict...};
+  using PredictLanesFn = void (*)(const ModeData&, const ThetaTile&, int, PredictionTile*) noexcept ARMCMC_NONBLOCKING;
+  static constexpr PredictLanesFn kPredict[] = {&PlantKernels<Models>::Predict...};
   static constexpr SquaresFn kSquares[] = {&PlantKernels<Models>::Squares...};
 };
 
@@ -72,9 +73,10 @@ void Predict(int model, const ModeData& data, const ThetaTile& theta,
              PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   if (data.tape != nullptr) {
     PredictTape<kTileLanes>(data, theta, tile);
+  } else if (data.compiled != nullptr) {
+    PlantTable<AllModels>::kPredict[model](data, theta, kTileLanes, tile);
   } else {
-    (data.compiled != nullptr ? PlantTable<AllModels>::kPredict : PlantTable<AllModels>::kPlain)[model](data, theta,
-                                                                                                        tile);
+    PlantTable<AllModels>::kPlain[model](data, theta, tile);
   }
 }
 
@@ -82,10 +84,10 @@ void PredictHalf(int model, const ModeData& data, const ThetaTile& theta,
                  PredictionTile* tile) noexcept ARMCMC_NONBLOCKING {
   if (data.tape != nullptr) {
     PredictTape<kTileLanes / 2>(data, theta, tile);
-  } else if (data.compiled == nullptr) {
-    PlantTable<AllModels>::kPlainHalf[model](data, theta, tile);
+  } else if (data.compiled != nullptr) {
+    PlantTable<AllModels>::kPredict[model](data, theta, kTileLanes / 2, tile);
   } else {
-    Predict(model, data, theta, tile);
+    PlantTable<AllModels>::kPlainHalf[model](data, theta, tile);
   }
 }
 

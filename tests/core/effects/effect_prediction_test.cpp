@@ -41,7 +41,12 @@ class Predictor {
       EXPECT_TRUE(composition_.Prepare(pack, pack_.get()));
       composition_.Fill(pack, *pack_, 0, data_.get());
       kernels_.predict(FindModel("hunt_crossley"), *data_, theta_, tile_.get());
-      for (std::size_t n = 0; n < count; ++n) out.push_back(tile_->value[n][kLane]);
+      kernels_.predict_half(FindModel("hunt_crossley"), *data_, theta_, half_.get());
+      for (std::size_t n = 0; n < count; ++n) {
+        out.push_back(tile_->value[n][kLane]);
+        EXPECT_EQ(half_->value[n][0], out.back()) << "half a tile, " << kernels_.name;
+        EXPECT_EQ(half_->value[n][kTileLanes / 2 - 1], out.back()) << "half a tile, " << kernels_.name;
+      }
       first += count;
     }
     return out;
@@ -54,6 +59,7 @@ class Predictor {
   std::unique_ptr<EffectPack> pack_ = std::make_unique<EffectPack>(composition_.MakePack());
   std::unique_ptr<ModeData> data_ = std::make_unique<ModeData>();
   std::unique_ptr<PredictionTile> tile_ = std::make_unique<PredictionTile>();
+  std::unique_ptr<PredictionTile> half_ = std::make_unique<PredictionTile>();
 };
 
 /// Of the first additive effect.

@@ -38,11 +38,13 @@ class Predictor {
     theta_->value[1].fill(truth.theta2[m]);
     for (std::size_t e = 0; e < amplitude_.size(); ++e) theta_->value[2 + e].fill(amplitude_[e]);
     kernels.predict(FindModel("soft_actuator"), *data_, *theta_, tile_.get());
+    kernels.predict_half(FindModel("soft_actuator"), *data_, *theta_, half_.get());
     std::vector<double> rates;
     sample->clear();
     for (std::size_t k = 0; k < static_cast<std::size_t>(data_->num_samples); ++k) {
       sample->push_back(data_->sample[k]);
       rates.push_back(tile_->value[k][k % kTileLanes]);
+      EXPECT_EQ(half_->value[k][k % (kTileLanes / 2)], rates.back()) << "half a tile, " << kernels.name;
     }
     return rates;
   }
@@ -54,6 +56,7 @@ class Predictor {
   std::unique_ptr<ModeData> data_ = std::make_unique<ModeData>();
   std::unique_ptr<ThetaTile> theta_ = std::make_unique<ThetaTile>();
   std::unique_ptr<PredictionTile> tile_ = std::make_unique<PredictionTile>();
+  std::unique_ptr<PredictionTile> half_ = std::make_unique<PredictionTile>();
 };
 
 /// Largest error over a recording, as a share of the largest rate; `compared` counts samples.

@@ -335,7 +335,9 @@ TEST_P(Score, IsThatOfThePredictions) {
 
 INSTANTIATE_TEST_SUITE_P(
     Tape, Score,
-    testing::Values(Scored{"K*x + B*v - p*u", expression::TapeShape::kLinear},
+    testing::Values(Scored{"K*x", expression::TapeShape::kLinear},
+                    Scored{"K*x + B - u", expression::TapeShape::kLinear},
+                    Scored{"K*x + B*v - p*u", expression::TapeShape::kLinear},
                     Scored{"K*x + B*v - p*u + tau*x*v - sin(x)", expression::TapeShape::kLinear},
                     Scored{"max(x, 0)^p * (K + B*v) - u", expression::TapeShape::kPower},
                     Scored{"max(x, 0)^p * K - u", expression::TapeShape::kPower},

@@ -39,6 +39,21 @@ TEST_F(BenchProgram, TimesTheStepOfAPlantInTheJsonOfGoogleBenchmark) {
   EXPECT_TRUE(report.at("context").contains("instruction_set"));
 }
 
+TEST_F(BenchProgram, TimesTheLikelihoodByTheKernelAndByTheTape) {
+  const test::Outcome run = Run({"--benchmark_filter=BM_Score/(hunt_crossley|soft_actuator)(:tape)?$",
+                                 "--benchmark_format=json", "--benchmark_min_time=0.01"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto report = nlohmann::json::parse(run.out);
+  std::vector<std::string> names;
+  for (const auto& score : report.at("benchmarks")) {
+    names.push_back(score.at("name"));
+    EXPECT_GT(score.at("cpu_time").get<double>(), 0.0) << names.back();
+    EXPECT_FALSE(score.contains("error_occurred")) << names.back();
+  }
+  EXPECT_THAT(names, testing::ElementsAre("BM_Score/hunt_crossley", "BM_Score/hunt_crossley:tape",
+                                          "BM_Score/soft_actuator", "BM_Score/soft_actuator:tape"));
+}
+
 TEST_F(BenchProgram, RunsOnTheInstructionSetThatIsAskedFor) {
   const test::Outcome run =
       Run({"--instruction-set", "sse2", "--model", "hunt_crossley", "--benchmark_filter=NaiveLoop",

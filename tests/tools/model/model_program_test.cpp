@@ -50,6 +50,7 @@ TEST_F(ModelProgram, SaysWhatItUnderstoodOfEveryPlantThatComesAlong) {
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_THAT(check.out, HasSubstr(name + ": "));
     EXPECT_THAT(check.out, HasSubstr("noise: "));
+    EXPECT_THAT(check.out, testing::Not(HasSubstr("note: ")));
   }
 }
 
@@ -61,6 +62,22 @@ TEST_F(ModelProgram, ShowsSignalsPriorsAndTheLawOfAFile) {
   EXPECT_TRUE(std::regex_search(check.out, std::regex("off +N +0 \\+- 10 +-80 +80"))) << check.out;
   EXPECT_TRUE(std::regex_search(check.out, std::regex("always +F +N +M\\*a \\+ Fv\\*v \\+ off"))) << check.out;
   EXPECT_THAT(check.out, HasSubstr("the estimator samples M, Fv, off\n"));
+}
+
+TEST_F(ModelProgram, SaysWhereAPowerMayBeNoNumber) {
+  const auto checked = [this](const std::string& law) {
+    std::string text = AxisText();
+    const std::string from = "M*a + Fv*v + off";
+    text.replace(text.find(from), from.size(), law);
+    return Run({"check", Write("axis.toml", text)}).out;
+  };
+  EXPECT_THAT(checked("M*a + Fv*v*(off/(Fv*v))^1.5"),
+              HasSubstr("note: axis.toml:5:31: law = \"M*a + Fv*v*(off/(Fv*v))^1.5\": the base of this power can be"));
+  for (const char* law : {"M*a + Fv*v*(off/(Fv*v))^2", "M*a + Fv*v*max(off/(Fv*v), 0)^1.5"}) {
+    const std::string said = checked(law);
+    EXPECT_THAT(said, HasSubstr("noise: ")) << law;
+    EXPECT_THAT(said, testing::Not(HasSubstr("note: "))) << law;
+  }
 }
 
 struct Wrong {

@@ -43,6 +43,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "Benchmarks:\n"
       "  BM_AdjustStep/PLANT/DRAWS/SAMPLES   draw and remember; BM_Draw, BM_Remember and BM_Execute are the parts\n"
       "  BM_Dimension/PARAMETERS             draw and remember for plant files with 2 to 6 parameters\n"
+      "  BM_Score/PLANT                      the likelihood of all candidates alone, sample by sample\n"
       "  BM_Memory/PLANT                     construction; the counter `bytes` is the heap that it takes\n"
       "  BM_EverySample/PLANT/DRAWS/SAMPLES  BM_AdjustStep with every candidate scored sample by sample\n"
       "  BM_Noise/PLANT/LAW                  a whole step with another noise law\n"

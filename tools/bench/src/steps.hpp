@@ -8,9 +8,12 @@ namespace armcmc::bench {
 void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesystem::path& folder);
 /// BM_Dimension: draw and remember with laws of 2 to 6 parameters, default number of draws, 100 samples.
 void RegisterDimensions();
-/// BM_Memory: heap of an estimator with one result slot, all of it allocated at construction.
 /// BM_AdjustStep without the short cut of laws that are linear in all parameters but one.
 void RegisterEverySample(const Plant& plant, int samples, const std::filesystem::path& folder);
+/// BM_Score: the likelihood alone of the default number of candidates, sample by sample, 100 samples. Of a plant
+/// without effects.
+void RegisterScore(const Plant& plant, const std::filesystem::path& folder);
+/// BM_Memory: heap of an estimator with one result slot, all of it allocated at construction.
 void RegisterMemory(const Plant& plant);
 /// BM_Noise: one for each law.
 void RegisterNoise(const Plant& plant, const std::filesystem::path& folder);

@@ -29,6 +29,7 @@ void Register(const Suite& suite, const std::filesystem::path& folder) {
   for (const Plant& plant : suite.plants) {
     RegisterSteps(plant, 0, kSamples, folder);
     RegisterMemory(plant);
+    RegisterScore(plant, folder);
     if (plant.name != PressedPlant()) continue;
     // How the step grows: of one plant, as the law of another costs more for a sample and no less for a draw.
     for (const int draws : suite.draws)

@@ -50,6 +50,7 @@ int Check(const Arguments& a) {
   }
   const std::shared_ptr<const support::Recording> data = ReadData(a);
   std::cout << PlantText(*plant);
+  for (const std::string& note : file.notes) std::cout << "note: " << note << '\n';
   if (a.effects) std::cout << '\n' << FittingText(plant->description(), support::EffectsFor(file.effects));
   if (program != nullptr) std::cout << CostText(program, data);
   if (program != nullptr && data != nullptr) std::cout << BetweenText(program, data);

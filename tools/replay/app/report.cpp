@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "armcmc/gap_watch/gap_block.hpp"
+#include "armcmc/plant/program.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/text_table.hpp"
 
@@ -22,6 +24,20 @@ std::string UnsettledText(const ReplaySummary& summary) {
          " packs look as if the parameters had just changed: the law may be missing something (armcmc-gap), or the "
          "noise "
          "may be larger than assumed (--calibrate)\n";
+}
+
+/// Why the gap watch has no verdict.
+std::string NoVerdictText(const Estimator& estimator, const GapState& gap) {
+  const EstimatorSettings& settings = estimator.settings();
+  if (!settings.gap_watch.enabled) return "not watched, since [gap_watch] enabled = false";
+  if (!gap.watched)
+    return "not watched, since there are more than " + std::to_string(kGapColumns) +
+           " parameters in all modes together";
+  const bool states = settings.plant != nullptr && settings.plant->states().size() > 0;
+  return "not judged, since too few packs were of use for that: a verdict takes " + std::to_string(kGapBlockPacks) +
+         " stretches of data in one run, each of " +
+         (states ? "as many packs as one pack has room for" : "a pack of 0.1 s or more, or of several shorter ones") +
+         ", and half as many again while they are analysed";
 }
 
 }  // namespace
@@ -57,10 +73,7 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
         << "; log evidence " << Significant(gap.log_evidence, 3) << ", threshold " << Significant(gap.log_threshold, 3)
         << '\n';
   } else {
-    out << "gap between model and plant: "
-        << (gap.watched ? "not judged, since too few packs were of use for that"
-                        : "not watched (switched off, or too many parameters)")
-        << "; armcmc-gap judges a recording\n";
+    out << "gap between model and plant: " << NoVerdictText(estimator, gap) << "; armcmc-gap judges a recording\n";
   }
   out << (any_known ? table.ToString() : std::string("nothing is known: no pack said anything about a parameter\n"));
   if (summary.packs > 0 && summary.compute_s > 0.0)

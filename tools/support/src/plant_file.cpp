@@ -114,9 +114,12 @@ PlantFile Understood(StrictTable root) {
   PlantEffects effects = ReadPlantEffects(root);
   PlantDescription description = Describe(root);
   PlantDescription used;
+  std::vector<std::string> notes;
   try {
     Plant plant(std::move(description));
-    if (effects.use.empty()) return {plant.description(), std::move(plant), std::move(effects)};
+    for (const PlantNote& note : plant.notes())
+      notes.emplace_back(PlacedError(root, PlantError(note.key, note.column, note.text)).what());
+    if (effects.use.empty()) return {plant.description(), std::move(plant), std::move(effects), std::move(notes)};
     used = plant.description();
   } catch (const PlantError& error) {
     throw PlacedError(root, error);
@@ -124,7 +127,7 @@ PlantFile Understood(StrictTable root) {
   PlantDescription base = used;
   try {
     used = WithEffects(std::move(used), EffectsFor(effects), effects.use, nullptr, "");
-    return {std::move(base), Plant(std::move(used)), std::move(effects)};
+    return {std::move(base), Plant(std::move(used)), std::move(effects), std::move(notes)};
   } catch (const ConfigError& error) {
     throw root.Table("effects").Error("use", error.what());
   } catch (const PlantError& error) {

@@ -36,6 +36,23 @@ void HoldOutByDefault(std::vector<std::uint8_t>* held_out) {
   std::fill(held_out->end() - static_cast<std::ptrdiff_t>(count), held_out->end(), std::uint8_t{1});
 }
 
+/// Ranges of held_out that reach beyond the CSV: notes, with their place, where rows are left, else an error.
+std::vector<std::string> HeldOutBeyond(const RecordingFile& file, std::size_t num_rows, const fs::path& csv) {
+  std::vector<std::string> notes;
+  const StrictTable table = StrictTable(*file.root).Table("held_out");
+  const std::string has = "; " + csv.string() + " has the rows 0 to " + std::to_string(num_rows - 1);
+  for (const RowRange& range : file.held_out.rows) {
+    const bool open = range.until == HeldOut::kToTheEnd;
+    const std::string key = open ? "from" : "rows";
+    std::string text = std::to_string(range.from);
+    if (!open) text.append(" to ").append(std::to_string(range.until - 1));
+    if (range.from >= num_rows) throw table.Error(key, text.append(": there are no such rows").append(has));
+    if (!open && range.until > num_rows)
+      notes.emplace_back(table.Error(key, text.append(": clipped at the last row").append(has)).what());
+  }
+  return notes;
+}
+
 Recording Begin(const PlantDescription& plant, std::uint64_t fingerprint) {
   Recording recording;
   recording.plant = plant.name;
@@ -92,6 +109,8 @@ Recording ReadRecording(const fs::path& path, const fs::path& data_dir) {
   const auto held = static_cast<std::size_t>(std::count(rows.held_out.begin(), rows.held_out.end(), std::uint8_t{1}));
   if (held == rows.size()) throw file.root->Error("held_out", "nothing is left to learn from");
   if (held == 0) throw file.root->Error("held_out", "no row that is used is among what it keeps apart");
+  const std::vector<std::string> beyond = HeldOutBeyond(file, rows.in_file, recording.files.front());
+  recording.notes.insert(recording.notes.end(), beyond.begin(), beyond.end());
   recording.notes.insert(recording.notes.end(), rows.notes.begin(), rows.notes.end());
   Resample(rows, &recording);
   if (recording.t.empty())

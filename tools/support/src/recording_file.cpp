@@ -11,7 +11,7 @@ namespace armcmc::support {
 namespace {
 
 constexpr double kHuge = std::numeric_limits<double>::max();
-constexpr double kRows = 1e12;
+constexpr auto kRows = static_cast<double>(HeldOut::kToTheEnd);
 
 ColumnSource ReadSource(StrictTable& columns, const std::string& signal) {
   ColumnSource source;
@@ -92,7 +92,7 @@ void ReadHeldOut(StrictTable& root, const std::vector<std::string>& signals, Rec
   held.given = root.Has("held_out");
   StrictTable table = root.Table("held_out");
   const auto from = static_cast<std::size_t>(table.Integer("from", 0, 0, static_cast<std::int64_t>(kRows)));
-  if (table.Has("from")) held.rows.push_back({from, static_cast<std::size_t>(kRows)});
+  if (table.Has("from")) held.rows.push_back({from, HeldOut::kToTheEnd});
   held.from_s = ReadOptional(table, "from_s");
   const std::vector<RowRange> rows = ReadRanges(table, "rows");
   held.rows.insert(held.rows.end(), rows.begin(), rows.end());

@@ -30,6 +30,7 @@ struct RowRange {
 
 /// What is kept apart.
 struct HeldOut {
+  static constexpr std::size_t kToTheEnd = 1'000'000'000'000;  ///< `until` of an open range.
   bool given = false;
   std::optional<double> from_s;
   std::vector<RowRange> rows;

@@ -313,6 +313,7 @@ RecordingRows ReadRecordingRows(const std::filesystem::path& csv_path, const Rec
   RecordingRows rows;
   rows.signal.resize(plant.signals.size());
   rows.skipped = csv.skipped;
+  rows.in_file = csv.num_rows();
   rows.notes = blanks.notes();
   if (start != 0.0) rows.notes.push_back("times count from the first one, " + ExactNumber(start) + " s");
   std::size_t before = 0;

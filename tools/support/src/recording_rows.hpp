@@ -17,6 +17,7 @@ struct RecordingRows {
   std::vector<std::uint8_t> new_run;        ///< [row] 1: another segment than the row before, or rows are left out.
   std::vector<std::uint8_t> held_out;       ///< [row]
   std::size_t skipped = 0;                  ///< Bad rows.
+  std::size_t in_file = 0;                  ///< Rows of the CSV, used or not.
   std::vector<std::string> notes;           ///< For the user: changes of times and blank cells.
 
   [[nodiscard]] std::size_t size() const { return t.size(); }

@@ -16,6 +16,9 @@ struct Meaning {
   bool sampled = false;      ///< Depends on a parameter or a state.
   bool fixed = false;        ///< A number that is known now.
   bool memory = false;       ///< Depends on samples before.
+  /// Column of a power that is NaN for some parameters or states: its base can be negative, and its exponent is not a
+  /// whole number. 0: there is none.
+  int doubtful_power = 0;
 };
 
 /// Looks names up, counts units, and finds what cannot be computed:

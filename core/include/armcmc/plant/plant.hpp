@@ -30,6 +30,14 @@ struct PlantState {
   int measured_by = -1;  ///< Signal; -1: none.
 };
 
+/// What is allowed in a plant and may still be a mistake: the key of the value, the position in it, from 1, and what to
+/// know of it.
+struct PlantNote {
+  std::string key;
+  int column = 0;
+  std::string text;
+};
+
 /// A plant description after all checks: names are resolved, units are consistent, limits are kept, and all expressions
 /// are one graph.
 ///
@@ -64,6 +72,8 @@ class Plant {
   [[nodiscard]] int predicts() const noexcept { return predicts_; }
   /// Nodes of the additional published quantities, in the order of the file.
   [[nodiscard]] const std::vector<int>& reports() const noexcept { return reports_; }
+  /// What may be a mistake, in the order of the checks.
+  [[nodiscard]] const std::vector<PlantNote>& notes() const noexcept { return notes_; }
   /// Index of the output among the signals.
   [[nodiscard]] int output() const noexcept { return output_; }
   /// Node of a signal, a parameter or a state.
@@ -113,6 +123,7 @@ class Plant {
   std::vector<PlantMode> modes_;
   std::vector<PlantState> states_;
   std::vector<int> reports_;
+  std::vector<PlantNote> notes_;
   int predicts_ = -1;
   int output_ = -1;
   std::uint64_t fingerprint_ = 0;

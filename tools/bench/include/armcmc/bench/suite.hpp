@@ -26,6 +26,7 @@ struct Suite {
 ///   BM_Draw, BM_Remember, BM_Execute       its parts, and the execute stage; same arguments
 ///   BM_Dimension/PARAMETERS                draw and remember with laws of 2 to 6 parameters (law_family.hpp)
 ///   BM_Memory/PLANT                        construction; the counter `bytes` is the heap that it takes
+///   BM_Score/PLANT                         the likelihood of all candidates alone, sample by sample
 ///   BM_Noise/PLANT/LAW                     draw, execute and remember under another law of the noise
 ///   BM_Effects/PLANT/COUNT                 the same with effects added to the law
 ///   BM_NaiveLoop/DRAWS/SAMPLES             the likelihood of the contact as a plain scalar loop with std::pow

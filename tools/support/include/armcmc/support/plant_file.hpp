@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "armcmc/plant/plant.hpp"
 #include "armcmc/plant/program.hpp"
@@ -16,6 +18,7 @@ struct PlantFile {
   PlantDescription base;  ///< Without the effects that the file uses.
   Plant plant;            ///< With them.
   PlantEffects effects;
+  std::vector<std::string> notes{};  ///< What may be a mistake, with its place.
 };
 
 /// Reads a plant file and understands it, effects that it uses included.
