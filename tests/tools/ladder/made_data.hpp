@@ -16,9 +16,22 @@ struct AxisSample {
   double t, q, v, a;
 };
 
-/// An axis q, v, a, F of 100 kg and 180 N s/m under a sum of three sines, 20 s at 100 Hz, whose force has `hidden` and
-/// a noise of 2 N on top. The last 30 % are kept apart.
-inline ladder::Dataset AxisData(const std::function<double(const AxisSample&)>& hidden, unsigned seed = 3) {
+/// A sum of three sines.
+inline AxisSample ThreeSines(double t) {
+  AxisSample s{t, 0.0, 0.0, 0.0};
+  const double amplitude[] = {0.05, 0.03, 0.01}, w[] = {1.7, 3.9, 8.3}, phase[] = {0.3, 2.0, 4.1};
+  for (int i = 0; i < 3; ++i) {
+    s.q += amplitude[i] * std::sin(w[i] * t + phase[i]);
+    s.v += amplitude[i] * w[i] * std::cos(w[i] * t + phase[i]);
+    s.a -= amplitude[i] * w[i] * w[i] * std::sin(w[i] * t + phase[i]);
+  }
+  return s;
+}
+
+/// An axis q, v, a, F of 100 kg and 180 N s/m that is moved for 20 s at 100 Hz, whose force has `hidden` and a noise of
+/// 2 N on top. The last 30 % are kept apart.
+inline ladder::Dataset AxisData(const std::function<double(const AxisSample&)>& hidden, unsigned seed = 3,
+                                AxisSample (*motion)(double t) = ThreeSines) {
   auto series = std::make_shared<identify::Series>();
   series->dt = 0.01;
   series->runs = {0};
@@ -27,13 +40,7 @@ inline ladder::Dataset AxisData(const std::function<double(const AxisSample&)>& 
   std::normal_distribution<double> noise(0.0, 2.0);
   ladder::Dataset data;
   for (int n = 0; n < 2000; ++n) {
-    AxisSample s{0.01 * n, 0.0, 0.0, 0.0};
-    const double amplitude[] = {0.05, 0.03, 0.01}, w[] = {1.7, 3.9, 8.3}, phase[] = {0.3, 2.0, 4.1};
-    for (int i = 0; i < 3; ++i) {
-      s.q += amplitude[i] * std::sin(w[i] * s.t + phase[i]);
-      s.v += amplitude[i] * w[i] * std::cos(w[i] * s.t + phase[i]);
-      s.a -= amplitude[i] * w[i] * w[i] * std::sin(w[i] * s.t + phase[i]);
-    }
+    const AxisSample s = motion(0.01 * n);
     series->t.push_back(s.t);
     series->signals[0].push_back(s.q);
     series->signals[1].push_back(s.v);

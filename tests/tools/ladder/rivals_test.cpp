@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "armcmc/ladder/features.hpp"
+#include "motion_rival.hpp"
 #include "tools/ladder/climb_rig.hpp"
 #include "tools/ladder/made_data.hpp"
 
@@ -137,6 +139,47 @@ TEST(Climb, RadiationIsNamedBeforeAnOffset) {
                                   RadiatorData(), RadiatorPlant());
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("radiation"));
   EXPECT_TRUE(ladder.complete);
+}
+
+/// To and fro at one frequency, over a range that grows.
+AxisSample ToAndFro(double t) {
+  constexpr double kW = 2.0, kGrows = 0.0004;  // rad/s, m/s
+  const double range = kGrows * (100.0 + t), sine = std::sin(kW * t), cosine = std::cos(kW * t);
+  return {t, range * sine, kGrows * sine + range * kW * cosine, 2.0 * kGrows * kW * cosine - range * kW * kW * sine};
+}
+
+/// A carriage without mass that is so moved, with hidden friction, a spring, a ripple, and a hum.
+Ladder ClimbRubbing(const std::vector<std::string>& effects, double hum) {
+  PlantDescription plant = test::AxisPlant();
+  plant.law = "Fv*v + off";
+  plant.parameters.erase(plant.parameters.begin());
+  const auto hidden = [hum](const AxisSample& s) {
+    return -100.0 * s.a + 20.0 * Sign(s.v) + 800.0 * s.q + 15.0 * std::sin(700.0 * s.q) + hum * std::sin(7.0 * s.t);
+  };
+  return ClimbWith(effects, test::AxisData(hidden, 3, ToAndFro), plant);
+}
+
+TEST(MotionRival, IsWhatRepeatsWithTheMotion) {
+  const Ladder ladder = ClimbRubbing({"periodic_disturbance"}, 0.0);
+  const Rung& rung = ladder.rungs[0];
+  EXPECT_THAT(NamesOf(rung), IsEmpty());
+  ASSERT_LT(rung.contenders[0].alone.folds, 0.5) << "it explains most of it";
+  const std::optional<Rival> rival = MotionRivalOf(rung.view, rung.base, rung.contenders[0]);
+  ASSERT_TRUE(rival);
+  EXPECT_EQ(rival->as_if, "the motion were its cause");
+}
+
+TEST(MotionRival, IsNoneOfAHumNorOfAnotherEffect) {
+  const Ladder ladder = ClimbRubbing({"periodic_disturbance", "coulomb_friction"}, 60.0);
+  const Rung& rung = ladder.rungs[0];
+  for (const Contender& c : rung.contenders)
+    EXPECT_FALSE(c.trial.judged && MotionRivalOf(rung.view, rung.base, c)) << c.candidate.entry->name;
+}
+
+TEST(Climb, AHumBesideTheMotionIsADisturbance) {
+  const Ladder ladder = ClimbRubbing({"periodic_disturbance", "coulomb_friction", "baseline_tilt"}, 60.0);
+  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("periodic_disturbance"));
+  EXPECT_NEAR(std::exp(ladder.rungs[0].leader().trial.fit.theta[4]), 7.0, 0.01);
 }
 
 /// The axis against a stop that its file puts at zero.

@@ -8,14 +8,15 @@
 #include <set>
 #include <utility>
 
-#include "armcmc/gap/blocks.hpp"
 #include "bent_law.hpp"
 #include "comparison.hpp"
+#include "confirmation.hpp"
 #include "constants.hpp"
 #include "curves.hpp"
 #include "derived_noise.hpp"
 #include "free_starts.hpp"
-#include "held_out.hpp"
+#include "motion_rival.hpp"
+#include "open_tie.hpp"
 #include "plain_rivals.hpp"
 #include "rung.hpp"
 #include "start_alone.hpp"
@@ -66,6 +67,8 @@ struct Rivals {
   BentLaw bent;
   PlainRivals plain;
   StartAlone start;
+  const View& view;
+  const Trial& base;
   Before before;
 
   /// @param exact  Nothing but noise is left, so that no curve of another shape can do better. A wrong constant, noise,
@@ -73,6 +76,7 @@ struct Rivals {
   [[nodiscard]] std::optional<Rival> Of(const Contender& c, double floor, bool exact, bool smaller_part) {
     std::optional<Rival> rival = constants.RivalOf(c);
     if (!rival) rival = start.RivalOf(c, floor);
+    if (!rival) rival = MotionRivalOf(view, base, c);
     if (!rival) rival = noise.RivalOf(c);
     if (!rival) rival = bent.RivalOf(c);
     if (!rival) rival = plain.RivalOf(c);
@@ -99,36 +103,6 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
                        rival->why);
     }
   }
-}
-
-/// Error of a name on the held-out data.
-struct KeptApart {
-  double before = 0.0, after = 0.0;  ///< Not finite if the simulation diverges.
-  bool agree = true;
-};
-
-/// Whether the second model is better in nearly every bootstrap sample of blocks of the rows.
-bool SurelyBetter(const WholeRun& first, const WholeRun& second, const std::vector<Eigen::Index>& rows) {
-  constexpr double kSurely = 0.99;
-  constexpr unsigned long long kSeed = 400;
-  if (rows.size() < static_cast<std::size_t>(gap::kNumBlocks)) return false;
-  const Eigen::VectorXd gain = gap::BlockSquares(first.error(rows)) - gap::BlockSquares(second.error(rows));
-  return gap::BlockBootstrap(kSeed).ProbabilityAbove(gain, 0.0) > kSurely;
-}
-
-/// Whether at least half of the gain in cross-validation is found there, too; or, where the effect acts less than
-/// elsewhere and noise is most of the error, surely half of what is not noise. True if no data were held out.
-/// @param gain   Fraction of the squared error of `before` that is removed in cross-validation.
-/// @param noise  Squared error that is noise.
-KeptApart AskedApart(const Dataset& data, const Trial& before, const Trial& after, double gain, double noise) {
-  constexpr double kAgain = 0.5;
-  const WholeRun first = RunWhole(data, before), second = RunWhole(data, after);
-  const std::vector<Eigen::Index> rows = HeldOutRows(data, first);
-  if (rows.empty()) return {};
-  const double was = FitOn(first, rows, 1.0).rmse, is = FitOn(second, rows, 1.0).rmse;
-  const double removed = was * was - is * is;
-  const bool all_of_it = removed > kAgain * (was * was - noise) && second.error.size() > 0;
-  return {was, is, removed > kAgain * gain * was * was || (all_of_it && SurelyBetter(first, second, rows))};
 }
 
 /// What a name is checked against.
@@ -253,6 +227,13 @@ struct AsGiven {
   std::vector<std::string> notes;
 };
 
+/// The ladder as it ends with a tie.
+struct AsTied {
+  Trial base;
+  View view;
+  std::vector<std::string> notes;
+};
+
 /// Returns to the constants of the file, since nothing was named with others either. Those others are what the misfit
 /// looks like if they explain all of it, or nothing else does.
 void GiveBackConstants(AsGiven given, Ladder* ladder, Trial* base) {
@@ -301,6 +282,8 @@ Ladder Climb(const ClimbRequest& request) {
   Trial start = base;            // of the first rung
   std::optional<AsGiven> given;  // the first rung, if it is repeated with other constants
   const std::vector<std::string> first_notes = ladder.notes;
+  std::optional<OpenTie> tied;
+  std::optional<AsTied> as_tied;  // if a rung is tried above the tie
   for (int r = 0; r < request.max_rungs; ++r) {
     const std::string which = "rung " + std::to_string(r + 1);
     const DataScales scales = ScalesOf(data, ladder.plant->description(), ladder.noise_floor);
@@ -336,6 +319,8 @@ Ladder Climb(const ClimbRequest& request) {
                      {ladder.plant, data, ladder.view, base, scales},
                      {ladder.plant, data, ladder.view, base, scales, rung.contenders},
                      {ladder.plant, data, ladder.view, base, scales},
+                     ladder.view,
+                     base,
                      {}}};
     Before& before = hearing.rivals.before;
     for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
@@ -361,6 +346,14 @@ Ladder Climb(const ClimbRequest& request) {
       TakeBack(ladder.rungs.size() - 1, &ladder, &base);
       break;
     }
+    // What is named above a tie must not depend on which of its effects is present.
+    if (tied && (!named || NamedAgain(ladder, rung) != nullptr ||
+                 !tied->Extend(data, ladder.view, scales, floor, families, *ladder.entries, rung))) {
+      base = std::move(as_tied->base);
+      ladder.view = std::move(as_tied->view);
+      ladder.notes = std::move(as_tied->notes);
+      break;
+    }
     if (const Contender* second = NamedAgain(ladder, rung)) {
       ladder.notes.push_back(second->candidate.entry->name +
                              " was not named: one alone does not do, and two of them in one place are pieces of "
@@ -371,12 +364,23 @@ Ladder Climb(const ClimbRequest& request) {
     if (named && open != nullptr) ladder.rungs.back().open = false;
     ladder.rungs.push_back(std::move(rung));
     if (!named) break;
-    DropSuperseded(data, &ladder);
+    if (tied)
+      tied->Settle(&ladder);
+    else
+      DropSuperseded(data, &ladder);
     const Contender& leader = ladder.rungs.back().leader();
     ladder.plant = leader.candidate.plant;
     families.insert(leader.candidate.entry->family);
     base = leader.trial;
-    if (tie) break;
+    if (tied && tied->decided()) tied.reset();
+    if (tie && (tied || ladder.rungs.back().open)) break;
+    if (tie) tied.emplace(ladder.rungs.size() - 1, ladder.rungs.back());
+    if (tied) {
+      if (!LeavesMore(ladder.view, base, floor)) break;
+      // Nothing simple is left if no function of the signals explains most of it.
+      if (tie && !(FlexibleGain(ladder.view, base) > kLargerPart)) break;
+      as_tied = AsTied{base, ladder.view, ladder.notes};
+    }
   }
   if (!ladder.rungs.empty() && ladder.rungs.back().open)  // the limit on rungs was reached
     TakeBack(ladder.rungs.size() - 1, &ladder, &base);

@@ -103,6 +103,10 @@ bool BetterEverywhere(const Contender& a, const Contender& b) {
   return a.alone.folds < b.alone.folds && a.alone.blocks < b.alone.blocks && a.alone.regions < b.alone.regions;
 }
 
+bool ExtrapolatesBetter(const Contender& a, const Contender& b) {
+  return a.alone.blocks < b.alone.blocks && a.alone.regions < b.alone.regions;
+}
+
 double FlexibleGain(const View& view, const Trial& trial) {
   return 1.0 - FoldSquares(view, trial.with_flexible) / (FoldSquares(view, trial.alone) + 1e-300);
 }

@@ -20,6 +20,10 @@ inline constexpr double kExplainsIt = 1.05;  // squared error of a rival that ex
 /// Whether `a` has less error than `b` in folds, blocks and regions.
 [[nodiscard]] bool BetterEverywhere(const Contender& a, const Contender& b);
 
+/// Whether `a` has less error than `b` on long blocks and on regions, where short segments between fitted ones may
+/// prefer `b`.
+[[nodiscard]] bool ExtrapolatesBetter(const Contender& a, const Contender& b);
+
 /// Share of the remaining squared error that a flexible function removes, from the folds.
 [[nodiscard]] double FlexibleGain(const View& view, const Trial& trial);
 

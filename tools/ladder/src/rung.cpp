@@ -149,12 +149,6 @@ double ShareOfFirst(const Rung& rung) {
   return static_cast<double>(wins) / kBootstrap;
 }
 
-/// Whether `a` has less error than `b` on long blocks and on regions, where short segments between fitted ones may
-/// prefer `b`.
-bool ExtrapolatesBetter(const Contender& a, const Contender& b) {
-  return a.alone.blocks < b.alone.blocks && a.alone.regions < b.alone.regions;
-}
-
 /// Fraction of the bootstrap samples in which a family of those named has the smallest error of all that were compared.
 double WinShare(const Rung& rung) {
   double share = 0.0;
@@ -361,7 +355,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     return std::any_of(tied.begin(), tied.end(),
                        [&](std::size_t k) { return IsTheSameWithMore(view, rung->base, all[i], all[k]); });
   });
-  // The tie is final, and no later rung refines it: each is given in its best form, the best prediction first.
+  // No later rung refines what is tied: each is given in its best form, the best prediction first.
   if (rung->named.size() > 1)
     for (std::size_t& named : rung->named)
       for (std::size_t i = 0; i < all.size(); ++i)
@@ -377,6 +371,22 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
   }
   // A simpler effect is preferred to larger ones that are better; those do not count as rivals.
   rung->probability = rung->named.size() > 1 ? ShareOfFirst(*rung) : all[leader].gain_share;
+}
+
+std::vector<std::size_t> StillTied(const Rung& rung) {
+  const std::vector<Contender>& all = rung.contenders;
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return all[a].alone.folds < all[b].alone.folds; });
+  const Contender& best = all[order.front()];
+  std::erase_if(order, [&](std::size_t i) {
+    if (&all[i] == &best) return false;
+    const bool kin = AreKin(*all[i].candidate.entry, *best.candidate.entry);
+    const bool as_much = all[i].alone.folds < kLeavesAsMuch * best.alone.folds || ExtrapolatesBetter(all[i], best);
+    return !(kin && as_much) && all[i].win_share <= kTie;
+  });
+  return order;
 }
 
 void Sort(Rung* rung) {

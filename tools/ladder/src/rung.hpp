@@ -34,6 +34,10 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
 /// @param open  Also accept effects that remove less than half of the error.
 void Name(const View& view, double floor, bool open, Rung* rung);
 
+/// The contenders that the best one of them does not exclude by rule 3 of Climb(): its kin, and families that win one
+/// bootstrap sample in twenty; the best first. All have to be judged.
+[[nodiscard]] std::vector<std::size_t> StillTied(const Rung& rung);
+
 /// Whether one of them lists the other as `kin`.
 [[nodiscard]] bool AreKin(const EffectEntry& a, const EffectEntry& b);
 

@@ -102,9 +102,12 @@ struct ClimbRequest {
 ///    both on blocks and on regions, if its own formula is not exact; with kin of as many parameters that gains as much
 ///    up to a thousandth, which is what integrations of a plant differ by; with a family of as few parameters that wins
 ///    one bootstrap sample in twenty; and with a larger effect of another family that leaves less than half of the
-///    error and is better in every kind of group. Nothing is named after a tie, since it would depend on an undecided
-///    choice; each tied effect is therefore shown in the form that predicts best. A provisional name, or tie, is given
-///    only if its families win half of the bootstrap samples; otherwise too many effects explain the same.
+///    error and is better in every kind of group. Each tied effect is shown in the form that predicts best. What a tie
+///    leaves is examined on the next rung if a flexible function of the signals explains more than half of it: an
+///    effect is named there only if it passes rule 1 with every tied effect in the model, since its name must not
+///    depend on an undecided choice; and with it in the model the tie may be decided. A second tie ends the ladder. A
+///    provisional name, or tie, is given only if its families win half of the bootstrap samples; otherwise too many
+///    effects explain the same.
 /// 4. Unnamed rivals. If more than noise remains, an effect is ruled out by a curve: a part of the law that varies with
 ///    one quantity, in a shape that no formula of the catalogue has, and leaves less than half of the error, is better
 ///    on blocks, is no worse on regions, and cannot represent the effect. A curve can represent an effect without
@@ -116,6 +119,7 @@ struct ClimbRequest {
 ///    as much, or if the response to its free start values does, so that nothing shows how it responds to the motion.
 ///    An effect that depends on nothing but time, such as an offset, is ruled out if a parameter that varies with a
 ///    signal or state by at most a third explains as much: over a narrow range a law that is bent looks like an offset.
+///    One at a frequency is also ruled out if a function of the motion predicts more than half of it.
 ///    Any effect is ruled out if a law whose modes change elsewhere explains as much, or an output whose zero is
 ///    elsewhere or drifts; and one that remembers, or depends on nothing but time, if a parameter that drifts does.
 ///    These are no rivals where the catalogue has an effect that does the same, since that competes by its name. And
