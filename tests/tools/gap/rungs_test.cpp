@@ -82,7 +82,7 @@ TEST(Rungs, OfATieAreWhatIsSureAndThenWhatIsOpen) {
     EXPECT_EQ(finding.set.size(), sets.size());
     finding.best = finding.set.front();
     Result result;
-    TellRungs(*equation, heldout, diagnosis, &result);
+    WriteRungs(*equation, heldout, diagnosis, &result);
     Sets rungs;
     for (const LadderRung& rung : result.ladder) rungs.push_back(rung.effects);
     return rungs;

@@ -50,7 +50,7 @@ bool AnyProvisional(const Result& result, const Names& names) {
 
 }  // namespace
 
-void TellRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis& diagnosis, Result* result) {
+void WriteRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis& diagnosis, Result* result) {
   const Finding& finding = diagnosis.finding;
   result->complete = finding.verdict == Verdict::kNone || (!finding.set.empty() && !finding.approximate);
   result->remainder.share = result->complete ? 0.0
@@ -63,7 +63,7 @@ void TellRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis
   }
   if (finding.set.empty()) return;
 
-  const auto tell = [&](Names effects, const CandidatePtr& with) {
+  const auto write = [&](Names effects, const CandidatePtr& with) {
     const GapSummary gap = ShowGap(equation, heldout, *diagnosis.bootstrap, finding.base->fit, with->fit, nullptr);
     LadderRung rung;
     rung.effects = std::move(effects);
@@ -77,25 +77,25 @@ void TellRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis
   // An effect of every hypothesis is as probable as all of them together.
   double together = 0.0;
   for (const CandidatePtr& candidate : finding.set) together += candidate->probability;
-  Names told;
+  Names named;
   const Names sure = Common(finding.set);
   const bool tie = finding.set.size() > 1;
-  while (told.size() + (tie ? 0 : 1) < sure.size()) {
-    const CandidatePtr next = Next(finding, told, sure);
+  while (named.size() + (tie ? 0 : 1) < sure.size()) {
+    const CandidatePtr next = Next(finding, named, sure);
     if (next == nullptr) break;
-    tell(Without(next->names(), told), next);
+    write(Without(next->names(), named), next);
     result->ladder.back().probability = together;
-    told = next->names();
+    named = next->names();
   }
   // If it is open whether anything more is missing, the ladder ends with the certain effects.
-  if (Without(finding.best->names(), told).empty()) return;
+  if (Without(finding.best->names(), named).empty()) return;
   Names last;
   for (const CandidatePtr& candidate : finding.set) {
-    const std::string rest = Joined(Without(candidate->names(), told), " + ");
+    const std::string rest = Joined(Without(candidate->names(), named), " + ");
     if (!rest.empty() && std::find(last.begin(), last.end(), rest) == last.end()) last.push_back(rest);
   }
-  tell(std::move(last), finding.best);
-  result->ladder.back().provisional = AnyProvisional(*result, Without(finding.best->names(), told));
+  write(std::move(last), finding.best);
+  result->ladder.back().provisional = AnyProvisional(*result, Without(finding.best->names(), named));
 }
 
 }  // namespace armcmc::gap

@@ -9,6 +9,6 @@ namespace armcmc::gap {
 /// Writes what was found as a ladder: of several effects the one that explains most by itself first, then what the
 /// others take off; behind them whether anything is left. Of a plant with several equations the one that is diagnosed.
 /// @pre The gap of the result is filled in.
-void TellRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis& diagnosis, Result* result);
+void WriteRungs(const Equation& equation, const HeldOut& heldout, const Diagnosis& diagnosis, Result* result);
 
 }  // namespace armcmc::gap

@@ -84,11 +84,11 @@ void Search::DropUnsure(Candidates* good) const {
 
 void Search::TakeBack(Finding* finding) const {
   constexpr double kWorthTelling = 0.01;
-  const auto told = [&](const CandidatePtr& c) {
+  const auto reported = [&](const CandidatePtr& c) {
     return c == finding->best || c->probability >= kWorthTelling ||
            std::find(finding->set.begin(), finding->set.end(), c) != finding->set.end();
   };
-  std::erase_if(finding->tried, [&](const CandidatePtr& c) { return c->granted && !told(c); });
+  std::erase_if(finding->tried, [&](const CandidatePtr& c) { return c->granted && !reported(c); });
   for (const CandidatePtr& candidate : finding->tried) {
     if (!candidate->granted) continue;
     // Coordinates: base, what the model had before, the grant, the effects.

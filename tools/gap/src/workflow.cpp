@@ -380,7 +380,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
       result.parameters.push_back({first[i], second[i]});
     const Signals all = equation->PrepareLike(parts.shown, analysis.signals.window, analysis.signals);
     result.figures = MakeFigures(*equation, all, analysis, before, after);
-    if (can_name) TellRungs(*equation, heldout, diagnosis, &result);
+    if (can_name) WriteRungs(*equation, heldout, diagnosis, &result);
     // A gap in another equation, or one that these data could not have shown, remains as well.
     const std::vector<const EquationDiagnosis*> others = plant.Others();
     result.complete = result.complete && mute == plant.equations.end() &&

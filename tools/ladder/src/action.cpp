@@ -46,7 +46,7 @@ std::optional<Equations> ActionOf(const Candidate& effect) {
 
 }  // namespace
 
-bool Says(const EffectForm& form, const std::string& name) {
+bool Mentions(const EffectForm& form, const std::string& name) {
   const std::regex whole("\\b" + name + "\\b");
   const auto says = [&whole](const std::string& text) { return std::regex_search(text, whole); };
   return std::any_of(form.terms.begin(), form.terms.end(), [&](const EffectTerm& t) { return says(t.formula); }) ||
@@ -71,10 +71,10 @@ bool RespondsToNothing(const Candidate& effect) {
 
 bool Reads(const Candidate& effect, const std::string& name) {
   const EffectForm& form = effect.form();
-  if (name == "t") return Says(form, name);
+  if (name == "t") return Mentions(form, name);
   return std::any_of(form.needs.begin(), form.needs.end(), [&](const EffectNeed& need) {
     // A state may be needed only because the effect is added to its rate.
-    return need.kind != "parameter" && effect.binding.symbols.at(need.name) == name && Says(form, need.name);
+    return need.kind != "parameter" && effect.binding.symbols.at(need.name) == name && Mentions(form, need.name);
   });
 }
 
@@ -90,7 +90,7 @@ bool Remembers(const Candidate& effect) {
   const EffectForm& form = effect.form();
   return !form.states.empty() ||
          std::any_of(expression::kOps.begin(), expression::kOps.end(), [&](const expression::OpInfo& op) {
-           return op.memory && op.function && Says(form, std::string(op.name));
+           return op.memory && op.function && Mentions(form, std::string(op.name));
          });
 }
 

@@ -18,7 +18,7 @@ namespace armcmc::ladder {
 [[nodiscard]] bool Remembers(const Candidate& effect);
 
 /// Whether a name occurs in the formulas of an effect. A parameter that does not occur says only where a state begins.
-[[nodiscard]] bool Says(const EffectForm& form, const std::string& name);
+[[nodiscard]] bool Mentions(const EffectForm& form, const std::string& name);
 
 /// Whether it acts the same wherever the plant is: an offset, or what depends on time alone.
 [[nodiscard]] bool RespondsToNothing(const Candidate& effect);

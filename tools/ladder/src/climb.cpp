@@ -106,7 +106,7 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
 }
 
 /// What a name is checked against.
-struct Hearing {
+struct NameChecks {
   const Dataset& data;  ///< All of it.
   const View& view;
   double floor;
@@ -115,14 +115,14 @@ struct Hearing {
 };
 
 /// Gives a name unless a rival rules it out or the held-out data contradict it.
-void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* notes) {
+void NameAndConfirm(NameChecks* checks, Rung* rung, std::vector<std::string>* notes) {
   double gained = 0.0;  // most of what is withdrawn
   for (bool contradicted = false;;) {
-    NameOne(hearing->view, hearing->floor, false, &hearing->rivals, rung, notes);
+    NameOne(checks->view, checks->floor, false, &checks->rivals, rung, notes);
     // Of two effects of the same size neither explains the larger part: the first may be named if the next completes
     // it.
-    if (rung->named.empty() && hearing->open == nullptr && !contradicted) {
-      NameOne(hearing->view, hearing->floor, true, &hearing->rivals, rung, notes);
+    if (rung->named.empty() && checks->open == nullptr && !contradicted) {
+      NameOne(checks->view, checks->floor, true, &checks->rivals, rung, notes);
       rung->open = !rung->named.empty();
     }
     if (rung->named.empty()) return;
@@ -134,10 +134,10 @@ void NameAndConfirm(Hearing* hearing, Rung* rung, std::vector<std::string>* note
       rung->named.clear();
       return;
     }
-    const Rung* const open = hearing->open;
+    const Rung* const open = checks->open;
     const double left = leader.alone.folds * (open != nullptr ? open->leader().alone.folds : 1.0);
-    const KeptApart apart = AskedApart(hearing->data, open != nullptr ? open->base : rung->base, leader.trial,
-                                       1.0 - left, NoiseIn(hearing->view, leader.trial, hearing->floor));
+    const HeldOutErrors apart = ConfirmOnHeldOut(checks->data, open != nullptr ? open->base : rung->base, leader.trial,
+                                                 1.0 - left, NoiseIn(checks->view, leader.trial, checks->floor));
     if (apart.agree) return;
     if (!std::isfinite(apart.after) && open == nullptr) {
       rung->open = true;
@@ -309,26 +309,26 @@ Ladder Climb(const ClimbRequest& request) {
     const Rung* const open = !ladder.rungs.empty() && ladder.rungs.back().open ? &ladder.rungs.back() : nullptr;
     Judge(ladder.view, floor, families, open != nullptr ? open->leader().alone.folds : 1.0, &rung);
     Sort(&rung);
-    Hearing hearing{request.data,
-                    ladder.view,
-                    floor,
-                    open,
-                    {{own, ladder.plant, data, ladder.view, base, scales},
-                     {ladder.plant, data, ladder.view, base},
-                     {ladder.plant, data, ladder.view, base, scales},
-                     {ladder.plant, data, ladder.view, base, scales},
-                     {ladder.plant, data, ladder.view, base, scales, rung.contenders},
-                     {ladder.plant, data, ladder.view, base, scales},
-                     ladder.view,
-                     base,
-                     {}}};
-    Before& before = hearing.rivals.before;
+    NameChecks checks{request.data,
+                      ladder.view,
+                      floor,
+                      open,
+                      {{own, ladder.plant, data, ladder.view, base, scales},
+                       {ladder.plant, data, ladder.view, base},
+                       {ladder.plant, data, ladder.view, base, scales},
+                       {ladder.plant, data, ladder.view, base, scales},
+                       {ladder.plant, data, ladder.view, base, scales, rung.contenders},
+                       {ladder.plant, data, ladder.view, base, scales},
+                       ladder.view,
+                       base,
+                       {}}};
+    Before& before = checks.rivals.before;
     for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
     if (r == 0) start = base;
     before.explained = std::pow(start.fit.error_sd / base.fit.error_sd, 2) - 1.0;
-    NameAndConfirm(&hearing, &rung, &ladder.notes);
+    NameAndConfirm(&checks, &rung, &ladder.notes);
     if (r == 0 && rung.named.empty() && rung.as_if.empty() && LeavesMore(ladder.view, base, floor))
-      rung.as_if = hearing.rivals.curves.Best();
+      rung.as_if = checks.rivals.curves.Best();
     const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
     if (r == 0 && !named && !given && LeavesMore(ladder.view, base, floor)) {
       progress.Tell(which + ": fitting constants", static_cast<double>(r) / request.max_rungs);

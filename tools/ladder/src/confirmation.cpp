@@ -20,7 +20,8 @@ bool SurelyBetter(const WholeRun& first, const WholeRun& second, const std::vect
 
 }  // namespace
 
-KeptApart AskedApart(const Dataset& data, const Trial& before, const Trial& after, double gain, double noise) {
+HeldOutErrors ConfirmOnHeldOut(const Dataset& data, const Trial& before, const Trial& after, double gain,
+                               double noise) {
   constexpr double kAgain = 0.5;
   const WholeRun first = RunWhole(data, before), second = RunWhole(data, after);
   const std::vector<Eigen::Index> rows = HeldOutRows(data, first);

@@ -72,7 +72,7 @@ std::optional<FreeConstants> WithFreeConstants(const PlantDescription& own, cons
 std::string AsIf(const FreeConstants& free, const Trial& trial, const std::vector<std::uint8_t>& rows) {
   constexpr double kSigmas = 2.0;
   const VectorXd sd = identify::Covariance(*trial.model, rows, trial.fit).diagonal().cwiseSqrt();
-  std::vector<std::string> told, all;
+  std::vector<std::string> sure, all;
   for (std::size_t k = 0; k < free.candidates.size(); ++k) {
     const auto d = static_cast<Index>(free.candidates[k].first_fitted());
     const double off = trial.fit.theta[d], value = free.constants[k].value;
@@ -80,13 +80,13 @@ std::string AsIf(const FreeConstants& free, const Trial& trial, const std::vecto
     std::snprintf(one, sizeof(one), "%s were %.4g instead of %.4g", free.constants[k].name.c_str(), value * (1.0 + off),
                   value);
     all.emplace_back(one);
-    if (std::abs(off) > kSigmas * sd[d]) told.emplace_back(one);
+    if (std::abs(off) > kSigmas * sd[d]) sure.emplace_back(one);
   }
-  if (told.empty()) told = all;
+  if (sure.empty()) sure = all;
   std::string text;
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    if (k > 0) text += k + 1 < told.size() ? ", " : " and ";
-    text += told[k];
+  for (std::size_t k = 0; k < sure.size(); ++k) {
+    if (k > 0) text += k + 1 < sure.size() ? ", " : " and ";
+    text += sure[k];
   }
   return text;
 }

@@ -51,23 +51,23 @@ std::vector<std::string> NamesBefore(const Ladder& ladder, std::size_t rung) {
 }
 
 /// Writes the result from the ladder.
-class Teller {
+class ResultWriter {
  public:
-  Teller(const DiagnosisRequest& request, const Dataset& data, const Ladder& ladder, gap::Result* result)
+  ResultWriter(const DiagnosisRequest& request, const Dataset& data, const Ladder& ladder, gap::Result* result)
       : request_(request), data_(data), ladder_(ladder), result_(*result), training_(ladder.view.data.training) {}
 
-  void TellAll() {
-    TellOrigin();
-    TellGap();
-    TellLadder();
-    TellCandidates();
-    TellParameters();
-    TellRemainder();
-    TellVerdict();
+  void WriteAll() {
+    WriteOrigin();
+    WriteGap();
+    WriteLadder();
+    WriteCandidates();
+    WriteParameters();
+    WriteRemainder();
+    WriteVerdict();
   }
 
  private:
-  void TellOrigin() {
+  void WriteOrigin() {
     const support::Recording& recording = request_.recording;
     result_.version = support::Version();
     result_.model = recording.plant;
@@ -84,7 +84,7 @@ class Teller {
       result_.published.push_back({p.what, p.value, p.source});
   }
 
-  void TellGap() {
+  void WriteGap() {
     before_ = RunWhole(data_, ladder_.base);
     after_ = RunWhole(data_, ladder_.final_trial);
     rows_ = HeldOutRows(data_, before_);
@@ -96,8 +96,8 @@ class Teller {
     gap.unit = OutputUnit();
     gap.before = FitOn(before_, rows_, ladder_.base.fit.error_sd);
     gap.after = FitOn(after_, rows_, ladder_.final_trial.fit.error_sd);
-    TellNoiseFloor();
-    complete_ = ladder_.complete && !KeptApartContradict();
+    WriteNoiseFloor();
+    complete_ = ladder_.complete && !HeldOutContradicts();
     gap.closed_fraction = Closed(gap.after.rmse);
     CloseInterval(rows_, before_, after_, request_.seed, &gap);
     gap.stretches = StretchesOf(data_, rows_, before_, after_);
@@ -108,7 +108,7 @@ class Teller {
     result_.relative_after = gap.after.rmse / size;
   }
 
-  void TellNoiseFloor() {
+  void WriteNoiseFloor() {
     const double left = ladder_.final_trial.fit.error_sd * std::sqrt(std::max(0.0, 1.0 - ladder_.flexible_gain));
     const double differences = ladder_.noise_floor;
     std::string from;
@@ -132,7 +132,7 @@ class Teller {
   }
 
   /// Whether the errors on the held-out rows are far above the noise, although the model explains the training rows.
-  bool KeptApartContradict() {
+  bool HeldOutContradicts() {
     const gap::GapSummary& gap = result_.gap;
     if (!ladder_.complete || HeldOutRows(data_, before_).empty()) return false;
     if (!(gap.after.rmse > kContradicted * gap.noise_floor)) return false;
@@ -143,7 +143,7 @@ class Teller {
   }
 
   /// Says which errors other constants alone would leave, if effects were named as well.
-  void TellConstants() {
+  void WriteConstants() {
     if (!ladder_.free_constants) return;
     const double alone = FitOn(RunWhole(data_, ladder_.rungs.front().base), rows_, 0.0).rmse;
     result_.notes.push_back(
@@ -152,32 +152,32 @@ class Teller {
         Number(result_.gap.before.rmse) + " to " + Number(alone));
   }
 
-  void TellLadder() {
-    TellConstants();
+  void WriteLadder() {
+    WriteConstants();
     for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
       const Rung& rung = ladder_.rungs[r];
       if (rung.named.empty()) continue;
       const Contender& leader = rung.leader();
-      gap::LadderRung told;
-      for (const std::size_t i : rung.named) told.effects.push_back(NameOf(rung.contenders[i]));
+      gap::LadderRung entry;
+      for (const std::size_t i : rung.named) entry.effects.push_back(NameOf(rung.contenders[i]));
       const WholeRun run = RunWhole(data_, leader.trial);
-      told.heldout_error = FitOn(run, rows_, leader.trial.fit.error_sd).rmse;
-      if (!std::isfinite(told.heldout_error)) {  // that of the last model that does not diverge
-        told.heldout_error = result_.ladder.empty() ? result_.gap.before.rmse : result_.ladder.back().heldout_error;
+      entry.heldout_error = FitOn(run, rows_, leader.trial.fit.error_sd).rmse;
+      if (!std::isfinite(entry.heldout_error)) {  // that of the last model that does not diverge
+        entry.heldout_error = result_.ladder.empty() ? result_.gap.before.rmse : result_.ladder.back().heldout_error;
         result_.notes.push_back(leader.candidate.entry->name +
                                 " alone diverges on held-out data: named because of what follows");
       }
-      told.closed_fraction = Closed(told.heldout_error);
-      told.probability = rung.probability;
-      told.provisional = rung.provisional;
-      told.remainder_ratio = leader.trial.fit.error_sd / std::max(result_.gap.noise_floor, 1e-300);
+      entry.closed_fraction = Closed(entry.heldout_error);
+      entry.probability = rung.probability;
+      entry.provisional = rung.provisional;
+      entry.remainder_ratio = leader.trial.fit.error_sd / std::max(result_.gap.noise_floor, 1e-300);
       const Estimated all = Estimates(leader.trial, training_);
       for (std::size_t d = leader.candidate.first_fitted(); d < all.parameters.size(); ++d)
         if (const ParameterEstimate& p = all.parameters[d]; p.confounded_with.empty())
-          told.parameters.push_back(p.name + " = " + WithSd(p.mean, p.sd, p.unit));
+          entry.parameters.push_back(p.name + " = " + WithSd(p.mean, p.sd, p.unit));
       for (const gap::Combination& c : all.determined)
-        told.parameters.push_back(c.text + " = " + WithSd(c.value, c.sd, c.unit));
-      result_.ladder.push_back(told);
+        entry.parameters.push_back(c.text + " = " + WithSd(c.value, c.sd, c.unit));
+      result_.ladder.push_back(entry);
       AddFinding(leader, rung);
     }
   }
@@ -199,14 +199,14 @@ class Teller {
     result_.effects.push_back(std::move(finding));
   }
 
-  void TellCandidates() {
+  void WriteCandidates() {
     for (std::size_t r = 0; r < ladder_.rungs.size(); ++r) {
       const Rung& rung = ladder_.rungs[r];
       const std::map<std::string, double> shares = SharesOf(rung);
       const auto active_rows = static_cast<double>(ladder_.view.active_rows.size());
-      std::set<std::string> told;
+      std::set<std::string> written;
       for (const Contender& c : rung.contenders) {
-        if (!c.trial.judged || !told.insert(NameOf(c)).second) continue;
+        if (!c.trial.judged || !written.insert(NameOf(c)).second) continue;
         gap::CandidateScore score;
         score.effects = NamesBefore(ladder_, r);
         score.effects.push_back(NameOf(c));
@@ -219,7 +219,7 @@ class Teller {
     }
   }
 
-  void TellParameters() {
+  void WriteParameters() {
     const Estimated before = Estimates(ladder_.base, training_);
     const Estimated after = Estimates(ladder_.final_trial, training_);
     for (std::size_t d = 0; d < before.parameters.size(); ++d)
@@ -227,7 +227,7 @@ class Teller {
     result_.determined = after.determined;
   }
 
-  void TellRemainder() {
+  void WriteRemainder() {
     const std::vector<Feature> features = FeaturesOf(*before_.model, ladder_.base.fit.theta);
     std::vector<Index> rows;
     const std::size_t every = std::max<std::size_t>(1, data_.training.size() / 4000);
@@ -256,7 +256,7 @@ class Teller {
                                   plant.signals[static_cast<std::size_t>(request_.plant->plant.output())]);
   }
 
-  void TellVerdict() {
+  void WriteVerdict() {
     const std::size_t named = NumNamed(ladder_);
     const Rung* first = named > 0 ? &ladder_.rungs.front() : nullptr;
     if (first != nullptr) {
@@ -371,7 +371,7 @@ std::size_t NumNamed(const Ladder& ladder) {
 
 void Tell(const DiagnosisRequest& request, const Dataset& data, Diagnosis* diagnosis) {
   diagnosis->result = {};
-  Teller(request, data, diagnosis->ladder, &diagnosis->result).TellAll();
+  ResultWriter(request, data, diagnosis->ladder, &diagnosis->result).WriteAll();
 }
 
 }  // namespace armcmc::ladder

@@ -37,13 +37,13 @@ std::string Reason(const std::vector<const Candidate*>& copies) {
 }  // namespace
 
 std::string WhyRepeated(const Ladder& ladder) {
-  std::vector<const EffectEntry*> told;
+  std::vector<const EffectEntry*> explained;
   std::string words;
   for (const Rung& first : ladder.rungs) {
     if (first.named.empty()) continue;
     const EffectEntry* entry = first.leader().candidate.entry;
-    if (std::find(told.begin(), told.end(), entry) != told.end()) continue;
-    told.push_back(entry);
+    if (std::find(explained.begin(), explained.end(), entry) != explained.end()) continue;
+    explained.push_back(entry);
     std::vector<const Candidate*> copies;
     for (const Rung& rung : ladder.rungs)
       if (!rung.named.empty() && rung.leader().candidate.entry == entry) copies.push_back(&rung.leader().candidate);

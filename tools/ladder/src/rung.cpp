@@ -61,7 +61,7 @@ bool OscillatesNot(const Contender& c) {
 /// Whether the data distinguish some amplitude of an effect from zero, with everything else fixed. If they do not, as
 /// when a friction never slides or a play is never crossed, the effect acts only through its limit, and that is another
 /// effect.
-bool IsTold(const View& view, const Contender& c) {
+bool IsDetermined(const View& view, const Contender& c) {
   constexpr double kSigmas = 2.0, kSingular = 1e-10;
   const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
   const auto first = static_cast<Eigen::Index>(c.candidate.first_fitted());
@@ -299,8 +299,8 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
     const bool survives = below(kWithFlexible) >= 2 || (below(kFarWithFlexible) >= 1 && below(1.0) == 3);
-    c.earned =
-        gains && elsewhere && survives && !OscillatesNot(c) && IsTold(view, c) && !WorseThanConstant(view, c.trial);
+    c.earned = gains && elsewhere && survives && !OscillatesNot(c) && IsDetermined(view, c) &&
+               !WorseThanConstant(view, c.trial);
   }
 }
 

@@ -38,7 +38,7 @@ VectorXd AtRest(const Contender& c) {
   const EffectForm& form = c.candidate.form();
   for (std::size_t p = 0; p < form.parameters.size(); ++p) {
     const auto d = static_cast<Index>(c.candidate.first_fitted() + p);
-    if (!Says(form, form.parameters[p].name)) theta[d] = centre[d];
+    if (!Mentions(form, form.parameters[p].name)) theta[d] = centre[d];
   }
   return theta;
 }

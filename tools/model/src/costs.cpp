@@ -93,8 +93,8 @@ std::optional<Step> TimeSteps(const std::shared_ptr<const PlantProgram>& program
 std::string BetweenText(const std::shared_ptr<const PlantProgram>& program,
                         const std::shared_ptr<const support::Recording>& recording) {
   constexpr double kWorthSaying = 20.0;  // nats
-  const std::optional<Step> told = program->states().size() > 0 ? TimeSteps(program, recording) : std::optional<Step>();
-  if (!told) return "";
+  const std::optional<Step> own = program->states().size() > 0 ? TimeSteps(program, recording) : std::optional<Step>();
+  if (!own) return "";
   std::string text;
   const PlantDescription& description = program->plant().description();
   for (std::size_t s = 0; s < description.signals.size(); ++s) {
@@ -106,7 +106,7 @@ std::string BetweenText(const std::shared_ptr<const PlantProgram>& program,
       if (std::exchange(other.signals[s].between, between) == between) continue;
       const std::optional<Step> step =
           TimeSteps(std::make_shared<const PlantProgram>(std::make_shared<const Plant>(std::move(other))), recording);
-      const double more = step ? step->log_evidence - told->log_evidence : 0.0;
+      const double more = step ? step->log_evidence - own->log_evidence : 0.0;
       if (!(more > most)) continue;
       best = between;
       most = more;
