@@ -47,6 +47,16 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
   from->weight = 0.0;
 }
 
+Drift::Filter Drift::JointOf(const Bank& bank, Part part) noexcept {
+  Filter joint;
+  for (std::size_t i = 0; i < bank.size(); ++i) {
+    if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
+    Filter f = bank[i];
+    Merge(&f, &joint);
+  }
+  return joint;
+}
+
 void Drift::GrowOlder() noexcept {
   // From the oldest on, so that none moves by two generations.
   for (std::size_t g = kMergeAfter.size(); g-- > 0;) {
@@ -56,42 +66,43 @@ void Drift::GrowOlder() noexcept {
   }
 }
 
-void Drift::AddNewcomers(double share) noexcept {
+void Drift::AddNewcomers(double elapsed_s) noexcept {
   const Moments all = MomentsOf(predicted_, Part::kWhole);
-  for (Filter& f : predicted_) f.weight *= 1.0 - share;
-  // Starts anywhere in the bank, with a rate from the law of the hypothesis.
+  const Moments drifting = MomentsOf(predicted_, Part::kDrift);
+  const double drift_share = 1.0 - hypotheses_[0].prior;
+  const double kept = std::exp(-kSwitching * elapsed_s);
+  const double none_began = std::exp(-kSwitching * elapsed_s * drift_share);
+  const double straight = std::exp(-kTurning * elapsed_s);
+  for (std::size_t i = 0; i < predicted_.size(); ++i)
+    predicted_[i].weight *= IsOf(Part::kDrift, i) ? kept * straight : kept;
   for (std::size_t h = 0; h < kHypotheses; ++h) {
-    Filter fresh{.weight = share * hypotheses_[h].prior * all.weight,
-                 .u = all.mean,
-                 .w = ParamVector::Zero(dim_),
-                 .uu = all.covariance,
-                 .uw = ParamMatrix::Zero(dim_, dim_),
-                 .ww = ParamMatrix::Identity(dim_, dim_)};
-    fresh.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
-    Merge(&fresh, &predicted_[h]);
+    const auto add = [&](double weight, const Moments& from) noexcept ARMCMC_NONBLOCKING {
+      Filter fresh{.weight = weight,
+                   .u = from.mean,
+                   .w = ParamVector::Zero(dim_),
+                   .uu = from.covariance,
+                   .uw = ParamMatrix::Zero(dim_, dim_),
+                   .ww = ParamMatrix::Identity(dim_, dim_)};
+      fresh.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+      Merge(&fresh, &predicted_[h]);
+    };
+    // Starts anywhere in the bank.
+    const double share = h == 0 ? none_began - kept : (1.0 - none_began) * hypotheses_[h].prior / drift_share;
+    add(share * all.weight, all);
+    if (h > 0 && drifting.weight > 0.0)
+      add(kept * (1.0 - straight) * hypotheses_[h].prior / drift_share * drifting.weight, drifting);
   }
 }
 
-void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
+void Drift::Propagate(double elapsed_s, Filter* filter) const noexcept {
   Filter& f = *filter;
-  const double speed = law.rate * law.rate;
-  const double t = law.persistence;
-  const double phi = std::exp(-elapsed_s / t);
-  const double b = t * (1.0 - phi);
-  const double noise_w = speed * (1.0 - phi * phi);
-  const double noise_uw = speed * t * (1.0 - phi) * (1.0 - phi);
-  const double noise_u = std::fmax(speed * t * (2.0 * (elapsed_s - b) - b * (1.0 - phi)), 0.0);
   const ParamVector variance = f.uu.diagonal();
-  f.u += b * f.w;
+  f.u += elapsed_s * f.w;
   for (int i = 0; i < dim_; ++i)
     for (int j = 0; j <= i; ++j)
-      f.uu(i, j) = f.uu(j, i) =
-          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j ? noise_u : 0.0);
+      f.uu(i, j) = f.uu(j, i) = f.uu(i, j) + elapsed_s * (f.uw(i, j) + f.uw(j, i)) + elapsed_s * elapsed_s * f.ww(i, j);
   for (int i = 0; i < dim_; ++i)
-    for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j ? noise_uw : 0.0);
-  f.w *= phi;
-  f.ww *= phi * phi;
-  for (int i = 0; i < dim_; ++i) f.ww(i, i) += noise_w;
+    for (int j = 0; j < dim_; ++j) f.uw(i, j) += elapsed_s * f.ww(i, j);
   for (int i = 0; i < dim_; ++i) {
     const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
     const double shrink = std::sqrt(kept);
@@ -105,10 +116,9 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
 void Drift::Predict(double elapsed_s) noexcept {
   predicted_ = bank_;
   GrowOlder();
-  AddNewcomers(1.0 - std::exp(-kSwitching * elapsed_s));
+  AddNewcomers(elapsed_s);
   for (std::size_t i = 0; i < predicted_.size(); ++i)
-    if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
-      Propagate(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);
+    if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0) Propagate(elapsed_s, &predicted_[i]);
 }
 
 void Drift::ExpectDrift() noexcept {

@@ -54,14 +54,16 @@ TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
   ASSERT_TRUE(bank.drift.Splits(carried));
   ASSERT_EQ(carried.num_blocks, 2);
   EXPECT_EQ(bank.drift.drifting_block(), 1);
-  EXPECT_NEAR(carried.weight[0], 0.7, 1e-12);
-  EXPECT_NEAR(bank.drift.share(), 0.3, 1e-12);
-  // Rest is as it was; drift as wide as the mean over its hypotheses of an integrated Ornstein-Uhlenbeck process.
+  // In 2 s a drift may also have begun and ended.
+  const double ended = std::exp(-0.3 * 2.0 * Drift::kSwitching) - 0.7 - 0.3 * std::exp(-2.0 * Drift::kSwitching);
+  EXPECT_NEAR(ended, 0.0, 1e-4);
+  EXPECT_NEAR(carried.weight[0], 0.7 + ended, 1e-12);
+  EXPECT_NEAR(bank.drift.share(), 0.3 - ended, 1e-12);
+  // Rest is as it was; drift as wide as the mean over its rates of what they move by.
   double grown = 0.0;
   for (int h = 1; h < Drift::kHypotheses; ++h) {
     const Drift::Hypothesis law = Drift::Of(h, 1.0);
-    const double t = law.persistence;
-    grown += law.prior * 2.0 * law.rate * law.rate * t * (2.0 - t * (1.0 - std::exp(-2.0 / t)));
+    grown += law.prior * law.rate * law.rate * 2.0 * 2.0;
   }
   const ParamMatrix rest = CovarianceOf(carried.block[0]), drift = CovarianceOf(carried.block[1]);
   for (int i = 0; i < 3; ++i)
@@ -111,8 +113,10 @@ TEST(DriftPrior, NeverGetsWiderThanTheInitialOne) {
     Bank bank(0.9);
     bank.data.time_s = 3600.0 * hours;
     const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
-    ASSERT_TRUE(bank.drift.Splits(carried));
-    const ParamMatrix c = CovarianceOf(carried.block[static_cast<std::size_t>(bank.drift.drifting_block())]);
+    // In an hour a drift has begun.
+    ASSERT_EQ(bank.drift.Splits(carried), hours < 1.0);
+    const int block = hours < 1.0 ? bank.drift.drifting_block() : 0;
+    const ParamMatrix c = CovarianceOf(carried.block[static_cast<std::size_t>(block)]);
     for (int d = 0; d < 3; ++d) {
       EXPECT_LT(c(d, d), 1.1) << hours;
       EXPECT_GT(c(d, d), hours > 1e3 ? 0.9 : 0.0);
