@@ -1,4 +1,4 @@
-// Names that are not given: what is missing may be an error of the model or of its data, or physics without a name.
+// Names that are not given: what is missing may be an error of the model or of its data.
 
 #include <gtest/gtest.h>
 
@@ -64,14 +64,6 @@ TEST(SecondSearch, WhatExplainsLessIsNotNamedInPlaceOfWhatIsWithdrawn) {
   request.data = RecordPlant("contact_rich", {{"viscous_friction", 1.0, {}, "linear"}}, 894535750, 10.0, true, true);
   request.diagnose.without = {"viscous_friction"};
   EXPECT_FALSE(ladder::SearchAgain(request));
-}
-
-TEST(Hedge, AnUncertainNameIsWithdrawnWherePhysicsWithoutANameBelongsToTheSet) {
-  // As if q3 were a thousandth smaller: a weight explains it by chance as well as the constants.
-  Recording recording = RecordPlant("soft_actuator_excited", {}, 2, 14.0);
-  recording.columns[5] *= 0.999;
-  const PlantDiagnosis plant = DiagnosePlant("soft_actuator_excited", recording);
-  EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
 }
 
 }  // namespace

@@ -104,12 +104,9 @@ void Search::Hedge(Finding* finding) const {
   for (const CandidatePtr& other : others) {
     if (sum >= limits_.sure_set || finding->set.size() >= 3) break;
     const bool mine = other->names() == finding->best->names();
-    const bool unlisted = !other->added().back().form->listed;
-    if (mine || !(unlisted || other->exact()) || other->probability < 0.05 || !Adequate(other, finding->gap) ||
+    if (mine || !other->exact() || other->probability < 0.05 || !Adequate(other, finding->gap) ||
         Gain(other) < limits_.adequate_closure * Gain(finding->best))
       continue;
-    // A set of which a member has no name in the catalogue is no answer.
-    if (unlisted) return Withdraw(1.0 - limits_.doubt, finding);
     finding->set.push_back(other);
     sum += other->probability;
   }

@@ -128,7 +128,7 @@ class Search {
   /// Difference in nats below which two hypotheses are tied, in a gap of that size.
   /// @param kin  Both are of the same family, with similar formula errors.
   [[nodiscard]] double Margin(double gap, bool kin) const;
-  /// Widens an uncertain name to a set, or withdraws it if physics outside the catalogue belongs to that set.
+  /// Widens an uncertain name to a set, or withdraws it.
   void Hedge(Finding* finding) const;
   /// Withdraws a name or a set with a probability below Thresholds::doubt.
   void Doubt(Finding* finding) const;
