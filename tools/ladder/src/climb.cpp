@@ -346,8 +346,8 @@ Ladder Climb(const ClimbRequest& request) {
       TakeBack(ladder.rungs.size() - 1, &ladder, &base);
       break;
     }
-    // What is named above a tie must not depend on which of its effects is present.
-    if (tied && (!named || NamedAgain(ladder, rung) != nullptr ||
+    // What is named above a tie must not depend on which of its effects is present, nor on what may follow.
+    if (tied && (!named || rung.open || NamedAgain(ladder, rung) != nullptr ||
                  !tied->Extend(data, ladder.view, scales, floor, families, *ladder.entries, rung))) {
       base = std::move(as_tied->base);
       ladder.view = std::move(as_tied->view);
