@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <numbers>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -263,6 +265,59 @@ TEST_P(InPlant, EveryCompositionIsTheSamePlantWhenItsFileIsRead) {
         EXPECT_EQ(*a.upper, *b.upper);
       }
     }
+}
+
+std::string Renamed(const std::string& text, const std::string& from, const std::string& to) {
+  return std::regex_replace(text, std::regex("\\b" + from + "\\b"), to);
+}
+
+/// The plant with another name for one of its signals, parameters, constants or states.
+PlantDescription Renamed(PlantDescription plant, const std::string& from, const std::string& to) {
+  const auto rename = [&](std::initializer_list<std::string*> texts) {
+    for (std::string* text : texts) *text = Renamed(*text, from, to);
+  };
+  rename({&plant.output, &plant.law, &plant.predicts});
+  for (SignalDescription& s : plant.signals) rename({&s.name, &s.derivative_of});
+  for (ConstantDescription& c : plant.constants) rename({&c.name});
+  for (ParameterDescription& p : plant.parameters) rename({&p.name});
+  for (LetDescription& l : plant.lets) rename({&l.text});
+  for (ModeDescription& m : plant.modes) rename({&m.when, &m.law, &m.target});
+  for (StateDescription& s : plant.states) rename({&s.name, &s.rate, &s.start, &s.measured_by});
+  for (ReportDescription& r : plant.reports) rename({&r.value});
+  return plant;
+}
+
+std::vector<std::string> OwnNames(const EffectForm& form) {
+  std::vector<std::string> names;
+  for (const auto& c : form.constants) names.push_back(c.name);
+  for (const auto& p : form.parameters) names.push_back(p.name);
+  for (const auto& l : form.lets) names.push_back(l.name);
+  for (const auto& s : form.states) names.push_back(s.name);
+  return names;
+}
+
+TEST_P(InPlant, EveryEffectFitsSymbolsThatAreCalledLikeItsOwn) {
+  const PlantDescription plant = Described(GetParam());
+  const auto names_of = [](const auto& list, std::set<std::string>* names) {
+    for (const auto& item : list) names->insert(item.name);
+  };
+  std::set<std::string> taken;
+  names_of(plant.signals, &taken), names_of(plant.parameters, &taken), names_of(plant.constants, &taken);
+  names_of(plant.states, &taken), names_of(plant.lets, &taken), names_of(plant.reports, &taken);
+  int tried = 0;
+  for (const EffectEntry& entry : Catalogue())
+    for (const EffectBinding& binding : Bindings(plant, entry))
+      for (const std::string& own : OwnNames(entry.forms[binding.form]))
+        for (const auto& [need, symbol] : binding.symbols) {
+          if (taken.contains(own)) continue;
+          SCOPED_TRACE(entry.name + ": " + symbol + " called " + own);
+          const PlantDescription renamed = Renamed(plant, symbol, own);
+          EffectBinding same = binding;
+          for (auto& [other, bound] : same.symbols) bound = Renamed(bound, symbol, own);
+          EXPECT_NO_THROW(Plant{AddEffect(renamed, entry, same, DefaultScales(renamed))});
+          ++tried;
+        }
+  EXPECT_GE(tried, 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Plants, InPlant, ::testing::ValuesIn(PlantNames()), [](const auto& at) { return at.param; });

@@ -146,12 +146,22 @@ class Composer {
       if (state.name != symbol) change(&state.rate);
   }
 
+  /// Name of what the effect makes of a signal or parameter: "contact_offset_x", or "contact_offset_of_d" where the
+  /// effect has a d of its own.
+  [[nodiscard]] std::string NameOfChanged(const std::string& symbol) const {
+    const auto has = [&symbol](const auto& list) {
+      return std::any_of(list.begin(), list.end(), [&symbol](const auto& own) { return own.name == symbol; });
+    };
+    const bool taken = has(form_.constants) || has(form_.parameters) || has(form_.lets) || has(form_.states);
+    return prefix_ + (taken ? "of_" : "") + symbol;
+  }
+
   void Replace(const EffectTerm& term) {
     const std::string& symbol = binding_.symbols.at(term.of);
     const bool decides = std::any_of(plant_.modes.begin(), plant_.modes.end(),
                                      [&](const auto& mode) { return Mentions(mode.when, symbol); });
     if (decides && MayMerge(plant_)) Merge();
-    const std::string name = prefix_ + symbol;
+    const std::string name = NameOfChanged(symbol);
     SplitTargets(prefix_, symbol, &plant_);
     ForEachText(symbol, [&](std::string* text) { *text = WithNames(*text, {{symbol, name}}); });
     plant_.lets.insert(plant_.lets.begin(), {name, Inserted(term.formula, names_)});

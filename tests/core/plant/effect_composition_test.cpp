@@ -125,6 +125,20 @@ TEST(EffectComposition, MovesTheConditionOfAModeWithTheInputThatItReads) {
   EXPECT_EQ(composed.law, "if(changed_x >= 0, changed_x^p * (K + B*v), 0)");
 }
 
+TEST(EffectComposition, ChangesASignalThatIsCalledLikeItsOwnParameter) {
+  PlantDescription plant = test::DescribedAxis();
+  plant.signals[0].name = "c";
+  plant.signals[1].derivative_of = "c";
+  plant.law = "M*a + Fv*c + off";
+  EffectEntry offset = OnInput("v", "signal", "v - c");
+  offset.forms[0].needs[0].roles = {"velocity"};
+  const PlantDescription composed = Added(plant, offset);
+  EXPECT_EQ(composed.lets.front().name, "changed_of_c");
+  EXPECT_EQ(composed.lets.front().text, "c - changed_c");
+  EXPECT_EQ(composed.law, "M*a + Fv*changed_of_c + off");
+  EXPECT_NO_THROW(Plant{composed});
+}
+
 TEST(EffectComposition, TakesThePlaceOfTheLawWhichIsInParentheses) {
   EXPECT_EQ(Added(test::DescribedAxis(), WithTerm("law", "law*(1 + c)")).law, "(M*a + Fv*v + off)*(1 + changed_c)");
   const PlantDescription twice = Added(test::DescribedAxis(), WithTerm("law", "abs(law - c) + 0*law", "output"));
