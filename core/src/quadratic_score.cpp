@@ -10,6 +10,42 @@ namespace {
 
 /// Nats: the bound applies within a standard deviation of the prior, not to distant candidates.
 constexpr double kConfirmed = 1e-4;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRounding = 4e-16;  ///< Of a sum, relative to the sum of the sizes of its terms.
+
+/// Of a sum over the samples of a pack, one after the other: they are at most 256.
+constexpr double kSumRounding = 1e-15;
+constexpr double kRootOfLanes = 5.6568542494923806;  ///< sqrt(kTileLanes).
+static_assert(kTileLanes == 32);
+
+/// Shares of the tolerance: a grid has many more coefficients that are left out.
+constexpr int PartsOf(LinearPart::Need needs) noexcept {
+  if (needs == LinearPart::kNeither) return 0;
+  return needs == LinearPart::kBoth ? 4 : 1;
+}
+
+/// fn(f, i, j) of every function of a QuadraticForm, in their order: function f is made of what i and j stand for, 0
+/// for the error and 1 + k for what linear[k] changes.
+template <class Fn>
+void ForFunctions(int num_linear, const Fn& fn) noexcept(noexcept(fn(std::size_t{}, 0, 0))) {
+  std::size_t f = 0;
+  fn(f, 0, 0);
+  for (int i = 1; i <= num_linear; ++i) {
+    fn(++f, 0, i);
+    for (int j = i; j <= num_linear; ++j) fn(++f, i, j);
+  }
+}
+
+/// out = (table in)^T.
+template <class Table, class Grid>
+void TransformColumns(const Table& table, const Grid& in, Grid* out) noexcept {
+  for (std::size_t k = 0; k < in.size(); ++k) {
+    typename Grid::value_type row{};
+    for (std::size_t j = 0; j < in.size(); ++j)
+      for (std::size_t l = 0; l < row.size(); ++l) row[l] += table[k][j] * in[j][l];
+    for (std::size_t l = 0; l < row.size(); ++l) (*out)[l][k] = row[l];
+  }
+}
 
 }  // namespace
 
@@ -24,31 +60,45 @@ QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const Pa
   if (!applies_) return;
   form_.num_linear = part.num_linear;
   form_.linear = part.linear;
-  form_.curved = part.curved;
-  if (part.curved < 0) return;
-  const auto c = static_cast<std::size_t>(part.curved);
-  form_.slope = 2.0 / (space.upper[c] - space.lower[c]);
-  form_.origin = -1.0 - form_.slope * space.lower[c];
+  for (const int d : {part.curved, part.second}) {
+    if (d < 0) continue;
+    const auto c = static_cast<std::size_t>(d);
+    QuadraticForm::Axis& axis = form_.axis[static_cast<std::size_t>(form_.num_curved++)];
+    axis.parameter = d;
+    axis.slope = 2.0 / (space.upper[c] - space.lower[c]);
+    axis.origin = -1.0 - axis.slope * space.lower[c];
+  }
+  std::size_t products = 0;
+  ForFunctions(part.num_linear, [&](std::size_t f, int i, int j) {
+    form_.needs[f] = static_cast<LinearPart::Need>(part.NeedOf(i) | part.NeedOf(j));
+    products += form_.needs[f] == LinearPart::kBoth ? 1U : 0U;
+  });
+  if (products > kMaxProducts) applies_ = false;
+  if (!applies_ || form_.num_curved == 0) return;
+  form_.product.resize(products);
+  if (products > 0) grid_.resize(products + 1);
+  nodes_ = part.second < 0 ? kNodes : kTileLanes;
   CosineTable& table = transform_.emplace_back();
-  for (std::size_t k = 0; k < kNodes; ++k)
-    for (std::size_t j = 0; j < kNodes; ++j)
-      table[k][j] = (k == 0 ? 1.0 : 2.0) / kNodes *
-                    std::cos(3.14159265358979323846 * static_cast<double>(k) * (static_cast<double>(j) + 0.5) / kNodes);
+  for (int k = 0; k < nodes_; ++k)
+    for (int j = 0; j < nodes_; ++j)
+      table[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
+          (k == 0 ? 1.0 : 2.0) / nodes_ * std::cos(kPi * k * (j + 0.5) / nodes_);
 }
 
 void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept {
-  const int lanes = part_.curved < 0 ? kTileLanes : kNodes;
   const auto tiles = static_cast<std::size_t>(part_.num_linear) + 1;
-  for (int first = 0; first < lanes; first += kTileLanes) {
+  for (int first = 0; first < nodes_; first += kTileLanes) {
     ThetaTile& theta = scratch->theta;
     for (int d = 0; d < space_.num_parameters; ++d)
       theta.value[static_cast<std::size_t>(d)].fill(space_.Theta(d, form_.about[static_cast<std::size_t>(d)]));
-    if (part_.curved >= 0)
+    for (int a = 0; a < form_.num_curved; ++a) {
+      const QuadraticForm::Axis& axis = form_.axis[static_cast<std::size_t>(a)];
       for (std::size_t l = 0; l < kTileLanes; ++l) {
-        const double angle = 3.14159265358979323846 * (first + static_cast<double>(l) + 0.5) / kNodes;
-        const double u = (std::cos(angle) - form_.origin) / form_.slope;
-        theta.value[static_cast<std::size_t>(part_.curved)][l] = space_.Theta(part_.curved, u);
+        const double angle = kPi * (first + static_cast<double>(l) + 0.5) / nodes_;
+        const double u = (std::cos(angle) - axis.origin) / axis.slope;
+        theta.value[static_cast<std::size_t>(axis.parameter)][l] = space_.Theta(axis.parameter, u);
       }
+    }
     for (std::size_t i = 0; i < tiles; ++i) {
       if (i == 0) {
         kernels_.predict(model_, data, theta, &scratch->prediction[0]);
@@ -66,10 +116,22 @@ void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) n
   }
 }
 
+void QuadraticScore::TakeProducts(const QuadraticScratch& scratch) noexcept {
+  std::size_t product = 0;
+  ForFunctions(part_.num_linear, [&](std::size_t f, int i, int j) noexcept ARMCMC_NONBLOCKING {
+    if (form_.needs[f] != LinearPart::kBoth) return;
+    const bool in_order = part_.NeedOf(i) == LinearPart::kCurved;
+    const auto row = static_cast<std::size_t>(in_order ? i : j);
+    const auto column = static_cast<std::size_t>(in_order ? j : i);
+    kernels_.quadratic_products(num_samples_, scratch.prediction[row], scratch.prediction[column],
+                                i == 0 ? -2.0 : 2.0,  // every product of two is there twice
+                                grid_[product++][0].data());
+  });
+}
+
 int QuadraticScore::Degree(double variance) const noexcept {
   const int functions = QuadraticForm::Functions(part_.num_linear);
   const double tolerance = 2.0 * variance * kTolerance;
-  constexpr double kRounding = 4e-16;
   double rest = 0.0;
   for (int f = 0; f < functions; ++f) {
     const auto& series = series_[static_cast<std::size_t>(f)];
@@ -89,7 +151,102 @@ int QuadraticScore::Degree(double variance) const noexcept {
   return degree;
 }
 
-bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
+bool QuadraticScore::EndSeries(std::size_t f, double floor, double tolerance) noexcept {
+  constexpr int kMost = ProductSeries::kMaxDegree;
+  const auto& series = series_[f];
+  const auto size = [&](std::size_t k) noexcept { return std::fmax(std::fabs(series[k]) - floor, 0.0); };
+  double rest = 0.0;
+  for (std::size_t k = kMost + 1; k < kTileLanes; ++k) rest += size(k);
+  if (!(rest <= tolerance)) return false;
+  int& degree = form_.degree[f];
+  for (degree = kMost; degree > 1; degree -= 2) {
+    const auto k = static_cast<std::size_t>(degree);
+    rest += size(k) + size(k - 1);
+    if (!(rest <= tolerance)) break;
+  }
+  std::copy_n(series.begin(), degree + 1, form_.coefficient[f].begin());
+  return true;
+}
+
+bool QuadraticScore::EndProduct(const Grid& series, double floor, double tolerance, ProductSeries* out) noexcept {
+  constexpr int kMost = ProductSeries::kMaxDegree;
+  std::array<double, 2 * kTileLanes - 1> of_degree{};  // k + l
+  for (std::size_t k = 0; k < kTileLanes; ++k)
+    for (std::size_t l = 0; l < kTileLanes; ++l) of_degree[k + l] += std::fmax(std::fabs(series[k][l]) - floor, 0.0);
+  double rest = 0.0;
+  for (std::size_t d = kMost + 1; d < of_degree.size(); ++d) rest += of_degree[d];
+  if (!(rest <= tolerance)) return false;
+  int degree = kMost;
+  for (; degree > 1; --degree) {
+    rest += of_degree[static_cast<std::size_t>(degree)];
+    if (!(rest <= tolerance)) break;
+  }
+  out->num_rows = degree + 1;
+  for (int k = 0; k <= degree; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    out->degree[row] = (degree - k) | 1;
+    std::copy_n(series[row].begin(), out->degree[row] + 1, out->coefficient[row].begin());
+  }
+  return true;
+}
+
+bool QuadraticScore::EndEach(double variance, const ParamVector& centre) noexcept {
+  std::array<double, kMaxParams + 1> size{1.0};  // of what stands before a function, within a standard deviation
+  for (int i = 0; i < part_.num_linear; ++i) {
+    const int d = part_.linear[static_cast<std::size_t>(i)];
+    size[static_cast<std::size_t>(i) + 1] = 1.0 + std::fabs(centre[d] - form_.about[static_cast<std::size_t>(d)]);
+  }
+  const auto size_of = [&](int i, int j) noexcept ARMCMC_NONBLOCKING {
+    return size[static_cast<std::size_t>(i)] * size[static_cast<std::size_t>(j)];
+  };
+  std::array<double, QuadraticForm::kMaxFunctions> sum{};
+  double rounding = 0.0;
+  int parts = 0;
+  std::size_t product = 0;
+  ForFunctions(part_.num_linear, [&](std::size_t f, int i, int j) noexcept ARMCMC_NONBLOCKING {
+    if (form_.needs[f] == LinearPart::kBoth) {
+      for (const auto& row : grid_[product])
+        for (const double c : row) sum[f] += std::fabs(c);
+      ++product;
+    } else {
+      for (std::size_t k = 0; k < kTileLanes; ++k) sum[f] += std::fabs(series_[f][k]);
+    }
+    rounding += kSumRounding * sum[f] * size_of(i, j);
+    parts += PartsOf(form_.needs[f]);
+  });
+  const double tolerance = (2.0 * variance * kTolerance - rounding) / parts;
+  if (!(tolerance > 0.0)) return false;
+  bool settled = true;
+  product = 0;
+  for (QuadraticForm::Axis& axis : form_.axis) axis.degree = 1;
+  const auto raise = [&](int axis, int degree) noexcept ARMCMC_NONBLOCKING {
+    int& largest = form_.axis[static_cast<std::size_t>(axis)].degree;
+    largest = std::max(largest, degree);
+  };
+  ForFunctions(part_.num_linear, [&](std::size_t f, int i, int j) noexcept ARMCMC_NONBLOCKING {
+    const double of_series = PartsOf(form_.needs[f]) * tolerance / size_of(i, j);
+    // Rounding of the sums alone makes this much of a coefficient: one that is not larger counts as none.
+    const double floor = kSumRounding * sum[f] / (form_.needs[f] == LinearPart::kBoth ? kTileLanes : kRootOfLanes);
+    switch (form_.needs[f]) {
+      case LinearPart::kNeither: form_.coefficient[f][0] = series_[f][0]; break;
+      case LinearPart::kCurved:
+      case LinearPart::kSecond:
+        settled = EndSeries(f, floor, of_series) && settled;
+        raise(form_.needs[f] == LinearPart::kCurved ? 0 : 1, form_.degree[f]);
+        break;
+      case LinearPart::kBoth: {
+        ProductSeries& series = form_.product[product];
+        settled = EndProduct(grid_[product++], floor, of_series, &series) && settled;
+        raise(0, series.num_rows - 1);
+        raise(1, series.degree[0]);
+        break;
+      }
+    }
+  });
+  return settled;
+}
+
+bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& centre, const ParamVector& sd,
                                  QuadraticScratch* scratch) const noexcept {
   constexpr int kNear = kTileLanes / 2 - 1;  // odd, so that the centre is one of them
   constexpr double kReach = 4.0;             // standard deviations
@@ -100,11 +257,15 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
     u[i] = rows[i].data();
     for (int l = 0; l < kTileLanes; ++l) {
       const double side = (l + d) % 2 == 0 ? 1.0 : -1.0;
-      double x = form_.about[i] + side * sd[d];
-      if (d == part_.curved && l < kNear) {
-        x = form_.about[i] + sd[d] * kReach * (2.0 * l / (kNear - 1) - 1.0);
-      } else if (d == part_.curved) {  // between the points, at unrelated places
-        const double part = (l - kNear + 0.61803398874989485) / (kTileLanes - kNear);
+      double x = centre[d] + side * sd[d];
+      const bool curved = d == part_.curved || d == part_.second;
+      const bool second = d == part_.second;
+      if (curved && l < kNear) {
+        const int at = second ? (4 * l + 9) % kNear : l;  // in another order, and 7 is where it was
+        x = centre[d] + sd[d] * kReach * (2.0 * at / (kNear - 1) - 1.0);
+      } else if (curved) {  // between the points, at unrelated places
+        const int at = second ? 4 * (l - kNear) % (kTileLanes - kNear) : l - kNear;
+        const double part = (at + 0.61803398874989485) / (kTileLanes - kNear);
         x = space_.lower[i] + part * (space_.upper[i] - space_.lower[i]);
       }
       rows[i][static_cast<std::size_t>(l)] = std::clamp(x, space_.lower[i], space_.upper[i]);
@@ -120,16 +281,39 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
   return true;
 }
 
+void QuadraticScore::TakeSeries() noexcept {
+  const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
+  const auto nodes = static_cast<std::size_t>(nodes_);
+  const CosineTable& transform = transform_[0];
+  for (std::size_t f = 0; f < functions; ++f) {
+    if (form_.needs[f] == LinearPart::kNeither) series_[f] = {sums_[f][0]};
+    if (form_.needs[f] != LinearPart::kCurved && form_.needs[f] != LinearPart::kSecond) continue;
+    for (std::size_t k = 0; k < nodes; ++k) {
+      std::array<double, 4> part{};
+      for (std::size_t j = 0; j < nodes; j += 4)
+        for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums_[f][j + l];
+      series_[f][k] = (part[0] + part[1]) + (part[2] + part[3]);
+    }
+  }
+  for (std::size_t product = 0; product + 1 < grid_.size(); ++product) {
+    TransformColumns(transform, grid_[product], &grid_.back());
+    TransformColumns(transform, grid_.back(), &grid_[product]);
+  }
+}
+
 void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept {
   ready_ = false;
-  const ParamVector& about = fit.mean;
-  if (!applies_ || data.start_fit != nullptr || !about.allFinite()) return;
+  if (!applies_ || data.start_fit != nullptr || !fit.mean.allFinite()) return;
   num_samples_ = data.num_samples;
-  for (int d = 0; d < space_.dim; ++d) form_.about[static_cast<std::size_t>(d)] = about[d];
+  for (int d = 0; d < space_.dim; ++d) form_.about[static_cast<std::size_t>(d)] = fit.mean[d];
+  if (part_.second >= 0)  // about 0, where what one curved parameter changes does not depend on the other
+    for (int i = 0; i < part_.num_linear; ++i) {
+      const auto d = static_cast<std::size_t>(part_.linear[static_cast<std::size_t>(i)]);
+      form_.about[d] = -space_.offset[d] / space_.scale[d];
+    }
   TakeSums(data, scratch);
   const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
-  if (part_.curved < 0) {
-    form_.degree = 0;
+  if (form_.num_curved == 0) {
     ready_ = true;
     for (std::size_t f = 0; f < functions; ++f) {
       form_.coefficient[f][0] = sums_[f][0];
@@ -137,23 +321,23 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
     }
     return;
   }
-  const CosineTable& transform = transform_[0];
-  for (std::size_t f = 0; f < functions; ++f)
-    for (std::size_t k = 0; k < kNodes; ++k) {
-      std::array<double, 4> part{};
-      for (std::size_t j = 0; j < kNodes; j += 4)
-        for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums_[f][j + l];
-      series_[f][k] = (part[0] + part[1]) + (part[2] + part[3]);
+  TakeProducts(*scratch);
+  TakeSeries();
+  const double scale = std::exp(space_.LogNoiseScale(fit.mean.data()));
+  if (part_.second >= 0) {
+    if (!EndEach(scale * scale, fit.mean)) return;
+  } else {
+    const int degree = Degree(scale * scale);
+    if (degree < 0) return;
+    form_.axis[0].degree = degree;
+    for (std::size_t f = 0; f < functions; ++f) {
+      form_.degree[f] = degree;
+      std::copy_n(series_[f].begin(), static_cast<std::size_t>(degree) + 1, form_.coefficient[f].begin());
     }
-  const double scale = std::exp(space_.LogNoiseScale(about.data()));
-  const int degree = Degree(scale * scale);
-  if (degree < 0) return;
-  form_.degree = degree;
-  for (std::size_t f = 0; f < functions; ++f)
-    std::copy_n(series_[f].begin(), static_cast<std::size_t>(degree) + 1, form_.coefficient[f].begin());
+  }
   ParamVector sd = Inverse(fit.precision).diagonal();
   for (int d = 0; d < space_.dim; ++d) sd[d] = sd[d] > 0.0 ? std::sqrt(sd[d]) : 1.0;
-  ready_ = IsConfirmed(data, sd, scratch);
+  ready_ = IsConfirmed(data, fit.mean, sd, scratch);
 }
 
 void QuadraticScore::Score(const double* const* u, int first, double* out) const noexcept {

@@ -16,6 +16,7 @@
 #include "core/kernel_sets.hpp"
 #include "core/plant/described_packs.hpp"
 #include "core/plant/plants.hpp"
+#include "core/same_posteriors.hpp"
 
 namespace armcmc::quadratic_score_test {
 namespace {
@@ -132,47 +133,11 @@ TEST(QuadraticScore, IsNotReadyWhereItCannotBeExact) {
   EXPECT_FALSE(QuadraticScore(simd::Best(), 0, c.space, c.noise, {}).applies());
 }
 
-/// `to` goes on from where `from` is.
-void GoOnFrom(const test::Rig& from, test::Rig* to) {
-  std::vector<std::byte> adjusted(Estimator::kSnapshotBytes), executed(Estimator::kSnapshotBytes);
-  adjusted.resize(from.estimator.SaveAdjusted(adjusted));
-  executed.resize(from.estimator.SaveExecuted(executed));
-  ASSERT_TRUE(to->estimator.Restore(adjusted, executed));
-}
-
-/// Runs packs with sums over the samples and sample by sample, each from the same memory. A candidate that falls to
-/// another component of the proposal by the last digits changes a mean by some 1e-4 standard deviations.
-/// @param tolerance  In standard deviations.
-void ExpectSamePosteriors(EstimatorSettings settings, const std::vector<DataPack>& packs, double tolerance = 2e-3) {
-  test::Rig sums(settings);
-  settings.sampler.use_linearity = false;
-  test::Rig samples(settings);
-  for (const DataPack& pack : packs) {
-    const Estimate& by_sums = sums.Step(pack);
-    const Estimate& by_samples = samples.Step(pack);
-    for (std::size_t m = 0; m < kMaxModes; ++m) {
-      const ModeEstimate& a = by_sums.modes[m];
-      const ModeEstimate& b = by_samples.modes[m];
-      ASSERT_EQ(a.updated, b.updated);
-      if (!b.updated) continue;
-      EXPECT_EQ(a.draws, b.draws);
-      EXPECT_EQ(a.decision, b.decision);
-      EXPECT_NEAR(a.log_evidence, b.log_evidence, tolerance) << pack.seq;
-      EXPECT_NEAR(a.kish_ess, b.kish_ess, tolerance * b.kish_ess) << pack.seq;
-      for (std::size_t d = 0; d < static_cast<std::size_t>(settings.num_parameters); ++d) {
-        EXPECT_NEAR(a.marginal[d].ar_ap, b.marginal[d].ar_ap, tolerance * b.marginal[d].sd) << pack.seq << ' ' << d;
-        EXPECT_NEAR(a.marginal[d].is_sd, b.marginal[d].is_sd, tolerance * b.marginal[d].is_sd) << pack.seq << ' ' << d;
-      }
-    }
-    GoOnFrom(samples, &sums);
-  }
-}
-
 TEST(QuadraticScore, GivesTheSamePosterior) {
   const test::Contact contact;
   std::vector<DataPack> packs;
   for (std::int64_t seq = 1; seq <= 12; ++seq) packs.push_back(contact.Pack(seq));
-  ExpectSamePosteriors(BuiltinSettings("hunt_crossley"), packs);
+  test::ExpectSamePosteriors(BuiltinSettings("hunt_crossley"), packs);
 }
 
 TEST(QuadraticScore, GivesTheSamePosteriorInEveryMode) {
@@ -181,7 +146,7 @@ TEST(QuadraticScore, GivesTheSamePosteriorInEveryMode) {
   const test::Actuator actuator;
   std::vector<DataPack> packs;
   for (std::int64_t seq = 1; seq <= 12; ++seq) packs.push_back(actuator.Pack(seq, 60));
-  ExpectSamePosteriors(test::ActuatorSettings(), packs, 0.02);
+  test::ExpectSamePosteriors(test::ActuatorSettings(), packs, 0.02);
 }
 
 TEST(QuadraticScore, GivesTheSamePosteriorBesideAddedEffects) {
@@ -192,7 +157,7 @@ TEST(QuadraticScore, GivesTheSamePosteriorBesideAddedEffects) {
   const test::Contact contact;
   std::vector<DataPack> packs;
   for (std::int64_t seq = 1; seq <= 8; ++seq) packs.push_back(contact.Pack(seq));
-  ExpectSamePosteriors(settings, packs);
+  test::ExpectSamePosteriors(settings, packs);
 }
 
 std::vector<DataPack> AxisPacks(const PlantProgram& plant, double (*law)(double v, double a)) {
@@ -213,8 +178,8 @@ TEST(QuadraticScore, ServesDescribedLaws) {
   const auto linear = test::Program(test::DescribedAxis());
   EXPECT_EQ(linear->info().linear[0].num_linear, 3);
   EXPECT_EQ(linear->info().linear[0].curved, -1);
-  ExpectSamePosteriors(DescribedSettings(linear),
-                       AxisPacks(*linear, [](double v, double a) { return 95.0 * a + 210.0 * v - 3.0; }));
+  test::ExpectSamePosteriors(DescribedSettings(linear),
+                             AxisPacks(*linear, [](double v, double a) { return 95.0 * a + 210.0 * v - 3.0; }));
   PlantDescription description = test::DescribedAxis();
   description.law = "M*a + Fv*tanh(v/vs) + off";
   description.parameters[1].unit = "N";
@@ -222,9 +187,9 @@ TEST(QuadraticScore, ServesDescribedLaws) {
   const auto curved = test::Program(description);
   EXPECT_EQ(curved->info().linear[0].num_linear, 3);
   EXPECT_EQ(curved->info().linear[0].curved, 3);
-  ExpectSamePosteriors(DescribedSettings(curved), AxisPacks(*curved, [](double v, double a) {
-                         return 95.0 * a + 210.0 * std::tanh(v / 0.06) - 3.0;
-                       }));
+  test::ExpectSamePosteriors(DescribedSettings(curved), AxisPacks(*curved, [](double v, double a) {
+                               return 95.0 * a + 210.0 * std::tanh(v / 0.06) - 3.0;
+                             }));
 }
 
 TEST(QuadraticScore, SeesALawThatBendsBetweenThePoints) {

@@ -28,9 +28,10 @@ class QuadraticScratch {
   ThetaTile theta;
 };
 
-/// The Gaussian log-likelihood of a law that is linear in all parameters but one at most, without a look at the samples
-/// for every candidate: given the curved parameter, sums over the samples suffice (sufficient statistics), and those
-/// are smooth functions of it. They are taken at the Chebyshev points of its bounds and interpolated.
+/// The Gaussian log-likelihood of a law that has a LinearPart, without a look at the samples for every candidate: given
+/// the curved parameters, sums over the samples suffice (sufficient statistics), and those are smooth functions of
+/// them. They are taken at the Chebyshev points of their bounds and interpolated: on a line where one parameter is
+/// curved, on two lines and, for what multiplies functions of either, on a grid where two are.
 ///
 /// Made once a pack. The error of the log-likelihood, in nats, is bounded by the rest of the series and rounding; where
 /// that exceeds kTolerance at candidates within a prior standard deviation, ready() is false and the samples have to be
@@ -39,6 +40,8 @@ class QuadraticScratch {
 class QuadraticScore {
  public:
   static constexpr double kTolerance = 1e-6;
+  /// Functions on a grid, at most: more would take as long as the samples.
+  static constexpr std::size_t kMaxProducts = 4;
 
   QuadraticScore(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
                  const LinearPart& part);
@@ -47,7 +50,7 @@ class QuadraticScore {
   [[nodiscard]] bool applies() const noexcept { return applies_; }
 
   /// @param fit  Where the posterior lies, about.
-  /// @rt No heap, no lock, no throw. 2 (num_linear + 1) + 1 tiles of candidates, and their products.
+  /// @rt No heap, no lock, no throw. 2 (num_linear + 1) + 1 tiles of candidates at most, and their products.
   void Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool ready() const noexcept { return ready_; }
 
@@ -55,16 +58,28 @@ class QuadraticScore {
   void Score(const double* const* u, int first, double* out) const noexcept ARMCMC_NONBLOCKING;
 
  private:
-  static constexpr int kNodes = 2 * kTileLanes;
+  static constexpr int kNodes = 2 * kTileLanes;  ///< On a line; those of a grid are kTileLanes by kTileLanes.
+  /// [k][j] = 2 / n cos(pi k (j + 1/2) / n), half of it for k = 0.
+  using CosineTable = std::array<std::array<double, kNodes>, kNodes>;
+  using Grid = std::array<std::array<double, kTileLanes>, kTileLanes>;
 
   void TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// The grids, from what TakeSums() leaves in `scratch`.
+  void TakeProducts(const QuadraticScratch& scratch) noexcept ARMCMC_NONBLOCKING;
+  /// Of what TakeSums() and TakeProducts() have left.
+  void TakeSeries() noexcept ARMCMC_NONBLOCKING;
   /// Candidates get what the samples give.
-  [[nodiscard]] bool IsConfirmed(const ModeData& data, const ParamVector& sd,
+  [[nodiscard]] bool IsConfirmed(const ModeData& data, const ParamVector& centre, const ParamVector& sd,
                                  QuadraticScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
-  /// Degree after which the series may end, -1 where they do not settle.
+  /// Degree after which all series of one parameter may end, -1 where they do not settle.
   [[nodiscard]] int Degree(double variance) const noexcept ARMCMC_NONBLOCKING;
-  /// [k][j] = 2 / kNodes cos(pi k (j + 1/2) / kNodes), half of it for k = 0.
-  using CosineTable = std::array<std::array<double, kNodes>, kNodes>;
+  /// Ends every series by itself, where two parameters are curved. @return whether they settle.
+  [[nodiscard]] bool EndEach(double variance, const ParamVector& centre) noexcept ARMCMC_NONBLOCKING;
+  /// @param floor      Coefficients that are not larger count as none.
+  /// @param tolerance  Of the sum of those that are left out.
+  [[nodiscard]] bool EndSeries(std::size_t f, double floor, double tolerance) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] static bool EndProduct(const Grid& series, double floor, double tolerance,
+                                       ProductSeries* out) noexcept ARMCMC_NONBLOCKING;
 
   const simd::Kernels& kernels_;
   int model_;
@@ -72,9 +87,11 @@ class QuadraticScore {
   const NoiseModel& noise_;
   LinearPart part_;
   bool applies_ = false, ready_ = false;
+  int nodes_ = kTileLanes;  ///< On a line; a multiple of kTileLanes.
   int num_samples_ = 0;
   QuadraticForm form_;
   std::vector<CosineTable> transform_;  ///< One, where a parameter is curved.
+  std::vector<Grid> grid_;              ///< For each ProductSeries: sums, then series; and one more.
   alignas(64) std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> sums_{};
   std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> series_{};
 };

@@ -78,8 +78,8 @@ struct SamplerSettings {
   std::uint64_t seed = 0x5eed;  ///< Fixed by default; never taken from the machine.
   bool use_proposal_ratio =
       true;  ///< false drops q from the acceptance ratio: wrong on purpose, for calibration tests.
-  /// Where the law is linear in all parameters but one at most, and the noise Gaussian: candidates are scored by sums
-  /// over the samples (QuadraticScore). false: each against every sample.
+  /// Where the law is linear in all parameters but one, or two that no term needs both of, and the noise Gaussian:
+  /// candidates are scored by sums over the samples (QuadraticScore). false: each against every sample.
   bool use_linearity = true;
   static constexpr int kMinDraws = 200;
 };

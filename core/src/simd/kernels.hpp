@@ -81,9 +81,14 @@ struct Kernels {
                      double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// Sums over the samples that make a QuadraticForm, for each lane: of law errors and of what the law changes by from
-  /// prediction[0] to prediction[1 + i], weighted, in the form's order and with its factors.
-  void (*quadratic_sums)(const ModeData& data, double noise_mean, int num_linear, const PredictionTile* prediction,
+  /// prediction[0] to prediction[1 + i], weighted, in the form's order and with its factors. Those errors and changes
+  /// are left in `prediction`.
+  void (*quadratic_sums)(const ModeData& data, double noise_mean, int num_linear, PredictionTile* prediction,
                          double* const* sums) noexcept ARMCMC_NONBLOCKING;
+
+  /// sums[j][k] = factor sum_n rows.value[n][j] columns.value[n][k], kTileLanes of each.
+  void (*quadratic_products)(int num_samples, const PredictionTile& rows, const PredictionTile& columns, double factor,
+                             double* sums) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] = Gaussian log-likelihood of u[., first + lane], whose squared errors the form has.
   void (*score_quadratic)(const QuadraticForm& form, const ParameterSpace& space, const NoiseModel& noise,

@@ -3,7 +3,7 @@
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
 
-void QuadraticSums(const ModeData& data, double noise_mean, int num_linear, const PredictionTile* prediction,
+void QuadraticSums(const ModeData& data, double noise_mean, int num_linear, PredictionTile* prediction,
                    double* const* sums) noexcept ARMCMC_NONBLOCKING {
   for (int v = 0; v < kVectors; ++v) {
     const auto lane = static_cast<unsigned>(v * Simd::kLanes);
@@ -15,6 +15,8 @@ void QuadraticSums(const ModeData& data, double noise_mean, int num_linear, cons
       const V error = (Simd::Set(data.target[in] - noise_mean) - law) * weight;
       V slope[static_cast<unsigned>(kMaxParams)];
       for (int i = 0; i < num_linear; ++i) slope[i] = (Simd::Load(&prediction[1 + i].value[in][lane]) - law) * weight;
+      Simd::Store(&prediction[0].value[in][lane], error);
+      for (int i = 0; i < num_linear; ++i) Simd::Store(&prediction[1 + i].value[in][lane], slope[i]);
       int f = 0;
       total[f] = Simd::Fma(error, error, total[f]);
       for (int i = 0; i < num_linear; ++i) {
@@ -42,6 +44,29 @@ void QuadraticSums(const ModeData& data, double noise_mean, int num_linear, cons
 
 /// Several vectors side by side: with one, the arithmetic units would wait.
 constexpr int kQuadraticGroup = 4;
+
+void QuadraticProducts(int num_samples, const PredictionTile& rows, const PredictionTile& columns, double factor,
+                       double* sums) noexcept ARMCMC_NONBLOCKING {
+  constexpr int kRows = 2;
+  for (int row = 0; row < kTileLanes; row += kRows)
+    for (int v0 = 0; v0 < kVectors; v0 += kQuadraticGroup) {
+      const auto lane = static_cast<unsigned>(v0 * Simd::kLanes);
+      V total[kRows][static_cast<unsigned>(kQuadraticGroup)] = {};
+      for (int n = 0; n < num_samples; ++n) {
+        const double* const of_row = &rows.value[static_cast<unsigned>(n)][static_cast<unsigned>(row)];
+        const double* const of_column = &columns.value[static_cast<unsigned>(n)][lane];
+        for (int g = 0; g < kQuadraticGroup; ++g) {
+          const V column = Simd::Load(of_column + g * Simd::kLanes);
+          for (int r = 0; r < kRows; ++r) total[r][g] = Simd::Fma(Simd::Set(of_row[r]), column, total[r][g]);
+        }
+      }
+      for (int r = 0; r < kRows; ++r)
+        for (int g = 0; g < kQuadraticGroup; ++g)
+          Simd::Store(sums + (row + r) * kTileLanes + v0 * Simd::kLanes + g * Simd::kLanes,
+                      Simd::Set(factor) * total[r][g]);
+    }
+}
+
 struct QuadraticVectors {
   V at[static_cast<unsigned>(kQuadraticGroup)];
 };
@@ -73,6 +98,17 @@ struct ChebyshevBasis {
   }
 };
 
+/// A function of a QuadraticForm that needs both of the curved parameters.
+QuadraticVectors SumOfProducts(const ProductSeries& series, const ChebyshevBasis* basis) noexcept {
+  QuadraticVectors sum;
+  for (int g = 0; g < kQuadraticGroup; ++g) sum.at[g] = V{};
+  for (unsigned k = 0; k < static_cast<unsigned>(series.num_rows); ++k) {
+    const QuadraticVectors row = basis[1].Sum(series.coefficient[k].data(), series.degree[k]);
+    for (int g = 0; g < kQuadraticGroup; ++g) sum.at[g] = Simd::Fma(row.at[g], basis[0].power[k].at[g], sum.at[g]);
+  }
+  return sum;
+}
+
 void ScoreQuadratic(const QuadraticForm& form, const ParameterSpace& space, const NoiseModel& noise, int num_samples,
                     const double* const* u, int first, double* out) noexcept ARMCMC_NONBLOCKING {
   const V samples = Simd::Set(static_cast<double>(num_samples));
@@ -80,18 +116,26 @@ void ScoreQuadratic(const QuadraticForm& form, const ParameterSpace& space, cons
   for (int v0 = 0; v0 < kVectors; v0 += kQuadraticGroup) {
     const int lane = v0 * Simd::kLanes;
     const auto coordinate = [&](int d, int g) noexcept { return Simd::Load(u[d] + first + lane + g * Simd::kLanes); };
-    ChebyshevBasis basis;
-    if (form.curved >= 0) {
+    ChebyshevBasis basis[static_cast<unsigned>(QuadraticForm::kMaxCurved)];
+    for (int a = 0; a < form.num_curved; ++a) {
+      const QuadraticForm::Axis& axis = form.axis[static_cast<unsigned>(a)];
       QuadraticVectors t;
       for (int g = 0; g < kQuadraticGroup; ++g) {
-        const V place = Simd::Fma(coordinate(form.curved, g), Simd::Set(form.slope), Simd::Set(form.origin));
+        const V place = Simd::Fma(coordinate(axis.parameter, g), Simd::Set(axis.slope), Simd::Set(axis.origin));
         t.at[g] = Simd::Min(Simd::Max(place, Simd::Set(-1.0)), Simd::Set(1.0));
       }
-      basis.Fill(t, form.degree);
+      basis[a].Fill(t, axis.degree);
     }
+    const ProductSeries* product = form.product.data();
     const auto function = [&](int f) noexcept {
-      const double* const coefficient = form.coefficient[static_cast<unsigned>(f)].data();
-      if (form.curved >= 0) return basis.Sum(coefficient, form.degree);
+      const auto i = static_cast<unsigned>(f);
+      const double* const coefficient = form.coefficient[i].data();
+      switch (form.needs[i]) {
+        case LinearPart::kCurved: return basis[0].Sum(coefficient, form.degree[i]);
+        case LinearPart::kSecond: return basis[1].Sum(coefficient, form.degree[i]);
+        case LinearPart::kBoth: return SumOfProducts(*product++, basis);
+        case LinearPart::kNeither: break;
+      }
       QuadraticVectors value;
       for (int g = 0; g < kQuadraticGroup; ++g) value.at[g] = Simd::Set(coefficient[0]);
       return value;

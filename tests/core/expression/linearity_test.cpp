@@ -37,5 +37,41 @@ TEST(IsLinear, NotWhereTheyBendOrMeet) {
 
 TEST(IsLinear, NothingIsKnownOfStates) { EXPECT_FALSE(LinearInKAndB("K*s")); }
 
+/// Of laws in K, B, p.
+LinearPart PartOf(const std::vector<std::string>& texts) {
+  Graph graph;
+  const expression::Scope scope = test::PlantWords();
+  std::vector<int> laws;
+  for (const std::string& text : texts) laws.push_back(graph.Lower(expression::Parse(text), scope, {}));
+  return expression::FindLinearPart(&graph, laws, 3);
+}
+
+TEST(FindLinearPart, TakesAsFewCurvedParametersAsItCan) {
+  LinearPart part = PartOf({"K*x + B*v + p*t"});
+  EXPECT_EQ(part.num_linear, 3);
+  EXPECT_EQ(part.curved, -1);
+  part = PartOf({"(K + B*v)*x^p"});
+  EXPECT_EQ(part.num_linear, 2);
+  EXPECT_EQ(part.curved, 2);
+  EXPECT_EQ(part.second, -1);
+  part = PartOf({"K*x^B + exp(p*v)"});
+  EXPECT_EQ(part.num_linear, 1);
+  EXPECT_EQ(part.curved, 1);
+  EXPECT_EQ(part.second, 2);
+  EXPECT_EQ(part.NeedOf(0), LinearPart::kSecond);
+  EXPECT_EQ(part.NeedOf(1), LinearPart::kCurved);
+  part = PartOf({"K*x + sin(p*v)*x^2 - 3*tanh(B*v)/x", "x^p"});
+  EXPECT_EQ(part.num_linear, 0) << "what stands without a factor needs both";
+}
+
+TEST(FindLinearPart, NoFunctionMayNeedBothCurvedParameters) {
+  for (const char* text : {"K*x^p*v^B", "K*x + x^p*v^B", "K*x^(p*B)", "K*x^(p + B)"})
+    EXPECT_EQ(PartOf({text}).num_linear, 0) << text;
+  // Neither law has both, one by one.
+  EXPECT_EQ(PartOf({"K*x^p + B"}).num_linear, 2);
+  EXPECT_EQ(PartOf({"K*x^p", "K*x^B"}).num_linear, 0);
+  EXPECT_EQ(PartOf({"K*x^p + tanh(B*v)", "K*v^p"}).num_linear, 1);
+}
+
 }  // namespace
 }  // namespace armcmc::linearity_test

@@ -8,7 +8,7 @@ namespace armcmc::bench {
 void RegisterSteps(const Plant& plant, int draws, int samples, const std::filesystem::path& folder);
 /// BM_Dimension: draw and remember with laws of 2 to 6 parameters, default number of draws, 100 samples.
 void RegisterDimensions();
-/// BM_AdjustStep without the short cut of laws that are linear in all parameters but one.
+/// BM_AdjustStep without the short cut of laws that are linear in all parameters but one or two.
 void RegisterEverySample(const Plant& plant, int samples, const std::filesystem::path& folder);
 /// BM_Score: the likelihood alone of the default number of candidates, sample by sample, 100 samples. Of a plant
 /// without effects.

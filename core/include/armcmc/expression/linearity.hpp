@@ -12,7 +12,8 @@ namespace armcmc::expression {
 [[nodiscard]] bool IsLinear(const Graph& graph, int node, const std::vector<int>& symbols);
 
 /// What all of some laws, which are nodes of the graph, are linear in: all of num_parameters parameters, else all but
-/// the first that makes it so, else nothing.
+/// the first that makes it so, else all but the first two of which no factor of another needs both, else nothing. Adds
+/// nodes to the graph.
 [[nodiscard]] LinearPart FindLinearPart(Graph* graph, const std::vector<int>& laws, int num_parameters);
 
 }  // namespace armcmc::expression
