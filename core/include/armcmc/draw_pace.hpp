@@ -13,7 +13,7 @@ namespace armcmc {
 /// after the draws will be slow, too.
 class DrawPace {
  public:
-  static constexpr double kMost = 3.0;  ///< A stall in between says nothing about what comes after it.
+  static constexpr double kMost = 3.0;  ///< A stall in between does not predict what comes after it.
 
   /// @param spent_ns  On `draws` draws, > 0. @return 1 for the usual pace and faster ones, kMost at most.
   [[nodiscard]] double Slowness(Nanos spent_ns, int draws) const noexcept ARMCMC_NONBLOCKING {

@@ -20,7 +20,7 @@ class FinishTime {
     return draws_ > 0 ? ns_ * draws / draws_ : 0;
   }
 
-  /// A stall of the machine in here says nothing about the next pack: it may double the prediction at most, while work
+  /// A stall of the machine here does not predict the next pack: it may double the prediction at most, while work
   /// that has become slower for good is followed within a few packs.
   void Add(Nanos spent_ns, int draws) noexcept ARMCMC_NONBLOCKING {
     const Nanos predicted_ns = Predict(draws);

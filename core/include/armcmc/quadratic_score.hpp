@@ -28,7 +28,7 @@ class QuadraticScratch {
   ThetaTile theta;
 };
 
-/// The Gaussian log-likelihood of a law that is linear in all parameters but one at most, without a look at the samples
+/// The Gaussian log-likelihood of a law that is linear in all parameters but one at most, without reading the samples
 /// for every candidate: given the curved parameter, sums over the samples suffice (sufficient statistics), and those
 /// are smooth functions of it. They are taken at the Chebyshev points of its bounds and interpolated.
 ///

@@ -222,13 +222,13 @@ Finding Search::Run(bool pairs) const {
   Candidates listed = Listed(singles, true);
   const Candidates unlisted = Listed(singles, false);
   if (!(gap > least) || finding.p_missing < limits_.p_missing) {
-    finding.p_none = WeighNothing(singles);
+    finding.p_none = ProbabilityOfNone(singles);
     const double seen = bootstrap_->ProbabilityAbove(listed.front()->fit.heldout - base_->fit.heldout, 0.0);
     const bool clear = finding.p_none < limits_.clear_nothing && seen > limits_.p_missing &&
                        Ratio(listed.front()) > limits_.visible_ratio;
     if (!clear) {
       JudgeEvents(singles, &finding);
-      if (finding.verdict == Verdict::kNone && !finding.events_s.empty()) DoubtNothing(singles, &finding);
+      if (finding.verdict == Verdict::kNone && !finding.events_s.empty()) CheckUnexplainedEvents(singles, &finding);
       return finding;
     }
     finding.p_missing = 1.0 - finding.p_none;
@@ -275,18 +275,18 @@ Finding Search::Run(bool pairs) const {
           pair->granted ? Better(pair->fit, pair->granted->without) : std::all_of(listed.begin(), listed.end(), earned);
       if (all_earned && (Adequate(pair, gap) || StandsOut(pair, corrected))) good.push_back(pair);
     }
-    DropUnsure(&good);
+    DropUncertain(&good);
     // The best fit gives the best estimate of the noise.
     top = good.empty() ? two.front() : good.front();
   }
   // A name is not given to what physics outside the catalogue explains better, or as well with one effect less.
   if (!unlisted.empty() && Gain(unlisted.front()) > limits_.min_gain &&
-      (good.empty() || Outdone(good.front(), unlisted.front())) && Adequate(unlisted.front(), gap)) {
+      (good.empty() || IsBeatenBy(good.front(), unlisted.front())) && Adequate(unlisted.front(), gap)) {
     good.clear();
     finding.unlisted = top = unlisted.front();
   }
   if (const CandidatePtr law = good.empty() || gap > kLawMayFeign ? nullptr : LawError();
-      law && Outdone(good.front(), law) && Adequate(law, gap)) {
+      law && IsBeatenBy(good.front(), law) && Adequate(law, gap)) {
     good.clear();
     finding.unlisted = top = law;
   }
@@ -322,8 +322,8 @@ Finding Search::Run(bool pairs) const {
         std::max({finding.p_unnamed, kUnnamedAtLeast,
                   bootstrap_->ProbabilityAbove(Judge(finding.best).gain, 0.1 * limits_.min_gain * rows_)});
   AssignProbabilities(&finding);
-  if (finding.verdict == Verdict::kNamed && !finding.approximate) Hedge(&finding);
-  if (finding.verdict == Verdict::kAmbiguous) Doubt(&finding);
+  if (finding.verdict == Verdict::kNamed && !finding.approximate) WidenOrWithdraw(&finding);
+  if (finding.verdict == Verdict::kAmbiguous) WithdrawImprobable(&finding);
   TakeBack(&finding);
   return finding;
 }

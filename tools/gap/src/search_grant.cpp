@@ -62,7 +62,7 @@ CandidatePtr Search::LawError() const {
   return nullptr;
 }
 
-void Search::DropUnsure(Candidates* good) const {
+void Search::DropUncertain(Candidates* good) const {
   const auto holds = [](const CandidatePtr& all, const CandidatePtr& some) {
     const std::vector<std::string> families = all->families(), asked = some->families();
     return std::includes(families.begin(), families.end(), asked.begin(), asked.end());

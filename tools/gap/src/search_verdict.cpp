@@ -23,7 +23,7 @@ void Search::PreferCatalogue(Candidates* good) {
   std::erase_if(*good, [&](const CandidatePtr& c) { return !c->exact() && (all || !c->always()); });
 }
 
-bool Search::Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const {
+bool Search::IsBeatenBy(const CandidatePtr& named, const CandidatePtr& unlisted) const {
   // Unnamed physics that does as well alone is simpler than a grant with an effect, as it is simpler than two effects.
   if (named->added().size() > 1 || named->granted) return !Better(named->fit, unlisted->fit);
   const Vector lead = unlisted->fit.heldout - named->fit.heldout;
@@ -83,7 +83,7 @@ void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
   for (const CandidatePtr& c : finding->set) c->probability = std::exp(evidence(c) - evidence(finding->best)) / total;
 }
 
-void Search::DoubtNothing(const Candidates& singles, Finding* finding) const {
+void Search::CheckUnexplainedEvents(const Candidates& singles, Finding* finding) const {
   if (finding->p_none > limits_.clear_nothing) return;
   finding->verdict = Verdict::kUnnamed;
   finding->best = *std::max_element(singles.begin(), singles.end(),
@@ -95,7 +95,7 @@ void Search::DoubtNothing(const Candidates& singles, Finding* finding) const {
   (void)Judge(finding->best);
 }
 
-void Search::Hedge(Finding* finding) const {
+void Search::WidenOrWithdraw(Finding* finding) const {
   double sum = finding->best->probability;
   if (sum >= limits_.sure) return;
   Candidates others = OnePerName(finding->tried);
@@ -111,10 +111,10 @@ void Search::Hedge(Finding* finding) const {
     sum += other->probability;
   }
   if (finding->set.size() > 1) finding->verdict = Verdict::kAmbiguous;
-  Doubt(finding);
+  WithdrawImprobable(finding);
 }
 
-void Search::Doubt(Finding* finding) const {
+void Search::WithdrawImprobable(Finding* finding) const {
   double sum = 0.0;
   for (const CandidatePtr& member : finding->set) sum += member->probability;
   if (sum >= limits_.doubt) return;

@@ -325,7 +325,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   result.notes.insert(result.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
   if (!analysis.signals.law_seen)
     result.notes.push_back("hardly any " + equation->active_name() +
-                           " in these data: they say nothing on the law and its parameters");
+                           " in these data: they say nothing about the law and its parameters");
   const bool can_name = plant.carrying().suitability.can_name;
   if (request.until >= Step::kFind && can_name) {
     clock.Begin("find where", 0.6);
@@ -341,7 +341,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     Confirm(*equation, heldout, request.diagnose.thresholds, &diagnosis, &result);
   }
   if (request.until < Step::kName) {
-    result.sentence = "The search for a name was not asked for.";
+    result.sentence = "The search for a name was not requested.";
     result.probability_none = result.probability_unnamed = std::numeric_limits<double>::quiet_NaN();
   }
   const int min_active = request.diagnose.thresholds.min_active_blocks;

@@ -299,7 +299,7 @@ class ResultWriter {
     const std::string in = request_.equation.empty() ? "" : " in the " + request_.equation;
     if (result_.ladder.empty())
       return complete_
-                 ? "Nothing is missing that these data show: the model explains them to the noise."
+                 ? "Nothing is missing as far as these data show: the model explains them down to the noise."
                  : "Something is missing" + in + ", and no effect that fits this plant earns a name." + ActsAsIf();
     std::vector<std::string> rungs;
     for (const Rung& rung : ladder_.rungs) {

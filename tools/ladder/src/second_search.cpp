@@ -111,9 +111,10 @@ std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request) {
   for (std::vector<std::string>& set : result.ambiguous_set) names.Put(&set);
   names.PutInto(&result.sentence);
   result.model = request.model;
-  result.notes.insert(result.notes.begin(),
-                      "with the law held to be exact no effect got a name; these were found beside a law that may err. "
-                      "model.toml is a plant file: armcmc-estimator --model takes it without --config");
+  result.notes.insert(
+      result.notes.begin(),
+      "with the law assumed to be exact no effect was named; these were found when the law was allowed to err. "
+      "model.toml is a plant file: armcmc-estimator --model takes it without --config");
   return SecondSearch{std::move(again.recording), std::move(diagnosis)};
 }
 

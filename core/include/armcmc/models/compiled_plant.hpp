@@ -49,10 +49,10 @@ struct RatePair {
   double measured, predicted;
 };
 
-/// What the engine asks of a plant that is compiled in: facts, and functions that its slice core/plants/NAME/ defines.
+/// What the engine asks of a plant that is compiled in: facts, and functions that its folder core/plants/NAME/ defines.
 /// Nobody else knows it by name, except the lists in core/src/plants/.
 ///
-/// Besides, the slice has a struct in model.hpp with
+/// The folder also has a struct in model.hpp with
 ///   static constexpr ModelInfo kInfo;
 ///   template <class S> static typename S::V Predict(const typename S::V* theta, const ModeData&, int n) noexcept;
 ///   template <class S> static typename S::V AddTo(typename S::V base, const typename S::V* theta, const ModeData&,

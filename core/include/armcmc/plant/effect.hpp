@@ -34,7 +34,7 @@ struct EffectParameter {
   std::string sd;
   std::string lower;  ///< Empty: 8 sd below the mean.
   std::string upper;
-  std::string none;  ///< Value at which the effect is not there; empty: a shape, which says nothing of that.
+  std::string none;  ///< Value at which the effect is absent; empty: a shape, which has no such value.
 };
 
 /// A number that the scales decide once, when the effect is added.
@@ -90,7 +90,7 @@ struct EffectForm {
 struct EffectEntry {
   std::string name;
   std::vector<std::string> aliases;  ///< Names that it has for plants of some kind.
-  std::string title;                 ///< For people.
+  std::string title;                 ///< For people to read.
   std::string family;
   std::vector<std::string> kin;  ///< Effects that act alike.
   bool single = false;           ///< Two of them in one place are pieces of some curve.

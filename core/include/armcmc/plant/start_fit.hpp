@@ -20,8 +20,9 @@ namespace armcmc {
 /// elsewhere, and say the same of the data so far. So a candidate starts at x0 + sum_d slope_d h(theta_d - about_d),
 /// h(x) = x up to `reach`, and falling back to 0 at twice that: parameters so far away were others then.
 struct StartFit {
-  std::array<double, kMaxStates> shift{};  ///< Of a pack that does not go on: added to the start that the file gives.
-  int num_parameters = 0;                  ///< 0: every candidate starts alike.
+  std::array<double, kMaxStates>
+      shift{};             ///< Of a pack that continues no other: added to the start that the file gives.
+  int num_parameters = 0;  ///< 0: every candidate starts alike.
   std::array<std::array<double, kMaxParams>, kMaxStates> slope{};  ///< d x0_s / d theta_d.
   std::array<double, kMaxParams> about{}, reach{};
   int count = 0;
