@@ -18,7 +18,7 @@ constexpr int kMaxDampings = 6;
 constexpr double kLeastDamping = 1e-6;
 constexpr double kSameMinimum = 25.0;     // squared standard deviations from a minimum that was found before
 constexpr int kStepsForHope = 2;          // steps before the expected decrease is judged
-constexpr double kHope = 4.0;             // times what the tangent promises, short of which a descent is given up
+constexpr double kHope = 4.0;             // times what the tangent bounds, short of which a descent is given up
 constexpr double kSmallAmplitude = 1e-3;  // start of an amplitude that is zero at its bound
 constexpr std::size_t kRefinedStarts = 2;
 
@@ -360,7 +360,7 @@ std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, cons
   return starts;
 }
 
-double Fitter::Promise(const Fitted& parent, const Term& term) const {
+double Fitter::LeastDecrease(const Fitted& parent, const Term& term) const {
   return parent.squares - Starts(parent, term).front().first;
 }
 

@@ -11,7 +11,7 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr std::size_t kMaxGated = 4;  // gated hypotheses that are fitted, by what the scan promises
+constexpr std::size_t kMaxGated = 4;  // gated hypotheses that are fitted, by what the scan bounds
 constexpr std::size_t kJudged = 6;
 constexpr double kUnnamedAtLeast = 0.5;  // where the verdict is that
 constexpr double kLawMayFeign = 1.5;     // gap up to which a model error of the law is considered as well
@@ -40,9 +40,9 @@ CandidatePtr Search::Make(Fitted fit, const CandidatePtr& parent) const {
   auto candidate = std::make_shared<Candidate>();
   candidate->fit = std::move(fit);
   candidate->num_known = parent ? parent->num_known : base_->num_known;
-  if (parent && parent->granted) {
-    candidate->granted = std::make_shared<Granted>(*parent->granted);
-    candidate->granted->with = candidate->fit;
+  if (parent && parent->correction) {
+    candidate->correction = std::make_shared<FlexibleCorrection>(*parent->correction);
+    candidate->correction->with = candidate->fit;
   }
   return candidate;
 }
@@ -270,9 +270,9 @@ Finding Search::Run(bool pairs) const {
       const auto earned = [&](const CandidatePtr& single) {
         return !Holds(pair->fit, single->fit.hypothesis.terms.back().form->effect) || Better(pair->fit, single->fit);
       };
-      // What is granted is not claimed: only the effect has to earn its name.
-      const bool all_earned =
-          pair->granted ? Better(pair->fit, pair->granted->without) : std::all_of(listed.begin(), listed.end(), earned);
+      // The correction is not claimed: only the effect has to earn its name.
+      const bool all_earned = pair->correction ? Better(pair->fit, pair->correction->without)
+                                               : std::all_of(listed.begin(), listed.end(), earned);
       if (all_earned && (Adequate(pair, gap) || StandsOut(pair, corrected))) good.push_back(pair);
     }
     DropUncertain(&good);
@@ -314,7 +314,7 @@ Finding Search::Run(bool pairs) const {
   // An adequate hypothesis may leave the share; it would take clearly more to call for another name.
   finding.p_unnamed = bootstrap_->ProbabilityAbove(Judge(finding.best).gain,
                                                    rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap));
-  if (finding.approximate || finding.best->granted)
+  if (finding.approximate || finding.best->correction)
     finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
   // No name was given because something is left, be it little.
   if (finding.verdict == Verdict::kUnnamed)
@@ -324,7 +324,7 @@ Finding Search::Run(bool pairs) const {
   AssignProbabilities(&finding);
   if (finding.verdict == Verdict::kNamed && !finding.approximate) WidenOrWithdraw(&finding);
   if (finding.verdict == Verdict::kAmbiguous) WithdrawImprobable(&finding);
-  TakeBack(&finding);
+  RemoveCorrections(&finding);
   return finding;
 }
 

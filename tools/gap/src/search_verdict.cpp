@@ -15,8 +15,8 @@ std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
 
 void Search::PreferCatalogue(Candidates* good) {
   // Variants are not needed if the catalogue's main formula is sufficient. An effect with fitted times is no simpler
-  // than another formula that always acts; nor is one that needs a grant.
-  const auto exact = [](const CandidatePtr& c) { return c->exact() && !c->granted; };
+  // than another formula that always acts; nor is one that needs a correction.
+  const auto exact = [](const CandidatePtr& c) { return c->exact() && !c->correction; };
   const auto simple = [&](const CandidatePtr& c) { return exact(c) && c->always(); };
   if (std::none_of(good->begin(), good->end(), exact)) return;
   const bool all = std::any_of(good->begin(), good->end(), simple);
@@ -24,8 +24,9 @@ void Search::PreferCatalogue(Candidates* good) {
 }
 
 bool Search::IsBeatenBy(const CandidatePtr& named, const CandidatePtr& unlisted) const {
-  // Unnamed physics that does as well alone is simpler than a grant with an effect, as it is simpler than two effects.
-  if (named->added().size() > 1 || named->granted) return !Better(named->fit, unlisted->fit);
+  // Unnamed physics that does as well alone is simpler than a correction with an effect, as it is simpler than two
+  // effects.
+  if (named->added().size() > 1 || named->correction) return !Better(named->fit, unlisted->fit);
   const Vector lead = unlisted->fit.heldout - named->fit.heldout;
   return lead.sum() > limits_.tie_nats && bootstrap_->ProbabilityAbove(lead, 0.0) > limits_.p_outdone;
 }

@@ -70,7 +70,7 @@ class Fitter {
   [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
   /// Decrease of the sum of squares of `parent` at the best of the starts of Add: a lower bound of the decrease by Add,
   /// at a fraction of its cost.
-  [[nodiscard]] double Promise(const Fitted& parent, const Term& term) const;
+  [[nodiscard]] double LeastDecrease(const Fitted& parent, const Term& term) const;
 
  private:
   struct Descent;

@@ -16,7 +16,7 @@ namespace armcmc::gap {
 
 /// Flexible correction under which a hypothesis was tested: unnamed physics, or a model error of the law. Its effects
 /// are then named only for their gain beyond the correction.
-struct Granted {
+struct FlexibleCorrection {
   std::string what;
   Fitted without, with;  ///< The correction alone, and with the effects of the hypothesis.
 };
@@ -26,8 +26,8 @@ struct Candidate {
   Fitted fit;
   std::optional<Remainder> remainder;
   double probability = 0.0;
-  std::size_t num_known = 0;         ///< Leading terms that belong to the model or to the flexible correction.
-  std::shared_ptr<Granted> granted;  ///< Null: no correction.
+  std::size_t num_known = 0;  ///< Leading terms that belong to the model or to the flexible correction.
+  std::shared_ptr<FlexibleCorrection> correction;  ///< Null: no correction.
 
   /// Terms beyond the known ones.
   [[nodiscard]] std::vector<Term> added() const;
@@ -117,7 +117,7 @@ class Search {
   /// the equally good hypotheses.
   void DropUncertain(Candidates* good) const;
   /// Refits the hypotheses of a verdict without their flexible correction: that is the model that is reported.
-  void TakeBack(Finding* finding) const;
+  void RemoveCorrections(Finding* finding) const;
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
   [[nodiscard]] bool IsBeatenBy(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
