@@ -69,7 +69,7 @@ TEST(Pages, ResultsAreMadeByTheCommandsThatTheyShow) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(text,
               HasSubstr("$ armcmc-gap --recording tools/gap/recordings/excerpt/emps_excerpt.toml --out OUT/excerpt\n"));
-  EXPECT_THAT(text, HasSubstr("Missing: coulomb friction, then asymmetric friction."));
+  EXPECT_THAT(text, HasSubstr("Missing: Coulomb friction, then asymmetric friction."));
   // Friction in both directions, another for each of them, and an offset of the force: two sums are known, and printed.
   EXPECT_THAT(text, HasSubstr("coulomb_friction Fc = "));
   EXPECT_THAT(text, HasSubstr(" N, confounded with off, asymmetric_friction_Fp, asymmetric_friction_Fm\n"));

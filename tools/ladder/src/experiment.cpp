@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "armcmc/gap/effect_words.hpp"
 #include "motion.hpp"
 #include "prospect.hpp"
 
@@ -117,11 +118,7 @@ class Search {
   std::vector<double> rest_;  ///< [signal] Values at the beginning of the recording.
 };
 
-std::string NameOf(const Tied& tied, std::size_t i) {
-  std::string name = tied[i].candidate.entry->name;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
+std::string NameOf(const Tied& tied, std::size_t i) { return gap::EffectInSentence(tied[i].candidate.entry->name); }
 
 std::string WordsOf(const Proposed& best, const Tied& tied, const PlantDescription& plant, double duration_s) {
   const SignalDescription& signal = plant.signals[best.motion.moved.signal];

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/gap/effect_words.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/plant_effects.hpp"
@@ -59,7 +60,7 @@ class OwnNames {
   /// In a sentence, in which names are written as words.
   void PutInto(std::string* sentence) const {
     for (const EffectEntry& entry : entries_) {
-      const std::string from = InWords(entry.name), to = InWords(NameOf(entry));
+      const std::string from = gap::EffectInSentence(entry.name), to = gap::EffectInSentence(NameOf(entry));
       const std::size_t at = from == to ? std::string::npos : sentence->find(from);
       if (at != std::string::npos) sentence->replace(at, from.size(), to);
     }
@@ -70,10 +71,6 @@ class OwnNames {
     for (const std::string& alias : entry.aliases)
       if (FindEffect(plant_, alias) != nullptr) return alias;
     return entry.name;
-  }
-  static std::string InWords(std::string name) {
-    std::replace(name.begin(), name.end(), '_', ' ');
-    return name;
   }
 
   const ModelInfo& plant_;
