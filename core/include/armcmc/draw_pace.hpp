@@ -9,7 +9,7 @@ namespace armcmc {
 
 /// How much slower the draws of a pack come than those of the packs before it.
 ///
-/// A core that is clocked down, or that two threads share, is slow for the whole of a pack: what is still to be done
+/// A core that is clocked down, or that two threads share, is slow for the whole of a pack: the work that remains
 /// after the draws will be slow, too.
 class DrawPace {
  public:

@@ -7,11 +7,11 @@
 
 namespace armcmc {
 
-/// How long a pack takes after its last draw, foretold from the packs before it.
+/// Time that a pack takes after its last draw, predicted from the previous packs.
 ///
 /// Part of that time is the same for any number of draws (fits, climbing to the mode), part grows with it. So fewer
-/// draws than the most that were timed are held to take as long as those did, more of them in proportion. A pack that
-/// was cut short does not make the next full one look longer than it is, or one cut would bring on another.
+/// draws than the largest number that was timed are assumed to take as long as those, more of them in proportion. A
+/// truncated pack does not make the next full one look longer than it is, or one truncation would cause another.
 class FinishTime {
  public:
   /// @param draws  > 0. @return ns; 0 before the first pack.

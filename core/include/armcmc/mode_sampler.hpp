@@ -177,7 +177,7 @@ class ModeSampler {
   /// Laplace fit under a memory with these moments.
   void FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data, SamplerWorkspace* ws,
                 Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
-  /// The Laplace fits of what rests and of what drifts: they may have come apart.
+  /// The Laplace fits of the constant and the drifting hypothesis, which may have separated.
   void FitApart(const ModeData& data, const PosteriorMemory& previous,
                 SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Laplace fits under P_0 from the best of some draws of it: a law that is not linear may have several modes, and the
@@ -233,11 +233,11 @@ class ModeSampler {
   void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law with a standard
-  /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not held to be
+  /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not considered
   /// impossible.
   void AppendNoiseScale(int first, int count, const double* weight, MarginalTable* table, const ModeDraws& draws,
                         DensityBlock* block) const noexcept ARMCMC_NONBLOCKING;
-  /// What scores most candidates of this pack in less time, if there is such a thing.
+  /// A faster score for most candidates of this pack, if there is one.
   void PrepareScore(const ModeData& data, bool use_previous, SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Log-likelihood of the candidates [first, end), by powers from ws->powers. False, and nothing is scored, if too
   /// many are out of their reach.

@@ -17,7 +17,7 @@ namespace armcmc {
 /// Where the states of a described plant are, and how well that is known, from pack to pack.
 ///
 /// A trajectory continues from where the last one ended, and where it ended is an estimate: from the start of that
-/// pack, corrected by what the pack has said on it, and from parameters that are uncertain themselves. A start that is
+/// pack, corrected by that pack, and from parameters that are uncertain themselves. A start that is
 /// off by one standard deviation of the noise is off by as much in every sample of a pack, which a hundred samples take
 /// for the parameters. So the start is marginalised, linearised about the mean of the posterior (the step of an
 /// extended Kalman filter over a whole pack, x a state, theta a parameter, P in units of the noise's variance s^2):
@@ -26,7 +26,7 @@ namespace armcmc {
 ///
 /// S = d law / d x_start and F = d x_end / d x_start by differences, S_theta and F_theta those by the parameters; G =
 /// d x / d theta, as states and parameters that are learnt from the same packs are not independent. f > 1 so that a
-/// model that is a little off does not become sure of itself, and more where a pack leaves more than noise, or where
+/// model that is a little off does not become overconfident, and more where a pack leaves more than noise, or where
 /// the parameters bend what is linear here by as much as they are uncertain.
 class StateFilter {
  public:
@@ -70,7 +70,7 @@ class StateFilter {
               std::array<double, kMaxStates>* end) noexcept ARMCMC_NONBLOCKING;
 
  private:
-  /// Answers to a start that is off: `answer_[s]` of the law, `end_` of the states.
+  /// Responses to a change of the start: `answer_[s]` of the law, `end_` of the states.
   void Linearise(const simd::Kernels& kernels, const std::array<double, kMaxParams>& mean,
                  const std::array<double, kMaxParams>& sd, double noise_std,
                  const ModeData& data) noexcept ARMCMC_NONBLOCKING;
