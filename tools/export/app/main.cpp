@@ -29,7 +29,7 @@ void Declare(CLI::App* app, Arguments* a) {
       ->capture_default_str();
   app->add_option("--channels", a->request.channels,
                   "Only these channels, comma separated, with or without their prefix (EST_ESTIMATE)")
-      ->type_name("NAME,...")
+      ->type_name("NAME")
       ->delimiter(',');
   app->add_option("--prefix", a->request.prefix, "Only channels with this prefix")->type_name("P");
   app->add_option("--histograms", a->histograms,

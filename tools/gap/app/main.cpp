@@ -81,9 +81,7 @@ void Declare(CLI::App* app, Arguments* a) {
                   "Steps to run, comma separated; the last one counts: compare, find, name, add, show")
       ->type_name("LIST")
       ->capture_default_str();
-  app->add_option("--without", a->without, "Effects to exclude from the catalogue")
-      ->type_name("NAME,...")
-      ->delimiter(',');
+  app->add_option("--without", a->without, "Effects to exclude from the catalogue")->type_name("NAME")->delimiter(',');
   app->add_option("--period-ms", a->period_ms, "Length of a pack, to measure the cost of the new model")
       ->type_name("MS")
       ->check(CLI::Range(1.0, 10'000.0))

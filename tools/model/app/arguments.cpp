@@ -22,7 +22,7 @@ void Declare(CLI::App* app, Arguments* a) {
       "check", "Prints a plant file as it was parsed, the time of a step, and which parameters the data identify");
   check->add_option("PLANT", a->plant, "Plant file, or name of a bundled plant")->required();
   check->add_option("--with", a->with, "Effects to add first, comma separated: NAME, NAME:VARIANT or NAME:x=SYMBOL")
-      ->type_name("NAME,...")
+      ->type_name("NAME")
       ->delimiter(',');
   CLI::Option* data =
       check

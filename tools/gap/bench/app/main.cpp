@@ -34,7 +34,7 @@ void Declare(CLI::App* app, Arguments* a) {
   for (const std::string& name : StratumNames()) known += name + ", ";
   app->add_option("--strata", a->strata,
                   "Comma separated, of: " + known + kTies + " (default: all; recorded needs --recordings)")
-      ->type_name("NAME,...")
+      ->type_name("NAME")
       ->delimiter(',');
   app->add_option("--logs-per-cell", a->logs_per_cell, "Recordings for each effect, strength and motion")
       ->type_name("N")
