@@ -85,7 +85,7 @@ void ValidateEffect(const EffectSettings& effect, const EffectInfo& info, const 
     const ParameterSettings& p = effect.amplitudes[static_cast<std::size_t>(i)];
     const std::string name = key + "." + std::string(amplitude.name);
     if (p.name != amplitude.name)
-      throw std::invalid_argument(name + ": the settings call this parameter '" + p.name + "'");
+      throw std::invalid_argument(name + ": in the settings this parameter is called '" + p.name + "'");
     ValidateParameter(name, p);
     if (amplitude.lower == 0.0) Closed(name + ".lower", p.lower, 0.0, HUGE_VAL);
   }

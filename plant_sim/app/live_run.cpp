@@ -93,7 +93,8 @@ class Observer final : public EstimateListener::Handler {
     if (csv_) csv_->WriteThrough(sent);
     DrainLog();
     if (publishing && watch_.NoticeSilence(drained_ns))
-      Say("no estimate for " + Seconds(drained_ns - watch_.last_ns()) + ": the estimator is silent; the plant goes on");
+      Say("no estimate for " + Seconds(drained_ns - watch_.last_ns()) +
+          ": the estimator is silent; the plant continues");
   }
 
   void Finish(const Publisher& publisher) {

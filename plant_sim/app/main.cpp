@@ -166,38 +166,54 @@ int main(int argc, char** argv) {
   PlantOptions options;
   HideOptions hide;
   RecordingOptions recording;
-  app.add_option("--scenario", scenario_name, "Scenario file, or the name of a bundled one")->capture_default_str();
+  app.add_option("--scenario", scenario_name, "Scenario file, or the name of a bundled one")
+      ->type_name("FILE")
+      ->capture_default_str();
   app.add_option(
-      "--model", model_path,
-      "Plant file, or name of a bundled plant, to simulate; or a model file whose parameters and effects, at their\n"
-      "means, are the true ones of the scenario's plant");
-  app.add_option("--recording", recording.path, "Recording file to play instead of simulating a plant");
-  app.add_option("--data-dir", recording.data_dir, "Folder of the recording's CSV, if not that of the recording file");
-  app.add_option("--speed", recording.speed, "Play this many times as fast as recorded")->capture_default_str();
+         "--model", model_path,
+         "Plant file, or name of a bundled plant, to simulate; or a model file whose parameters and effects, at their\n"
+         "means, are the true ones of the scenario's plant")
+      ->type_name("FILE");
+  app.add_option("--recording", recording.path, "Recording file to play instead of simulating a plant")
+      ->type_name("FILE");
+  app.add_option("--data-dir", recording.data_dir, "Folder of the recording's CSV, if not that of the recording file")
+      ->type_name("DIR");
+  app.add_option("--speed", recording.speed, "Play this many times as fast as recorded")
+      ->type_name("FACTOR")
+      ->capture_default_str();
   app.add_option("--seed", options.seed,
                  "Seed of the sensor noise, and of random motions and parameters: the same seed gives the same data")
+      ->type_name("N")
       ->capture_default_str();
-  app.add_option("--duration", duration_s, "Seconds to run, instead of the scenario's duration");
+  app.add_option("--duration", duration_s, "Seconds to run, instead of the scenario's duration")->type_name("S");
   CLI::Option* url = app.add_option("--lcm-url", options.lcm_url, "LCM bus; a different port is a different bus")
+                         ->type_name("URL")
                          ->capture_default_str();
   CLI::Option* stride =
       app.add_option("--stride", options.stride,
                      "Send a pack every so many samples, so that packs overlap; must divide the number of samples in\n"
-                     "a pack. Default: from the scenario");
-  app.add_option("--prefix", options.prefix, "Prefix of every channel name, so that several plants can share a bus");
-  app.add_option("--log", options.log_path, "Write all published messages to an LCM log");
+                     "a pack. Default: from the scenario")
+          ->type_name("N");
+  app.add_option("--prefix", options.prefix, "Prefix of every channel name, so that several plants can share a bus")
+      ->type_name("P");
+  app.add_option("--log", options.log_path, "Write all published messages to an LCM log")->type_name("FILE");
   app.add_option("--csv", options.csv_path,
-                 "Write the samples and the true values; without --lcm-url nothing is published");
-  app.add_option("--report", options.report_path, "Write the score as JSON");
-  app.add_option("--inject", inject, "Faults to inject, comma separated");
-  app.add_option("--hide-effect", hide.effect, "Effects that the base equations lack: names, random, or none");
+                 "Write the samples and the true values; without --lcm-url nothing is published")
+      ->type_name("FILE");
+  app.add_option("--report", options.report_path, "Write the score as JSON")->type_name("FILE");
+  app.add_option("--inject", inject, "Faults to inject, comma separated")->type_name("KIND@PACK,...");
+  app.add_option("--hide-effect", hide.effect, "Effects that the base equations lack: names, random, or none")
+      ->type_name("NAME,...");
   app.add_option(
          "--effect-strength", hide.strength,
          "Gap ratio R of each: rms of what the refitted base parameters cannot absorb, divided by the standard\n"
          "deviation of the noise")
+      ->type_name("R")
       ->capture_default_str();
-  app.add_option("--effect-gate", hide.gate, "When they act: always, contact, free, from:S or until:S (seconds)");
-  app.add_option("--sealed", hide.sealed_path, "Write the hidden effects to this file, as JSON for the scorer");
+  app.add_option("--effect-gate", hide.gate, "When they act: always, contact, free, from:S or until:S (seconds)")
+      ->type_name("GATE");
+  app.add_option("--sealed", hide.sealed_path, "Write the hidden effects to this file, as JSON for the scorer")
+      ->type_name("FILE");
 
   return armcmc::support::RunProgram(app, "armcmc-plant", argc, argv, [&] {
     if (app.count("--inject") > 0) {

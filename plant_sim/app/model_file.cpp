@@ -130,7 +130,7 @@ void ApplyModelFile(const std::filesystem::path& path, Scenario* scenario) {
   for (StrictTable& table : root.Tables("effect")) {
     HiddenEffect effect = ReadEffect(&table, changed);
     for (const HiddenEffect& other : changed.hidden)
-      if (other.spec == effect.spec) throw table.Error("name", effect.spec->name + " is there twice");
+      if (other.spec == effect.spec) throw table.Error("name", effect.spec->name + " is listed twice");
     changed.hidden.push_back(std::move(effect));
   }
   root.Finish();

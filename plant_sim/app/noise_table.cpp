@@ -23,7 +23,7 @@ constexpr std::uint64_t kCorrelationStream = 0xd2'00;
 /// Column e of a file, without its mean and in units of its standard deviation.
 std::shared_ptr<const Series> ReadRecordedNoise(StrictTable* table, const std::filesystem::path& file) {
   for (const char* key : {"correlation", "correlation_to"})
-    if (table->Has(key)) throw table->Error(key, "is no choice: recorded noise has a colour");
+    if (table->Has(key)) throw table->Error(key, "cannot be chosen: recorded noise has its own correlation");
   Series noise = *ReadSeries(table->RequiredText("recording"), file, "e");
   const auto count = static_cast<double>(noise.values.size());
   const double mean = std::accumulate(noise.values.begin(), noise.values.end(), 0.0) / count;
@@ -32,7 +32,7 @@ std::shared_ptr<const Series> ReadRecordedNoise(StrictTable* table, const std::f
     value -= mean;
     squares += value * value;
   }
-  if (!(squares > 0.0)) throw table->Error("recording", "does not change: it is no noise");
+  if (!(squares > 0.0)) throw table->Error("recording", "is constant: it holds no noise");
   for (double& value : noise.values) value /= std::sqrt(squares / count);
   return std::make_shared<const Series>(std::move(noise));
 }

@@ -48,7 +48,7 @@ LcmHandle OpenLcm(const std::string& url) {
     throw std::invalid_argument("LCM URL \"" + url + "\": expected one like udpm://239.255.76.67:7667?ttl=0");
   if (!HasRoute(url)) throw std::runtime_error("cannot open the bus " + url + ": " + kRemedy);
   LcmHandle lcm(lcm_create(url.c_str()));
-  if (lcm == nullptr) throw std::runtime_error("cannot open the bus " + url + ": LCM's reason stands above");
+  if (lcm == nullptr) throw std::runtime_error("cannot open the bus " + url + ": the reason of LCM is printed above");
   return lcm;
 }
 

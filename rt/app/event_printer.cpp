@@ -51,8 +51,8 @@ std::string EventText(const rt::Event& event, const GapCheckNames& gap_check) {
   const std::string a = std::to_string(event.a);
   switch (event.kind) {
     case EventKind::kWaitingForPlant: return "waiting for the plant";
-    case EventKind::kPlantFirstSeen: return "plant is there, first pack " + a;
-    case EventKind::kPlantSilent: return "plant is silent since pack " + a;
+    case EventKind::kPlantFirstSeen: return "plant found, first pack " + a;
+    case EventKind::kPlantSilent: return "plant has been silent since pack " + a;
     case EventKind::kPlantBack: return "plant is back with pack " + a + " after " + Count(event.b, "silent period");
     case EventKind::kPlantRestarted:
       return "plant was restarted (pack " + a + "); continuing from the current posterior";
@@ -76,7 +76,7 @@ std::string EventText(const rt::Event& event, const GapCheckNames& gap_check) {
     case EventKind::kInjected:
       return "INJECTED " + std::string(rt::ToString(static_cast<rt::InjectionKind>(event.detail))) + " at pack " + a;
     case EventKind::kOverlapDiffers:
-      return "packs come every " + Count(event.a, "sample") + ", and by [timing] overlap it is " +
+      return "packs come every " + Count(event.a, "sample") + ", but [timing] overlap implies every " +
              std::to_string(event.b) +
              (event.a < event.b ? ": samples are counted more than once" : ": packs of a recursion leave samples out");
   }

@@ -43,7 +43,8 @@ std::string Footer() {
          "Several plants in one process, up to " +
          std::to_string(rt::Pipeline::kMaxLanes) +
          ": --model, --prefix and --report once for each\n"
-         "  armcmc-estimator --model joint.toml --model joint.toml --prefix J1_ --prefix J2_\n";
+         "  armcmc-estimator --model joint.toml --model joint.toml --prefix J1_ --prefix J2_\n"
+         "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.";
 }
 
 void WarnWhenDegraded(const rt::Pipeline& pipeline) {

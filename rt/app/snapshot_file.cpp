@@ -108,7 +108,7 @@ std::vector<std::byte> EncodeSnapshot(const Snapshot& snapshot) {
 std::string DecodeSnapshot(std::span<const std::byte> bytes, std::uint64_t identity, Snapshot* snapshot) {
   Header header{};
   if (bytes.size() < sizeof kMagic || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) {
-    return bytes.empty() ? "is empty" : "is no snapshot of an estimator";
+    return bytes.empty() ? "is empty" : "is not a snapshot of an estimator";
   }
   if (bytes.size() < sizeof header + sizeof(std::uint64_t)) return "is truncated";
   std::memcpy(&header, bytes.data(), sizeof header);

@@ -16,11 +16,11 @@ constexpr auto kInterval = std::chrono::seconds(1);
 /// Moves a file that will not be used out of the way of the new one. @return what to say of it.
 std::string SetAside(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return "it is no file";
+  if (!std::filesystem::is_regular_file(path, error)) return "it is not a regular file";
   std::string aside = path + ".refused";
   for (int n = 2; std::filesystem::exists(aside, error); ++n) aside = path + ".refused" + std::to_string(n);
   std::filesystem::rename(path, aside, error);
-  return error ? "it could not be set aside: " + error.message() : "it stays as " + aside;
+  return error ? "it could not be set aside: " + error.message() : "it is kept as " + aside;
 }
 
 }  // namespace
@@ -78,7 +78,8 @@ void SnapshotSaver::Save() {
   }
   failed_.fetch_add(1, std::memory_order_relaxed);
   on_failure_();
-  if (!told_) say_("the snapshot " + path_ + " cannot be written: " + reason + "; going on without, and trying again");
+  if (!told_)
+    say_("the snapshot " + path_ + " cannot be written: " + reason + "; continuing without it, and trying again");
   told_ = true;
 }
 
@@ -116,14 +117,14 @@ Snapshot LoadSnapshot(const std::string& path, std::uint64_t identity, std::int6
     reason = "cannot be read: " + reason;
   } else {
     reason = DecodeSnapshot(bytes, identity, &snapshot);
-    if (reason.empty() && !use(snapshot)) reason = "is damaged: its content makes no sense";
+    if (reason.empty() && !use(snapshot)) reason = "is damaged: its content is invalid";
   }
   if (!reason.empty()) {
     // It may be of use to another program: that of a newer version, or of the model that it belongs to.
     say("the snapshot " + path + " is refused, it " + reason + "; starting afresh, " + SetAside(path));
     return nothing;
   }
-  say("going on from pack " + std::to_string(snapshot.seq) + " in the snapshot " + path + ", saved " +
+  say("continuing from pack " + std::to_string(snapshot.seq) + " in the snapshot " + path + ", saved " +
       std::to_string((now_utime - snapshot.utime) / 1'000'000) + " s ago");
   return snapshot;
 }

@@ -56,7 +56,7 @@ std::string Parameters(const rt::Lane& lane, const Estimator& estimator) {
 /// @param model  As the user may call it, or its plant file.
 std::string Gap(const GapState& gap, const std::string& window, const std::string& model) {
   if (!gap.watched) return {};
-  if (gap.num_blocks == 0) return "gap between model and plant: not judged, since too few packs were of use for that\n";
+  if (gap.num_blocks == 0) return "gap between model and plant: not judged, since too few packs were usable\n";
   std::ostringstream out;
   if (!gap.suspected) {
     out << "gap between model and plant: none suspected (log evidence " << Significant(gap.log_evidence, 3)

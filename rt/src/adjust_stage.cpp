@@ -22,7 +22,7 @@ void AdjustStage::CountDropped(std::int64_t seq, MissCause cause, Nanos now_ns, 
   events_->Add({now_ns, EventKind::kPackDropped, static_cast<std::uint8_t>(cause), seq, lacked_ns});
 }
 
-void AdjustStage::DropUnkeepable() noexcept {
+void AdjustStage::DropTooLate() noexcept {
   for (std::size_t i = 1; i < PackRing::capacity() && ring_->size() > 1; ++i) {
     const PackSlot* slot = ring_->Front();
     const Nanos now_ns = MonotonicNow();
@@ -50,11 +50,11 @@ void AdjustStage::NoteStatus(const StepInfo& info) noexcept {
 void AdjustStage::Remember() noexcept {
   engine_->Remember(MonotonicClock());
   const Nanos end_ns = MonotonicNow();
-  monitor_->RecordRemembered(handed_over_, end_ns, cpu_time_.GoOn(end_ns));
+  monitor_->RecordRemembered(handed_over_, end_ns, cpu_time_.Continue(end_ns));
 }
 
 bool AdjustStage::Step(int waiting) noexcept {
-  DropUnkeepable();
+  DropTooLate();
   PackSlot* slot = ring_->Front();
   if (slot == nullptr) return false;
   if (results_->latest.unread() && MonotonicNow() < handed_over_.deadline_ns) return false;

@@ -79,7 +79,7 @@ Nanos CpuTimeMeter::End(Nanos end_ns) noexcept ARMCMC_NONBLOCKING {
   return Withheld(start_ns_, used_at_start_, end_ns);
 }
 
-Nanos CpuTimeMeter::GoOn(Nanos end_ns) noexcept ARMCMC_NONBLOCKING {
+Nanos CpuTimeMeter::Continue(Nanos end_ns) noexcept ARMCMC_NONBLOCKING {
   const Use at_begin = used_at_end_;
   return Withheld(end_ns_, at_begin, end_ns);
 }

@@ -63,7 +63,8 @@ void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKI
 void DeadlineMonitor::RecordRemembered(const StepTimes& times, Nanos end_ns,
                                        Nanos withheld_ns) noexcept ARMCMC_NONBLOCKING {
   const Nanos begin_ns = times.end_ns[IndexOf(Stage::kAdjust)];
-  timeline_[IndexOf(Stage::kAdjust)].GoOn(end_ns, std::max(StalledTime(Stage::kAdjust, begin_ns, end_ns), withheld_ns));
+  timeline_[IndexOf(Stage::kAdjust)].Continue(end_ns,
+                                              std::max(StalledTime(Stage::kAdjust, begin_ns, end_ns), withheld_ns));
 }
 
 MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLOCKING {

@@ -81,7 +81,7 @@ std::string_view ToString(RejectCause cause) noexcept {
     case RejectCause::kNotFinite: return "NaN or infinite value";
     case RejectCause::kOutOfRange: return "value out of range";
     case RejectCause::kAllZero: return "every value is zero";
-    case RejectCause::kOverlap: return "n_samples is no multiple of timing.overlap";
+    case RejectCause::kOverlap: return "n_samples is not a multiple of timing.overlap";
   }
   return "unknown";
 }

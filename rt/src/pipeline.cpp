@@ -235,9 +235,9 @@ void Pipeline::CollectLoop() noexcept {
     Nanos next_tick_ns = lanes_[0]->collect_.next_tick_ns();
     for (const auto& lane : lanes_) next_tick_ns = std::min(next_tick_ns, lane->collect_.next_tick_ns());
     const Nanos wait_ns = std::max<Nanos>(0, next_tick_ns - MonotonicNow());
-    watchdog_.Promise(Watched::kCollect, MonotonicNow(), wait_ns);
+    watchdog_.Announce(Watched::kCollect, MonotonicNow(), wait_ns);
     if (receiver_.WaitUntil(next_tick_ns)) {
-      watchdog_.Promise(Watched::kCollect, MonotonicNow(), settings_.period_ns / 2);
+      watchdog_.Announce(Watched::kCollect, MonotonicNow(), settings_.period_ns / 2);
       for (int i = 0; i < kMaxPacksPerWait && receiver_.TryReceive(&datagram); ++i) {
         ++heard;
         if (lanes_[datagram.channel]->collect_.Step(datagram)) adjust_waiter_.Post();
@@ -275,11 +275,11 @@ void Pipeline::WarmUpEngines() noexcept {
 void Pipeline::AdjustLoop() noexcept {
   const std::uint64_t baseline = HeapCalls();
   while (!stopping()) {
-    watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.period_ns);
+    watchdog_.Announce(Watched::kAdjust, MonotonicNow(), settings_.period_ns);
     (void)adjust_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
     const Nanos woken_ns = adjust_waiter_.TakePostTime();
     for (const auto& lane : lanes_) lane->adjust_.cpu_time()->NoteWoken(woken_ns);
-    watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+    watchdog_.Announce(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
     AdjustWaiting();
     CountHeapCalls(Stage::kAdjust, baseline);
     adjust_thread_.NoteCpuTime();
@@ -309,7 +309,7 @@ Lane* Pipeline::NextToAdjust(int* waiting) noexcept {
 void Pipeline::RememberIn(Lane* lane) noexcept {
   if (!lane->not_remembered_) return;
   lane->not_remembered_ = false;
-  watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+  watchdog_.Announce(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
   lane->adjust_.Remember();
 }
 
@@ -318,13 +318,13 @@ void Pipeline::AdjustWaiting() noexcept {
   int waiting = 0;
   for (Lane* lane = NextToAdjust(&waiting); lane != nullptr && !stopping(); lane = NextToAdjust(&waiting)) {
     RememberIn(lane);  // of its pack before; that of the others can wait until no pack does
-    watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+    watchdog_.Announce(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
     lane->not_remembered_ = lane->adjust_.Step(waiting);
     lane->refused_ = !lane->not_remembered_;
     if (lane->not_remembered_) execute_waiter_.Post();
   }
   for (const auto& lane : lanes_) RememberIn(lane.get());
-  watchdog_.Promise(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
+  watchdog_.Announce(Watched::kAdjust, MonotonicNow(), settings_.adjust_budget_ns);
 }
 
 bool Pipeline::AllStepsDone() const noexcept {
@@ -336,14 +336,14 @@ bool Pipeline::AllStepsDone() const noexcept {
 void Pipeline::ExecuteLoop() noexcept {
   const std::uint64_t baseline = HeapCalls();
   while (!stopping()) {
-    watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns);
+    watchdog_.Announce(Watched::kExecute, MonotonicNow(), settings_.period_ns);
     (void)execute_waiter_.WaitUntil(MonotonicNow() + settings_.period_ns);
     const Nanos woken_ns = execute_waiter_.TakePostTime();
     for (const auto& lane : lanes_) lane->execute_.cpu_time()->NoteWoken(woken_ns);
     for (const auto& lane : lanes_) {
-      watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
+      watchdog_.Announce(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
       while (!stopping() && lane->execute_.Step()) {
-        watchdog_.Promise(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
+        watchdog_.Announce(Watched::kExecute, MonotonicNow(), settings_.period_ns / 2);
         publish_waiter_.Post();
         if (lane->packs_.size() > 0) adjust_waiter_.Post();  // it may have waited for us
         if (AllStepsDone()) RequestStop();
@@ -359,14 +359,14 @@ void Pipeline::PublishLoop() noexcept {
   while (true) {
     // A status is due every period; collect asks for it while the plant is silent. The longer bound is for the case
     // that collect itself hangs.
-    watchdog_.Promise(Watched::kPublish, MonotonicNow(), 2 * settings_.period_ns);
+    watchdog_.Announce(Watched::kPublish, MonotonicNow(), 2 * settings_.period_ns);
     const bool posted = publish_waiter_.WaitUntil(MonotonicNow() + 2 * settings_.period_ns);
     const bool ended = execute_ended_.load(std::memory_order_acquire);
     Nanos worst_ns = 0;
     for (const auto& witness : witnesses_) worst_ns = std::max(worst_ns, witness->TakeWorst());
     const bool hung = watchdog_.TakeHung();
     for (const auto& lane : lanes_) {
-      watchdog_.Promise(Watched::kPublish, MonotonicNow(), settings_.period_ns);
+      watchdog_.Announce(Watched::kPublish, MonotonicNow(), settings_.period_ns);
       lane->publish_.Note(worst_ns, hung);
       const int published = lane->publish_.PublishSteps();
       const bool due = lane->status_due_.exchange(false, std::memory_order_acq_rel);

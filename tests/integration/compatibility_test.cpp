@@ -111,7 +111,7 @@ TEST_F(Version010, TheLogIsComparedMessageByMessage) {
   // 1: the arithmetic differs, and the first difference is named.
   EXPECT_THAT(o.code, ::testing::AnyOf(0, 1)) << o.err;
   if (o.code == 0)
-    EXPECT_THAT(o.out, HasSubstr("verified: 9 recorded messages are equal to the bit"));
+    EXPECT_THAT(o.out, HasSubstr("verified: 9 recorded messages are bit-identical"));
   else
     EXPECT_THAT(o.out + o.err, HasSubstr("differ"));
 }
@@ -148,7 +148,7 @@ TEST_F(Version010, TheResultOfTheGapWorkflowIsListed) {
 TEST_F(Version010, TheSnapshotIsGoneOnFrom) {
   const double learnt = Number(Exported("EST_ESTIMATE").at(2).at("sd.gain [rad (s V)^-1]"));
   auto estimator = StartEstimator({"--model", Kept("plant.toml"), "--resume", Snapshot()});
-  EXPECT_TRUE(estimator->WaitForErr("going on from pack 3 in the snapshot", 5s)) << estimator->err();
+  EXPECT_TRUE(estimator->WaitForErr("continuing from pack 3 in the snapshot", 5s)) << estimator->err();
   ASSERT_EQ(PlayPacks(), 3u) << estimator->err();
   const estimate_t first = recorder_->estimates().front();
   EXPECT_EQ(first.known, 1);
@@ -165,7 +165,7 @@ TEST_F(Version010, ASnapshotOfANewerVersionIsRefusedAndStays) {
   auto estimator = StartEstimator({"--model", Kept("plant.toml"), "--resume", Snapshot()});
   EXPECT_TRUE(estimator->WaitForErr("learnt.snapshot is refused, it has version 99 of a newer program", 5s))
       << estimator->err();
-  EXPECT_THAT(estimator->err(), HasSubstr("starting afresh, it stays as " + Snapshot() + ".refused"));
+  EXPECT_THAT(estimator->err(), HasSubstr("starting afresh, it is kept as " + Snapshot() + ".refused"));
   ASSERT_EQ(PlayPacks(), 3u) << estimator->err();
   (void)Finish(estimator.get());
   EXPECT_EQ(TextOf(Snapshot() + ".refused"), newer) << "what was learnt";

@@ -135,7 +135,7 @@ TEST_F(LiveRun, ALogOfLcmLoggerIsVerifiedToTheBit) {
                                            (SourceDir() / "rt/config/hunt_crossley.toml").string(), "--verify"};
   const Outcome o = RunProgram(Program("armcmc-replay"), verify);
   EXPECT_EQ(o.code, 0) << o.out << o.err;
-  EXPECT_NE(o.out.find("verified: 90 recorded messages are equal to the bit"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("verified: 90 recorded messages are bit-identical"), std::string::npos) << o.out;
 }
 
 }  // namespace

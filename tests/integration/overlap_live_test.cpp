@@ -64,7 +64,7 @@ TEST_F(OverlapLive, ThreeSecondsAtAHundredHertzLoseNothingCoverTheTruthAndReplay
 
   const Outcome verified = RunProgram(Program("armcmc-replay"), {"--data", Log(), "--config", config_, "--verify"});
   EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
-  EXPECT_NE(verified.out.find("are equal to the bit"), std::string::npos) << verified.out;
+  EXPECT_NE(verified.out.find("are bit-identical"), std::string::npos) << verified.out;
 
   // The same plant without a bus, as fast as possible: its CSV has every sample once, and gives the same packs.
   const Outcome offline = RunProgram(Program("armcmc-plant"), {"--scenario", scenario_.string(), "--seed", seed_,
@@ -99,7 +99,7 @@ TEST_F(OverlapLive, PacksThatTheOverlapDoesNotDivideAreRejectedAndCounted) {
   const Json report = Finish(estimator.get());
   EXPECT_EQ(report["packs"]["received"], 0);
   EXPECT_EQ(report["packs"]["rejected"], 5);
-  EXPECT_EQ(report["packs"]["rejected_by_cause"]["n_samples is no multiple of timing.overlap"], 5);
+  EXPECT_EQ(report["packs"]["rejected_by_cause"]["n_samples is not a multiple of timing.overlap"], 5);
   EXPECT_EQ(report["steps"], 0);
 }
 

@@ -53,7 +53,7 @@ TEST_F(Resume, AfterKill9TheEstimatorGoesOnFromWhatItHadLearnt) {
     since = Since(before);
     return since.size() >= 5 && std::any_of(since.begin(), since.end(), says);
   })) << second->err();
-  EXPECT_TRUE(second->WaitForErr("going on from pack", 1s)) << second->err();
+  EXPECT_TRUE(second->WaitForErr("continuing from pack", 1s)) << second->err();
   EXPECT_EQ(since.front().known, 1) << "from its first word on";
   const auto judged = std::find_if(since.begin(), since.end(), says);
   EXPECT_EQ(judged->decision, estimate_t::DECISION_REINFORCEMENT) << "who knows nothing starts with a modification";
@@ -73,7 +73,8 @@ TEST_F(Resume, AfterKill9TheEstimatorGoesOnFromWhatItHadLearnt) {
 TEST_F(Resume, ADamagedSnapshotAndOneOfAnotherModelAreRefusedAndTheRunGoesOn) {
   std::ofstream(File()) << "not a snapshot";
   auto first = StartEstimator({"--resume", File()});
-  EXPECT_TRUE(first->WaitForErr("is refused, it is no snapshot of an estimator; starting afresh", 5s)) << first->err();
+  EXPECT_TRUE(first->WaitForErr("is refused, it is not a snapshot of an estimator; starting afresh", 5s))
+      << first->err();
   ASSERT_EQ(Play("0.8"), 8u) << first->err();
   first->Signal(SIGINT);
   EXPECT_EQ(first->Wait(10s).code, 0) << first->err();

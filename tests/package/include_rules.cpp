@@ -68,8 +68,8 @@ std::string OwnerOf(const std::string& header) {
   if (std::regex_match(header, std::regex("armcmc/[a-z0-9_]+_t\\.hpp"))) return "lcm_types";
   if (!std::regex_match(header, match, std::regex("armcmc/([a-z_]+)/.*"))) return "core";
   const std::string folder = match[1];
-  for (const std::string_view room : {"models", "effects", "expression", "gap_watch", "baselines", "plant"})
-    if (folder == room) return "core";
+  for (const std::string_view own : {"models", "effects", "expression", "gap_watch", "baselines", "plant"})
+    if (folder == own) return "core";
   if (folder == "rt" || folder == "plant_sim" || folder == "support") return folder;
   return "tools";
 }

@@ -69,7 +69,7 @@ TEST(Pages, ResultsAreMadeByTheCommandsThatTheyShow) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(text,
               HasSubstr("$ armcmc-gap --recording tools/gap/recordings/excerpt/emps_excerpt.toml --out OUT/excerpt\n"));
-  EXPECT_THAT(text, HasSubstr("Missing: coulomb friction, then asymmetric friction."));
+  EXPECT_THAT(text, HasSubstr("Missing: Coulomb friction, then asymmetric friction."));
   // Friction in both directions, another for each of them, and an offset of the force: two sums are known, and printed.
   EXPECT_THAT(text, HasSubstr("coulomb_friction Fc = "));
   EXPECT_THAT(text, HasSubstr(" N, confounded with off, asymmetric_friction_Fp, asymmetric_friction_Fm\n"));
@@ -103,11 +103,11 @@ TEST(Pages, TheDemoBuildsTheProgramsThatReadmeAndTutorialCall) {
 TEST(Pages, LinksLeadToFilesAndPagesAreShort) {
   const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
   int links = 0;
-  for (const char* room : {".github", "core", "lcm_types", "plant_sim", "rt", "tests", "tools", "README.md"}) {
-    std::vector<std::filesystem::path> pages{SourceDir() / room};
+  for (const char* folder : {".github", "core", "lcm_types", "plant_sim", "rt", "tests", "tools", "README.md"}) {
+    std::vector<std::filesystem::path> pages{SourceDir() / folder};
     if (std::filesystem::is_directory(pages.front())) {
       pages.clear();
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(SourceDir() / room))
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(SourceDir() / folder))
         if (entry.path().extension() == ".md") pages.push_back(entry.path());
     }
     for (const std::filesystem::path& page : pages) {
@@ -123,10 +123,10 @@ TEST(Pages, LinksLeadToFilesAndPagesAreShort) {
 
 /// Files and folders of the tree from its top, "core/src/settings.cpp".
 std::vector<std::string> Tree() {
-  const std::vector<std::string> rooms{".ci", ".github", "core", "lcm_types", "plant_sim", "rt", "tests", "tools"};
-  std::vector<std::string> paths = rooms;
-  for (const std::string& room : rooms)
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(SourceDir() / room))
+  const std::vector<std::string> folders{".ci", ".github", "core", "lcm_types", "plant_sim", "rt", "tests", "tools"};
+  std::vector<std::string> paths = folders;
+  for (const std::string& folder : folders)
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(SourceDir() / folder))
       paths.push_back(entry.path().lexically_relative(SourceDir()).string());
   return paths;
 }

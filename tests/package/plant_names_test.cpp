@@ -1,5 +1,5 @@
-// The engine knows roles and slots, and no plant by name: what belongs to one plant stands in its slices, the folders
-// plants/NAME/ of core and of the rooms that have something of their own for it.
+// The engine knows roles and slots, and no plant by name: what belongs to one plant is in its own folders,
+// plants/NAME/ of core and of the other parts of the tree that have something of their own for it.
 
 #include <gtest/gtest.h>
 
@@ -44,12 +44,12 @@ std::vector<std::string> Plants() {
   return names;
 }
 
-/// A room's list of the plants that it has slices of.
+/// The list of the plants that have a folder in this part of the tree.
 bool IsList(const fs::path& file) {
   return file.parent_path().filename() == "plants" && (file.stem() == "registry" || file.filename() == "kernels.inl");
 }
 
-bool IsInSliceOf(const fs::path& file, const std::string& plant) {
+bool IsInFolderOf(const fs::path& file, const std::string& plant) {
   return file.generic_string().find("/plants/" + plant + "/") != std::string::npos;
 }
 
@@ -62,12 +62,12 @@ TEST(PlantNames, AreFoundInEverySpelling) {
   EXPECT_FALSE(Names("the tank is full", "tank"));
 }
 
-TEST(PlantNames, StandInTheirSlicesOnly) {
+TEST(PlantNames, AppearOnlyInTheirFolders) {
   const std::vector<std::string> plants = Plants();
   ASSERT_GE(plants.size(), 2U);
   int files = 0;
-  for (const char* room : {"core", "rt", "tools", "plant_sim"})
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(SourceDir() / room)) {
+  for (const char* part : {"core", "rt", "tools", "plant_sim"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(SourceDir() / part)) {
       const std::set<std::string> code = {".hpp", ".cpp", ".inl"};
       if (!entry.is_regular_file() || !code.contains(entry.path().extension())) continue;
       const fs::path path = fs::relative(entry.path(), SourceDir());
@@ -77,9 +77,9 @@ TEST(PlantNames, StandInTheirSlicesOnly) {
       std::string line;
       for (int number = 1; std::getline(text, line); ++number)
         for (const std::string& plant : plants) {
-          if (IsInSliceOf(path, plant) || !Names(line, plant)) continue;
+          if (IsInFolderOf(path, plant) || !Names(line, plant)) continue;
           ADD_FAILURE() << path.generic_string() << ':' << number << ": names " << plant
-                        << " outside its slice: " << line;
+                        << " outside its folders: " << line;
         }
     }
   EXPECT_GT(files, 300);

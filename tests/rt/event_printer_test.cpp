@@ -16,7 +16,7 @@ TEST(EventPrinter, PrintsOneLineWithTheTimeSinceTheStart) {
   std::ostringstream out;
   EventPrinter printer(out, 1'000'000'000, false);
   printer.Print({2'500'000'000, rt::EventKind::kPlantSilent, 0, 17, 0});
-  EXPECT_EQ(out.str(), "[    1.500 s] plant is silent since pack 17\n");
+  EXPECT_EQ(out.str(), "[    1.500 s] plant has been silent since pack 17\n");
 }
 
 TEST(EventPrinter, HoldsAStormBackAndSaysHowMuch) {
@@ -47,9 +47,10 @@ TEST(EventText, SaysWhichPackByHowMuchAndWhy) {
             "deadline of pack 7 missed by 1.500 ms, cause: machine");
   EXPECT_EQ(EventText({0, rt::EventKind::kPacksLost, 0, 3, 9}), "3 packs lost before pack 9");
   EXPECT_EQ(EventText({0, rt::EventKind::kOverlapDiffers, 0, 10, 100}),
-            "packs come every 10 samples, and by [timing] overlap it is 100: samples are counted more than once");
-  EXPECT_EQ(EventText({0, rt::EventKind::kOverlapDiffers, 0, 100, 1}),
-            "packs come every 100 samples, and by [timing] overlap it is 1: packs of a recursion leave samples out");
+            "packs come every 10 samples, but [timing] overlap implies every 100: samples are counted more than once");
+  EXPECT_EQ(
+      EventText({0, rt::EventKind::kOverlapDiffers, 0, 100, 1}),
+      "packs come every 100 samples, but [timing] overlap implies every 1: packs of a recursion leave samples out");
   EXPECT_EQ(EventText({0, rt::EventKind::kPlantBack, 0, 9, 1}), "plant is back with pack 9 after 1 silent period");
   EXPECT_EQ(EventText({0, rt::EventKind::kStageHung, static_cast<std::uint8_t>(rt::Watched::kExecute), 250'000'000, 0}),
             "stage execute hangs: overdue by 250.000 ms");

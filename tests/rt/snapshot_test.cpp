@@ -52,7 +52,7 @@ TEST(SnapshotFile, ReadsWhatWasWritten) {
 TEST(SnapshotFile, RefusesWhatItDoesNotKnowAndSaysWhy) {
   const auto good = EncodeSnapshot(Example());
   EXPECT_EQ(Refusal({}), "is empty");
-  EXPECT_EQ(Refusal(Bytes(2000, 7)), "is no snapshot of an estimator");
+  EXPECT_EQ(Refusal(Bytes(2000, 7)), "is not a snapshot of an estimator");
   auto foreign = good;
   foreign[8] = std::byte{99};
   EXPECT_EQ(Refusal(foreign), "has version 99 of a newer program, expected 3");
@@ -203,12 +203,12 @@ TEST_F(SnapshotSaverTest, SaysInOneLineWhatBecomesOfTheFile) {
   const std::string file = Path();
   ASSERT_EQ(said_.size(), 4U);
   EXPECT_EQ(said_[0], "no snapshot " + file + " yet: starting afresh");
-  EXPECT_EQ(said_[1], "going on from pack 17 in the snapshot " + file + ", saved 9 s ago");
+  EXPECT_EQ(said_[1], "continuing from pack 17 in the snapshot " + file + ", saved 9 s ago");
   EXPECT_EQ(said_[2], "the snapshot " + file +
-                          " is refused, it is damaged: its content makes no sense; starting afresh, it stays as " +
-                          file + ".refused");
+                          " is refused, it is damaged: its content is invalid; starting afresh, it is kept as " + file +
+                          ".refused");
   EXPECT_EQ(said_[3], "the snapshot " + file +
-                          " is refused, it is no snapshot of an estimator; starting afresh, it stays as " + file +
+                          " is refused, it is not a snapshot of an estimator; starting afresh, it is kept as " + file +
                           ".refused2");
 }
 

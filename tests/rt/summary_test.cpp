@@ -103,8 +103,7 @@ TEST_F(SummaryTest, OfARunWithoutPacksHasNoTimes) {
 
 TEST_F(SummaryTest, SaysThatTooFewPacksWereJudged) {
   engine_.gap.watched = true;
-  EXPECT_THAT(AfterPacks(1),
-              HasSubstr("gap between model and plant: not judged, since too few packs were of use for that\n"));
+  EXPECT_THAT(AfterPacks(1), HasSubstr("gap between model and plant: not judged, since too few packs were usable\n"));
 }
 
 TEST_F(SummaryTest, SaysThatNoGapIsSuspected) {

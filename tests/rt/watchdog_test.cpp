@@ -27,7 +27,7 @@ class WatchdogTest : public ::testing::Test {
 
 TEST_F(WatchdogTest, IsContentWhileThreadsAreHeardOf) {
   for (int step = 0; step < 20; ++step) {
-    dog_.Promise(Watched::kAdjust, step * kT, kT);
+    dog_.Announce(Watched::kAdjust, step * kT, kT);
     CheckUntil((step + 1) * kT);
   }
   EXPECT_EQ(dog_.hung(), 0U);
@@ -35,7 +35,7 @@ TEST_F(WatchdogTest, IsContentWhileThreadsAreHeardOf) {
 }
 
 TEST_F(WatchdogTest, SeesAHangWithinOnePeriodOfTheBrokenPromise) {
-  dog_.Promise(Watched::kExecute, 0, kT / 2);
+  dog_.Announce(Watched::kExecute, 0, kT / 2);
   CheckUntil(kT / 2);
   EXPECT_EQ(dog_.hung(), 0U) << "the promise holds still";
   CheckUntil(kT / 2 + kT);
@@ -49,10 +49,10 @@ TEST_F(WatchdogTest, SeesAHangWithinOnePeriodOfTheBrokenPromise) {
 }
 
 TEST_F(WatchdogTest, AThreadThatIsHeardOfAgainIsAliveAndWasStillFlagged) {
-  dog_.Promise(Watched::kCollect, 0, 0);
+  dog_.Announce(Watched::kCollect, 0, 0);
   CheckUntil(5 * kT);
   EXPECT_TRUE(dog_.TakeHung());
-  dog_.Promise(Watched::kCollect, 5 * kT, kT);
+  dog_.Announce(Watched::kCollect, 5 * kT, kT);
   CheckUntil(5 * kT + kT / 2);
   EXPECT_EQ(dog_.hung(), 0U);
   EXPECT_FALSE(dog_.TakeHung());
@@ -60,28 +60,28 @@ TEST_F(WatchdogTest, AThreadThatIsHeardOfAgainIsAliveAndWasStillFlagged) {
 }
 
 TEST_F(WatchdogTest, AHangThatIsOverBeforeItIsAskedForIsToldOnce) {
-  dog_.Promise(Watched::kPublish, 0, 0);
+  dog_.Announce(Watched::kPublish, 0, 0);
   CheckUntil(kT);
-  dog_.Promise(Watched::kPublish, now_, kT);
+  dog_.Announce(Watched::kPublish, now_, kT);
   CheckUntil(now_ + kT / 4);
   EXPECT_TRUE(dog_.TakeHung());
   EXPECT_FALSE(dog_.TakeHung());
 }
 
 TEST_F(WatchdogTest, AProcessThatWasStoppedAsAWholeHasNotHung) {
-  dog_.Promise(Watched::kAdjust, 0, kT / 2);
+  dog_.Announce(Watched::kAdjust, 0, kT / 2);
   CheckUntil(kT / 4);
   dog_.Check(now_, now_ + 20 * kT);  // the check itself came two seconds late
   now_ += 20 * kT + dog_.check_period_ns();
   dog_.Check(now_, now_);
   EXPECT_EQ(dog_.hung(), 0U) << "the stages have had no time to be heard of yet";
-  dog_.Promise(Watched::kAdjust, now_, kT);
+  dog_.Announce(Watched::kAdjust, now_, kT);
   CheckUntil(now_ + kT / 2);
   EXPECT_EQ(dog_.hangs(), 0);
 }
 
 TEST_F(WatchdogTest, AThreadThatHasEndedIsNotMissed) {
-  dog_.Promise(Watched::kAdjust, 0, 0);
+  dog_.Announce(Watched::kAdjust, 0, 0);
   dog_.Dismiss(Watched::kAdjust);
   CheckUntil(3 * kT);
   EXPECT_EQ(dog_.hung(), 0U);

@@ -1,9 +1,9 @@
-# armcmc_add_tests(ROOM source... [LIBS target...] [INCLUDES folder...] [PROGRAMS target...] [KERNELS] [TIMEOUT seconds]
-#                  [COST seconds] [THREADS] [REALTIME] [DEADLINES] [BROWSER] [SCREEN] [NATIVE] [LONG])
+# armcmc_add_tests(GROUP source... [LIBS target...] [INCLUDES folder...] [PROGRAMS target...] [KERNELS] [TIMEOUT
+#                  seconds] [COST seconds] [THREADS] [REALTIME] [DEADLINES] [BROWSER] [SCREEN] [NATIVE] [LONG])
 #
-# Adds test sources to the one GoogleTest executable of a room, ROOM_test; every TEST is a test of ctest with the label
-# ROOM. Tests find recordings and programs through "support/paths.hpp", under ctest as well as by hand. Tests with
-# parameters name them by the last argument of INSTANTIATE_TEST_SUITE_P: their values are not printed into names.
+# Adds test sources to the one GoogleTest executable of a group, GROUP_test; every TEST is a test of ctest with the
+# label GROUP. Tests find recordings and programs through "support/paths.hpp", under ctest as well as by hand. Tests
+# with parameters name them by the last argument of INSTANTIATE_TEST_SUITE_P: their values are not printed into names.
 #
 #   LIBS, INCLUDES  what the sources need beyond GoogleTest and tests/support
 #   PROGRAMS        programs that the tests run
@@ -20,11 +20,11 @@
 #   LONG            shows what only chance or a long load can show: run by `tools/test --long` alone. So does a single
 #                   suite, or an instantiation of one, whose name begins with Long
 #
-# A build with a sanitizer compiles only what it runs, and runs each executable as a whole, as one test of ctest (two for
-# a room that armcmc_split_room names): starting an instrumented program a thousand times takes longer than what most
+# A build with a sanitizer compiles only what it runs, and runs each executable as a whole, as one test of ctest (two
+# for a group that armcmc_split_group names): starting an instrumented program a thousand times takes longer than what most
 # tests do.
 add_custom_target(all_tests)
-set(armcmc_not_long "GTEST_FILTER=-Long*:*/Long*")  # of a room that runs as a whole
+set(armcmc_not_long "GTEST_FILTER=-Long*:*/Long*")  # of a group that runs as a whole
 
 # What the sources of all tests include. One for all: it takes longer to make than any test takes to compile.
 function(armcmc_make_test_headers)
@@ -58,8 +58,8 @@ function(armcmc_is_admitted variable)
   set(${variable} ${admitted} PARENT_SCOPE)
 endfunction()
 
-function(armcmc_add_room room)
-  set(target ${room}_test)
+function(armcmc_add_group group)
+  set(target ${group}_test)
   add_executable(${target})
   # Beside the programs stands nothing but programs.
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
@@ -71,34 +71,34 @@ function(armcmc_add_room room)
   armcmc_compile_in_batches(${target} SIZE 12)
   add_dependencies(all_tests ${target})
   if(ARMCMC_SANITIZER)
-    target_sources(${target} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/sanitized_room.cpp")
-    add_test(NAME ${room} COMMAND ${target})
-    # The whole room, at a tenth of the speed, on a machine that may be busy.
-    set_tests_properties(${room} PROPERTIES LABELS ${room} TIMEOUT 3600 COST 100
+    target_sources(${target} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/sanitized_group.cpp")
+    add_test(NAME ${group} COMMAND ${target})
+    # The whole group, at a tenth of the speed, on a machine that may be busy.
+    set_tests_properties(${group} PROPERTIES LABELS ${group} TIMEOUT 3600 COST 100
       ENVIRONMENT "${armcmc_not_long}")
-    # What a test runs as a process writes to the same file, and the room over it, at its end.
+    # What a test runs as a process writes to the same file, and the group over it, at its end.
     if(ARMCMC_COVERAGE)
-      set_tests_properties(${room} PROPERTIES
-        ENVIRONMENT "${armcmc_not_long};LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${room}.profraw")
+      set_tests_properties(${group} PROPERTIES
+        ENVIRONMENT "${armcmc_not_long};LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${group}.profraw")
     endif()
   endif()
 endfunction()
 
-# armcmc_split_room(ROOM): under a sanitizer, two tests of ctest with every other TEST of the room each. For a room that
-# takes longer than all others together, so that it does not keep one processor busy while the other has nothing to do.
-function(armcmc_split_room room)
-  if(NOT ARMCMC_SANITIZER OR NOT TARGET ${room}_test)
+# armcmc_split_group(GROUP): under a sanitizer, two tests of ctest with every other TEST of the group each. For a group
+# that takes longer than all others together, so that it does not keep one processor busy while the other has nothing to do.
+function(armcmc_split_group group)
+  if(NOT ARMCMC_SANITIZER OR NOT TARGET ${group}_test)
     return()
   endif()
-  add_test(NAME ${room}_2 COMMAND ${room}_test)
+  add_test(NAME ${group}_2 COMMAND ${group}_test)
   foreach(property IN ITEMS LABELS TIMEOUT COST RESOURCE_LOCK)
-    get_test_property(${room} ${property} value)
+    get_test_property(${group} ${property} value)
     if(value)
-      set_tests_properties(${room}_2 PROPERTIES ${property} "${value}")
+      set_tests_properties(${group}_2 PROPERTIES ${property} "${value}")
     endif()
   endforeach()
   set(index 0)
-  foreach(test IN ITEMS ${room} ${room}_2)
+  foreach(test IN ITEMS ${group} ${group}_2)
     set(environment "${armcmc_not_long};GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${index}")
     if(ARMCMC_COVERAGE)
       list(APPEND environment "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/coverage/${test}.profraw")
@@ -125,7 +125,7 @@ function(armcmc_filter_of_sources variable)
   set(${variable} "${filter}" PARENT_SCOPE)
 endfunction()
 
-function(armcmc_add_tests room)
+function(armcmc_add_tests group)
   set(marks THREADS REALTIME DEADLINES BROWSER SCREEN NATIVE LONG)
   cmake_parse_arguments(PARSE_ARGV 1 arg "KERNELS;${marks}" "TIMEOUT;COST" "LIBS;INCLUDES;PROGRAMS")
   set(sources "${arg_UNPARSED_ARGUMENTS}")
@@ -140,9 +140,9 @@ function(armcmc_add_tests room)
     return()
   endif()
 
-  set(target ${room}_test)
+  set(target ${group}_test)
   if(NOT TARGET ${target})
-    armcmc_add_room(${room})
+    armcmc_add_group(${group})
   endif()
   list(TRANSFORM sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" REGEX "^[^/]")
   target_sources(${target} PRIVATE ${sources})
@@ -158,17 +158,17 @@ function(armcmc_add_tests room)
     endif()
   endforeach()
   if(ARMCMC_SANITIZER)
-    # The rooms with the longest tests start first.
+    # The groups with the longest tests start first.
     if(arg_TIMEOUT)
-      set_tests_properties(${room} PROPERTIES COST ${arg_TIMEOUT})
+      set_tests_properties(${group} PROPERTIES COST ${arg_TIMEOUT})
     endif()
     if(arg_DEADLINES)
-      set_tests_properties(${room} PROPERTIES RESOURCE_LOCK deadlines)
+      set_tests_properties(${group} PROPERTIES RESOURCE_LOCK deadlines)
     endif()
     return()
   endif()
 
-  set(labels ${room})
+  set(labels ${group})
   foreach(mark IN LISTS has)
     string(TOLOWER "${mark}" label)
     list(APPEND labels ${label})
@@ -188,7 +188,7 @@ function(armcmc_add_tests room)
   endif()
   armcmc_filter_of_sources(filter ${sources})
   # A list does not survive the way through gtest_discover_tests, so the labels are set where ctest reads the tests.
-  string(MAKE_C_IDENTIFIER "${room}_${sources}" id)
+  string(MAKE_C_IDENTIFIER "${group}_${sources}" id)
   string(MD5 id "${id}")
   set(list_name tests_${id})
   gtest_discover_tests(${target} TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_LIST ${list_name}

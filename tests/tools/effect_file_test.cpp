@@ -107,7 +107,7 @@ TEST(EffectLibrary, IsTheFolderBesideTheProgramsAndKnowsOtherNames) {
   EXPECT_GE(entries.size(), 36u);
   EXPECT_EQ(FindEffect(entries, "force_bias", "").name, "output_bias");
   EXPECT_THAT(ErrorOf([&] { (void)FindEffect(entries, "coulomb_fricton", "use: "); }),
-              HasSubstr("use: no effect is called \"coulomb_fricton\" (did you mean coulomb_friction?); there: "));
+              HasSubstr("use: no effect is called \"coulomb_fricton\" (did you mean coulomb_friction?); available: "));
 }
 
 TEST(EffectRequestWord, NamesAVariantAndWhatItActsOn) {

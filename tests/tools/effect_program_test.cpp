@@ -74,7 +74,7 @@ TEST_F(EffectProgram, WritesThePlantWithTheEffectSizedByData) {
   EXPECT_NEAR(std::stod(sd[1]), 40.0 / std::sqrt(2.0), 1.0);
   const test::Outcome again = Run({"add", "servo_axis", "coulomb_friction", "--out", "with.toml"});
   EXPECT_EQ(again.code, 2);
-  EXPECT_THAT(again.err, HasSubstr("is there already"));
+  EXPECT_THAT(again.err, HasSubstr("already exists"));
 }
 
 TEST_F(EffectProgram, EndsWithOneLineWhereTheEffectIsNoneOrDoesNotFit) {

@@ -290,8 +290,8 @@ TEST_F(ForeignRecording, TheSameDataGiveTheSameEstimatesToTheProgram) {
     arguments.insert(arguments.end(), data.begin(), data.end());
     const test::Outcome o = test::RunProgram(test::Program("armcmc-replay"), arguments);
     EXPECT_EQ(o.code, 0) << o.err;
-    EXPECT_THAT(o.out, HasSubstr("gap between model and plant: not judged, since too few packs were of use for that: "
-                                 "a verdict takes 120 stretches of data in one run, each of a pack of 0.1 s or more"));
+    EXPECT_THAT(o.out, HasSubstr("gap between model and plant: not judged, since too few packs were usable: "
+                                 "a verdict takes 120 blocks of data in one run, each of a pack of 0.1 s or more"));
     return test::TextOf(dir_ / out);
   };
   const std::string expected = estimates({"--model", dir_ / "plant.toml", "--data", dir_ / "plain.csv"}, "a.csv");

@@ -278,7 +278,7 @@ TEST_F(RecordingFile, MistakesAreErrorsWithTheirPlace) {
   EXPECT_THAT(ErrorOf("", "[columns]\nt = \"time_ms\"\nq = \"pos_m\"\nF = \"volt\"\n"),
               HasSubstr("did you mean pos_mm"));
   EXPECT_THAT(ErrorOf("", "[columns]\nq = \"pos_mm\"\nF = \"volt\"\n"), HasSubstr("rate_hz"));
-  EXPECT_THAT(ErrorOf("[held_out]\nfrom = 0\n"), HasSubstr("nothing is left to learn from"));
+  EXPECT_THAT(ErrorOf("[held_out]\nfrom = 0\n"), HasSubstr("nothing is left to fit to"));
   std::filesystem::remove(dir_ / "data.csv");
   EXPECT_THAT(ErrorOf(""), HasSubstr("--data-dir"));
   Write("data.csv", "time_ms,part,pos_mm,volt\n0,a,1,2\n1,a,nan,2\n");
@@ -292,10 +292,10 @@ TEST_F(RecordingFile, AMistakeInAColumnStandsWhereItIs) {
               testing::AllOf(HasSubstr("recording.toml:7:31: columns.q.value"), HasSubstr("speed")));
   EXPECT_THAT(ErrorOf("", time + "q = { column = \"pos\" }\n"), HasSubstr("recording.toml:7:16: columns.q.column"));
   EXPECT_THAT(ErrorOf("[rows]\nsegment_column = \"run\"\n"), HasSubstr("rows.segment_column"));
-  EXPECT_THAT(ErrorOf("[rows]\nonly = { part = [\"two\"] }\n"), HasSubstr("no row has \"two\"; there: one"));
+  EXPECT_THAT(ErrorOf("[rows]\nonly = { part = [\"two\"] }\n"), HasSubstr("no row has \"two\"; available: one"));
   EXPECT_THAT(ErrorOf("[rows]\nsegment_column = \"part\"\n[held_out]\nsegments = [\"onne\"]\n"),
               HasSubstr("did you mean one"));
-  EXPECT_THAT(ErrorOf("[held_out]\nfrom = 5000\n"), HasSubstr("no row that is used is among"));
+  EXPECT_THAT(ErrorOf("[held_out]\nfrom = 5000\n"), HasSubstr("holds out no row that is used"));
   EXPECT_THAT(
       ErrorOf("[held_out]\nrows = [[10, 20], [1000, 1100]]\n"),
       AllOf(HasSubstr("recording.toml:9:8: held_out.rows = "), HasSubstr("1000 to 1099: there are no such rows")));

@@ -36,7 +36,7 @@ TEST(SharedFiles, ANameIsFoundBesideTheProgram) {
   } catch (const ConfigError& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find("did you mean alpha?"), std::string::npos) << message;
-    EXPECT_NE(message.find("there: alpha, beta"), std::string::npos) << message;
+    EXPECT_NE(message.find("available: alpha, beta"), std::string::npos) << message;
   }
   std::filesystem::remove_all(shared);
 }

@@ -49,7 +49,7 @@ class StepWarning : public ::testing::Test {
 
 TEST_F(StepWarning, SaysHowManySubstepsAreEnoughUntilTheyAre) {
   Write("x", "1", "");
-  const auto warning = AllOf(HasSubstr("WARNING: the states move too fast"), HasSubstr("substeps = "));
+  const auto warning = AllOf(HasSubstr("WARNING: the states change too fast"), HasSubstr("substeps = "));
   const Outcome check = Run("armcmc-model", {"check", "fast.toml", "--data", "fast.csv"});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_THAT(check.out, warning);
@@ -69,7 +69,7 @@ TEST_F(StepWarning, AStateThatAnotherReadsLateCanBeReplayed) {
   EXPECT_EQ(replay.code, 0) << replay.err;
   const Outcome check = Run("armcmc-model", {"check", "fast.toml", "--data", "fast.csv"});
   EXPECT_EQ(check.code, 0) << check.err;
-  EXPECT_THAT(check.out, HasSubstr("cannot be said: the rate of a state remembers a state"));
+  EXPECT_THAT(check.out, HasSubstr("cannot be determined: the rate of a state remembers a state"));
 }
 
 }  // namespace

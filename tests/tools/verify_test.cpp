@@ -95,7 +95,7 @@ TEST_F(VerifyTest, ARunIsEqualToItself) {
   EXPECT_EQ(v.without_pack, 0);
   const test::Outcome o = Program();
   EXPECT_EQ(o.code, 0) << o.out << o.err;
-  EXPECT_THAT(o.out, HasSubstr("verified: 16 recorded messages are equal to the bit"));
+  EXPECT_THAT(o.out, HasSubstr("verified: 16 recorded messages are bit-identical"));
 }
 
 TEST_F(VerifyTest, WhatIsBelievedAboutChangeIsComparedWhereItWasPublished) {

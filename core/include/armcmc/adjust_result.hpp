@@ -14,21 +14,22 @@ namespace armcmc {
 
 /// The draws of one mode after one pack: what the adjust stage hands to the execute stage.
 struct ModeDraws {
-  bool known = false;    ///< The data have said something: the posterior is narrower than the prior.
+  bool known = false;    ///< The data are informative: the posterior is narrower than the prior.
   bool updated = false;  ///< By this pack: the draws below belong to it.
   Decision decision = Decision::kHold;
   int num_samples = 0;  ///< Samples of the pack in this mode.
   double zeta = 0.0, zeta_threshold = 0.0, lambda = 0.0;
   int k_min = 0;
   int draws = 0;           ///< Candidates scored, which is the length of the chain.
-  int burn_in = 0;         ///< Iterations thrown away: half, or the pilot where that is longer.
+  int burn_in = 0;         ///< Iterations discarded: half, or the pilot where that is longer.
   bool truncated = false;  ///< The deadline cut the number of draws.
   double acceptance = 0.0, kish_ess = 0.0, log_evidence = 0.0,
-         p_changed = 0.0;   ///< Of the chain; Kish size of the weights; nats; probability.
-  double p_drifted = 0.0;   ///< Posterior probability that the parameters drift; 1 - p_changed - p_drifted: they stay.
+         p_changed = 0.0;  ///< Chain; Kish's effective sample size; nats; probability.
+  double p_drifted =
+      0.0;  ///< Posterior probability that the parameters drift; 1 - p_changed - p_drifted: they are constant.
   double drift_rate = 0.0;  ///< Expected before the pack, prior standard deviations per s.
-  /// Of a mode that this pack says nothing about: how many times wider each parameter's posterior has become since it
-  /// was last updated, at least 1 (Drift::Widening).
+  /// In a mode about which this pack carries no information: how many times wider each parameter's posterior has
+  /// become since it was last updated, at least 1 (Drift::Widening).
   std::array<double, kMaxParams> widening{};
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
@@ -48,7 +49,7 @@ class AdjustResult {
   AdjustResult(int num_modes, int dim, int capacity);
 
   DataPack pack;
-  EffectPack effects;  ///< Of `pack`, when the model has effects.
+  EffectPack effects;  ///< `pack` as a model with effects reads it.
   Status status = Status::kOk;
   int num_modes = 0;
   std::array<ModeDraws, kMaxModes> modes;

@@ -21,7 +21,7 @@ struct ProposalDraws {
   double* weight = nullptr;          ///< Sum 1, >= 0.
 };
 
-/// Takes out of importance weights what is known to be chance, by control variates.
+/// Reduces the sampling error of importance weights by control variates.
 ///
 /// With G, a Gaussian close to the target, and g = G / q, the means under q of
 ///
@@ -32,7 +32,7 @@ struct ProposalDraws {
 ///   w_k (1 - lambda' h(u_k)),   lambda = (sum h h')^-1 sum h
 ///
 /// the regression estimator: with w = c g, which is a Gaussian target, every mean of a linear function is then exact,
-/// and for others the error shrinks by the root of 1 - R^2 of w f on h. Consistent for any G; where G is no guide to
+/// and for others the error shrinks by the root of 1 - R^2 of w f on h. Consistent for any G; where G does not predict
 /// the target, lambda is near zero. Source: Owen and Zhou, Safe and effective importance sampling, JASA 95 (2000);
 /// Deville and Saerndal, Calibration estimators in survey sampling, JASA 87 (1992).
 /// @param table    Law of G's coordinates, symmetric about 0.

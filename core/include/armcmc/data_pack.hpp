@@ -9,8 +9,8 @@
 
 namespace armcmc {
 
-/// By which number a pack says whose it is, which decides what its columns mean. A compiled plant has one of its own,
-/// which its slice chooses and data_pack_t.PLANT_* repeats.
+/// The plant that a pack is from, which decides what its columns mean. A compiled plant has a number of its own, chosen
+/// in its folder core/plants/NAME/ and repeated as data_pack_t.PLANT_*.
 enum class PlantNumber : std::int32_t {
   kNone = 0,
   kDescribed = 3,  ///< By a plant file; `fingerprint` says which.
@@ -24,7 +24,7 @@ struct DataPack {
   double t_last_s = 0.0;    ///< Plant time of the last sample, s.
   double dt = 0.0;          ///< Sample interval T, s, > 0.
   PlantNumber plant = PlantNumber::kNone;
-  std::uint64_t fingerprint = 0;  ///< Of a described plant: Plant::fingerprint().
+  std::uint64_t fingerprint = 0;  ///< Plant::fingerprint() of a described plant.
   /// The samples of the pack seq + seq_step follow the last one of this: 1, or as many packs as share a sample
   /// (EstimatorSettings::overlap). An estimator sets it in what it hands on.
   int seq_step = 1;

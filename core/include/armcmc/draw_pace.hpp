@@ -9,11 +9,11 @@ namespace armcmc {
 
 /// How much slower the draws of a pack come than those of the packs before it.
 ///
-/// A core that is clocked down, or that two threads share, is slow for the whole of a pack: what is still to be done
+/// A core that is clocked down, or that two threads share, is slow for the whole of a pack: the work that remains
 /// after the draws will be slow, too.
 class DrawPace {
  public:
-  static constexpr double kMost = 3.0;  ///< A stall in between says nothing about what comes after it.
+  static constexpr double kMost = 3.0;  ///< A stall in between does not predict what comes after it.
 
   /// @param spent_ns  On `draws` draws, > 0. @return 1 for the usual pace and faster ones, kMost at most.
   [[nodiscard]] double Slowness(Nanos spent_ns, int draws) const noexcept ARMCMC_NONBLOCKING {

@@ -130,7 +130,7 @@ class Drift {
   [[nodiscard]] double rate() const noexcept { return rate_; }
 
   void Forget() noexcept ARMCMC_NONBLOCKING;
-  /// For Restore(), which is equal to the bit.
+  /// For Restore(), which is bit-identical.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 

@@ -22,7 +22,7 @@ struct MarginalSummary {
   double ar_ap = 0.0;
   double sd = 0.0;
   double q025 = 0.0, q25 = 0.0, q50 = 0.0, q75 = 0.0, q975 = 0.0;
-  double chain_mean = 0.0;  ///< Of the chain itself, in which a draw counts as often as it was visited by chance.
+  double chain_mean = 0.0;  ///< Mean of the chain, in which a draw counts as often as it was visited.
   double is_sd = 0.0;       ///< Standard deviation by the weights; `sd` and the quantiles are the chain's.
   double histogram_lo = 0.0, histogram_hi = 0.0;
   std::array<double, kHistogramBins> density{};  ///< Integrates to 1 over [lo, hi].
@@ -30,7 +30,7 @@ struct MarginalSummary {
 
 /// The estimate of one mode.
 struct ModeEstimate {
-  bool known = false;    ///< The data have said something: the posterior has become narrower than the prior.
+  bool known = false;    ///< The data are informative: the posterior has become narrower than the prior.
   bool updated = false;  ///< By this pack.
   Decision decision = Decision::kHold;
   int num_samples = 0;  ///< Samples of the pack that belong to this mode.
@@ -38,14 +38,15 @@ struct ModeEstimate {
   int k_min = 0, draws = 0;
   bool truncated = false;
   double ess = 0.0;       ///< Effective sample size of the chain (autocorrelation).
-  double kish_ess = 0.0;  ///< Of the importance weights.
+  double kish_ess = 0.0;  ///< Effective sample size of the importance weights.
   double acceptance = 0.0, log_evidence = 0.0, p_changed = 0.0, noise_std = 0.0;
-  double p_drifted = 0.0;  ///< Probability that the parameters drift; 1 - p_changed - p_drifted: that they stayed.
+  double p_drifted =
+      0.0;  ///< Probability that the parameters drift; 1 - p_changed - p_drifted: that they are constant.
   /// Expected speed of a reported quantity, in its unit per second, before the pack.
   std::array<double, kMaxReported> drift_rate{};
   std::array<MarginalSummary, kMaxReported> marginal{};  ///< Order of PlantModel::reported().
 
-  /// What a pack that says nothing about the mode leaves in place: the parameters and the noise.
+  /// What a pack without information about the mode leaves unchanged: the parameters and the noise.
   void Save(int num_reported, SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(int num_reported, SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
   /// The same of drift.
@@ -64,7 +65,7 @@ struct Estimate {
   bool active = false;  ///< `mode` is an identified mode.
   std::array<ModeEstimate, kMaxModes> modes{};
   double y_pred = 0.0, y_lo = 0.0, y_hi = 0.0;  ///< Output predicted for the last sample and its 95 % band.
-  double y_rmse = 0.0;                          ///< Of the prediction over the pack, from the posterior after the pack.
+  double y_rmse = 0.0;                          ///< Rms error over the pack, predicted from the posterior after it.
   double y_free_run = 0.0;  ///< Output at the last sample predicted from the inputs alone since the start (actuator).
   int num_samples = 0;
   /// Output at every sample of the pack as a user would have seen it predicted: with the point estimates that were on

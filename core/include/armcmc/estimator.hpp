@@ -36,8 +36,9 @@ class Estimator {
  public:
   /// @throws std::invalid_argument from settings.Validate(). Allocates all memory that it will ever use.
   explicit Estimator(const EstimatorSettings& settings);
-  /// Uses the scratch of another one with the same model and sampler, which lives as long or longer: most of the memory
-  /// of an estimator. Of both, one at a time may adjust, and one execute; Remember() comes before the other's Draw().
+  /// Shares the scratch memory, which is most of an estimator's memory, with another one of the same model and sampler
+  /// that outlives this. Only one of the two may adjust at a time, and only one execute; Remember() must precede the
+  /// other's Draw().
   /// @throws std::invalid_argument from settings.Validate().
   Estimator(const EstimatorSettings& settings, const Estimator& lender);
   ~Estimator();
@@ -50,7 +51,7 @@ class Estimator {
   /// Stage B of the paper's timeline: mismatch, lambda, k_min, draws, posterior.
   ///
   /// Draws stop when the predicted end of the next chunk would pass deadline_ns. For equal settings, equal
-  /// packs and equal draw counts the result is equal to the bit.
+  /// packs and equal draw counts the result is bit-identical.
   /// @param pack         Checked here; num_inputs() columns of u at least.
   /// @param deadline_ns  Absolute, on the clock passed in; a default clock never reaches it.
   /// @param clock        Read between chunks of draws.
@@ -92,21 +93,21 @@ class Estimator {
   /// What the gap watch has found, as the newest Execute() left it. @rt O(1). While Execute() does not run.
   [[nodiscard]] const GapState& gap() const noexcept ARMCMC_NONBLOCKING;
 
-  /// Forgets everything learnt: the next pack meets the initial prior. (A restarted plant is no reason to
-  /// call it: the mismatch test decides whether the old posterior still holds.)
+  /// Forgets everything learnt: the next pack is combined with the initial prior. (A restarted plant is not a
+  /// reason to call it: the mismatch test decides whether the old posterior still holds.)
   void Reset() noexcept ARMCMC_NONBLOCKING;
 
   /// Bytes that one of the two Save functions may need.
   static constexpr std::size_t kSnapshotBytes = 256 * 1024;
   /// What Adjust() carries from pack to pack, the posteriors of all modes, and what Execute() carries: the estimates on
   /// display and the evidence of the gap watch. Each is called by the thread of its stage, the first after Remember().
-  /// Restored, an estimator goes on to the bit; what only spans neighbouring packs (memory of effects, a free
+  /// A restored estimator continues bit-identically; what only spans neighbouring packs (memory of effects, a free
   /// run, the unfinished block of the gap watch) starts afresh, as after a lost pack.
-  /// @param out  At least kSnapshotBytes. @return bytes written, 0 when they did not fit.
+  /// @param out  At least kSnapshotBytes. @return bytes written, 0 if they did not fit.
   /// @rt No heap, no lock, no throw. O(kSnapshotBytes).
   [[nodiscard]] std::size_t SaveAdjusted(std::span<std::byte> out) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] std::size_t SaveExecuted(std::span<std::byte> out) const noexcept ARMCMC_NONBLOCKING;
-  /// Goes on from what was saved by an estimator with the same SnapshotIdentity().
+  /// Continues from what was saved by an estimator with the same SnapshotIdentity().
   /// @return false when it is damaged: everything is forgotten then, as by Reset().
   /// @rt No heap, no lock, no throw; while neither Adjust() nor Execute() runs.
   [[nodiscard]] bool Restore(std::span<const std::byte> adjusted,

@@ -7,11 +7,11 @@
 
 namespace armcmc {
 
-/// How long a pack takes after its last draw, foretold from the packs before it.
+/// Time that a pack takes after its last draw, predicted from the previous packs.
 ///
 /// Part of that time is the same for any number of draws (fits, climbing to the mode), part grows with it. So fewer
-/// draws than the most that were timed are held to take as long as those did, more of them in proportion. A pack that
-/// was cut short does not make the next full one look longer than it is, or one cut would bring on another.
+/// draws than the largest number that was timed are assumed to take as long as those, more of them in proportion. A
+/// truncated pack does not make the next full one look longer than it is, or one truncation would cause another.
 class FinishTime {
  public:
   /// @param draws  > 0. @return ns; 0 before the first pack.
@@ -20,7 +20,7 @@ class FinishTime {
     return draws_ > 0 ? ns_ * draws / draws_ : 0;
   }
 
-  /// A stall of the machine in here says nothing about the next pack: it may double the prediction at most, while work
+  /// A stall of the machine here does not predict the next pack: it may double the prediction at most, while work
   /// that has become slower for good is followed within a few packs.
   void Add(Nanos spent_ns, int draws) noexcept ARMCMC_NONBLOCKING {
     const Nanos predicted_ns = Predict(draws);

@@ -36,7 +36,7 @@ struct Mismatch {
 /// The paper's lambda falls with any |zeta|, so pure noise causes forgetting: a pack of 3 samples has a standard
 /// deviation of zeta of 0.4. Three standard deviations are therefore attributed to chance and not counted; this
 /// includes a noise scale that was estimated too small by chance. rms and log_predictive count only a worse fit than
-/// expected: a better one is no reason to forget.
+/// expected: a smaller one is not a reason to forget.
 /// @rt No heap, no lock, no throw. O(samples).
 [[nodiscard]] Mismatch EvaluateMismatch(const ForgettingSettings& settings, const NoiseModel& noise, double noise_scale,
                                         const ModeData& data,

@@ -21,10 +21,10 @@ namespace armcmc {
 /// newest sample. The first windows begin up to N - N / L samples after the first sample of all.
 ///
 /// One of them, the recursion of seq mod L = 0, runs the gap watch: its packs hold every sample, and the rate of false
-/// alarms stays what the settings ask for. Its state is shown with every pack.
+/// alarms remains the configured one. Its state is shown with every pack.
 ///
-/// With L = 1 it is one Estimator to the bit. The interface is that of Estimator, with the same rules: Adjust() and
-/// Execute() may run at the same time on two threads.
+/// With L = 1 it is bit-identical to one Estimator. The interface is that of Estimator, with the same rules: Adjust()
+/// and Execute() may run at the same time on two threads.
 class InterleavedEstimator {
  public:
   /// @throws std::invalid_argument from settings.Validate(). Allocates all memory that it will ever use: one scratch,
@@ -44,7 +44,7 @@ class InterleavedEstimator {
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
   /// As Estimator::Execute().
   void Execute(const AdjustResult& result, Estimate* estimate) noexcept ARMCMC_NONBLOCKING;
-  /// As Estimator::Forecast(): what the recursion of the pack, which has seen none of its samples, says about it.
+  /// As Estimator::Forecast(): the prediction by the recursion of the pack, which has seen none of its samples.
   void Forecast(const AdjustResult& result, PackForecast* forecast) noexcept ARMCMC_NONBLOCKING;
   /// Forgets everything learnt by all recursions.
   void Reset() noexcept ARMCMC_NONBLOCKING;
@@ -52,7 +52,7 @@ class InterleavedEstimator {
   /// Which recursion takes a pack: seq mod L.
   [[nodiscard]] int TurnOf(std::int64_t seq) const noexcept ARMCMC_NONBLOCKING;
   /// Recursion j, for its snapshots: Estimator::SaveAdjusted() and so on, with the same rules. When each has been
-  /// restored, the packs that follow give the same estimates to the bit.
+  /// restored, the packs that follow give bit-identical estimates.
   /// @pre 0 <= j < overlap().
   [[nodiscard]] Estimator& recursion(int j) noexcept ARMCMC_NONBLOCKING {
     return *estimators_[static_cast<std::size_t>(j)];
@@ -66,7 +66,7 @@ class InterleavedEstimator {
   [[nodiscard]] Estimator& Of(std::int64_t seq) noexcept ARMCMC_NONBLOCKING { return recursion(TurnOf(seq)); }
 
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< [seq mod L].
-  Estimator* drawn_;                                    ///< By whom the newest Draw() was.
+  Estimator* drawn_;                                    ///< That made the newest Draw().
 };
 
 }  // namespace armcmc

@@ -7,7 +7,7 @@
 
 namespace armcmc {
 
-/// Of the law of a mode, the parameters that it is linear in, given the others:
+/// The parameters in which the law of a mode is linear, given the others:
 ///
 ///     F(X, theta) = f_0(X, phi) + sum_i theta_i f_i(X, phi)       i in `linear`, phi the rest
 ///
@@ -16,7 +16,7 @@ struct LinearPart {
   enum Need : std::uint8_t { kNeither = 0, kCurved = 1, kSecond = 2, kBoth = 3 };
 
   std::array<int, kMaxParams> linear{};
-  int num_linear = 0;  ///< 0: nothing is known.
+  int num_linear = 0;  ///< 0: not known to be linear in any.
   int curved = -1;     ///< Another parameter; -1: there is none.
   int second = -1;     ///< And a further one; -1: there is none.
   /// What f_0 and then the f of `linear` need of the two. Read only where there is a second.

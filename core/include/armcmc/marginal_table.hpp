@@ -38,7 +38,7 @@ class MarginalTable {
   [[nodiscard]] double Mean() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] double Variance() const noexcept ARMCMC_NONBLOCKING;
 
-  /// For Restore(), which is equal to the bit. in->good() is false when it is no density.
+  /// For Restore(), which is bit-identical. in->good() is false if it is not a density.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 

@@ -26,26 +26,26 @@ struct alignas(64) ModeData {
   int num_samples = 0;
   double pack_share = 1.0;                       ///< num_samples over the samples of the whole pack, in (0, 1].
   double time_s = 0.0;                           ///< Plant time of the last sample of the whole pack.
-  double duration_s = 0.0;                       ///< Of the whole pack.
+  double duration_s = 0.0;                       ///< Duration of the whole pack, s.
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
   bool weighted = true;  ///< false: every weight is 1, and is not read for scoring.
   // Of a compiled plant with effects, else null: the prediction comes from there, features are not read.
   const CompiledPack* compiled = nullptr;
-  int mode = 0;  ///< Of `compiled`.
-  // Of a described plant: its law, law - target, and what no parameter changes, a row a sample of the pack. Modes that
-  // are sampled together have a law each.
+  int mode = 0;  ///< Mode in `compiled`.
+  // Of a described plant: its law, law - target, and what no parameter changes, one row per sample of the pack. Modes
+  // that are sampled together have one law each.
   const expression::Tape* tape = nullptr;
   const expression::Tape* error_tape = nullptr;
   int num_tapes = 1;
-  const std::uint8_t* law = nullptr;  ///< Of several: which one acts, a number a sample of the pack.
+  const std::uint8_t* law = nullptr;  ///< Which of several laws acts, one number per sample of the pack.
   const expression::TapeScalars* scalars = nullptr;
   const double* past = nullptr;      ///< PastLines::value of the pack.
-  const StateRun* states = nullptr;  ///< Of a plant that has some: what they do over the pack.
+  const StateRun* states = nullptr;  ///< Trajectories over the pack; null: the plant has no states.
   const StartFit* start_fit =
       nullptr;  ///< Removes from the errors what an uncertain start can explain; null: the start is certain.
-  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Of `compiled` and tape: where in the pack it stands.
+  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Index in the pack; for `compiled` and `tape`.
 };
 
 /// Predictions of kTileLanes candidates: value[n][lane].

@@ -67,7 +67,7 @@ class SamplerWorkspace {
 /// g is data driven: first Laplace fits of this pack (against the previous posterior and against P_0) with heavy tails,
 /// for a pilot run of kPilotDraws candidates; then mostly a straightened, whitened histogram of the pilot's weighted
 /// draws, which then takes over a part of the share of P unless something may have changed. The pilot is part of the
-/// half of the chain that is thrown away, so adapting q once leaves the chain exact. A share of P_0 keeps q above the
+/// half of the chain that is discarded, so adapting q once leaves the chain exact. A share of P_0 keeps q above the
 /// target's tails everywhere; where the histogram is bent and P_0 alone is the prior, its tails are covered by the same
 /// bends with a wider t law.
 class ModeSampler {
@@ -75,7 +75,7 @@ class ModeSampler {
   static constexpr int kPilotDraws = 1024;  ///< In one round.
   static constexpr int kPilotRounds = 3;
   static constexpr int kMaxPilotRounds = 7;  ///< Where there are draws enough.
-  static constexpr int kChunkDraws = 512;    ///< Between two looks at the clock, at most.
+  static constexpr int kChunkDraws = 512;    ///< Between two readings of the clock, at most.
   static constexpr int kMismatchDraws = 256;
   static constexpr double kLaplaceInflation = 1.2;  ///< Standard deviations of the Laplace components.
   static constexpr double kStudentDof = 5.0;  ///< Tails of the Laplace components, and of the noise scale's memory.
@@ -132,7 +132,7 @@ class ModeSampler {
   static constexpr int DrawsInHaste(int made, int wanted) noexcept {
     return std::min(kChunkDraws, (wanted - made) / 8 / kTileLanes * kTileLanes);
   }
-  /// Between two looks at the clock: a quarter of the draws, whole tiles.
+  /// Between two readings of the clock: a quarter of the draws, whole tiles.
   static constexpr int ChunkDraws(int wanted) noexcept {
     return std::clamp(wanted / 4 / kTileLanes * kTileLanes, kTileLanes, kChunkDraws);
   }
@@ -177,7 +177,7 @@ class ModeSampler {
   /// Laplace fit under a memory with these moments.
   void FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data, SamplerWorkspace* ws,
                 Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
-  /// The Laplace fits of what rests and of what drifts: they may have come apart.
+  /// The Laplace fits of the constant and the drifting hypothesis, which may have separated.
   void FitApart(const ModeData& data, const PosteriorMemory& previous,
                 SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Laplace fits under P_0 from the best of some draws of it: a law that is not linear may have several modes, and the
@@ -233,11 +233,11 @@ class ModeSampler {
   void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law with a standard
-  /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not held to be
+  /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not considered
   /// impossible.
   void AppendNoiseScale(int first, int count, const double* weight, MarginalTable* table, const ModeDraws& draws,
                         DensityBlock* block) const noexcept ARMCMC_NONBLOCKING;
-  /// What scores most candidates of this pack in less time, if there is such a thing.
+  /// A faster score for most candidates of this pack, if there is one.
   void PrepareScore(const ModeData& data, bool use_previous, SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Log-likelihood of the candidates [first, end), by powers from ws->powers. False, and nothing is scored, if too
   /// many are out of their reach.

@@ -29,8 +29,8 @@ struct ReportedInfo {
   std::string_view unit;  ///< As text.
 };
 
-/// What the estimator has to know of a forward model F_j(X, theta_j), shared by all its modes. A plant file makes one
-/// (PlantProgram), and so does the slice of a compiled plant (CompiledPlant).
+/// What the estimator has to know about a forward model F_j(X, theta_j), shared by all its modes. A plant file makes
+/// one (PlantProgram), and so does the folder of a compiled plant (CompiledPlant).
 ///
 /// Made at set-up and constant from then on, so that all stages may read it at the same time. The arrays are used up to
 /// the number beside them.
@@ -48,11 +48,11 @@ struct ModelInfo {
   std::array<ReportedInfo, kMaxReported> reported;
   /// Mode that acts at sample n; num_modes if none does. @param n  In [0, pack.num_samples).
   int (*mode_of)(const DataPack& pack, int n) noexcept ARMCMC_NONBLOCKING;
-  /// Of the model's own parameters. Null: what is reported are the parameters themselves.
+  /// Computes the reported quantities from the model's own parameters. Null: the parameters themselves are reported.
   void (*report)(const double* theta, const PlantConstants& constants, double* reported) noexcept ARMCMC_NONBLOCKING;
   const CompiledPlant* compiled = nullptr;     ///< What else a compiled plant can do; null: a file describes it.
-  const PlantProgram* described = nullptr;     ///< Of a plant file: reports, and has no mode_of.
-  std::array<LinearPart, kMaxModes> linear{};  ///< Of the law of each mode.
+  const PlantProgram* described = nullptr;     ///< For a plant file: it reports, and has no mode_of.
+  std::array<LinearPart, kMaxModes> linear{};  ///< Linear parameters of the law of each mode.
   int num_added = 0;  ///< Amplitudes of effects: the last of the parameters, and reported as they are, last.
 
   /// Index among the reported quantities of parameter d, which the model reports as it is. @rt O(1).

@@ -5,8 +5,8 @@
 /// expands to nothing for other compilers. Written after noexcept, on the first declaration; the definition has it too.
 /// Source: clang's attribute `nonblocking`, https://clang.llvm.org/docs/FunctionEffectAnalysis.html.
 ///
-/// ARMCMC_TRUST_NONBLOCKING_BEGIN .. END enclose the few functions whose body the compiler is not asked about, because
-/// it cannot see that what they call does not block. Each such place says why. RealtimeSanitizer looks at them, too.
+/// ARMCMC_TRUST_NONBLOCKING_BEGIN .. END enclose the few functions whose body the compiler does not check, because
+/// it cannot see that what they call does not block. Each such place says why. RealtimeSanitizer checks them as well.
 ///
 /// Code that calls this library from a real-time thread of its own need not use either.
 #if defined(__clang__) && __clang_major__ >= 20

@@ -13,8 +13,8 @@ namespace armcmc {
 ///
 ///   theta_d = offset_d + scale_d u_d,  u_d ~ N(0, 1) or U(-sqrt 3, sqrt 3), truncated to [lower_d, upper_d]
 ///
-/// Every prior has sd 1 in u before truncation, so that parameters five orders of magnitude apart meet the sampler as
-/// equals. When the noise scale is estimated it is the last coordinate, on a log scale: log s = offset + scale u.
+/// Every prior has sd 1 in u before truncation, so that parameters five orders of magnitude apart look alike to the
+/// sampler. When the noise scale is estimated it is the last coordinate, on a log scale: log s = offset + scale u.
 struct ParameterSpace {
   int dim = 0;             ///< Sampled coordinates.
   int num_parameters = 0;  ///< Of the model; dim - 1 when the noise scale is sampled.

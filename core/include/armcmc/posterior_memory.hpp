@@ -35,7 +35,7 @@ struct PosteriorMemory {
 
   /// Everything above, for Restore(). @rt No heap, no lock, no throw. O(nodes of the tables).
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
-  /// What was saved, to the bit; in->good() is false when it cannot be a posterior of `dim` coordinates, and nothing is
+  /// What was saved, bit by bit; in->good() is false if it cannot be a posterior of `dim` coordinates, and nothing is
   /// known then. @param shared  The table of blocks that have none of their own; outlives this.
   void Restore(int dim, const MarginalTable& shared, SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 };

@@ -28,7 +28,7 @@ class QuadraticScratch {
   ThetaTile theta;
 };
 
-/// The Gaussian log-likelihood of a law that has a LinearPart, without a look at the samples for every candidate: given
+/// The Gaussian log-likelihood of a law that has a LinearPart, without reading the samples for every candidate: given
 /// the curved parameters, sums over the samples suffice (sufficient statistics), and those are smooth functions of
 /// them. They are taken at the Chebyshev points of their bounds and interpolated: on a line where one parameter is
 /// curved, on two lines and, for what multiplies functions of either, on a grid where two are.

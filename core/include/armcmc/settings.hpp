@@ -23,7 +23,7 @@ enum class PriorKind : std::uint8_t { kNormal, kUniform };
 struct ParameterSettings {
   std::string name;  ///< Must match a parameter of the model.
   PriorKind prior = PriorKind::kNormal;
-  double mean = 0.0;    ///< Of the untruncated normal. Unused by kUniform.
+  double mean = 0.0;    ///< Mean of the untruncated normal. Unused by kUniform.
   double sd = 1.0;      ///< > 0. Unused by kUniform.
   double lower = -1.0;  ///< Hard bounds, lower < upper. The prior is zero outside.
   double upper = 1.0;
@@ -57,11 +57,12 @@ struct ForgettingSettings {
   MismatchIndex index = MismatchIndex::kRms;
   double threshold = 1.0;       ///< zeta_th > 0, in units of the noise scale (nats for kLogPredictive).
   double mu = 0.0;              ///< mu_nu of lambda = exp(-|mu_nu - zeta|), same unit as zeta.
-  double lambda_max = 0.99999;  ///< In (0, 1): a change is never held to be impossible.
+  double lambda_max = 0.99999;  ///< In (0, 1): a change is never considered impossible.
   double rho = 0.0;             ///< In [0, 1]: weight exp(-rho (N_s - n)) of the error of sample n.
   int min_samples = 3;          ///< Packs with fewer informative samples of a mode hold its posterior, >= 1.
-  double drift_share = 0.03;    ///< Prior probability of drift, in [0, 1). 0: parameters stay or change, as published.
-  bool partial_change = true;   ///< A modification may keep all parameters but one; false: P_0 alone, as published.
+  double drift_share =
+      0.03;  ///< Prior probability of drift, in [0, 1). 0: parameters are constant or jump, as published.
+  bool partial_change = true;  ///< A modification may keep all parameters but one; false: P_0 alone, as published.
 };
 
 /// Which number of draws a pack gets.
@@ -84,7 +85,7 @@ struct SamplerSettings {
   static constexpr int kMinDraws = 200;
 };
 
-/// Who turns packs into a posterior.
+/// The method that turns packs into a posterior.
 enum class Method : std::uint8_t {
   kArmcmc,
   kRls,             ///< Recursive least squares; the built-in contact law is log-linearised, described ones linearised.
@@ -95,16 +96,16 @@ enum class Method : std::uint8_t {
 /// Tuning of the baselines: one setting for all scenarios, as for the estimator.
 struct BaselineSettings {
   /// One vector of parameters for each mode, kept while the other modes act. false, as published: one vector, which
-  /// starts anew when the mode changes.
+  /// restarts when the mode changes.
   bool recall = false;
   double rls_forgetting = 0.9997;  ///< Per sample, in (0, 1].
-  bool rls_reset = true;           ///< Contact: the covariance starts anew with every contact; what was learnt stays.
+  bool rls_reset = true;           ///< Contact: the covariance is reset at every contact; the estimates remain.
   int particles = 4096;            ///< [kMinDraws, max_draws].
-  int pf_updates = 1;              ///< Updates a pack, [1, kMaxPackSamples]: the samples are cut into as many runs.
-  double pf_jitter = 0.05;         ///< Random walk of a parameter, prior standard deviations a pack, >= 0.
+  int pf_updates = 1;       ///< Updates per pack, [1, kMaxPackSamples]: the samples are divided into as many runs.
+  double pf_jitter = 0.05;  ///< Random walk of a parameter, prior standard deviations per pack, >= 0.
 };
 
-inline constexpr int kMaxConstants = 8;  ///< Of one compiled plant.
+inline constexpr int kMaxConstants = 8;  ///< Constants of one compiled plant.
 /// Constants that are known, not estimated: as many as the compiled plant declares (CompiledPlant::constants), in its
 /// order. Those of a described plant stand in its file.
 using PlantConstants = std::array<double, kMaxConstants>;
@@ -120,7 +121,7 @@ enum class EffectGate : std::uint8_t {
 
 /// One effect added to the model: its amplitudes are estimated with the parameters, its shapes are frozen.
 struct EffectSettings {
-  std::string name;  ///< Of the catalogue of the plant; see CompiledPlant.
+  std::string name;  ///< Name in the catalogue of the plant; see CompiledPlant.
   EffectGate gate = EffectGate::kAlways;
   double from_s = 0.0;                                             ///< For kFrom, s.
   double until_s = 0.0;                                            ///< For kUntil, s.
@@ -141,17 +142,17 @@ struct EstimatorSettings {
   Method method = Method::kArmcmc;
   BaselineSettings baseline;
   PlantConstants constants{};
-  /// Of a plant that has a `rate_unit` (CompiledPlant): what is regressed is the rate that the law divides by, and not
-  /// the law's own target, for data whose noise is that of the rate's sensor: in the target it multiplies the
-  /// parameters that are sought, which biases them and tells nothing of how precise a sample is. Effects of such a
-  /// plant are always estimated so.
+  /// For a plant that has a `rate_unit` (CompiledPlant): the rate that the law divides by is regressed instead of
+  /// the law's own target, for data whose noise is that of the rate's sensor: in the target that noise multiplies the
+  /// unknown parameters, which biases them, and does not show how precise a sample is. Effects of such a plant are
+  /// always estimated in this way.
   bool regress_rate = false;
   std::array<EffectSettings, kMaxEffects> effects;  ///< Each at most once.
   int num_effects = 0;
   GapWatchSettings gap_watch;  ///< Changes no estimate.
   /// L, in [1, kMaxPackSamples]: a pack shares samples with the L - 1 before it, and its window begins where that of
   /// the pack seq - L ended. An Estimator gets every L-th pack, so that it counts a sample once; InterleavedEstimator
-  /// deals them out. The samples of a pack are a multiple of L.
+  /// distributes them. The samples of a pack are a multiple of L.
   int overlap = 1;
 
   /// @throws std::invalid_argument naming the key, its value and the allowed range.
@@ -162,7 +163,7 @@ struct EstimatorSettings {
 /// @throws std::invalid_argument listing the known names.
 [[nodiscard]] EstimatorSettings BuiltinSettings(const std::string& model);
 
-/// A constant of the compiled plant that the settings are of; NaN: it has none of that name.
+/// A constant of the compiled plant of these settings; NaN: it has none of that name.
 [[nodiscard]] double ConstantOf(const EstimatorSettings& settings, std::string_view name) noexcept;
 
 /// Settings of a described plant with the priors and the noise of its file.

@@ -71,7 +71,7 @@ class SnapshotWriter {
 /// SnapshotReader in(bytes);
 /// const int rows = static_cast<int>(in.Integer(0, kMaxRows));
 /// in.Row(values.data(), static_cast<std::size_t>(rows));
-/// if (!in.finished()) return false;  // damaged, cut or too long: nothing is taken over
+/// if (!in.finished()) return false;  // damaged, cut or too long: nothing is restored
 /// @endcode
 class SnapshotReader {
  public:

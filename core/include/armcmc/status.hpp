@@ -9,14 +9,14 @@ namespace armcmc {
 /// value, and leave the estimator in a valid state in every case: the next pack can be processed.
 ///
 /// kOk, kTruncated and kHeld are normal operation. After kBadPack and kNonFinite the pipeline raises the fault flag for
-/// numeric trouble, records the number in the event log, and goes on with the next pack. On the bus, estimate_t has
+/// numeric trouble, records the number in the event log, and continues with the next pack. On the bus, estimate_t has
 /// `truncated`, and the modes that a pack did not update keep what they had.
 enum class Status : std::uint8_t {
   kOk = 0,     ///< Every active mode has a new posterior.
   kTruncated,  ///< The deadline cut the number of draws; the result is valid, with fewer draws.
-  kHeld,       ///< The pack says nothing about the parameters; what was known is kept.
+  kHeld,       ///< The pack carries no information about the parameters; the posterior is kept.
   kBadPack,    ///< The pack violates its contract; nothing was changed.
-  kNonFinite,  ///< No draw had a finite posterior; what was known is kept.
+  kNonFinite,  ///< No draw had a finite posterior density; the previous posterior is kept.
 };
 
 /// Name of a status for messages and reports, "truncated". @rt No heap, no lock, no throw.

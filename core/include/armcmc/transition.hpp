@@ -60,7 +60,7 @@ class Transition {
   /// After a pack's posterior: what is trusted from now on.
   void Accept(const PosteriorMemory& next, Decision decision) noexcept ARMCMC_NONBLOCKING;
 
-  /// What is trusted, for Restore(), which is equal to the bit.
+  /// What is trusted, for Restore(), which is bit-identical.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 

@@ -80,8 +80,8 @@ class Lexer {
     if (error != std::errc{}) throw Error(token.column, "a number that cannot be read");
     if (end != last && (IsLetter(*end) || *end == '.'))
       throw Error(static_cast<int>(end - text_.data()) + 1,
-                  "a number goes straight on as a name: write " +
-                      std::string(first, static_cast<std::size_t>(end - first)) + "*name for a product");
+                  "a number runs into a name: write " + std::string(first, static_cast<std::size_t>(end - first)) +
+                      "*name for a product");
     return Take(token, TokenKind::kNumber, static_cast<std::size_t>(end - first));
   }
 

@@ -153,7 +153,7 @@ class FormBinder {
     const bool of_constant = std::any_of(form_.needs.begin(), form_.needs.end(),
                                          [](const EffectNeed& need) { return need.kind == "constant"; });
     if (of_constant && !SaidTogether()) {
-      why_ = "nothing that it says reads such a constant together with the others";
+      why_ = "no expression of it reads such a constant together with the others";
       return false;
     }
     for (const EffectNeed& need : form_.needs) {

@@ -126,7 +126,7 @@ class FormChecker {
     const std::string at = i == 0 ? "" : "also[" + std::to_string(i - 1) + "].";
     ExpectOneOf(key_ + at + "slot", term.slot, {"output", "law", "rate", "input", "parameter"});
     if (term.slot == "output" || term.slot == "law") {
-      if (!term.of.empty()) throw PlantError(key_ + at + "of", 0, "the output is one: nothing to choose");
+      if (!term.of.empty()) throw PlantError(key_ + at + "of", 0, "there is one output: nothing to choose");
       CheckText(at + "formula", term.formula, with({"law"}));
       return;
     }
@@ -147,8 +147,8 @@ class FormChecker {
     } catch (const expression::UnknownName& error) {
       NameList known = {"output", "noise", "dt", "record", "period", "start"};
       for (const EffectNeed& need : form_.needs) known.push_back(need.name);
-      throw PlantError(key_ + key, error.column(), '"' + error.name() + "\" is no size; there are " + InARow(known),
-                       error.name(), known);
+      throw PlantError(key_ + key, error.column(),
+                       '"' + error.name() + "\" is not a known size; there are " + InARow(known), error.name(), known);
     } catch (const expression::Error& error) {
       throw PlantError(key_ + key, error.column(), error.what());
     }

@@ -30,7 +30,7 @@ QuantityScale Resized(const QuantityScale& scale, double factor) {
 
 QuantityScale MeasuredScale(const std::string& name, const std::vector<double>& column) {
   if (std::any_of(column.begin(), column.end(), [](double value) { return !std::isfinite(value); }))
-    throw PlantError("signals." + name, 0, "its data hold something that is not a finite number");
+    throw PlantError("signals." + name, 0, "its data contain a value that is not a finite number");
   QuantityScale scale{0.0, 0.0, column.front(), column.front()};
   for (const double value : column) {
     scale.mean += value / static_cast<double>(column.size());
@@ -245,7 +245,7 @@ double ScaleValue(std::string_view text, const PlantDescription& plant, const Da
   const expression::Meaning meaning = Check(syntax, scope);
   expression::Graph graph;
   const int node = graph.Lower(syntax, scope, {});
-  if (!meaning.fixed || !graph.IsNumber(node)) throw expression::Error(1, "expected a size that data decide");
+  if (!meaning.fixed || !graph.IsNumber(node)) throw expression::Error(1, "expected a size that is taken from data");
   const double value = graph.at(node).value;
   if (!std::isfinite(value)) throw expression::Error(1, "this size is not a finite number");
   return value;

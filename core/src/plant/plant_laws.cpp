@@ -145,7 +145,7 @@ void Plant::CheckParametersAreFelt() const {
         }
       }
     if (std::none_of(felt.begin(), felt.end(), [&](int n) { return graph_.DependsOn(n, node); }))
-      throw PlantError(key, 0, "no law depends on " + name + ": data cannot tell it");
+      throw PlantError(key, 0, "no law depends on " + name + ": data cannot determine it");
   }
 }
 

@@ -11,7 +11,7 @@ constexpr int kVectors = kTileLanes / Simd::kLanes;
 constexpr double kLn2 = 0.69314718055994530942;
 constexpr double kLog2E = 1.44269504088896340736;
 
-/// The loops of a compiled plant with effects, whose slice specialises this in its kernels.inl:
+/// The loops of a compiled plant with effects, whose folder specialises this in its kernels.inl:
 ///   Predict(data, theta, lanes, tile)   predictions from data.compiled, of that many lanes, half a tile or all of it
 ///   Squares(data)                       the loop that sums squared errors; null where that takes the predictions
 template <class Model>

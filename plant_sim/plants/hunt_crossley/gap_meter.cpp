@@ -21,7 +21,7 @@ class ContactGapMeter final : public GapMeter {
         noise_sd_(NoiseSd(scenario.noise.back())) {
     if (!(noise_sd_ > 0.0))
       throw std::invalid_argument("the scenario has no noise on " + scenario.family->output.name +
-                                  ": a gap ratio means nothing");
+                                  ": a gap ratio is undefined");
     const long long last = std::min(scenario.last_sample(scenario.num_packs()), kMaxGapSamples);
     samples_.resize(static_cast<std::size_t>(last) + 1);
     for (PlantSample& sample : samples_) {

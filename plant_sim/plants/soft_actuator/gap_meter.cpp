@@ -23,7 +23,7 @@ class ActuatorGapMeter final : public GapMeter {
     rate_sd_ = NoiseSd(scenario.noise[SoftActuatorPlant::kPressureRate]);
     angle_sd_ = NoiseSd(scenario.noise.back());
     if (!(rate_sd_ > 0.0) || !(angle_sd_ > 0.0))
-      throw std::invalid_argument("the scenario has no noise on pdot or alpha: a gap ratio means nothing");
+      throw std::invalid_argument("the scenario has no noise on pdot or alpha: a gap ratio is undefined");
     scales_.fill(1.0);
     scales_[static_cast<std::size_t>(EffectScale::kDuration)] = scenario.duration_s;
   }

@@ -148,7 +148,7 @@ std::vector<HiddenEffect> DecideEffects(const Scenario& scenario, const std::vec
   if (requests.empty()) return {};
   if (requests.size() > 2) throw std::invalid_argument("at most two effects can be hidden");
   if (requests.size() == 2 && requests[0].name == requests[1].name)
-    throw std::invalid_argument("\"" + requests[0].name + "\" is asked for twice");
+    throw std::invalid_argument("\"" + requests[0].name + "\" is requested twice");
   const std::unique_ptr<GapMeter> meter = MakeGapMeter(scenario);
   std::vector<HiddenEffect> effects;
   for (std::size_t i = 0; i < requests.size(); ++i) {

@@ -137,7 +137,7 @@ TEST(BendSimulation, RunsAbreastAreThoseOneByOneToTheBit) {
   }
   ASSERT_GT(runs.size(), 8u);
   Matrix angles;
-  simulation.RunAbreast(s.t, s.at(Role::kPressure), {0.1, 0.2}, runs, &angles);
+  simulation.RunInterleaved(s.t, s.at(Role::kPressure), {0.1, 0.2}, runs, &angles);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     Vector alone(s.rows());
     simulation.Run(s.t, s.at(Role::kPressure), {0.1, 0.2}, runs[i], s.rows(), &alone, nullptr);

@@ -1,4 +1,5 @@
-// A law that is not quite its formula: what it is granted, and what still earns a name in spite of it.
+// A law that is not quite its formula: the flexible correction that is fitted beside an effect, and which effects are
+// named nevertheless.
 
 #include <gtest/gtest.h>
 
@@ -69,19 +70,19 @@ TEST(LawError, CountsAsKnownWhereBlocksAreLeftOut) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(with.at_bound[i]) << i;
 }
 
-TEST(Promise, IsWhatAnEffectTakesAtLeast) {
+TEST(LeastDecrease, IsWhatAnEffectTakesAtLeast) {
   const test::Bench bench(test::Measure({test::Hidden("coulomb_friction")}, 4000, kNoise, 3).recording);
   const Fitter fitter(*bench.equation, bench.signals, test::White(kNoise));
   const Fitted base = bench.Base(fitter);
   for (const char* name : {"coulomb_friction", "force_bias", "stress_relaxation"}) {
     const Term term{&bench.Form(name), {}};
-    EXPECT_LE(fitter.Promise(base, term), 1.001 * (base.squares - fitter.Add(base, term).squares)) << name;
+    EXPECT_LE(fitter.LeastDecrease(base, term), 1.001 * (base.squares - fitter.Add(base, term).squares)) << name;
   }
-  EXPECT_GT(fitter.Promise(base, {&bench.Form("coulomb_friction"), {}}),
-            fitter.Promise(base, {&bench.Form("force_bias"), {}}));
+  EXPECT_GT(fitter.LeastDecrease(base, {&bench.Form("coulomb_friction"), {}}),
+            fitter.LeastDecrease(base, {&bench.Form("force_bias"), {}}));
 }
 
-TEST(Granted, AnEffectIsSureBesideALawThatIsNotQuiteItsFormula) {
+TEST(FlexibleCorrection, AnEffectIsSureBesideALawThatIsNotQuiteItsFormula) {
   WorkflowRequest request;
   request.data = OffBy(0.03, {test::Hidden("force_bias")}, 5000);
   const Result result = RunWorkflow(request).result;
@@ -93,23 +94,23 @@ TEST(Granted, AnEffectIsSureBesideALawThatIsNotQuiteItsFormula) {
   EXPECT_FALSE(result.complete);
 }
 
-TEST(Granted, IsTakenBackFromWhatTheVerdictTellsOf) {
+TEST(FlexibleCorrection, IsRemovedFromTheVerdict) {
   const auto equation = std::move(MakeEquations("hunt_crossley").front());
   const Diagnosis diagnosis = Diagnose(*equation, OffBy(0.03, {test::Hidden("force_bias")}, 5000));
   const auto& set = diagnosis.finding.set;
-  const auto granted =
-      std::find_if(set.begin(), set.end(), [](const CandidatePtr& member) { return member->granted != nullptr; });
-  ASSERT_NE(granted, set.end());
-  const Granted& grant = *(*granted)->granted;
-  EXPECT_EQ((*granted)->names(), std::vector<std::string>{"force_bias"});
-  EXPECT_EQ((*granted)->fit.hypothesis.terms.size(), 1U);
-  EXPECT_EQ(grant.with.hypothesis.terms.size(), 2U);
-  EXPECT_EQ(grant.without.hypothesis.terms.size(), 1U);
-  EXPECT_LT(grant.with.squares, (*granted)->fit.squares);
+  const auto with_correction =
+      std::find_if(set.begin(), set.end(), [](const CandidatePtr& member) { return member->correction != nullptr; });
+  ASSERT_NE(with_correction, set.end());
+  const FlexibleCorrection& correction = *(*with_correction)->correction;
+  EXPECT_EQ((*with_correction)->names(), std::vector<std::string>{"force_bias"});
+  EXPECT_EQ((*with_correction)->fit.hypothesis.terms.size(), 1U);
+  EXPECT_EQ(correction.with.hypothesis.terms.size(), 2U);
+  EXPECT_EQ(correction.without.hypothesis.terms.size(), 1U);
+  EXPECT_LT(correction.with.squares, (*with_correction)->fit.squares);
 }
 
 // A line of the sensor with an odd harmonic: together with the bias a bent law stands in for it, but takes less of it.
-TEST(Granted, IsNotNeededWhereTheSecondEffectDoesBetter) {
+TEST(FlexibleCorrection, IsNotNeededWhereTheSecondEffectDoesBetter) {
   Recording recording = test::Measure({}, 6000, kNoise, 21).recording;
   for (Eigen::Index i = 0; i < recording.rows(); ++i) {
     const double phase = 2.0 * std::numbers::pi * 23.0 * recording.t[i];
@@ -120,7 +121,7 @@ TEST(Granted, IsNotNeededWhereTheSecondEffectDoesBetter) {
   EXPECT_EQ(NamesOf(diagnosis.finding), (std::set<std::vector<std::string>>{{"force_bias", "periodic_disturbance"}}));
 }
 
-TEST(Granted, ALawThatIsOffByItselfGetsNoName) {
+TEST(FlexibleCorrection, ALawThatIsOffByItselfGetsNoName) {
   WorkflowRequest request;
   request.data = OffBy(0.01, {}, 5000);
   const Result result = RunWorkflow(request).result;

@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"stiffness_drift", "linear", "a stiffness that drifts", 0.3, 971003214}),
     [](const auto& at) { return std::string(at.param.effect); });
 
-TEST(Granted, AFormulaThatIsAnotherEffectsOnceTheGrantIsTakenBackIsNotNamed) {
+TEST(FlexibleCorrection, AFormulaThatBecomesAnotherEffectWithoutTheCorrectionIsNotNamed) {
   // Beside a law that may err, presliding is fitted within its bounds; without that it is a spring that never yields.
   const PlantDiagnosis plant =
       DiagnoseWithout("stress_relaxation", Contact("stress_relaxation", "linear", 1.0, 766258191));

@@ -70,7 +70,7 @@ TEST_F(ReadRecordingTest, BridgesOneHoleAndRefusesMany) {
     (void)Read(times);
     ADD_FAILURE() << "five holes were bridged";
   } catch (const support::InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("run.csv: 5 holes between samples"));
+    EXPECT_THAT(error.what(), HasSubstr("run.csv: 5 gaps between samples"));
   }
 }
 

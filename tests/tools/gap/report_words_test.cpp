@@ -15,6 +15,8 @@ TEST(EffectTitle, ReadsAsAPersonWouldSayIt) {
             "Sensor lag + force bias + Coulomb friction");
   EXPECT_EQ(EffectTitles({}), "nothing");
   EXPECT_EQ(EffectTitle(""), "");
+  EXPECT_EQ(EffectInSentence("coulomb_friction"), "Coulomb friction");
+  EXPECT_EQ(EffectInSentence("sensor_lag"), "sensor lag");
   EXPECT_EQ(InSentence("viscous_friction + coulomb_friction"), "viscous friction + Coulomb friction");
 }
 

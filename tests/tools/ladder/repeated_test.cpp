@@ -59,14 +59,14 @@ TEST_F(WhyRepeated, CopiesMayHaveOtherFormulas) {
   Add(friction_, 0, {{"v", "v"}});
   Add(friction_, 1, {{"v", "v"}});
   EXPECT_EQ(Words(),
-            " The effect coulomb friction appears twice because it was added twice, each time with its own parameters: "
+            " The effect Coulomb friction appears twice because it was added twice, each time with its own parameters: "
             "each has another formula of it, since one alone leaves a part unexplained.");
 }
 
 TEST_F(WhyRepeated, CopiesMayBeAlike) {
   for (int copy = 0; copy < 3; ++copy) Add(friction_, 0, {});
   EXPECT_EQ(Words(),
-            " The effect coulomb friction appears 3 times because it was added 3 times, each time with its own "
+            " The effect Coulomb friction appears 3 times because it was added 3 times, each time with its own "
             "parameters: the formula fitted once leaves a part that the same formula with other values explains.");
 }
 

@@ -124,7 +124,7 @@ TEST_F(ModelProgram, WritesAStartThatIsUnderstoodAndOverwritesNothing) {
   EXPECT_THAT(check.out, HasSubstr("my_pendulum: Driven pendulum"));
   const test::Outcome again = Run({"new", "my_pendulum"});
   EXPECT_EQ(again.code, 2);
-  EXPECT_THAT(again.err, HasSubstr("is there already"));
+  EXPECT_THAT(again.err, HasSubstr("already exists"));
   EXPECT_EQ(Run({"new", "My plant"}).code, 2);
 }
 

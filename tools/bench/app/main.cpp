@@ -23,17 +23,22 @@ struct Arguments {
 
 void Declare(CLI::App* app, Arguments* a) {
   app->add_option(
-      "--model", a->models,
-      "Only this plant: a built-in one, NAME:tape for the same as a plant file, the name of a bundled plant, "
-      "or a file. May be repeated");
+         "--model", a->models,
+         "Only this plant: a built-in one, NAME:tape for the same as a plant file, the name of a bundled plant, "
+         "or a file. May be repeated")
+      ->type_name("NAME");
   app->add_option("--instruction-set", a->instruction_set,
-                  "avx512, avx2 or sse2 (on AArch64 neon or portable) instead of the widest that this CPU supports");
+                  "avx512, avx2 or sse2 (on AArch64 neon or portable) instead of the widest that this CPU supports")
+      ->type_name("NAME");
   app->add_flag("--no-quality", a->no_quality, "Skip BM_EffectiveDraws");
   app->add_option(
-      "--write-packs", a->write_packs,
-      "Run no benchmark; write the packs of BM_EffectiveDraws that start from the prior to this folder, for other "
-      "programs, with the posterior by quadrature and replicates of the estimator's result");
-  app->add_option("--replicates", a->replicates, "Replicates for --write-packs (200)")->check(CLI::Range(1, 100000));
+         "--write-packs", a->write_packs,
+         "Run no benchmark; write the packs of BM_EffectiveDraws that start from the prior to this folder, for other "
+         "programs, with the posterior by quadrature and replicates of the estimator's result")
+      ->type_name("DIR");
+  app->add_option("--replicates", a->replicates, "Replicates for --write-packs (200)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
   app->allow_extras();
   app->footer(
       "Times each part of the estimator's step on packs that armcmc-plant simulates with a fixed seed, and measures\n"

@@ -90,6 +90,6 @@ peers::Replicate Walk(const peers::Problem& problem, int replicate, int evaluati
 int main(int argc, char** argv) {
   return peers::Main(argc, argv, "GSL " GSL_VERSION " random-walk Metropolis",
                      "starts at a least squares fit, steps with its covariance and then with that of the draws; scale "
-                     "tuned to an acceptance of 30 %; the first fifth tunes and is thrown away",
+                     "tuned to an acceptance of 30 %; the first fifth is used for tuning and discarded",
                      Walk);
 }

@@ -69,7 +69,7 @@ run <- function() {
 
 cat("# peer: R ", as.character(getRversion()), ", mcmc ", as.character(packageVersion("mcmc")), " metrop\n", sep = "")
 cat("# how: starts at a least squares fit, steps with its covariance and then with that of the draws; scale tuned to an",
-    "acceptance of 30 %; the first fifth tunes and is thrown away\n")
+    "acceptance of 30 %; the first fifth is used for tuning and discarded\n")
 cat("ms,acceptance,evaluations,K,B,p\n")
 for (replicate in seq_len(replicates)) {
   set.seed(1000 + replicate)

@@ -147,11 +147,11 @@ void CalibrateNoise(Runner* run, Calibration* c) {
   c->noise_runs = std::min(c->noise_runs, kMaxNoiseRuns);
   for (const ModeNoise& noise : c->noise) {
     if (!noise.calibrated) {
-      c->notes.push_back("mode " + noise.mode + ": " + noise.why_not + "; its noise stays as it was");
+      c->notes.push_back("mode " + noise.mode + ": " + noise.why_not + "; its noise is unchanged");
     } else if (std::fabs(noise.correlation) > 0.2) {
-      c->notes.push_back("mode " + noise.mode + ": an error says something about the next (correlation " +
+      c->notes.push_back("mode " + noise.mode + ": successive errors are correlated (correlation " +
                          support::ExactNumber(std::round(100.0 * noise.correlation) / 100.0) +
-                         "), which no noise law knows; the posterior is too narrow");
+                         "), which no noise law allows for; the posterior is too narrow");
     }
   }
 }
@@ -200,12 +200,12 @@ void CalibrateThreshold(Runner* run, Calibration* c) {
     if (std::fabs(c->threshold.threshold / before - 1.0) < 0.02) break;
   }
   if (c->threshold.extrapolated)
-    c->notes.push_back("a rate of " + support::ExactNumber(c->false_modifications) + " lies beyond what " +
+    c->notes.push_back("a rate of " + support::ExactNumber(c->false_modifications) + " is smaller than " +
                        std::to_string(scores.size()) +
                        " packs can show; the threshold follows from an exponential tail");
   if (c->threshold.at_floor)
     c->notes.push_back("the smallest threshold, " + support::ExactNumber(kSmallestThreshold) +
-                       ", already gives fewer false modifications than asked for");
+                       ", already gives fewer false modifications than requested");
 }
 
 }  // namespace
@@ -222,12 +222,12 @@ Calibration Calibrate(const CalibrationRequest& request) {
   CalibrateNoise(&run, &c);
   c.settings.forgetting.drift_share = drift_share;
   if (std::none_of(c.noise.begin(), c.noise.end(), [](const ModeNoise& n) { return n.calibrated; }))
-    throw support::InputError("the recording cannot be calibrated from: mode " + c.noise.front().mode + ": " +
+    throw support::InputError("the recording cannot be used for calibration: mode " + c.noise.front().mode + ": " +
                               c.noise.front().why_not + " after the first " + std::to_string(kSettlePacks));
   if (tries_rho) {
     CalibrateRho(&run, &c);
   } else {
-    c.notes.emplace_back("rho stays as it was: it is not tried with a model that has effects");
+    c.notes.emplace_back("rho is unchanged: it is not tried with a model that has effects");
   }
   CalibrateThreshold(&run, &c);
   return c;

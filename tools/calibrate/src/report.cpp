@@ -71,15 +71,16 @@ plots::XyChart ErrorChart(const ModeNoise& noise, const std::string& unit) {
 void AddNoise(const ModeNoise& noise, const std::string& unit, plots::Page* page) {
   page->Html("<section class=\"card\"><h2>Noise, mode " + EscapeHtml(noise.mode) + "</h2>\n");
   if (!noise.calibrated) {
-    page->Html("<p>It stays as it was: " + EscapeHtml(noise.why_not) + ".</p></section>\n");
+    page->Html("<p>Unchanged: " + EscapeHtml(noise.why_not) + ".</p></section>\n");
     return;
   }
-  page->Html("<p class=\"soft\">" + std::to_string(noise.samples) + " errors in " + std::to_string(noise.packs) +
-             " packs. Every law was fitted to one half of the packs and scored on the other. Chosen is the simplest "
-             "within two standard errors of the best.</p>\n<table><tr><th>law</th><th class=\"num\">scale, " +
-             EscapeHtml(unit) +
-             "</th><th>shape</th><th class=\"num\">held-out log density a sample</th><th class=\"num\">behind the best "
-             "</th><th class=\"num\">standard error</th></tr>\n");
+  page->Html(
+      "<p class=\"soft\">" + std::to_string(noise.samples) + " errors in " + std::to_string(noise.packs) +
+      " packs. Every law was fitted to one half of the packs and scored on the other. The simplest "
+      "within two standard errors of the best is chosen.</p>\n<table><tr><th>law</th><th class=\"num\">scale, " +
+      EscapeHtml(unit) +
+      "</th><th>shape</th><th class=\"num\">held-out log density per sample</th><th class=\"num\">behind the best "
+      "</th><th class=\"num\">standard error</th></tr>\n");
   for (std::size_t law = 0; law < noise.laws.size(); ++law) {
     const LawScore& score = noise.laws[law];
     const bool chosen = law == noise.chosen;
@@ -91,8 +92,8 @@ void AddNoise(const ModeNoise& noise, const std::string& unit, plots::Page* page
   }
   page->Html("</table>\n");
   page->Chart(ErrorChart(noise, unit),
-              "How often errors of a size occur, and what the laws say. A law whose curve falls under the measured one "
-              "at the sides takes outliers for information.");
+              "Density of the errors, measured and by the fitted laws. A law whose tails are below the measured ones "
+              "treats outliers as information.");
   page->Html("</section>\n");
 }
 
@@ -101,7 +102,7 @@ void AddRho(const Calibration& c, plots::Page* page) {
   page->Html("<section class=\"card\"><h2>Weight of the past within a pack</h2>\n");
   plots::XyChart chart;
   chart.x_title = "rho";
-  chart.y_title = "behind the best, nats a sample";
+  chart.y_title = "behind the best, nats per sample";
   plots::Series curve{"prediction of the next pack", Role::kAfter, {}, {}, {}, {}};
   for (const RhoScore& score : c.rho) {
     curve.x.push_back(score.rho);
@@ -112,13 +113,13 @@ void AddRho(const Calibration& c, plots::Page* page) {
   chart.series.push_back(curve);
   page->Chart(chart,
               "How much worse the next pack is predicted than with the best rho; the band is two standard errors "
-              "wide on each side. Chosen is the smallest rho whose band reaches zero: " +
+              "wide on each side. The smallest rho whose band reaches zero is chosen: " +
                   NumberText(c.settings.forgetting.rho, 3) + ".");
   page->Html("</section>\n");
 }
 
 void AddThreshold(const Calibration& c, plots::Page* page) {
-  page->Html("<section class=\"card\"><h2>When has the plant changed?</h2>\n");
+  page->Html("<section class=\"card\"><h2>Threshold of a change of the plant</h2>\n");
   plots::XyChart over_time, tail;
   over_time.x_title = "time, s";
   over_time.y_title = "score";
@@ -137,9 +138,10 @@ void AddThreshold(const Calibration& c, plots::Page* page) {
                                 {c.threshold.threshold, c.threshold.threshold},
                                 {},
                                 {}});
-  page->Chart(over_time,
-              "The threshold at which each pack would just have been taken for a change: the mismatch in noise scales, "
-              "less what chance explains. Nothing changed in this recording.");
+  page->Chart(
+      over_time,
+      "The threshold at which each pack would just have been classified as a change: the mismatch in noise scales, "
+      "less what chance explains. The plant did not change in this recording.");
   std::sort(sorted.begin(), sorted.end());
   tail.x_title = "threshold";
   tail.y_title = "share of packs at or above";
@@ -154,8 +156,8 @@ void AddThreshold(const Calibration& c, plots::Page* page) {
                              ? c.false_modifications
                              : std::max(c.threshold.measured_rate, 0.5 / static_cast<double>(sorted.size()));
   tail.series = {share, {"chosen", Role::kAfter, {c.threshold.threshold}, {reached}, {}, {}}};
-  tail.rules.push_back({c.false_modifications, "asked for"});
-  page->Chart(tail, "Share of packs that a threshold would have taken for a change.");
+  tail.rules.push_back({c.false_modifications, "requested"});
+  page->Chart(tail, "Share of the packs that a threshold would have classified as a change.");
   page->Html("</section>\n");
 }
 
@@ -205,7 +207,7 @@ std::string SummaryText(const Calibration& c, const std::string& unit) {
   out << table.ToString() << "rho " << Significant(c.settings.forgetting.rho, 3) << "; threshold "
       << Significant(c.threshold.threshold, 4) << ", reached by " << Significant(100.0 * c.threshold.measured_rate, 3)
       << " % of " << c.scores.size() << " packs (" << Significant(100.0 * c.false_modifications, 3)
-      << " % allowed); noise stood still after " << c.noise_runs << " runs\n";
+      << " % allowed); noise converged after " << c.noise_runs << " runs\n";
   for (const std::string& note : c.notes) out << "note: " << note << '\n';
   return out.str();
 }

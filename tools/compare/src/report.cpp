@@ -45,10 +45,10 @@ std::string Cell(double value) {
 }
 
 void AddSettings(const RunTrace& a, const RunTrace& b, plots::Page* page) {
-  page->Html("<section class=\"card\" id=\"settings\"><h2>What was set differently</h2>\n");
+  page->Html("<section class=\"card\" id=\"settings\"><h2>Different settings</h2>\n");
   const std::vector<SettingDifference> differences = DifferencesOf(a.settings, b.settings);
   if (differences.empty()) {
-    page->Html("<p>Nothing that is known to change an estimate.</p></section>\n");
+    page->Html("<p>None that changes an estimate.</p></section>\n");
     return;
   }
   page->Html("<table><tr><th>key</th><th>A</th><th>B</th></tr>\n");
@@ -67,8 +67,8 @@ std::string EstimateCells(const QuantityTrace* q) {
 void AddDifferences(const RunTrace& a, const RunTrace& b, plots::Page* page) {
   page->Html(
       "<section class=\"card\" id=\"differences\"><h2>Differences</h2>\n<p class=\"soft\">The last estimates. The "
-      "distance is the difference over the standard deviations of both; the runs saw the same data, so that it "
-      "overstates what chance does.</p>\n<div class=\"scroll\"><table><tr><th>quantity</th><th>mode</th>"
+      "distance is the difference over the standard deviations of both; both runs used the same data, so that chance "
+      "explains less than it suggests.</p>\n<div class=\"scroll\"><table><tr><th>quantity</th><th>mode</th>"
       "<th class=\"num\">A</th><th class=\"num\">95 %</th><th class=\"num\">B</th><th class=\"num\">95 %</th>"
       "<th class=\"num\">B &minus; A</th><th class=\"num\">distance, sd</th></tr>\n");
   for (const EstimatePair& pair : PairsOf(a, b)) {
@@ -118,7 +118,7 @@ void AddFit(const RunTrace& a, const RunTrace& b, plots::Page* page) {
   page->Chart(
       evidence,
       "Rises where B predicts the packs better, falls where A does: the logarithm of the Bayes factor, added up "
-      "over the packs. It means something only for the same likelihood of the same samples, not across values "
+      "over the packs. It is meaningful only for the same likelihood of the same samples, not across values "
       "of rho.");
   page->Html("</section>\n");
 }
@@ -134,7 +134,7 @@ void AddDecisions(const RunTrace& a, const RunTrace& b, plots::Page* page) {
   XyChart draws = Both(a, b, "draws", &RunTrace::draws);
   draws.series.push_back({"A, k_min", Role::kOther, a.t, a.k_min, {}, {}});
   draws.series.push_back({"B, k_min", Role::kEffect, b.t, b.k_min, {}, {}});
-  page->Chart(draws, "Draws made, and the number that the paper's relation asks for.");
+  page->Chart(draws, "Draws made, and the number that the paper's relation requires.");
   page->Chart(Both(a, b, "computing time, ms", &RunTrace::compute_ms),
               "Adjust and execute of each pack on this machine, without a deadline: for orders of magnitude.");
   page->Html("</section>\n");

@@ -19,18 +19,22 @@ struct Arguments {
 };
 
 void Declare(CLI::App* app, Arguments* a) {
-  app->add_option("--data", a->request.log, "LCM log, as lcm-logger writes it")->required();
+  app->add_option("--data", a->request.log, "LCM log, as lcm-logger writes it")->type_name("FILE")->required();
   app->add_option("--out", a->request.out, "Folder for the tables, one CSV per channel; with --format mcap the file")
+      ->type_name("PATH")
       ->required();
   app->add_option("--format", a->format, "csv, or mcap: one file for Foxglove and PlotJuggler")
+      ->type_name("FORMAT")
       ->check(CLI::IsMember({"csv", "mcap"}))
       ->capture_default_str();
   app->add_option("--channels", a->request.channels,
                   "Only these channels, comma separated, with or without their prefix (EST_ESTIMATE)")
+      ->type_name("NAME")
       ->delimiter(',');
-  app->add_option("--prefix", a->request.prefix, "Only channels with this prefix");
+  app->add_option("--prefix", a->request.prefix, "Only channels with this prefix")->type_name("P");
   app->add_option("--histograms", a->histograms,
                   "Posteriors in CSV: wide, one row per message (PlotJuggler), or long, one row per bin (pandas)")
+      ->type_name("SHAPE")
       ->check(CLI::IsMember({"wide", "long"}))
       ->capture_default_str();
   app->footer(
@@ -42,7 +46,8 @@ void Declare(CLI::App* app, Arguments* a) {
       "  armcmc-export --data run.lcm --out tables --channels EST_ESTIMATE,PLANT_PACK\n"
       "  python3 -c \"import pandas; print(pandas.read_csv('tables/EST_ESTIMATE.csv', index_col='t "
       "[s]').describe())\"\n"
-      "  armcmc-export --data run.lcm --format mcap --out run.mcap");
+      "  armcmc-export --data run.lcm --format mcap --out run.mcap\n"
+      "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.");
 }
 
 std::string Hex(std::int64_t fingerprint) {

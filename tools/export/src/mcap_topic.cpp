@@ -29,7 +29,7 @@ std::string SchemaText(const MessageType& type, const std::vector<Column>& colum
   Json schema;
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "armcmc." + type.name;
-  schema["description"] = std::string(per_sample ? "One message a sample." : "One message a message of the log.") +
+  schema["description"] = std::string(per_sample ? "One message per sample." : "One message per message of the log.") +
                           " Descriptions name the unit. A number that is not finite is null.";
   schema["type"] = "object";
   schema["properties"] = Json::object();

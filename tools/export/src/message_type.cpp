@@ -115,7 +115,7 @@ MessageField ParseField(const std::string& type, std::size_t width, Tokens* toke
     int value = 0;
     const auto result = std::from_chars(size.data(), size.data() + size.size(), value);
     if (result.ptr != size.data() + size.size() || value < 1)
-      tokens->Fail("array size " + size + ": expected a number, arrays of ours have a fixed size");
+      tokens->Fail("array size " + size + ": expected a number, the arrays of these types have a fixed size");
     field.dims.push_back(value);
     field.count *= static_cast<std::size_t>(value);
     tokens->Expect("]");

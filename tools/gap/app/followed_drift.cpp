@@ -52,7 +52,7 @@ FollowedDrift FollowDrift(const EstimatorSettings& base, const replay::SourceReq
   return result;
 }
 
-void TakeAsDrift(const FollowedDrift& drift, Result* result) {
+void AttributeToDrift(const FollowedDrift& drift, Result* result) {
   if (!drift.followed || result->verdict != Verdict::kUnnamed) return;
   result->verdict = Verdict::kNone;
   result->sentence = "The parameters drift, and the estimator tracks the drift; nothing else is missing.";

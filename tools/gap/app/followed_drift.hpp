@@ -21,6 +21,6 @@ struct FollowedDrift {
 [[nodiscard]] FollowedDrift FollowDrift(const EstimatorSettings& base, const replay::SourceRequest& packs);
 
 /// Changes the verdict `unnamed` to `none` if the gap is a drift that the estimator tracks.
-void TakeAsDrift(const FollowedDrift& drift, Result* result);
+void AttributeToDrift(const FollowedDrift& drift, Result* result);
 
 }  // namespace armcmc::gap

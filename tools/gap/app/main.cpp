@@ -49,31 +49,41 @@ void Declare(CLI::App* app, Arguments* a) {
   auto* model = app->add_option("--model", a->model,
                                 "Plant file, or name of a bundled plant; or a model file (.toml) with effects found "
                                 "earlier")
+                    ->type_name("FILE")
                     ->capture_default_str();
   auto* data =
-      app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (see armcmc-model check)");
+      app->add_option("--data", a->data, "CSV of samples: t and the signals of the plant (see armcmc-model check)")
+          ->type_name("FILE");
   auto* recording = app->add_option("--recording", a->recording,
                                     "Recording file: names the plant, and maps the columns of a CSV to its signals")
+                        ->type_name("FILE")
                         ->excludes(data)
                         ->excludes(model);
   app->add_option("--data-dir", a->data_dir, "Folder of the recording's CSV, if not that of the recording file")
+      ->type_name("DIR")
       ->needs(recording);
-  app->add_option("--heldout", a->heldout, "Holdout: CSV of another run; default: the last 30 % of --data");
+  app->add_option("--heldout", a->heldout, "Holdout: CSV of another run; default: the last 30 % of --data")
+      ->type_name("FILE");
   app->add_option("--earlier", a->earlier,
                   "CSV, or recording file, of an earlier run with the same effect: ties that it left are decided with "
-                  "both runs");
-  app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->type_name("TEXT REQUIRED");
+                  "both runs")
+      ->type_name("FILE");
+  app->add_option("--out", a->out, "Folder for result.json, report.html and model.toml")->type_name("DIR REQUIRED");
   app->add_option("--gallery", a->gallery,
                   "Only write index.html, a page that links the reports in the subfolders of this folder")
+      ->type_name("DIR")
       ->excludes(data)
       ->excludes(recording);
   app->add_option("--seed", a->seed, "Seed of the bootstrap: the same seed gives the same result")
+      ->type_name("N")
       ->capture_default_str();
   app->add_option("--steps", a->steps,
                   "Steps to run, comma separated; the last one counts: compare, find, name, add, show")
+      ->type_name("LIST")
       ->capture_default_str();
-  app->add_option("--without", a->without, "Effects to exclude from the catalogue")->delimiter(',');
+  app->add_option("--without", a->without, "Effects to exclude from the catalogue")->type_name("NAME")->delimiter(',');
   app->add_option("--period-ms", a->period_ms, "Length of a pack, to measure the cost of the new model")
+      ->type_name("MS")
       ->check(CLI::Range(1.0, 10'000.0))
       ->capture_default_str();
   app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows of --data instead of stopping")
@@ -178,7 +188,7 @@ void CheckWithout(const std::string& model, const std::vector<std::string>& with
       there += effect->name;
     }
     std::string words = "--without: no effect is called \"";
-    words.append(name).append("\"; there: ").append(there);
+    words.append(name).append("\"; available: ").append(there);
     throw support::InputError(words);
   }
 }
@@ -249,7 +259,7 @@ int RunBuiltIn(const Arguments& a) {
   packs.skip_bad = a.skip_bad;
   if (result.verdict == Verdict::kUnnamed) {
     try {
-      TakeAsDrift(FollowDrift(support::ReadModel(a.model), packs), &result);
+      AttributeToDrift(FollowDrift(support::ReadModel(a.model), packs), &result);
     } catch (const support::InputError& error) {
       result.notes.push_back(std::string("not tested whether it is a drift (--period-ms): ") + error.what());
     }

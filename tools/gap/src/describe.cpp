@@ -153,8 +153,8 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
     result->candidates.push_back({texts, c->fit.log_evidence - finding.base->fit.log_evidence, score, c->probability,
                                   std::clamp(2.0 * score / rows / full, 0.0, 1.0)});
   }
-  if (!finding.set.empty() && finding.best->granted)
-    result->notes.push_back("named beside something else that has no name: " + finding.best->granted->what);
+  if (!finding.set.empty() && finding.best->correction)
+    result->notes.push_back("named beside something else that has no name: " + finding.best->correction->what);
   for (const double t : finding.events_s) {
     char note[96];
     std::snprintf(note, sizeof(note), "a single event at t = %.4g s that nothing of the catalogue explains", t);

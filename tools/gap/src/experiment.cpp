@@ -158,7 +158,7 @@ Experiment SeparatingExperiment(const Equation& equation, const Analysis& analys
   best.depth = depth;
   char evidence[160];
   std::snprintf(evidence, sizeof(evidence),
-                "; %.0f s of it bring about %.0f nats of evidence between the closest pair%s", kSeconds, best.nats,
+                "; %.0f s of it give about %.0f nats of evidence between the closest pair%s", kSeconds, best.nats,
                 best.nats < kHopeless ? ", so little that repeating it would hardly help"
                 : best.nats < kEnough ? ", which may not be enough: repeat it, or press deeper"
                                       : "");

@@ -18,7 +18,7 @@ constexpr int kMaxDampings = 6;
 constexpr double kLeastDamping = 1e-6;
 constexpr double kSameMinimum = 25.0;     // squared standard deviations from a minimum that was found before
 constexpr int kStepsForHope = 2;          // steps before the expected decrease is judged
-constexpr double kHope = 4.0;             // times what the tangent promises, short of which a descent is given up
+constexpr double kHope = 4.0;             // times what the tangent bounds, short of which a descent is given up
 constexpr double kSmallAmplitude = 1e-3;  // start of an amplitude that is zero at its bound
 constexpr std::size_t kRefinedStarts = 2;
 
@@ -121,7 +121,7 @@ const Matrix& Fitted::basis() const {
   return *basis_;
 }
 
-double Fitted::CostOfLeaving(Eigen::Index coordinate) const {
+double Fitted::CostOfLeavingOut(Eigen::Index coordinate) const {
   std::vector<Eigen::Index> others = FreeOf(at_bound);
   std::erase(others, coordinate);
   const Matrix basis = OrthonormalBasis(whitened_jacobian(Eigen::all, others));
@@ -143,7 +143,7 @@ bool Fitted::on_edge() const {
     const double at = theta[k], near = kNear * (c.upper - c.lower);
     const bool rests = (c.other_below && at < c.lower + near) || (c.other_above && at > c.upper - near);
     const bool mean_beyond = c.prior_mean < c.lower || c.prior_mean > c.upper;  // there is no way back to it
-    if (rests && (mean_beyond || CostOfLeaving(k) > (c.event ? kChance : kSilent))) return true;
+    if (rests && (mean_beyond || CostOfLeavingOut(k) > (c.event ? kChance : kSilent))) return true;
   }
   return false;
 }
@@ -302,7 +302,7 @@ void Fitter::Score(Fitted* fitted) const {
   fitted->log_evidence = -0.5 * fitted->squares / whitener_.variance + log_prior - 0.5 * pivots.array().log().sum();
 }
 
-void Fitter::Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const {
+void Fitter::ShrinkUntilFinite(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const {
   constexpr int kMostHalvings = 20;
   for (int i = 0; i < kMostHalvings; ++i) {
     if (Predict(hypothesis, *theta, Slopes::None()).y.allFinite()) return;
@@ -353,14 +353,14 @@ std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, cons
       squares = (parent.whitened_residual - project(step).col(0)).squaredNorm();
     }
     Clamp(coordinates, &theta);
-    if (form.linear && form.slot == Slot::kForce) Tame(hypothesis, first, form.num_amplitudes, &theta);
+    if (form.linear && form.slot == Slot::kForce) ShrinkUntilFinite(hypothesis, first, form.num_amplitudes, &theta);
     starts.emplace_back(squares, theta);
   }
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   return starts;
 }
 
-double Fitter::Promise(const Fitted& parent, const Term& term) const {
+double Fitter::LeastDecrease(const Fitted& parent, const Term& term) const {
   return parent.squares - Starts(parent, term).front().first;
 }
 

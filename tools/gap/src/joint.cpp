@@ -12,7 +12,7 @@ namespace {
 constexpr double kSame = 0.02;       // relative difference up to which two experiments count as the same
 constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth
 constexpr double kDecides = 10.0;    // nats; what a proposed experiment is to bring, too
-constexpr double kNearPromise = 0.5;
+constexpr double kNearBound = 0.5;
 constexpr int kJointSteps = 30;
 
 /// A member of the first recording's set, with its evidence in the second.
@@ -164,7 +164,7 @@ void Join(const Equation& equation, const Recording& recording, const Diagnosis&
     const Vector apart = analysis->fitter->whitener().Apply(
         Vector(asked.front().candidate->fit.predicted - one.candidate->fit.predicted));
     return std::max({kDecides, 0.5 * rows * thresholds.tie_effect * thresholds.tie_effect,
-                     kNearPromise * 0.5 * apart.squaredNorm() / variance,
+                     kNearBound * 0.5 * apart.squaredNorm() / variance,
                      analysis->search->Left(asked.front().candidate)});
   };
   const auto odds = [&](const Asked& one) {

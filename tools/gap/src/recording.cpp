@@ -105,7 +105,7 @@ Recording ReadRecording(const std::string& path, const std::vector<std::string>&
   const auto rows = static_cast<double>(recording.rows());
   if (static_cast<double>(holes) > kMaxHoleShare * rows)
     throw support::InputError(path + ": " + std::to_string(holes) +
-                              " holes between samples: expected even sampling, most rows one interval apart");
+                              " gaps between samples: expected even sampling, most rows one interval apart");
   if (uneven > 0) {
     Resample(&recording);
     recording.notes.push_back(std::to_string(uneven) + " of " + std::to_string(recording.rows()) +

@@ -99,10 +99,12 @@ std::string EffectTitle(std::string_view name) {
   return title + std::string(name.substr(space));
 }
 
+std::string EffectInSentence(std::string_view name) { return LowerFirst(EffectTitle(name)); }
+
 std::string EffectTitles(const std::vector<std::string>& names) {
   if (names.empty()) return "nothing";
   std::string out = EffectTitle(names.front());
-  for (std::size_t i = 1; i < names.size(); ++i) out += " + " + LowerFirst(EffectTitle(names[i]));
+  for (std::size_t i = 1; i < names.size(); ++i) out += " + " + EffectInSentence(names[i]);
   return out;
 }
 

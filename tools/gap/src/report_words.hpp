@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "armcmc/gap/effect_words.hpp"
 #include "armcmc/gap/result.hpp"
 
 // Texts of the report. Return values are HTML unless marked plain text.

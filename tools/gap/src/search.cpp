@@ -11,7 +11,7 @@
 namespace armcmc::gap {
 namespace {
 
-constexpr std::size_t kMaxGated = 4;  // gated hypotheses that are fitted, by what the scan promises
+constexpr std::size_t kMaxGated = 4;  // gated hypotheses that are fitted, by what the scan bounds
 constexpr std::size_t kJudged = 6;
 constexpr double kUnnamedAtLeast = 0.5;  // where the verdict is that
 constexpr double kLawMayFeign = 1.5;     // gap up to which a model error of the law is considered as well
@@ -40,9 +40,9 @@ CandidatePtr Search::Make(Fitted fit, const CandidatePtr& parent) const {
   auto candidate = std::make_shared<Candidate>();
   candidate->fit = std::move(fit);
   candidate->num_known = parent ? parent->num_known : base_->num_known;
-  if (parent && parent->granted) {
-    candidate->granted = std::make_shared<Granted>(*parent->granted);
-    candidate->granted->with = candidate->fit;
+  if (parent && parent->correction) {
+    candidate->correction = std::make_shared<FlexibleCorrection>(*parent->correction);
+    candidate->correction->with = candidate->fit;
   }
   return candidate;
 }
@@ -222,13 +222,13 @@ Finding Search::Run(bool pairs) const {
   Candidates listed = Listed(singles, true);
   const Candidates unlisted = Listed(singles, false);
   if (!(gap > least) || finding.p_missing < limits_.p_missing) {
-    finding.p_none = WeighNothing(singles);
+    finding.p_none = ProbabilityOfNone(singles);
     const double seen = bootstrap_->ProbabilityAbove(listed.front()->fit.heldout - base_->fit.heldout, 0.0);
     const bool clear = finding.p_none < limits_.clear_nothing && seen > limits_.p_missing &&
                        Ratio(listed.front()) > limits_.visible_ratio;
     if (!clear) {
       JudgeEvents(singles, &finding);
-      if (finding.verdict == Verdict::kNone && !finding.events_s.empty()) DoubtNothing(singles, &finding);
+      if (finding.verdict == Verdict::kNone && !finding.events_s.empty()) CheckUnexplainedEvents(singles, &finding);
       return finding;
     }
     finding.p_missing = 1.0 - finding.p_none;
@@ -270,23 +270,23 @@ Finding Search::Run(bool pairs) const {
       const auto earned = [&](const CandidatePtr& single) {
         return !Holds(pair->fit, single->fit.hypothesis.terms.back().form->effect) || Better(pair->fit, single->fit);
       };
-      // What is granted is not claimed: only the effect has to earn its name.
-      const bool all_earned =
-          pair->granted ? Better(pair->fit, pair->granted->without) : std::all_of(listed.begin(), listed.end(), earned);
+      // The correction is not claimed: only the effect has to earn its name.
+      const bool all_earned = pair->correction ? Better(pair->fit, pair->correction->without)
+                                               : std::all_of(listed.begin(), listed.end(), earned);
       if (all_earned && (Adequate(pair, gap) || StandsOut(pair, corrected))) good.push_back(pair);
     }
-    DropUnsure(&good);
+    DropUncertain(&good);
     // The best fit gives the best estimate of the noise.
     top = good.empty() ? two.front() : good.front();
   }
   // A name is not given to what physics outside the catalogue explains better, or as well with one effect less.
   if (!unlisted.empty() && Gain(unlisted.front()) > limits_.min_gain &&
-      (good.empty() || Outdone(good.front(), unlisted.front())) && Adequate(unlisted.front(), gap)) {
+      (good.empty() || IsBeatenBy(good.front(), unlisted.front())) && Adequate(unlisted.front(), gap)) {
     good.clear();
     finding.unlisted = top = unlisted.front();
   }
   if (const CandidatePtr law = good.empty() || gap > kLawMayFeign ? nullptr : LawError();
-      law && Outdone(good.front(), law) && Adequate(law, gap)) {
+      law && IsBeatenBy(good.front(), law) && Adequate(law, gap)) {
     good.clear();
     finding.unlisted = top = law;
   }
@@ -314,7 +314,7 @@ Finding Search::Run(bool pairs) const {
   // An adequate hypothesis may leave the share; it would take clearly more to call for another name.
   finding.p_unnamed = bootstrap_->ProbabilityAbove(Judge(finding.best).gain,
                                                    rows_ * std::max(limits_.min_gain, limits_.remainder_share * gap));
-  if (finding.approximate || finding.best->granted)
+  if (finding.approximate || finding.best->correction)
     finding.p_unnamed = std::min(finding.p_unnamed, 1.0 - Closure(finding.best));
   // No name was given because something is left, be it little.
   if (finding.verdict == Verdict::kUnnamed)
@@ -322,9 +322,9 @@ Finding Search::Run(bool pairs) const {
         std::max({finding.p_unnamed, kUnnamedAtLeast,
                   bootstrap_->ProbabilityAbove(Judge(finding.best).gain, 0.1 * limits_.min_gain * rows_)});
   AssignProbabilities(&finding);
-  if (finding.verdict == Verdict::kNamed && !finding.approximate) Hedge(&finding);
-  if (finding.verdict == Verdict::kAmbiguous) Doubt(&finding);
-  TakeBack(&finding);
+  if (finding.verdict == Verdict::kNamed && !finding.approximate) WidenOrWithdraw(&finding);
+  if (finding.verdict == Verdict::kAmbiguous) WithdrawImprobable(&finding);
+  RemoveCorrections(&finding);
   return finding;
 }
 

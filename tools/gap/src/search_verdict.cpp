@@ -15,17 +15,18 @@ std::set<std::vector<std::string>> NamesOf(const Finding& finding) {
 
 void Search::PreferCatalogue(Candidates* good) {
   // Variants are not needed if the catalogue's main formula is sufficient. An effect with fitted times is no simpler
-  // than another formula that always acts; nor is one that needs a grant.
-  const auto exact = [](const CandidatePtr& c) { return c->exact() && !c->granted; };
+  // than another formula that always acts; nor is one that needs a correction.
+  const auto exact = [](const CandidatePtr& c) { return c->exact() && !c->correction; };
   const auto simple = [&](const CandidatePtr& c) { return exact(c) && c->always(); };
   if (std::none_of(good->begin(), good->end(), exact)) return;
   const bool all = std::any_of(good->begin(), good->end(), simple);
   std::erase_if(*good, [&](const CandidatePtr& c) { return !c->exact() && (all || !c->always()); });
 }
 
-bool Search::Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const {
-  // Unnamed physics that does as well alone is simpler than a grant with an effect, as it is simpler than two effects.
-  if (named->added().size() > 1 || named->granted) return !Better(named->fit, unlisted->fit);
+bool Search::IsBeatenBy(const CandidatePtr& named, const CandidatePtr& unlisted) const {
+  // Unnamed physics that does as well alone is simpler than a correction with an effect, as it is simpler than two
+  // effects.
+  if (named->added().size() > 1 || named->correction) return !Better(named->fit, unlisted->fit);
   const Vector lead = unlisted->fit.heldout - named->fit.heldout;
   return lead.sum() > limits_.tie_nats && bootstrap_->ProbabilityAbove(lead, 0.0) > limits_.p_outdone;
 }
@@ -83,7 +84,7 @@ void Search::JudgeEvents(const Candidates& singles, Finding* finding) const {
   for (const CandidatePtr& c : finding->set) c->probability = std::exp(evidence(c) - evidence(finding->best)) / total;
 }
 
-void Search::DoubtNothing(const Candidates& singles, Finding* finding) const {
+void Search::CheckUnexplainedEvents(const Candidates& singles, Finding* finding) const {
   if (finding->p_none > limits_.clear_nothing) return;
   finding->verdict = Verdict::kUnnamed;
   finding->best = *std::max_element(singles.begin(), singles.end(),
@@ -95,7 +96,7 @@ void Search::DoubtNothing(const Candidates& singles, Finding* finding) const {
   (void)Judge(finding->best);
 }
 
-void Search::Hedge(Finding* finding) const {
+void Search::WidenOrWithdraw(Finding* finding) const {
   double sum = finding->best->probability;
   if (sum >= limits_.sure) return;
   Candidates others = OnePerName(finding->tried);
@@ -111,10 +112,10 @@ void Search::Hedge(Finding* finding) const {
     sum += other->probability;
   }
   if (finding->set.size() > 1) finding->verdict = Verdict::kAmbiguous;
-  Doubt(finding);
+  WithdrawImprobable(finding);
 }
 
-void Search::Doubt(Finding* finding) const {
+void Search::WithdrawImprobable(Finding* finding) const {
   double sum = 0.0;
   for (const CandidatePtr& member : finding->set) sum += member->probability;
   if (sum >= limits_.doubt) return;

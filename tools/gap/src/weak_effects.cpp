@@ -72,7 +72,7 @@ double Search::Ratio(const CandidatePtr& candidate) const {
          std::sqrt(rows_ * whitener.variance * whitener.Gain());
 }
 
-double Search::WeighNothing(const Candidates& singles) const {
+double Search::ProbabilityOfNone(const Candidates& singles) const {
   // Each family counts once, whatever its number of members.
   std::map<std::string, std::vector<std::pair<CandidatePtr, double>>> families;
   for (const CandidatePtr& single : singles)

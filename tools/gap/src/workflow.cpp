@@ -90,37 +90,38 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
              Result* result) {
   Finding& finding = diagnosis->finding;
   const auto closed = [&](const CandidatePtr& c) {
-    const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
-    return ShowGap(equation, heldout, *diagnosis->bootstrap, before, c->granted ? c->granted->with : c->fit, nullptr);
+    const Fitted& before = c->correction ? c->correction->without : finding.base->fit;
+    return ShowGap(equation, heldout, *diagnosis->bootstrap, before, c->correction ? c->correction->with : c->fit,
+                   nullptr);
   };
   const auto holds = [&](const CandidatePtr& c) {
     const GapSummary gap = closed(c);
     if (gap.gap_ratio < kUnseenRatio) {
-      const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
-      const Fitted& after = c->granted ? c->granted->with : c->fit;
+      const Fitted& before = c->correction ? c->correction->without : finding.base->fit;
+      const Fitted& after = c->correction ? c->correction->with : c->fit;
       return gap.after.rmse < kWorse * gap.before.rmse &&
              !HeldOutDataContradict(heldout, before, after, diagnosis->wide->fitter->whitener().variance);
     }
     // The smooth factor is fitted to the first part and errs on the rest, so the effect is judged by what it adds to
     // it.
-    if (c->granted) return gap.closed_low > 0.0 && gap.closed_fraction > limits.at_least_closed;
+    if (c->correction) return gap.closed_low > 0.0 && gap.closed_fraction > limits.at_least_closed;
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
   const auto holds_elsewhere = [&](const CandidatePtr& c) {
-    const double share = c->granted ? heldout.ClosedElsewhere(c->granted->without, c->granted->with)
-                                    : heldout.ClosedElsewhere(finding.base->fit, c->fit);
+    const double share = c->correction ? heldout.ClosedElsewhere(c->correction->without, c->correction->with)
+                                       : heldout.ClosedElsewhere(finding.base->fit, c->fit);
     return share > limits.confirmed_elsewhere;
   };
   // Something else may be at work there, too.
   const auto found_there = [&](const CandidatePtr& c) {
-    const Fitted& before = c->granted ? c->granted->without : finding.base->fit;
-    const Fitted& after = c->granted ? c->granted->with : c->fit;
+    const Fitted& before = c->correction ? c->correction->without : finding.base->fit;
+    const Fitted& after = c->correction ? c->correction->with : c->fit;
     return heldout.FoundAsPredicted(before, after, *diagnosis->bootstrap) &&
            closed(c).closed_fraction > limits.at_least_closed;
   };
   // With such a factor only certain names are given: a set from which a member was rejected is not certain.
-  const bool granted = std::any_of(finding.set.begin(), finding.set.end(),
-                                   [](const CandidatePtr& member) { return member->granted != nullptr; });
+  const bool with_correction = std::any_of(finding.set.begin(), finding.set.end(),
+                                           [](const CandidatePtr& member) { return member->correction != nullptr; });
   std::vector<CandidatePtr> kept;
   double lost = 0.0;
   for (const CandidatePtr& member : finding.set) {
@@ -143,7 +144,7 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
       kept.push_back(member);
       continue;
     }
-    if (other == finding.tried.end() || granted) {
+    if (other == finding.tried.end() || with_correction) {
       result->notes.push_back(Joined(Texts(member), " and ") +
                               " explains the first part of the data but not the held-out part: rejected");
       lost += member->probability;
@@ -157,7 +158,7 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     finding.approximate = true;
     kept.push_back(*other);
   }
-  if (kept.empty() || (granted && kept.size() < finding.set.size())) {
+  if (kept.empty() || (with_correction && kept.size() < finding.set.size())) {
     kept.clear();
     finding.verdict = Verdict::kUnnamed;
     finding.p_unnamed = std::max(finding.p_unnamed, lost);
@@ -224,7 +225,7 @@ HeldOut RestOf(const PlantDiagnosis& plant, const Parts& parts) {
 bool RestContradicts(const EquationDiagnosis& one, const HeldOut& rest) {
   const Finding& finding = one.diagnosis.finding;
   const CandidatePtr& best = finding.set.empty() ? finding.base : finding.best;
-  const Fit fit = rest.Judge(rest.Try(best->granted ? best->granted->with : best->fit));
+  const Fit fit = rest.Judge(rest.Try(best->correction ? best->correction->with : best->fit));
   return fit.coverage95 < kLeastCoverage || fit.whiteness > kMostWhiteness;
 }
 
@@ -325,7 +326,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   result.notes.insert(result.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
   if (!analysis.signals.law_seen)
     result.notes.push_back("hardly any " + equation->active_name() +
-                           " in these data: they say nothing on the law and its parameters");
+                           " in these data: they say nothing about the law and its parameters");
   const bool can_name = plant.carrying().suitability.can_name;
   if (request.until >= Step::kFind && can_name) {
     clock.Begin("find where", 0.6);
@@ -341,7 +342,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     Confirm(*equation, heldout, request.diagnose.thresholds, &diagnosis, &result);
   }
   if (request.until < Step::kName) {
-    result.sentence = "The search for a name was not asked for.";
+    result.sentence = "The search for a name was not requested.";
     result.probability_none = result.probability_unnamed = std::numeric_limits<double>::quiet_NaN();
   }
   const int min_active = request.diagnose.thresholds.min_active_blocks;

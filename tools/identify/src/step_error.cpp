@@ -69,7 +69,7 @@ StepError StepErrorOf(const Plant& plant, const Series& series, const Eigen::Vec
 
 std::string StepErrorText(const StepError& error, double dt, double noise_sd) {
   if (error.short_enough) return "";
-  std::string text = "the states move too fast for " +
+  std::string text = "the states change too fast for " +
                      (error.substeps == 1 ? std::string("one step") : std::to_string(error.substeps) + " steps") +
                      " every " + Short(dt) + " s: ";
   text += error.change < kDiverged * noise_sd ? "with steps half as long the law differs by " + Short(error.change) +
@@ -78,7 +78,7 @@ std::string StepErrorText(const StepError& error, double dt, double noise_sd) {
   if (error.enough)
     return text + "; write substeps = " + std::to_string(*error.enough) + " or more in [states], and look again\n";
   return text + "; " + std::to_string(kMostSubsteps / 2) +
-         " substeps are not enough either: put the value that the fast state settles at in its place\n";
+         " substeps are not enough either: replace the fast state by the value at which it settles\n";
 }
 
 }  // namespace armcmc::identify

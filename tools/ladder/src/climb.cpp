@@ -356,7 +356,7 @@ Ladder Climb(const ClimbRequest& request) {
     }
     if (const Contender* second = NamedAgain(ladder, rung)) {
       ladder.notes.push_back(second->candidate.entry->name +
-                             " was not named: one alone does not do, and two of them in one place are pieces of "
+                             " was not named: one alone is not enough, and two of them in one place are pieces of "
                              "something that has another formula");
       TakeBack(FirstWith(ladder, second->candidate), &ladder, &base);
       break;

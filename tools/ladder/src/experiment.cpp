@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "armcmc/gap/effect_words.hpp"
 #include "motion.hpp"
 #include "prospect.hpp"
 
@@ -117,11 +118,7 @@ class Search {
   std::vector<double> rest_;  ///< [signal] Values at the beginning of the recording.
 };
 
-std::string NameOf(const Tied& tied, std::size_t i) {
-  std::string name = tied[i].candidate.entry->name;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
+std::string NameOf(const Tied& tied, std::size_t i) { return gap::EffectInSentence(tied[i].candidate.entry->name); }
 
 std::string WordsOf(const Proposed& best, const Tied& tied, const PlantDescription& plant, double duration_s) {
   const SignalDescription& signal = plant.signals[best.motion.moved.signal];
@@ -132,7 +129,7 @@ std::string WordsOf(const Proposed& best, const Tied& tied, const PlantDescripti
                            Short(3, best.motion.moved.high) + " " + signal.unit +
                            (best.speed > 1.2 ? ", at up to " + Short(2, best.speed) + " times its speed" : "");
   const std::string evidence =
-      Short(3, duration_s) + " s of it bring about " +
+      Short(3, duration_s) + " s of it give about " +
       (prospect.least < 1.0 ? Short(1, prospect.least) : Short(6, std::round(prospect.least))) +
       " nats of evidence between " + pair;
   if (prospect.open == prospect.pairs)
@@ -199,13 +196,13 @@ gap::Experiment SeparatingMotion(const Dataset& data, const Rung& rung, const Pl
   gap::Experiment experiment;
   const Tied tied(rung);
   if (const std::string not_made = tied.NotMade(); !not_made.empty()) {
-    experiment.words = "What a motion would bring cannot be foreseen: " + not_made + " depends on the motion itself.";
+    experiment.words = "What a motion would reveal cannot be predicted: " + not_made + " depends on the motion itself.";
     return experiment;
   }
   const Search search(data, tied, plant);
   const std::optional<Proposed> best = search.Best();
   if (!best) {
-    experiment.words = "No motion of the library, within what the recording did, can be foreseen.";
+    experiment.words = "For no motion of the library within the range of the recording can the outcome be predicted.";
     return experiment;
   }
   experiment.words = WordsOf(*best, tied, plant, search.duration_s());

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "armcmc/gap/effect_words.hpp"
 #include "armcmc/gap/result.hpp"
 #include "armcmc/ladder/evidence.hpp"
 #include "armcmc/ladder/experiment.hpp"
@@ -37,11 +38,6 @@ std::string WithSd(double value, double sd, const std::string& unit) {
 }
 
 std::string NameOf(const Contender& c) { return c.candidate.entry->name; }
-
-std::string InWords(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
 
 /// Names added before a rung.
 std::vector<std::string> NamesBefore(const Ladder& ladder, std::size_t rung) {
@@ -299,13 +295,13 @@ class ResultWriter {
     const std::string in = request_.equation.empty() ? "" : " in the " + request_.equation;
     if (result_.ladder.empty())
       return complete_
-                 ? "Nothing is missing that these data show: the model explains them to the noise."
+                 ? "Nothing is missing as far as these data show: the model explains them down to the noise."
                  : "Something is missing" + in + ", and no effect that fits this plant earns a name." + ActsAsIf();
     std::vector<std::string> rungs;
     for (const Rung& rung : ladder_.rungs) {
       if (rung.named.empty()) continue;
       std::vector<std::string> titles;
-      for (const std::size_t i : rung.named) titles.push_back(InWords(NameOf(rung.contenders[i])));
+      for (const std::size_t i : rung.named) titles.push_back(gap::EffectInSentence(NameOf(rung.contenders[i])));
       rungs.push_back(JoinedWords(titles, " or "));
     }
     return "Missing" + in + ": " + JoinedWords(rungs, ", then ") + ". With that, " + percent +

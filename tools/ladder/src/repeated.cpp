@@ -4,6 +4,7 @@
 #include <set>
 #include <vector>
 
+#include "armcmc/gap/effect_words.hpp"
 #include "one_equation.hpp"
 
 namespace armcmc::ladder {
@@ -48,10 +49,12 @@ std::string WhyRepeated(const Ladder& ladder) {
     for (const Rung& rung : ladder.rungs)
       if (!rung.named.empty() && rung.leader().candidate.entry == entry) copies.push_back(&rung.leader().candidate);
     if (copies.size() < 2) continue;
-    std::string name = entry->name;
-    std::replace(name.begin(), name.end(), '_', ' ');
     const std::string times = copies.size() == 2 ? "twice" : std::to_string(copies.size()) + " times";
-    words.append(" The effect ").append(name).append(" appears ").append(times).append(" because it was added ");
+    words.append(" The effect ")
+        .append(gap::EffectInSentence(entry->name))
+        .append(" appears ")
+        .append(times)
+        .append(" because it was added ");
     words.append(times).append(", each time with its own parameters: ").append(Reason(copies)).append(".");
   }
   return words;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "armcmc/gap/effect_words.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/effect_library.hpp"
 #include "armcmc/support/plant_effects.hpp"
@@ -59,7 +60,7 @@ class OwnNames {
   /// In a sentence, in which names are written as words.
   void PutInto(std::string* sentence) const {
     for (const EffectEntry& entry : entries_) {
-      const std::string from = InWords(entry.name), to = InWords(NameOf(entry));
+      const std::string from = gap::EffectInSentence(entry.name), to = gap::EffectInSentence(NameOf(entry));
       const std::size_t at = from == to ? std::string::npos : sentence->find(from);
       if (at != std::string::npos) sentence->replace(at, from.size(), to);
     }
@@ -70,10 +71,6 @@ class OwnNames {
     for (const std::string& alias : entry.aliases)
       if (FindEffect(plant_, alias) != nullptr) return alias;
     return entry.name;
-  }
-  static std::string InWords(std::string name) {
-    std::replace(name.begin(), name.end(), '_', ' ');
-    return name;
   }
 
   const ModelInfo& plant_;
@@ -111,9 +108,10 @@ std::optional<SecondSearch> SearchAgain(const gap::WorkflowRequest& request) {
   for (std::vector<std::string>& set : result.ambiguous_set) names.Put(&set);
   names.PutInto(&result.sentence);
   result.model = request.model;
-  result.notes.insert(result.notes.begin(),
-                      "with the law held to be exact no effect got a name; these were found beside a law that may err. "
-                      "model.toml is a plant file: armcmc-estimator --model takes it without --config");
+  result.notes.insert(
+      result.notes.begin(),
+      "with the law assumed to be exact no effect was named; these were found when the law was allowed to err. "
+      "model.toml is a plant file: armcmc-estimator --model takes it without --config");
   return SecondSearch{std::move(again.recording), std::move(diagnosis)};
 }
 

@@ -58,7 +58,7 @@ int Check(const Arguments& a) {
   try {
     std::cout << '\n' << IdentifiabilityText(plant, *data);
   } catch (const PlantError& error) {
-    std::cout << "which parameters these data identify cannot be said: " << error.what() << '\n';
+    std::cout << "which parameters these data identify cannot be determined: " << error.what() << '\n';
   }
   return support::kExitOk;
 }
@@ -86,7 +86,7 @@ int Add(const Arguments& a) {
 int New(const std::string& name, const std::string& from) {
   const std::filesystem::path path = name + ".toml";
   const std::string text = NewPlantText(name, support::FindPlantFile(from));
-  if (std::filesystem::exists(path)) throw support::InputError(path.string() + ": is there already");
+  if (std::filesystem::exists(path)) throw support::InputError(path.string() + ": already exists");
   std::ofstream file(path, std::ios::binary);
   if (!(file << text) || !file.flush()) throw support::InputError(path.string() + ": cannot be written");
   std::cout << path.string() << ": a copy of " << from << " to change; then: armcmc-model check " << path.string()

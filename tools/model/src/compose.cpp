@@ -40,9 +40,9 @@ std::string AddToFile(const std::string& plant, const std::string& effect,
                       const std::optional<std::filesystem::path>& data, const std::filesystem::path& out) {
   const support::PlantFile read = support::ReadPlantFile(support::FindPlantFile(plant));
   const PlantDescription composed = Composed(read, {effect}, data);
-  if (std::filesystem::exists(out)) throw support::InputError(out.string() + ": is there already");
+  if (std::filesystem::exists(out)) throw support::InputError(out.string() + ": already exists");
   const std::string sizes = data ? "sizes of its priors from " + data->string()
-                                 : std::string("sizes of its priors are guesses, no data was at hand");
+                                 : std::string("sizes of its priors are guesses, without data");
   std::ofstream file(out, std::ios::binary);
   file << support::PlantFileText(composed, plant + " with " + effect + "; " + sizes);
   if (!file.flush()) throw support::InputError(out.string() + ": cannot be written");

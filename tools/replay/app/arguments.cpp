@@ -37,38 +37,50 @@ void Declare(CLI::App* app, Arguments* a) {
   const std::string plant = DefaultModel();
   app->add_option("--config", a->config,
                   "Configuration, by path or by name (" + DefaultModel() +
-                      "); default for an LCM log: that of its plant, if it needs one");
+                      "); default for an LCM log: that of its plant, if it needs one")
+      ->type_name("FILE");
   app->add_option(
-      "--data", a->data,
-      "Recording: a CSV of samples (" + ColumnsOfModels() + "; a plant file: t and its signals) or an LCM log");
+         "--data", a->data,
+         "Recording: a CSV of samples (" + ColumnsOfModels() + "; a plant file: t and its signals) or an LCM log")
+      ->type_name("FILE");
   app->add_option("--recording", a->recording,
                   "Instead of --data: a recording file, which maps the columns of a CSV to the signals of a plant "
-                  "(--model: another plant)");
-  app->add_option("--data-dir", a->data_dir, "Folder of the CSV of --recording, if not that of the recording file");
-  app->add_option("--out", a->out, "CSV of estimates to write, one row per pack; with --compare: the HTML report");
+                  "(--model: another plant)")
+      ->type_name("FILE");
+  app->add_option("--data-dir", a->data_dir, "Folder of the CSV of --recording, if not that of the recording file")
+      ->type_name("DIR");
+  app->add_option("--out", a->out, "CSV of estimates to write, one row per pack; with --compare: the HTML report")
+      ->type_name("FILE");
   app->add_option("--model", a->model,
                   "Built-in model, model file or plant file (armcmc-model) instead of the model of the configuration; "
-                  "a plant needs no configuration");
-  app->add_option("--seed", a->seed, "Seed, instead of the one in the configuration");
+                  "a plant needs no configuration")
+      ->type_name("FILE");
+  app->add_option("--seed", a->seed, "Seed, instead of the one in the configuration")->type_name("N");
   app->add_option(
-      "--draws-from", a->draws_from,
-      "Repeat the numbers of draws of this run: an estimate CSV or an LCM log (by default, those in the log "
-      "given as --data)");
+         "--draws-from", a->draws_from,
+         "Repeat the numbers of draws of this run: an estimate CSV or an LCM log (by default, those in the log "
+         "given as --data)")
+      ->type_name("FILE");
   app->add_flag("--verify", a->verify,
                 "Compare bit by bit with the estimates and posteriors in the log (--data); exit 1 if they differ");
-  app->add_option("--compare", a->compare, "Run again with this configuration and report both runs (--out, HTML)");
-  app->add_option("--compare-model", a->compare_model, "Model of the second run, with or without --compare");
+  app->add_option("--compare", a->compare, "Run again with this configuration and report both runs (--out, HTML)")
+      ->type_name("FILE");
+  app->add_option("--compare-model", a->compare_model, "Model of the second run, with or without --compare")
+      ->type_name("FILE");
   app->add_option(
-      "--calibrate", a->calibrate,
-      "Configuration to write, with threshold, noise law, noise scale and rho determined from a recording of normal "
-      "operation; a report (.html) beside it shows the evidence");
+         "--calibrate", a->calibrate,
+         "Configuration to write, with threshold, noise law, noise scale and rho determined from a recording of normal "
+         "operation; a report (.html) beside it shows the evidence")
+      ->type_name("FILE");
   app->add_option("--false-modifications", a->false_modifications,
                   "With --calibrate: accepted share of packs with a false modification")
+      ->type_name("SHARE")
       ->check(CLI::Range(1e-6, 0.2))
       ->capture_default_str();
-  app->add_option("--predictions", a->predictions, "CSV to write with the predicted output of every sample");
-  app->add_option("--report", a->report, "JSON summary to write");
-  app->add_option("--prefix", a->prefix, "Prefix of the LCM channel names");
+  app->add_option("--predictions", a->predictions, "CSV to write with the predicted output of every sample")
+      ->type_name("FILE");
+  app->add_option("--report", a->report, "JSON summary to write")->type_name("FILE");
+  app->add_option("--prefix", a->prefix, "Prefix of the LCM channel names")->type_name("P");
   app->add_flag("--skip-bad", a->skip_bad, "Count and skip bad rows of a CSV instead of stopping");
   app->footer(
       "Runs the estimator over a recording, without threads or deadlines. The result is reproducible, and "

@@ -34,8 +34,8 @@ std::string NoVerdictText(const Estimator& estimator, const GapState& gap) {
     return "not watched, since there are more than " + std::to_string(kGapColumns) +
            " parameters in all modes together";
   const bool states = settings.plant != nullptr && settings.plant->states().size() > 0;
-  return "not judged, since too few packs were of use for that: a verdict takes " + std::to_string(kGapBlockPacks) +
-         " stretches of data in one run, each of " +
+  return "not judged, since too few packs were usable: a verdict takes " + std::to_string(kGapBlockPacks) +
+         " blocks of data in one run, each of " +
          (states ? "as many packs as one pack has room for" : "a pack of 0.1 s or more, or of several shorter ones") +
          ", and half as many again while they are analysed";
 }
@@ -75,7 +75,8 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
   } else {
     out << "gap between model and plant: " << NoVerdictText(estimator, gap) << "; armcmc-gap judges a recording\n";
   }
-  out << (any_known ? table.ToString() : std::string("nothing is known: no pack said anything about a parameter\n"));
+  out << (any_known ? table.ToString()
+                    : std::string("nothing is known: no pack carried information about a parameter\n"));
   if (summary.packs > 0 && summary.compute_s > 0.0)
     out << "computed in " << Significant(summary.compute_s, 3) << " s, "
         << Significant(summary.data_s / summary.compute_s, 3) << " times real time, "
@@ -86,10 +87,11 @@ std::string SummaryText(const Estimator& estimator, const PackSource& source, co
 
 std::string VerificationText(const Verification& v, const PackSource& source) {
   std::ostringstream out;
-  if (v.undecodable > 0) out << v.undecodable << " messages of the estimator are of no type that this version knows\n";
+  if (v.undecodable > 0)
+    out << v.undecodable << " messages of the estimator are of a type that this version does not know\n";
   if (v.without_pack > 0) out << v.without_pack << " recorded estimates have no pack in the log\n";
   if (v.equal()) {
-    out << "verified: " << v.compared << " recorded messages are equal to the bit\n";
+    out << "verified: " << v.compared << " recorded messages are bit-identical\n";
   } else if (v.compared == 0) {
     out << "NOT VERIFIED: no recorded estimate belongs to a pack of the log\n";
   } else {

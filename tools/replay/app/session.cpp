@@ -33,7 +33,8 @@ SourceRequest RequestFor(const Arguments& a, const Session& session, const Estim
   request.num_inputs = estimator.num_inputs();
   request.described = session.settings.plant;
   if (!a.recording.empty()) {
-    if (request.described == nullptr) throw support::InputError("--recording: the model is no plant of a file");
+    if (request.described == nullptr)
+      throw support::InputError("--recording: the model is not a plant described by a file");
     auto recording = std::make_shared<support::Recording>(support::ReadRecording(a.recording, a.data_dir));
     if (recording->fingerprint != request.described->plant().fingerprint())
       throw support::InputError(a.recording + ": has other signals than the model, " +

@@ -51,17 +51,21 @@ int main(int argc, char** argv) {
       "Checks whether this computer can meet the deadlines. Examines privileges, kernel, processors, timers, memory\n"
       "and network, measures how late a real-time thread is woken, and gives the command that fixes each finding."};
   cli.footer(
-      "Exit status: 0 suitable, 3 not suitable, 2 bad usage.\n"
+      "Exit status: 0 suitable, 3 not suitable, 2 bad usage, 1 any other failure.\n"
       "Example: armcmc-rtcheck --period-ms 10 --seconds 60");
   cli.add_option("--period-ms", arguments.demand.period_ms, "Time between packs")
+      ->type_name("MS")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 10'000.0));
   cli.add_option("--deadline-ms", arguments.deadline_ms, "From release to estimate. Default: the period")
+      ->type_name("MS")
       ->check(CLI::Range(0.01, 100'000.0));
   cli.add_option("--cpu", arguments.demand.cpu, "CPU of the adjust stage")
+      ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(0, 1023));
   cli.add_option("--seconds", arguments.seconds, "How long to measure wake-ups; 0: not at all")
+      ->type_name("S")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
   cli.add_option("--root", arguments.root, "Folder that holds proc, sys and dev")

@@ -14,26 +14,26 @@ std::string CpuFolder(int cpu) { return kCpus + ("cpu" + std::to_string(cpu)) + 
 Finding Number(const SystemRoot& root) {
   const auto cpus = ParseCpuList(root.Text(std::string(kCpus) + "online").value_or("0"));
   if (cpus.size() >= 2) return {"cpus", Level::kOk, std::to_string(cpus.size()) + " processors", "", ""};
-  return {"cpus", Level::kUnfit, "one processor", "collect delays adjust, and everything else does too",
-          "use a computer, or give the virtual machine, at least two"};
+  return {"cpus", Level::kUnfit, "one processor", "collect delays adjust, and so does everything else",
+          "use a computer with at least two, or give the virtual machine two"};
 }
 
 Finding Isolation(const SystemRoot& root, int cpu) {
   const bool isolated = ParseCpuList(root.Text(std::string(kCpus) + "isolated").value_or("")).contains(cpu);
   const bool tickless = ParseCpuList(root.Text(std::string(kCpus) + "nohz_full").value_or("")).contains(cpu);
   const std::string name = "CPU " + std::to_string(cpu);
-  if (isolated && tickless) return {"isolation", Level::kOk, name + " is isolated and has no tick", "", ""};
+  if (isolated && tickless) return {"isolation", Level::kOk, name + " is isolated, without a timer tick", "", ""};
   const std::string n = std::to_string(cpu);
   return {"isolation", Level::kAdvice,
-          name + (isolated ? " is isolated, and has its tick" : " is shared with all other processes"),
-          "kernel threads and timers of others: tens of us, now and then ms",
+          name + (isolated ? " is isolated, but has a timer tick" : " is shared with all other processes"),
+          "kernel threads and timers of other programs: tens of us, occasionally ms",
           "sudo sed -i 's/^GRUB_CMDLINE_LINUX=\"/&isolcpus=managed_irq,domain," + n + " nohz_full=" + n +
               " rcu_nocbs=" + n + " /' /etc/default/grub && sudo update-grub   # then restart"};
 }
 
 Finding Interrupts(const SystemRoot& root, int cpu) {
   const auto text = root.Text("proc/irq/default_smp_affinity");
-  if (!text) return {"irq_affinity", Level::kOk, "not told by this kernel", "", ""};
+  if (!text) return {"irq_affinity", Level::kOk, "not reported by this kernel", "", ""};
   std::string digits = *text;
   std::erase(digits, ',');
   const auto place = static_cast<std::size_t>(cpu / 4);
@@ -46,10 +46,11 @@ Finding Interrupts(const SystemRoot& root, int cpu) {
 
 Finding Governor(const SystemRoot& root, int cpu) {
   const auto governor = root.Text(CpuFolder(cpu) + "cpufreq/scaling_governor");
-  if (!governor) return {"governor", Level::kOk, "no frequency scaling here (a virtual machine, or none)", "", ""};
+  if (!governor)
+    return {"governor", Level::kOk, "no frequency scaling (or a virtual machine, which does not show it)", "", ""};
   if (*governor == "performance") return {"governor", Level::kOk, "governor performance", "", ""};
   return {"governor", Level::kAdvice, "governor " + *governor,
-          "the clock rises only after load has come: a step takes up to three times as long",
+          "the clock rate rises only after load begins: a step takes up to three times as long",
           "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
 }
 
@@ -63,7 +64,7 @@ Finding IdleStates(const SystemRoot& root, const Demand& demand) {
   const std::string what = "leaving the deepest idle state takes " + std::to_string(worst_us) + " us";
   const bool matters = static_cast<double>(worst_us) > 0.01 * 1000.0 * demand.deadline_ms;
   if (!matters) return {"idle_states", Level::kOk, what, "", ""};
-  return {"idle_states", Level::kAdvice, what, "so long at the begin of every step",
+  return {"idle_states", Level::kAdvice, what, "this long at the start of every step",
           "sudo cpupower idle-set -D 10   # or processor.max_cstate=1 intel_idle.max_cstate=1 on the kernel's line"};
 }
 
@@ -72,8 +73,8 @@ Finding WakeRequest(const SystemRoot& root, const Demand& demand) {
   if (demand.period_ms >= kAwakeBelowMs) return {"cpu_idle", Level::kOk, "idle CPUs may sleep at this period", "", ""};
   if (root.MayWrite("dev/cpu_dma_latency"))
     return {"cpu_idle", Level::kOk, "the estimator may keep idle CPUs awake", "", ""};
-  return {"cpu_idle", Level::kAdvice, "nobody here may keep idle CPUs awake",
-          "0.05 to 0.1 ms at each of three wake-ups a step",
+  return {"cpu_idle", Level::kAdvice, "this user may not keep idle CPUs awake",
+          "0.05 to 0.1 ms at each of the three wake-ups of a step",
           "sudo install /usr/share/armcmc/deploy/60-armcmc.rules /etc/udev/rules.d/ && sudo udevadm trigger"};
 }
 
@@ -85,7 +86,7 @@ Finding Siblings(const SystemRoot& root, int cpu) {
   }
   const std::string sibling = std::to_string(*siblings.begin());
   return {"smt", Level::kAdvice, "CPU " + std::to_string(cpu) + " shares its core with CPU " + sibling,
-          "what runs there takes up to half of the speed",
+          "what runs there takes up to half of the adjust stage's speed",
           "echo 0 | sudo tee /sys/devices/system/cpu/cpu" + sibling + "/online"};
 }
 

@@ -12,7 +12,8 @@ Finding Kernel(const SystemRoot& root) {
   if (root.Number("sys/kernel/realtime").value_or(0) == 1 || version.find("PREEMPT_RT") != std::string::npos) {
     return {"kernel", Level::kOk, "PREEMPT_RT", "", ""};
   }
-  return {"kernel", Level::kAdvice, "not PREEMPT_RT", "sections that cannot be interrupted: now and then 1 ms and more",
+  return {"kernel", Level::kAdvice, "not PREEMPT_RT",
+          "kernel sections that cannot be interrupted: occasionally 1 ms or more",
           "sudo apt-get install linux-image-rt-amd64   # then restart"};
 }
 
@@ -22,7 +23,7 @@ Finding Throttling(const SystemRoot& root) {
   const long period = root.Number("proc/sys/kernel/sched_rt_period_us").value_or(1'000'000);
   return {"rt_throttling", Level::kAdvice,
           "real-time threads may run " + std::to_string(runtime) + " of " + std::to_string(period) + " us",
-          "above that they stand still for " + std::to_string((period - runtime) / 1000) + " ms",
+          "after that they are suspended for " + std::to_string((period - runtime) / 1000) + " ms",
           "echo kernel.sched_rt_runtime_us=-1 | sudo tee -a /etc/sysctl.d/60-armcmc.conf && sudo sysctl --system"};
 }
 
@@ -37,7 +38,7 @@ Finding TimerMigration(const SystemRoot& root) {
 Finding Swap(const SystemRoot& root) {
   const std::string swaps = root.Text("proc/swaps").value_or("");
   if (swaps.find('\n') == std::string::npos) return {"swap", Level::kOk, "none", "", ""};
-  return {"swap", Level::kAdvice, "swap is on", "what is not locked (the plant, the tools) may stand still for 100 ms",
+  return {"swap", Level::kAdvice, "swap is on", "what is not locked (the plant, the tools) may stall for 100 ms",
           "sudo swapoff -a   # and take it out of /etc/fstab"};
 }
 
@@ -54,8 +55,8 @@ Finding Hypervisor(const SystemRoot& root) {
   if (!is_virtual && t[7] == 0.0) return {"hypervisor", Level::kOk, "none", "", ""};
   char what[96];
   std::snprintf(what, sizeof what, "a virtual machine; %.3g %% of the time since its start was stolen", 100.0 * steal);
-  return {"hypervisor", Level::kAdvice, what, "the machine stands still for up to 100 ms, and no thread can see why",
-          "run on a computer of its own, or pin the virtual processors (virsh vcpupin) and lift their quota"};
+  return {"hypervisor", Level::kAdvice, what, "the machine stalls for up to 100 ms, and no thread can see why",
+          "run on a dedicated computer, or pin the virtual processors (virsh vcpupin) and lift their quota"};
 }
 
 Finding Route(const SystemRoot& root) {
@@ -67,10 +68,10 @@ Finding Route(const SystemRoot& root) {
     fields >> device >> destination;
     // Little endian: 224.0.0.0 is 000000E0, a host route to the group 434CFFEF, the default route 00000000.
     if (destination == "000000E0" || destination == "434CFFEF") {
-      return {"multicast", Level::kOk, "multicast goes by " + device, "", ""};
+      return {"multicast", Level::kOk, "multicast is routed over " + device, "", ""};
     }
     if (destination == "00000000")
-      return {"multicast", Level::kOk, "multicast goes by the default route, " + device, "", ""};
+      return {"multicast", Level::kOk, "multicast uses the default route, over " + device, "", ""};
   }
   return {"multicast", Level::kUnfit, "no route for multicast", "LCM does not start",
           "sudo ip link set lo up && sudo ip route add 224.0.0.0/4 dev lo"};
@@ -80,7 +81,7 @@ Finding ClockSource(const SystemRoot& root) {
   const std::string source =
       root.Text("sys/devices/system/clocksource/clocksource0/current_clocksource").value_or("unknown");
   if (source != "hpet" && source != "acpi_pm" && source != "jiffies") return {"clock", Level::kOk, source, "", ""};
-  return {"clock", Level::kAdvice, "clock source " + source, "every look at the clock is a slow read: 1 us and more",
+  return {"clock", Level::kAdvice, "clock source " + source, "every reading of the clock is slow: 1 us or more",
           "echo tsc | sudo tee /sys/devices/system/clocksource/clocksource0/current_clocksource"};
 }
 

@@ -48,10 +48,10 @@ std::string ReportText(const std::vector<Finding>& findings, const WakeUps* wake
     text += head + finding.what + "\n";
     const std::string indent(26, ' ');
     if (!finding.cost.empty()) text += indent + "costs: " + finding.cost + "\n";
-    if (!finding.remedy.empty()) text += indent + "mend:  " + finding.remedy + "\n";
+    if (!finding.remedy.empty()) text += indent + "fix:   " + finding.remedy + "\n";
   }
   if (wake_ups != nullptr && wake_ups->late_ns.count() > 0) {
-    text += "\nwake-ups by how late they were (bars logarithmic)\n";
+    text += "\nlateness of the wake-ups (bars logarithmic)\n";
     for (const auto& [edge_us, n] : Bins(wake_ups->late_ns)) {
       char line[64];
       std::snprintf(line, sizeof line, "  up to %9.0f us %8.0f ", edge_us, n);

@@ -54,7 +54,7 @@ Finding CheckWakeUps(const WakeUps& wake_ups, const Demand& demand) {
     finding.level = Level::kUnfit;
     finding.cost = max_ms >= demand.deadline_ms ? "a whole deadline is lost at once"
                                                 : "a quarter of the deadline is lost once in a thousand steps";
-    finding.remedy = "mend what stands above and run again for a night: armcmc-rtcheck --seconds 30000";
+    finding.remedy = "fix what is listed above and repeat it overnight: armcmc-rtcheck --seconds 30000";
   }
   return finding;
 }

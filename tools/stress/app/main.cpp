@@ -104,6 +104,7 @@ int main(int argc, char** argv) {
   CLI::App cli{kDescription};
   cli.footer(kFooter);
   cli.add_option("--minutes", options.minutes, "Total duration")
+      ->type_name("MIN")
       ->capture_default_str()
       ->check(CLI::Range(0.05, 100'000.0));
   cli.add_option("--load", arguments.loads, "Loads, comma separated")->capture_default_str()->type_name("LIST");
@@ -111,14 +112,20 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->type_name("LIST");
   cli.add_option("--period-ms", options.period_ms, "Time between packs")
+      ->type_name("MS")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));
   cli.add_option("--deadline-ms", options.deadline_ms, "From release to estimate. Default: the period")
+      ->type_name("MS")
       ->check(CLI::Range(0.1, 10'000.0));
   cli.add_option("--draws", options.draws, "Draws per pack: chernoff, k_min or a number")
+      ->type_name("N")
       ->capture_default_str()
       ->check(CLI::IsMember({"chernoff", "k_min"}) | CLI::Range(100, 150'000));
-  cli.add_option("--samples", options.samples, "Samples in a pack")->capture_default_str()->check(CLI::Range(5, 256));
+  cli.add_option("--samples", options.samples, "Samples in a pack")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::Range(5, 256));
   cli.add_option("--report", arguments.report, "Write a JSON report")->type_name("FILE");
   cli.add_option("--html", arguments.html, "Write an HTML page with the latencies")->type_name("FILE");
   cli.add_option("--lcm-url", options.lcm_url, "LCM bus. Default: a separate port")->type_name("URL");

@@ -53,7 +53,7 @@ void FaultJudge::OnEstimate(const estimate_t& estimate) {
   }
 }
 
-std::int64_t FaultJudge::NotOurs(const estimator_status_t& status) const {
+std::int64_t FaultJudge::NotOwn(const estimator_status_t& status) const {
   const bool disturbed = status.miss_cause == estimator_status_t::MISS_MACHINE ||
                          status.miss_cause == estimator_status_t::MISS_LATE_DATA ||
                          (status.fault_flags & estimator_status_t::FAULT_PLANT_SILENT) != 0 ||
@@ -65,7 +65,7 @@ std::int64_t FaultJudge::NotOurs(const estimator_status_t& status) const {
 }
 
 void FaultJudge::OnStatus(const estimator_status_t& status) {
-  const std::int64_t not_ours = NotOurs(status);
+  const std::int64_t not_ours = NotOwn(status);
   const std::int64_t unheard = std::max<std::int64_t>(status.step - last_status_.step - 1, 0);
   const std::int64_t dropped = status.packs_dropped - last_status_.packs_dropped;
   last_status_ = status;

@@ -42,7 +42,7 @@ void FlightRecorder::Write(const std::string& heading, std::size_t most) {
   std::ofstream out(file_, std::ios::app);
   out << heading << "\n" << kColumns;
   for (std::size_t i = lines_.size() - std::min(most, lines_.size()); i < lines_.size(); ++i) out << lines_[i];
-  out << (reports_ == kMostReports ? "\nNo more of these are written.\n" : "\n") << std::flush;
+  out << (reports_ == kMostReports ? "\nFurther ones are not written.\n" : "\n") << std::flush;
   if (!out) throw std::runtime_error("cannot write " + file_.string());
 }
 

@@ -82,7 +82,7 @@ void Load::Start(const std::vector<std::string>& command, const std::string& not
   if (!note.empty()) notes_.push_back(note);
 }
 
-void Load::Tend() const {
+void Load::TrimFiles() const {
   for (const auto& child : children_) child->TrimLog();
 }
 

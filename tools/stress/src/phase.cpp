@@ -119,7 +119,7 @@ PhaseResult RunPhase(const StressOptions& options, const std::string& load_name,
     const bool of_a_fault = judge.current() != nullptr && judge.current()->fault->misses;
     if (own_misses > own_before && !of_a_fault) recorder.Write("an own miss outside of faults", 20);
     estimator.TrimLog();
-    load.Tend();
+    load.TrimFiles();
     if (result.rss_start_kb == 0 && SecondsSince(start_ns) > 1.5) result.rss_start_kb = estimator.rss_kb();
     progress(std::min(1.0, SecondsSince(start_ns) / seconds));
     Tally(judge.TakeOutcomes(), &recorder, &result.faults);

@@ -164,8 +164,8 @@ std::string ReportHtml(const StressOptions& options, const std::vector<PhaseResu
     chart.series.push_back(std::move(series));
   }
   page.Chart(chart,
-             "One curve a load, with the steps that faults were injected into. Left is better; the deadline is where "
-             "the estimator has to be by.");
+             "One curve per load, including the steps with injected faults. Further left is better; every estimate "
+             "is due by the deadline.");
   page.Html("<pre>" + plots::EscapeHtml(ReportText(options, phases)) + "</pre>");
   return page.ToString();
 }

@@ -61,7 +61,7 @@ Verdict Judge(const std::vector<PhaseResult>& phases) {
     }
     if (fault.recovered_steps > kMostRecoverySteps) {
       const std::string steps = fault.recovered_steps >= FaultJudge::kNever
-                                    ? " did not recover in its time"
+                                    ? " did not recover in time"
                                     : ": recovered after " + std::to_string(fault.recovered_steps) + " steps";
       fail(name + steps + " (" + fault.hindrance + ")");
     }

@@ -34,8 +34,9 @@ const EffectEntry& FindEffect(const std::vector<EffectEntry>& entries, const std
     if (std::find(entry.aliases.begin(), entry.aliases.end(), name) != entry.aliases.end()) return entry;
   std::string known;
   for (const std::string& there : names) known += (known.empty() ? "" : ", ") + there;
-  throw ConfigError(where + "no effect is called \"" + name + '"' + DidYouMean(name, names) +
-                    (known.empty() ? "; there are none in " + SharedFolder("effects").string() : "; there: " + known));
+  throw ConfigError(
+      where + "no effect is called \"" + name + '"' + DidYouMean(name, names) +
+      (known.empty() ? "; there are none in " + SharedFolder("effects").string() : "; available: " + known));
 }
 
 }  // namespace armcmc::support

@@ -22,7 +22,7 @@ void CheckVariant(const EffectEntry& entry, const std::string& variant, const st
   for (const EffectForm& form : entry.forms) {
     if (!form.variant) continue;
     names.push_back(form.name);
-    known += (known.empty() ? "; there: " : ", ") + form.name;
+    known += (known.empty() ? "; available: " : ", ") + form.name;
   }
   if (std::find(names.begin(), names.end(), variant) == names.end())
     throw ConfigError(where + entry.name + " has no variant \"" + variant + '"' + DidYouMean(variant, names) + known);

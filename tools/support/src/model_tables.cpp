@@ -120,7 +120,7 @@ void ReadConstants(StrictTable& holder, const ModelInfo& model, EstimatorSetting
 void ReadRegressRate(StrictTable& holder, const ModelInfo& model, EstimatorSettings* settings) {
   const std::string_view key = holder.Has("pressure_rate") ? "pressure_rate" : "regress_rate";
   if (key == "pressure_rate" && holder.Has("regress_rate"))
-    throw holder.Error("pressure_rate", "is another word for regress_rate; remove one");
+    throw holder.Error("pressure_rate", "means the same as regress_rate; remove one");
   if ((model.compiled == nullptr || model.compiled->rate_unit.empty()) && holder.Has(key))
     throw holder.Error(key, settings->model + " has no rate to regress");
   settings->regress_rate = holder.Boolean(key, settings->regress_rate);

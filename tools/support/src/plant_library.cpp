@@ -27,7 +27,7 @@ fs::path FindPlantFile(const std::string& model) {
   const std::vector<std::string> names = PlantNames();
   for (const std::string& there : names) known += (known.empty() ? "" : ", ") + there;
   throw ConfigError(model + ": no such plant file, and no plant of that name in " + shared.string() +
-                    DidYouMean(model, names) + (known.empty() ? "" : "; there: " + known));
+                    DidYouMean(model, names) + (known.empty() ? "" : "; available: " + known));
 }
 
 std::vector<std::string> PlantNames() {

@@ -107,8 +107,8 @@ Recording ReadRecording(const fs::path& path, const fs::path& data_dir) {
     rows.Append(second);
   }
   const auto held = static_cast<std::size_t>(std::count(rows.held_out.begin(), rows.held_out.end(), std::uint8_t{1}));
-  if (held == rows.size()) throw file.root->Error("held_out", "nothing is left to learn from");
-  if (held == 0) throw file.root->Error("held_out", "no row that is used is among what it keeps apart");
+  if (held == rows.size()) throw file.root->Error("held_out", "nothing is left to fit to");
+  if (held == 0) throw file.root->Error("held_out", "holds out no row that is used");
   const std::vector<std::string> beyond = HeldOutBeyond(file, rows.in_file, recording.files.front());
   recording.notes.insert(recording.notes.end(), beyond.begin(), beyond.end());
   recording.notes.insert(recording.notes.end(), rows.notes.begin(), rows.notes.end());

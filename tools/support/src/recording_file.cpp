@@ -104,7 +104,7 @@ void ReadHeldOut(StrictTable& root, const std::vector<std::string>& signals, Rec
   const bool any =
       held.from_s || !held.rows.empty() || !held.segments.empty() || !held.file.empty() || !held.columns.empty();
   if (held.given && !any)
-    throw root.Error("held_out", "says nothing; expected from, from_s, rows, segments, file or columns");
+    throw root.Error("held_out", "is empty; expected from, from_s, rows, segments, file or columns");
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ RecordingFile ReadRecordingFile(const std::filesystem::path& path, const std::ve
   file.columns = ReadSources(root.Table("columns"), signals);
   file.rate_hz = root.Number("rate_hz", 0.0, 1e-9, 1e9);
   if (file.rate_hz > 0.0 && file.columns.count("t") > 0)
-    throw root.Error("rate_hz", "does not go together with [columns] t: the time says how often was sampled");
+    throw root.Error("rate_hz", "contradicts [columns] t: the time column gives the sample rate");
   ReadRows(root.Table("rows"), &file);
   StrictTable derivatives = root.Table("derivatives");
   file.bandwidth_hz = derivatives.Number("bandwidth_hz", 0.0, 1e-9, 1e9);

@@ -206,7 +206,7 @@ void RequireWords(const StrictTable& table, const std::string& key, const std::v
     const bool all = shown.size() <= kMaxShown;
     if (!all) shown.resize(kMaxShown);
     std::string problem = "no row has \"";
-    problem.append(word).append("\"").append(hint).append("; there: ").append(JoinedNames(shown));
+    problem.append(word).append("\"").append(hint).append("; available: ").append(JoinedNames(shown));
     throw table.Error(key, problem + (all ? "" : ",.."));
   }
 }

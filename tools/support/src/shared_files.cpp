@@ -36,7 +36,7 @@ fs::path FindSharedFile(const std::string& kind, const std::string& name) {
   const std::vector<std::string> names = SharedFileNames(kind);
   for (const std::string& there : names) known += (known.empty() ? "" : ", ") + there;
   throw ConfigError(name + ": no such file, neither here nor in " + shared.string() + DidYouMean(name, names) +
-                    (known.empty() ? "" : "; there: " + known));
+                    (known.empty() ? "" : "; available: " + known));
 }
 
 std::vector<std::string> SharedFileNames(const std::string& kind) {

@@ -148,11 +148,14 @@ int main(int argc, char** argv) {
                      "Folder with " + armcmc::tables::kContact.key(".csv") + " (t,x,v,f,f_true) and " +
                          armcmc::tables::kActuator.key(".csv") +
                          " "
-                         "(t,u_c,u_d,p,pdot,alpha,flow,theta1_true,theta2_true). Default: armcmc-plant simulates them");
-  app.add_option("--out", a.out, "Folder for the results")->required();
+                         "(t,u_c,u_d,p,pdot,alpha,flow,theta1_true,theta2_true). Default: armcmc-plant simulates them")
+          ->type_name("DIR");
+  app.add_option("--out", a.out, "Folder for the results")->type_name("DIR")->required();
   app.add_option("--seeds", a.seeds, "Noise realisations of every simulated scenario; tables show means")
+      ->type_name("N")
       ->check(CLI::Range(1, 1000));
   app.add_option("--first-seed", a.first_seed, "Seed of the first realisation; the others follow")
+      ->type_name("N")
       ->capture_default_str();
   CLI::Option* paper_only = app.add_flag("--paper-only", a.paper_only, "Only the paper's two experiments");
   CLI::Option* likelihoods = app.add_flag(
@@ -170,6 +173,7 @@ int main(int argc, char** argv) {
       "Example:\n"
       "  armcmc-tables --out tables\n"
       "  armcmc-tables --seeds 20 --likelihoods --drift --out tables\n"
-      "  armcmc-tables --coverage --seeds 300 --first-seed 40001 --out coverage");
+      "  armcmc-tables --coverage --seeds 300 --first-seed 40001 --out coverage\n"
+      "Exit status: 0 ok, 2 bad usage or input, 1 any other failure.");
   return armcmc::support::RunProgram(app, "armcmc-tables", argc, argv, [&a] { return armcmc::tables::Run(a); });
 }

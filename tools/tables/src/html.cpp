@@ -57,7 +57,7 @@ class HtmlTable {
 
 std::string ContactTable(const Experiment& e) {
   HtmlTable table({"method", "K", "B", "p", "force in contact, mN", "force overall, mN", "against noisy force, L2 in N",
-                   "95 % covers K, %", "B, %", "p, %", "ms a pack", "draws"});
+                   "95 % covers K, %", "B, %", "p, %", "ms per pack", "draws"});
   for (const Row& row : e.rows) {
     const ContactScore& s = row.contact;
     const double none = std::nan("");
@@ -111,7 +111,7 @@ std::string ActuatorDriftTable(const Experiment& e) {
 std::string ActuatorTable(const Experiment& e) {
   HtmlTable table({"method", "g of u_c, relative", "g of u_d, relative", "theta1, L2", "theta2, L2 in 1e-6",
                    "angle from the inputs alone, L2 in rad", "angle restarted each pack, L2 in rad", "flow, relative",
-                   "ms a pack"});
+                   "ms per pack"});
   for (const Row& row : e.rows) {
     const ActuatorScore& s = row.actuator;
     table.Add(row.label,
@@ -132,7 +132,7 @@ void PaperBlocks(const Experiment& e, plots::Page* page) {
   if (e.key == kContact.key()) {
     page->Html("<div class=\"grid\"><div class=\"card\"><h3>Printed in the paper</h3>" +
                PaperTable({"method", "K", "B", "p", "\"F_e, mN\""}, PublishedContact()) +
-               "</div><div class=\"card\"><h3>What the authors' stored results are</h3>" +
+               "</div><div class=\"card\"><h3>From the authors' stored results</h3>" +
                PaperTable({"method", "K", "B", "p", "force in contact, mN", "overall, mN", "noisy, L2 in N"},
                           StoredContact()) +
                "</div></div>\n");
@@ -140,7 +140,7 @@ void PaperBlocks(const Experiment& e, plots::Page* page) {
     page->Html(
         "<div class=\"grid\"><div class=\"card\"><h3>Printed in the paper</h3>" +
         PaperTable({"method", "theta1, L2", "theta2, L2 in 1e-6", "angle, L2"}, PublishedActuator()) +
-        "</div><div class=\"card\"><h3>What the authors' stored results are</h3>" +
+        "</div><div class=\"card\"><h3>From the authors' stored results</h3>" +
         PaperTable({"method", "theta1, L2", "theta2, L2 in 1e-6", "angle, L2", "flow, relative"}, StoredActuator()) +
         "</div></div>\n");
   }
@@ -150,7 +150,7 @@ std::string LikelihoodTable(const Result& result) {
   std::ostringstream out;
   out << "<div class=\"scroll\"><table><tr><th>noise</th><th>assumed</th><th></th><th class=\"num\">50 % covers</th>"
          "<th class=\"num\">90 %</th><th class=\"num\">95 %</th><th class=\"num\">force in contact, mN</th>"
-         "<th class=\"num\">modifications a run</th></tr>\n";
+         "<th class=\"num\">modifications per run</th></tr>\n";
   constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
   for (const LikelihoodCell& cell : result.likelihoods) {
     const ContactScore& s = cell.row.contact;
@@ -184,7 +184,7 @@ void Lead(const Result& result, plots::Page* page) {
   } else if (lost.empty()) {
     out << "<p>AR-MAP is ahead of every other online method on every row.</p>\n";
   } else {
-    out << "<div class=\"note\"><p>Rows that AR-MAP loses:</p><ul class=\"plain\">";
+    out << "<div class=\"note\"><p>Rows in which another method is ahead of AR-MAP:</p><ul class=\"plain\">";
     for (const std::string& row : lost) out << "<li>" << EscapeHtml(row) << "</li>";
     out << "</ul><p>" << EscapeHtml(LostRowsNote()) << "</p></div>\n";
   }
@@ -196,7 +196,7 @@ void Lead(const Result& result, plots::Page* page) {
 std::string ToHtml(const Result& result) {
   plots::Page page("ARMCMC: the paper's experiments, all methods");
   if (result.experiments.empty()) {
-    page.Html("<h1>What the credible intervals hold</h1>\n");
+    page.Html("<h1>Coverage of the credible intervals</h1>\n");
   } else {
     page.Html("<h1>The paper's two experiments, every method, one run</h1>\n");
     Lead(result, &page);
@@ -218,9 +218,10 @@ std::string ToHtml(const Result& result) {
     page.Html(
         "<section class=\"card\"><h2>Right and wrong likelihoods</h2><p>Share of the packs, in percent, whose "
         "intervals "
-        "hold the truth when the estimator believes in a noise law, right or wrong, with its standard error. The "
-        "packs of one run share their data: the error is that of right intervals, from how the posteriors narrow, or "
-        "what the runs differ by, whichever is larger. What is off by more than two of them is said.</p>" +
+        "contain the truth when the estimator assumes a noise law, right or wrong, with its standard error. The "
+        "packs of one run share their data: the error is that of correct intervals, derived from how the posteriors "
+        "contract, or the scatter between runs, whichever is larger. Deviations of more than two errors are "
+        "marked.</p>" +
         LikelihoodTable(result) + "</section>\n");
   page.Html("<section class=\"card\"><h2>Number of draws</h2>\n");
   AddDrawNumbers(&page);

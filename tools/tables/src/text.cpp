@@ -54,7 +54,7 @@ void ActuatorDriftTable(const Experiment& e, std::ostringstream* out) {
 
 void ContactTable(const Experiment& e, std::ostringstream* out) {
   TextTable table({"ours", "K", "B", "p", "force mN, contact", "overall", "noisy L2 N", "95 % covers K", "B", "p",
-                   "ms a pack", "draws"});
+                   "ms per pack", "draws"});
   for (const Row& row : e.rows) {
     const ContactScore& s = row.contact;
     const auto percent = [&](double v) { return row.has_intervals ? Significant(100.0 * v, 3) : std::string("-"); };
@@ -71,7 +71,7 @@ void ContactTable(const Experiment& e, std::ostringstream* out) {
 
 void ActuatorTable(const Experiment& e, std::ostringstream* out) {
   TextTable table({"ours", "g u_c, rel", "g u_d, rel", "theta1 L2", "theta2 L2 1e-6", "angle L2, inputs alone",
-                   "angle L2, restarted", "flow, rel", "ms a pack"});
+                   "angle L2, restarted", "flow, rel", "ms per pack"});
   for (const Row& row : e.rows) {
     const ActuatorScore& s = row.actuator;
     table.AddRow({row.label, Significant(s.g_rel_error[0], 3), Significant(s.g_rel_error[1], 3),
@@ -94,7 +94,8 @@ void PaperTable(const std::string& title, const std::vector<std::string>& header
 }
 
 void LikelihoodTable(const Result& result, std::ostringstream* out) {
-  TextTable table({"noise", "assumed", "parameter", "50 % covers", "90 %", "95 %", "force mN", "modifications a run"});
+  TextTable table(
+      {"noise", "assumed", "parameter", "50 % covers", "90 %", "95 %", "force mN", "modifications per run"});
   constexpr std::array<const char*, 3> kNames{"K", "B", "p"};
   for (const LikelihoodCell& cell : result.likelihoods) {
     const ContactScore& s = cell.row.contact;
@@ -108,8 +109,8 @@ void LikelihoodTable(const Result& result, std::ostringstream* out) {
     }
   }
   Put(out,
-      "Each noise law under each assumed likelihood: coverage in percent with its standard error; off by more "
-      "than two is said",
+      "Each noise law under each assumed likelihood: coverage in percent with its standard error; deviations of "
+      "more than two are marked",
       table);
 }
 
@@ -139,7 +140,8 @@ std::string ToText(const Result& result) {
   if (!result.likelihoods.empty()) LikelihoodTable(result, &out);
   if (result.experiments.empty() || !result.baselines) return out.str();
   const std::vector<std::string> lost = LostRows(result);
-  out << (lost.empty() ? "AR-MAP is ahead of every other online method on every row.\n" : "Rows that AR-MAP loses:\n");
+  out << (lost.empty() ? "AR-MAP is ahead of every other online method on every row.\n"
+                       : "Rows in which another method is ahead of AR-MAP:\n");
   for (const std::string& row : lost) out << "  " << row << '\n';
   if (!lost.empty()) out << LostRowsNote() << '\n';
   return out.str();

@@ -20,10 +20,15 @@ std::string DefaultUrl() {
 
 void Declare(CLI::App* app, WatchOptions* options, bool* ascii) {
   options->url = DefaultUrl();
-  app->add_option("--lcm-url", options->url, "LCM bus, the same as for the estimator")->capture_default_str();
-  app->add_option("--prefix", options->prefix, "Prefix of the channel names, the same as for the estimator");
-  app->add_option("--steps", options->steps, "Stop after this many steps")->check(CLI::PositiveNumber);
-  app->add_option("--duration", options->duration_s, "Stop after this many seconds")->check(CLI::PositiveNumber);
+  app->add_option("--lcm-url", options->url, "LCM bus, the same as for the estimator")
+      ->type_name("URL")
+      ->capture_default_str();
+  app->add_option("--prefix", options->prefix, "Prefix of the channel names, the same as for the estimator")
+      ->type_name("P");
+  app->add_option("--steps", options->steps, "Stop after this many steps")->type_name("N")->check(CLI::PositiveNumber);
+  app->add_option("--duration", options->duration_s, "Stop after this many seconds")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
   app->add_flag("--json", options->json, "One JSON object per step, even on a terminal");
   app->add_flag("--lines", options->lines, "One line per step, even on a terminal");
   app->add_flag("--ascii", *ascii, "No block characters (the default where the locale is not UTF-8)");
@@ -31,10 +36,11 @@ void Declare(CLI::App* app, WatchOptions* options, bool* ascii) {
       "Shows what a running estimator publishes: estimates, stage times against the deadline, missed deadlines, "
       "faults.\n"
       "Runs in a terminal; q or Ctrl-C quits. If standard output is not a terminal, it prints one line per step.\n"
-      "NO_COLOR switches colours off. Exit code 1: no step arrived within --duration.\n\n"
+      "NO_COLOR switches colours off.\n\n"
       "Example:\n"
       "  armcmc-watch --lcm-url 'udpm://239.255.76.67:7667?ttl=0'\n"
-      "  armcmc-watch --json --steps 100 > steps.jsonl");
+      "  armcmc-watch --json --steps 100 > steps.jsonl\n"
+      "Exit status: 0 ok, 1 no step arrived within --duration or another failure, 2 bad usage.");
 }
 
 bool Utf8() {

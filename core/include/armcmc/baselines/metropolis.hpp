@@ -11,13 +11,13 @@ namespace armcmc {
 ///
 ///   u* = u + c L z,  L L' = proposal covariance,  alpha = min(1, target(u*) / target(u))
 ///
-/// As good as a random walk gets: it starts at the mode of the target (a bounded Gauss-Newton fit, so that no draw is
+/// A well-tuned random walk: it starts at the mode of the target (a bounded Gauss-Newton fit, so that no draw is
 /// spent on the way there) with the covariance of the Laplace fit times 2.38^2 / dim; during burn-in, the first half,
 /// the scale follows an acceptance of kAcceptance and the covariance that of the chain so far; then both are frozen.
 class MetropolisFilter final : public PackFilter {
  public:
   static constexpr double kAcceptance = 0.3;
-  static constexpr int kChunk = 64;  ///< Draws between two looks at the clock.
+  static constexpr int kChunk = 64;  ///< Draws between two readings of the clock.
 
   explicit MetropolisFilter(const FilterParts& parts);
   Status Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos deadline_ns, ClockRef clock, int limit,

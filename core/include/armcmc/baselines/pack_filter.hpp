@@ -18,7 +18,7 @@ struct Kernels;
 }
 
 /// One step of a baseline on one mode. It fills the same ModeDraws as the ARMCMC sampler, so that summary, prediction,
-/// messages and replay do not know who estimates.
+/// messages and replay are independent of the method.
 class PackFilter {
  public:
   virtual ~PackFilter() = default;
@@ -30,7 +30,7 @@ class PackFilter {
   /// @rt No heap, no lock, no throw, bounded.
   virtual Status Run(const ModeData& data, std::uint64_t pack, std::uint64_t mode, Nanos deadline_ns, ClockRef clock,
                      int limit, ModeDraws* out) noexcept ARMCMC_NONBLOCKING = 0;
-  /// The mode comes back after another one acted.
+  /// The mode becomes active again after another one.
   virtual void Resume() noexcept ARMCMC_NONBLOCKING {}
   /// Forgets everything.
   virtual void Reset() noexcept ARMCMC_NONBLOCKING = 0;
@@ -51,7 +51,7 @@ struct FilterParts {
 /// Writes what all baselines share: the numbers of the step, and that there was no decision.
 void FillStep(const ModeData& data, int draws, int burn_in, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
 
-/// Whether weighted draws know any parameter better than its prior, the rule of the ARMCMC estimator.
+/// Whether weighted draws determine any parameter better than its prior, by the rule of the ARMCMC estimator.
 [[nodiscard]] bool IsInformed(const ParameterSpace& space, const ModeDraws& draws) noexcept ARMCMC_NONBLOCKING;
 
 }  // namespace armcmc

@@ -9,7 +9,7 @@ namespace armcmc {
 
 /// Particle filter with the paper's random-walk state: theta_{t+1} = theta_t + jitter, weights from the likelihood.
 ///
-/// Weights are logarithms; resampling is systematic. As good as a bootstrap filter gets: a pack is far more informative
+/// Weights are logarithms; resampling is systematic. A well-tuned bootstrap filter: a pack is far more informative
 /// than a state, so the likelihood is tempered (Neal 2001): its exponent rises from 0 to 1 in steps that keep half of
 /// the particles effective; after each step the particles are resampled and moved by the shrunk kernel of Liu and West
 /// (2001), which keeps their mean and covariance. The first particles are drawn from P_0. Its likelihood is that of the

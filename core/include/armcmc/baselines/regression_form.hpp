@@ -10,14 +10,14 @@
 
 namespace armcmc {
 
-/// A law that is not linear in its parameters, in a form that recursive least squares takes: another state z, and what
-/// a sample says of it. All functions: no heap, no lock, no throw.
+/// A law that is not linear in its parameters, in a form that recursive least squares accepts: another state z, and
+/// what a sample tells about it. All functions: no heap, no lock, no throw.
 struct RegressionForm {
   /// Mean and covariance of z by the prior. @param covariance  The identity.
   void (*start)(const ParameterSpace& space, ParamVector* mean, ParamMatrix* covariance) noexcept ARMCMC_NONBLOCKING;
   /// @param noise  Standard deviation of the target. @param[in,out] y  Target less the noise's mean; then what phi' z
   /// explains. @param[in,out] r  Variance of the target; then that of y.
-  /// @return false where the sample says nothing of z.
+  /// @return false where the sample carries no information about z.
   bool (*row)(const ModeData& data, std::size_t sample, double noise, ParamVector* phi, double* y,
               double* r) noexcept ARMCMC_NONBLOCKING;
   /// Holds z where its parameters are inside their bounds.

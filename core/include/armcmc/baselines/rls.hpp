@@ -11,20 +11,20 @@ namespace armcmc {
 ///
 ///   P <- P / mu,   k = P phi / (r + phi' P phi),   z <- z + k (y - phi' z),   P <- P - k phi' P
 ///
-/// A law that is linear in its parameters is taken as it stands. The inputs are scaled by the prior's standard
+/// A law that is linear in its parameters is used as it is. The inputs are scaled by the prior's standard
 /// deviations, which does for each of them what the paper's common factor of 1e7 does for both; r = s^2. Where the
-/// noise is that of a rate (settings.regress_rate) the law is still that of the flow, the rate's being no linear one,
-/// and r = s^2 E[gain^2], gain = flow / rate by a first pass over the pack. Any other law of a compiled plant comes
-/// with a RegressionForm.
+/// noise is that of a rate (settings.regress_rate) the law is still that of the flow, since that of the rate is not
+/// linear, and r = s^2 E[gain^2], gain = flow / rate by a first pass over the pack. Any other law of a compiled plant
+/// comes with a RegressionForm.
 ///
 /// The law of a described plant is linearised about the estimate, by differences over a standard deviation to either
-/// side, which are exact where it is linear in its parameters; three times a pack, each time about what the time before
-/// has found:
+/// side, which are exact where it is linear in its parameters; three times per pack, each time about the previous
+/// result:
 ///
 ///   phi_d = (F(z + sd_d) - F(z - sd_d)) / (2 sd_d),   y = target - F(z) + phi' z
 ///
-/// States start where the file or the pack before says, and errors are those that an uncertain start cannot explain, as
-/// for the ARMCMC estimator.
+/// States start where the file or the previous pack says, and errors are those that an uncertain start cannot explain,
+/// as for the ARMCMC estimator.
 ///
 /// Saturation: after every sample the parameters are held inside the bounds. Noise is taken as Gaussian, whatever its
 /// law. The covariance never grows beyond the prior's. Draws: Gaussian with the final mean and covariance.
@@ -60,7 +60,7 @@ class RlsFilter final : public PackFilter {
   void ToDraw(const ParamVector& z, double* u) const noexcept ARMCMC_NONBLOCKING;
 
   FilterParts parts_;
-  const RegressionForm* form_ = nullptr;  ///< Null: linear as it stands, or linearised.
+  const RegressionForm* form_ = nullptr;  ///< Null: linear as it is, or linearised.
   bool several_modes_ = false;
   std::unique_ptr<PredictionTile> prediction_;  ///< Of a described plant, else null.
   ThetaTile theta_{};

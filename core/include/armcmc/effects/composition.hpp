@@ -27,12 +27,12 @@ class Composition {
   Composition(const Composition&) = delete;  // info_ points into names_
   Composition& operator=(const Composition&) = delete;
 
-  /// The model predicts what it does by itself.
+  /// No effect: the model predicts as it is.
   [[nodiscard]] bool empty() const noexcept { return rows_ == nullptr && plant_ == nullptr; }
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
   /// The settings with the amplitudes appended to the parameters: what a ParameterSpace is made from.
   [[nodiscard]] const EstimatorSettings& sampled() const noexcept { return sampled_; }
-  /// Of a compiled plant; null where its law is as it stands.
+  /// Of a compiled plant; null where its law is used as it is.
   [[nodiscard]] const EffectRows* rows() const noexcept { return rows_.get(); }
   /// Every sample of a pack is explained by one law with its effects, whichever mode acts.
   [[nodiscard]] bool effects_on_output() const noexcept ARMCMC_NONBLOCKING;

@@ -15,7 +15,7 @@ inline constexpr int kEffectMemory = 2;         ///< Numbers that an effect may 
 
 /// Where an effect acts. The order of the list is the order of evaluation, the same everywhere.
 enum class EffectSlot : std::uint8_t {
-  kInputMap,         ///< Changes what the constitutive law is given.
+  kInputMap,         ///< Changes the inputs of the constitutive law.
   kConstitutiveLaw,  ///< Changes a parameter of the law.
   kAdditive,         ///< Adds amplitude x feature to the force.
   kSensorDelay,      ///< Acts on the series of forces: dead time first,
@@ -23,9 +23,9 @@ enum class EffectSlot : std::uint8_t {
   kSensorStatics,    ///< Maps each force after that.
 };
 
-inline constexpr int kMaxEffectSizes = 8;  ///< Of one compiled plant.
+inline constexpr int kMaxEffectSizes = 8;  ///< Sizes that one compiled plant may define.
 /// The sizes of a plant's signals, SI, that make priors free of units. Their order is the plant's: see effect_sizes.hpp
-/// of its slice.
+/// in its folder.
 struct EffectScales {
   std::array<double, kMaxEffectSizes> size{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
 };
@@ -48,12 +48,12 @@ struct EffectShape {
   double lower, upper;  ///< Allowed values, in the parameter's unit.
 };
 
-/// One physical effect of the catalogue of a compiled plant. What else an effect has, is up to the plant: see
-/// effects.hpp of its slice.
+/// One physical effect of the catalogue of a compiled plant. What else an effect has is up to the plant: see
+/// effects.hpp in its folder.
 struct EffectInfo {
   std::string_view name;     ///< "coulomb_friction".
   std::string_view family;   ///< Effects of one family act alike: "dry friction".
-  std::string_view formula;  ///< For people.
+  std::string_view formula;  ///< For people to read.
   EffectSlot slot;
   bool online;         ///< The estimator can run it.
   int num_amplitudes;  ///< At most kMaxEffectAmplitudes.
@@ -63,7 +63,7 @@ struct EffectInfo {
 };
 
 namespace effect_unit {
-/// Of what has a size by itself.
+/// For a parameter without a scale: its size is absolute.
 constexpr double One(const EffectScales&) noexcept { return 1.0; }
 }  // namespace effect_unit
 

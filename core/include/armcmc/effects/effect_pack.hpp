@@ -12,8 +12,8 @@ namespace armcmc {
 ///
 /// Each AdjustResult has one, so that adjust can prepare the next pack while execute still reads the last one.
 struct EffectPack {
-  std::unique_ptr<CompiledPack> compiled;  ///< Of a compiled plant with effects, else null; see Composition.
-  PlantPack described;                     ///< Of a plant described by a file; see PlantProgram.
+  std::unique_ptr<CompiledPack> compiled;  ///< For a compiled plant with effects, else null; see Composition.
+  PlantPack described;                     ///< For a plant described by a file; see PlantProgram.
 };
 
 }  // namespace armcmc

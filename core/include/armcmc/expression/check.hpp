@@ -8,26 +8,27 @@
 
 namespace armcmc::expression {
 
-/// What is known of an expression before a sample is seen.
+/// What is known about an expression before any sample.
 struct Meaning {
   std::optional<Unit> unit;  ///< None: not determined, as where an exponent is a parameter.
   Interval range;            ///< Values that it can have.
   bool condition = false;    ///< True or false.
   bool sampled = false;      ///< Depends on a parameter or a state.
   bool fixed = false;        ///< A number that is known now.
-  bool memory = false;       ///< Depends on samples before.
+  bool memory = false;       ///< Depends on earlier samples.
   /// Column of a power that is NaN for some parameters or states: its base can be negative, and its exponent is not a
   /// whole number. 0: there is none.
   int doubtful_power = 0;
 };
 
-/// Looks names up, counts units, and finds what cannot be computed:
+/// Looks up names, checks units, and finds what cannot be computed:
 ///   - names that `scope` does not have;
 ///   - a number where a condition is needed, as in if(x, ..);
-///   - sums and comparisons of unlike units, functions of what has a unit, times that are no times. What has no unit
+///   - sums and comparisons of unlike units, functions of arguments with a unit, time constants not in seconds. What
+///   has no unit
 ///     of its own (numbers, constants without one) fits in a sum, and is a plain number in a product; constants
 ///     without one fit in a product, too;
-///   - x^p with p that is no whole number, of measured values that can be negative. What `x >= 0` guards is not.
+///   - x^p where p is not a whole number and the measured x can be negative. What `x >= 0` guards is not.
 ///
 /// @param syntax  The expression.
 /// @param scope   What names mean.

@@ -12,26 +12,26 @@ namespace armcmc::expression {
 
 inline constexpr int kMaxFeatureNodes = 512;
 inline constexpr int kMaxMemories = 16;        ///< Functions with memory.
-inline constexpr int kMaxDelays = 4;           ///< Of these: delays.
+inline constexpr int kMaxDelays = 4;           ///< Delays among them.
 inline constexpr int kMaxDelaySamples = 1024;  ///< The longest delay.
 
-/// Samples of what is looked up in the past, as long as the longest delay.
+/// Past samples of the delayed quantities, as many as the longest delay needs.
 struct PastSamples {
-  int samples = 0;  ///< Of each line, counted on beyond their length.
+  int samples = 0;  ///< Samples written to each line; counts beyond its length.
   std::array<std::array<double, kMaxDelaySamples>, kMaxDelays> line{};
 };
 
 /// What functions with memory carry from sample to sample, and from pack to pack.
 struct FeatureMemory {
   struct Slot {
-    double state = 0.0;   ///< Of a low pass or an integral.
+    double state = 0.0;   ///< Output of a low pass or an integral.
     double before = 0.0;  ///< The argument one sample earlier.
   };
   bool empty = true;  ///< No sample yet.
-  int samples = 0;    ///< In the delay lines, counted on beyond their length.
+  int samples = 0;    ///< Samples written to the delay lines; counts beyond their length.
   std::array<Slot, kMaxMemories> slot{};
   std::array<std::array<double, kMaxDelaySamples>, kMaxDelays> line{};
-  PastSamples kept;  ///< Of delays that are sampled.
+  PastSamples kept;  ///< For delays of sampled quantities.
 
   /// The next sample is the first of a run.
   void Clear() noexcept {
@@ -45,7 +45,7 @@ struct FeatureMemory {
 struct FeatureInput {
   const double* signals = nullptr;
   double t = 0.0;   ///< Plant time, s.
-  double dt = 0.0;  ///< Since the sample before, s; of the first sample of a run it is not used.
+  double dt = 0.0;  ///< Since the previous sample, s; not used for the first sample of a run.
 };
 
 /// Everything in a plant that depends on no parameter, computed sample by sample in the order of time.
@@ -63,7 +63,7 @@ struct FeatureInput {
 class FeatureProgram {
  public:
   FeatureProgram() = default;
-  /// @throws std::length_error naming the limit that is passed.
+  /// @throws std::length_error naming the limit that is exceeded.
   FeatureProgram(const Graph& graph, const std::vector<int>& outputs);
 
   /// Computes the outputs at the next sample.
@@ -83,9 +83,9 @@ class FeatureProgram {
     std::array<std::int16_t, kMaxArguments> argument{};
     double value = 0.0;
     SymbolKind kind = SymbolKind::kConstant;
-    std::int16_t index = 0;  ///< Of a signal; of a memory.
-    std::int16_t line = -1;  ///< Of a delay.
-    bool held = false;       ///< Of a function with memory: what it takes is.
+    std::int16_t index = 0;  ///< Index of the signal or of the memory.
+    std::int16_t line = -1;  ///< Line of a delay.
+    bool held = false;       ///< Whether the argument of a function with memory is held.
   };
 
   std::vector<Instruction> code_;

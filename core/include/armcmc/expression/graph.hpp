@@ -14,18 +14,18 @@ namespace armcmc::expression {
 /// One value of a plant. Equal computations share a node.
 struct GraphNode {
   Op op = Op::kNumber;
-  /// Of a function with memory the third one, whatever it is, says that the first is held between samples.
+  /// If a function with memory has a third argument, its first one is held between samples.
   std::array<int, kMaxArguments> argument{-1, -1, -1};
-  double value = 0.0;                       ///< Of a number.
-  SymbolKind kind = SymbolKind::kConstant;  ///< Of a symbol: signal, time, parameter or state.
-  int index = -1;                           ///< Of a symbol: among those of its kind.
+  double value = 0.0;                       ///< Value of a number.
+  SymbolKind kind = SymbolKind::kConstant;  ///< Kind of a symbol: signal, time, parameter or state.
+  int index = -1;                           ///< Index of a symbol among those of its kind.
   bool sampled = false;                     ///< Depends on a parameter or a state.
   bool varies = false;                      ///< Depends on a signal, a state or time: differs from sample to sample.
-  bool memory = false;                      ///< Depends on samples before.
+  bool memory = false;                      ///< Depends on earlier samples.
 };
 
 /// The expressions of a plant as one graph without repetition: what is a number is folded, what is computed twice is
-/// shared. Nodes stand behind their arguments.
+/// shared. Nodes follow their arguments.
 ///
 /// Nodes are never removed, so that numbers of nodes stay valid. Allocates; for set-up, never for the step path, for
 /// which FeatureProgram and Tape are compiled from it.
@@ -47,8 +47,8 @@ class Graph {
   /// d node / d by, exact between the jumps and kinks of the expression; 0 at them.
   /// @param node  What is differentiated.
   /// @param by    A symbol. Memory functions of it are differentiated along with their argument; where the time
-  ///              constant itself depends on it the derivative is not in the language.
-  /// @return -1 where it is not.
+  ///              constant itself depends on it, the language cannot express the derivative.
+  /// @return -1 in that case.
   [[nodiscard]] int Differentiate(int node, int by);
 
   /// The node with symbols replaced, memory functions included: symbol -> node.

@@ -8,7 +8,7 @@
 namespace armcmc::expression {
 
 /// True where `node` is f_0 + sum_i symbol_i f_i with f that need none of the symbols, by the form of the expression:
-/// false may only mean that this does not show. Of what depends on a state nothing is known.
+/// false may mean only that the form does not show it. Always false for what depends on a state.
 [[nodiscard]] bool IsLinear(const Graph& graph, int node, const std::vector<int>& symbols);
 
 /// What all of some laws, which are nodes of the graph, are linear in: all of num_parameters parameters, else all but

@@ -59,11 +59,11 @@ inline constexpr int kMaxArguments = 3;
 
 /// Properties of an operation, for parser, checker and messages.
 struct OpInfo {
-  std::string_view name;  ///< Of a function as it is written, of an operator its sign.
+  std::string_view name;  ///< Name of a function, or sign of an operator.
   int arguments;          ///< Number of arguments, 0 to kMaxArguments.
   bool function;          ///< Written name(arguments).
-  bool condition;         ///< True or false: 1 or 0 where a number is asked for.
-  bool memory;            ///< Depends on the samples before.
+  bool condition;         ///< True or false: 1 or 0 where a number is expected.
+  bool memory;            ///< Depends on earlier samples.
 };
 
 /// Properties of all operations, in the order of Op.

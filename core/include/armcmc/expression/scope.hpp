@@ -36,8 +36,8 @@ struct Symbol {
   int index = 0;             ///< Among those of its kind.
   std::optional<Unit> unit;  ///< None: fits everywhere (a constant without one), or depends on a parameter.
   Interval range;
-  double value = 0.0;      ///< Of a constant.
-  bool condition = false;  ///< Of a let: true or false.
+  double value = 0.0;      ///< Value of a constant.
+  bool condition = false;  ///< A named expression that is true or false.
   bool sampled = false;    ///< Depends on a parameter or a state.
   bool fixed = false;      ///< A number that is known before any sample.
 };

@@ -13,13 +13,13 @@ namespace armcmc::expression {
 /// One node of an expression as it was written.
 struct SyntaxNode {
   Op op = Op::kNumber;
-  std::array<int, kMaxArguments> argument{-1, -1, -1};  ///< Nodes that stand before this one.
-  double value = 0.0;                                   ///< Of a number.
-  std::string name;                                     ///< Of a symbol.
-  int column = 1;                                       ///< Of a number, a name or an operator; from 1.
+  std::array<int, kMaxArguments> argument{-1, -1, -1};  ///< Nodes, all before this one.
+  double value = 0.0;                                   ///< Value of a number.
+  std::string name;                                     ///< Name of a symbol.
+  int column = 1;                                       ///< Position of a number, a name or an operator; from 1.
 };
 
-/// An expression as a tree: arguments stand before what uses them, the whole is the last node.
+/// An expression as a tree: arguments precede what uses them; the root is the last node.
 struct Syntax {
   std::vector<SyntaxNode> nodes;
 
@@ -30,7 +30,7 @@ struct Syntax {
 };
 
 inline constexpr int kMaxTextLength = 4096;
-inline constexpr int kMaxNesting = 64;  ///< Of parentheses, signs and powers.
+inline constexpr int kMaxNesting = 64;  ///< Nesting of parentheses, signs and powers.
 
 /// Reads
 ///
@@ -41,7 +41,7 @@ inline constexpr int kMaxNesting = 64;  ///< Of parentheses, signs and powers.
 ///     sum      := product { ("+" | "-") product }
 ///     product  := signed { ("*" | "/") signed }
 ///     signed   := ("-" | "+") signed | power
-///     power    := atom [ "^" signed ]                       right associative, binds more than the sign before it
+///     power    := atom [ "^" signed ]                       right associative, binds before a sign
 ///     atom     := number | name | name "(" [ or { "," or } ] ")" | "(" or ")"
 ///
 /// a > b becomes b < a. Names are not looked up here. Numbers are read as in the C locale.
@@ -49,7 +49,7 @@ inline constexpr int kMaxNesting = 64;  ///< Of parentheses, signs and powers.
 /// @throws Error with what was found and what was expected.
 [[nodiscard]] Syntax Parse(std::string_view text);
 
-/// True for a name that may be given to something: [A-Za-z_][A-Za-z0-9_]*, and neither a word nor a function of the
+/// True for a name that may be defined: [A-Za-z_][A-Za-z0-9_]*, and neither a keyword nor a function of the
 /// language.
 [[nodiscard]] bool IsFreeName(std::string_view name) noexcept;
 

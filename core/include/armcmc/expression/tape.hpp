@@ -13,15 +13,15 @@ namespace armcmc::expression {
 
 inline constexpr int kMaxTapeInstructions = 384;
 inline constexpr int kMaxTapeRegisters = 128;
-inline constexpr int kMaxTapeScalars = 48;  ///< Numbers that a sample brings along, constants included.
+inline constexpr int kMaxTapeScalars = 48;  ///< Numbers per sample, constants included.
 inline constexpr int kMaxTapeResults = 8;   ///< As many as there may be states.
 
-/// What one instruction does with all candidates of a tile. R: a register, one number a candidate; S: a scalar, one
-/// number a sample.
+/// What one instruction does with all candidates of a tile. R: a register, one number per candidate; S: a scalar,
+/// one number per sample.
 enum class TapeOp : std::uint8_t {
   kSplat,         ///< R = S a
   kCopy,          ///< R = R a
-  kLinear,        ///< R = S a + sum of `b` terms S x R, which follow, two an instruction
+  kLinear,        ///< R = S a + sum of `b` terms S x R, which follow, two per instruction
   kAddLinear,     ///< R = R a + sum of `b` terms
   kAdd,           ///< R = R a + R b
   kSubtract,      ///< R = R a - R b
@@ -40,7 +40,7 @@ enum class TapeOp : std::uint8_t {
   kSign,
   kSqrt,
   kExp,
-  kExp2S,  ///< R = 2^(R a x S b): a power of what is known a sample
+  kExp2S,  ///< R = 2^(R a x S b): a power of a number known per sample
   kLog,
   kLog2,
   kLog10,
@@ -70,22 +70,22 @@ enum class TapeOp : std::uint8_t {
 };
 
 /// If R a is the result of the previous instruction, it is still in a processor register and is not loaded; a result
-/// that no later instruction reads is not stored. In a chain of operations the memory accesses are what costs.
+/// that no later instruction reads is not stored. In a chain of operations, memory accesses dominate the cost.
 struct TapeInstruction {
   TapeOp op = TapeOp::kCopy;
-  bool loads = false;   ///< R a comes from its register; else it is there already, or there is none.
+  bool loads = false;   ///< R a comes from its register; else it is already loaded, or there is none.
   bool stores = false;  ///< The result goes to its register.
   std::uint8_t to = 0, a = 0, b = 0, c = 0;
 };
 
-/// Code of a form that has a loop of its own, in which nothing goes through memory.
+/// Forms of code that have a loop of their own, in which all values stay in registers.
 enum class TapeShape : std::uint8_t {
   kGeneral,
   kLinear,  ///< scalar + sum of scalars x parameters or states.
   kPower,   ///< One or two of 2^(parameter x scalar) x (scalar + sum), + scalar + sum.
 };
-inline constexpr int kMaxShapeTerms = 8;   ///< Of every sum of a shape.
-inline constexpr int kMaxShapePowers = 2;  ///< Of a shape.
+inline constexpr int kMaxShapeTerms = 8;   ///< Terms in each sum of a shape.
+inline constexpr int kMaxShapePowers = 2;  ///< Powers in a shape.
 
 /// scalar `constant` + sum of scalars x parameters or states.
 struct TapeSum {
@@ -106,7 +106,7 @@ struct TapePower {
 /// parameters, the next num_states the states; both may be read only, but for states that are results.
 struct Tape {
   std::vector<TapeInstruction> code;
-  int once = 0;  ///< The first instructions need no sample: they run once a tile.
+  int once = 0;  ///< The first instructions need no sample: they run once per tile.
   int num_parameters = 0;
   int num_states = 0;
   int num_registers = 0;                               ///< At most kMaxTapeRegisters, parameters and states included.
@@ -114,19 +114,18 @@ struct Tape {
   int num_results = 0;                                 ///< At most kMaxTapeResults.
   std::array<std::uint8_t, kMaxTapeResults> result{};  ///< Registers.
 
-  TapeShape shape = TapeShape::kGeneral;  ///< Of the first result.
+  TapeShape shape = TapeShape::kGeneral;  ///< Form of the first result.
   TapeSum rest;                           ///< kLinear: `rest` alone.
   int num_powers = 0;
   std::array<TapePower, kMaxShapePowers> power{};
   double largest_exponent = 1e300;  ///< Upper bound of the magnitude of all, if known when the tape is made.
 
-  /// Instructions a sample.
+  /// Instructions per sample.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(code.size()) - once; }
 };
 
-/// Lines of kept samples, one behind the other: in a line entry 0 is what is further back than the line, not a number
-/// where that is not known any more; then the samples before the pack, the newest at kMaxDelaySamples; then those of
-/// the pack.
+/// Lines of kept samples, one behind the other: in a line entry 0 is what is further back than the line, NaN where that
+/// is no longer known; then the samples before the pack, the newest at kMaxDelaySamples; then those of the pack.
 struct PastLines {
   static constexpr int kLength = 1 + kMaxDelaySamples + kMaxPackSamples;
   alignas(64) std::array<double, static_cast<std::size_t>(kMaxDelays) * kLength> value;

@@ -15,9 +15,9 @@ struct Unit {
   double scale = 1.0;                       ///< Value in SI units of one of these.
   std::array<double, kBases> exponent{};
 
-  /// Of the same dimension.
+  /// Whether the dimensions are equal.
   [[nodiscard]] bool SameDimension(const Unit& other) const noexcept;
-  /// Of the same dimension and size: what may be added without a factor.
+  /// Whether dimension and size are equal, so that values may be added without a factor.
   [[nodiscard]] bool Same(const Unit& other) const noexcept;
   [[nodiscard]] bool IsNumber() const noexcept { return SameDimension(Unit{}); }
 
@@ -25,7 +25,7 @@ struct Unit {
   [[nodiscard]] Unit Over(const Unit& other) const noexcept { return Times(other.Power(-1.0)); }
   [[nodiscard]] Unit Power(double exponent) const noexcept;
 
-  /// In the usual words where it has some: "N", "m/s", "Pa^0.5 s/m". What ParseUnit reads.
+  /// In the usual notation where there is one: "N", "m/s", "Pa^0.5 s/m". What ParseUnit reads.
   [[nodiscard]] std::string Text() const;
 };
 
@@ -36,7 +36,7 @@ struct Unit {
 ///
 /// Names are those of the SI with their prefixes, and a few others that laboratories use.
 ///
-/// @return nothing where an exponent depends on a name, as in "N/m^p": such a unit is right, but cannot be checked.
+/// @return nothing where an exponent depends on a name, as in "N/m^p": such a unit is valid, but cannot be checked.
 /// @throws Error with the column.
 [[nodiscard]] std::optional<Unit> ParseUnit(std::string_view text);
 

@@ -18,7 +18,7 @@ inline constexpr int kGapNuisance = kGapColumns * kGapDirections;
 /// Errors and sensitivities of one pack, in units of the noise.
 struct GapRows {
   int num_samples = 0;
-  std::array<bool, kMaxPackSamples> used{};      ///< Samples that the model says something about.
+  std::array<bool, kMaxPackSamples> used{};      ///< Samples for which the model makes a prediction.
   std::array<double, kMaxPackSamples> error{};   ///< Measured minus predicted; 0 where not used.
   std::array<double, kMaxPackSamples> output{};  ///< Predicted.
   std::array<std::array<double, kMaxPackSamples>, kGapColumns> slope{};  ///< d predicted / d parameter.
@@ -71,7 +71,7 @@ class GapBlock {
   /// still moves the prediction by more than a tenth of the noise, the trajectory is not where it is linearised, and
   /// all scores are zero. @rt O(packs).
   void BeginScores() noexcept ARMCMC_NONBLOCKING;
-  /// Score of one check; zero where the block says too little. @pre BeginScores(), and no pack since.
+  /// Score of one check; zero where the block has too little information. @pre BeginScores(), and no pack since.
   /// @param tolerance  See GapWatchSettings. @rt O(packs).
   [[nodiscard]] CheckScore Score(int check, double tolerance) noexcept ARMCMC_NONBLOCKING;
 

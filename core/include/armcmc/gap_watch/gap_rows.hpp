@@ -26,7 +26,7 @@ struct GapReference {
   std::array<double, kMaxModes> noise_std{};
 };
 
-/// Errors and sensitivities of packs, for any model: the scoring kernel is asked once for the reference and two points
+/// Errors and sensitivities of packs, for any model: the scoring kernel is called once for the reference and two points
 /// beside it for each parameter, side by side in one tile. Of a plant with states, the starts are fitted to each pack,
 /// and what they can explain is projected out of errors and sensitivities (GapStarts).
 class GapLineariser {

@@ -9,8 +9,8 @@ struct GapWatchSettings {
   /// Bound on the probability of a false alarm in one hour of data, in (0, 1). Over T hours it is at most max(1, T)
   /// times this.
   double false_alarm_rate = 0.01;
-  /// Misfit that is no gap: its root mean square over the noise scale, [0, 1]. Larger: blind to small effects, and
-  /// safer where noise or inputs are not what the model says.
+  /// Tolerated misfit: its root mean square over the noise scale, [0, 1]. A larger value misses small effects, and is
+  /// safer where noise or inputs are not as modelled.
   double tolerance = 0.03;
 };
 

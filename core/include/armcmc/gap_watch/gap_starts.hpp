@@ -41,12 +41,12 @@ class GapDirections {
 ///
 ///   x <- x + (S' S + l diag(S' S))^-1 S' (y - law(x)),   S = d law / d x by central differences,
 ///
-/// with the largest l that does as well as any but for chance, so that a start which the pack says nothing about stays
+/// with the largest l that fits as well as any up to chance, so that a start that the pack does not determine stays
 /// where the last pack ended. The directions S are then what a start can explain: projected out of errors, slopes and
 /// templates (GapDirections), they count neither as gap nor as noise.
 ///
-/// States that stand for functions with memory are treated alike: a low pass or an integral is not where its past would
-/// have it, nor is a delayed state, but where the pack says.
+/// States that represent functions with memory are treated alike: low passes, integrals and delayed states start where
+/// the pack says, not where their past would have left them.
 class GapStarts {
  public:
   /// @param plant  Outlives this.
@@ -73,7 +73,7 @@ class GapStarts {
   /// Sum of squared errors of a lane, in units of the noise.
   [[nodiscard]] double SquaresOf(const ModeData& data, std::size_t lane) const noexcept ARMCMC_NONBLOCKING;
   void RunFrom(const ModeData& data, StateRun* run) noexcept ARMCMC_NONBLOCKING;
-  /// The best of what the file and the end of the last pack say.
+  /// The better of the file's start and the end of the last pack.
   [[nodiscard]] bool Guess(bool continues, ModeData* data, StateRun* run) noexcept ARMCMC_NONBLOCKING;
   /// The law about `start_`, and steps that suit the noise.
   void Differentiate(const ModeData& data, StateRun* run) noexcept ARMCMC_NONBLOCKING;
@@ -87,7 +87,7 @@ class GapStarts {
   const simd::Kernels& kernels_;
   double noise_std_ = 1.0;
   States start_{}, end_of_last_{};
-  States size_{};                ///< Of each state, of late.
+  States size_{};                ///< Recent size of each state.
   States step_{}, used_step_{};  ///< Of the difference quotients.
   LastPack last_;
   GapDirections directions_;

@@ -22,14 +22,14 @@ namespace armcmc {
 
 /// Watches for a persistent gap between a model and its plant, while the estimator runs.
 ///
-/// Errors are looked at in blocks of kGapBlockPacks packs (shorter ones than kShortestPack are joined). A block is
-/// recorded, then, beside the recording of the next one, linearised twice: at the estimate, and along the trajectory of
+/// Errors are examined in blocks of kGapBlockPacks packs (shorter ones than kShortestPack are joined). A block is
+/// recorded, then, while the next one is recorded, linearised twice: at the estimate, and along the trajectory of
 /// parameters that fits the block best (constant, plus even drift, plus one step where the estimator saw a change; plus
 /// a drift whose speed changes where the estimator found drift probable).
 /// What no such trajectory explains is scored by region (GapBlock) and turned into anytime-valid evidence
 /// (GapEvidence).
 ///
-/// So a parameter that drifts or steps now and then is no gap, whether or not the estimator has followed it yet.
+/// So a parameter that drifts or steps occasionally is not a gap, whether or not the estimator has followed it yet.
 /// Effects that a drifting parameter imitates (stiffness drift itself) are not seen, by construction. The rate of false
 /// alarms holds for noise of any law that is symmetric, of any scale, coloured over less than a pack; it does not need
 /// the noise level to be known.
@@ -39,12 +39,12 @@ namespace armcmc {
 /// Of a described plant whose law needs states, each pack is a trajectory of its own: where it starts is fitted to the
 /// pack, and what a start can explain is projected out of errors, sensitivities and regions (GapStarts). Regions are
 /// the responses to terms that the rates lack (StateProbes). So that trajectories are long, packs are joined while
-/// there is room. Since they bend with their parameters, the block is linearised four times instead of twice, and
-/// scored only where the last fit hardly moves it: a block that is not gives no evidence for or against a gap, as a
-/// pack does whose start has not been found. What remains silent, too: an effect that moves the output of a trajectory
-/// of a few hundred samples less than the start and the parameters do. Packs should therefore last as long as the plant
-/// takes to answer. The inputs count as exact, as they do in every law: noise on an input that rings on in a resonance,
-/// and is larger there than that of the output, looks like a missing friction.
+/// there is room. Since they are nonlinear in the parameters, the block is linearised four times instead of twice, and
+/// scored only where the last fit hardly changes it: a block that is not gives no evidence for or against a gap, as a
+/// pack does whose start has not been found. Not detected either: an effect that changes the output of a trajectory
+/// of a few hundred samples less than the start and the parameters do. Packs should therefore be as long as the
+/// response time of the plant. The inputs count as exact, as they do in every law: noise on an input that rings on in a
+/// resonance, and is larger there than that of the output, looks like a missing friction.
 ///
 /// Not watched: plants with more than kGapColumns parameters in all modes together.
 class GapWatch {
@@ -52,8 +52,8 @@ class GapWatch {
   /// Allocates. @param settings  Valid; outlives the watch. @param rate  Of false alarms, see GapEvidence.
   GapWatch(const EstimatorSettings& settings, int model, const simd::Kernels& kernels, double rate);
 
-  /// One pack, in the order of the estimator. @param changed  The estimator dropped its past at this pack.
-  /// @param drifts  It believes that the parameters drift.
+  /// One pack, in the order of the estimator. @param changed  The estimator made a modification at this pack.
+  /// @param drifts  It considers drift probable.
   /// @pre pack.Validate() == kOk, and the pack is of the model's plant.
   /// @rt No heap, no lock, no throw. O(samples).
   void Step(const DataPack& pack, const GapReference& estimate, bool changed,
@@ -70,20 +70,20 @@ class GapWatch {
   [[nodiscard]] const std::array<CheckScore, kMaxGapChecks>& scores() const noexcept { return scores_; }
 
  private:
-  /// Of the analysis of one block, for every pack of the next one: a pack of one pass, the fit, a score. All pieces
+  /// Pieces of the analysis of one block per pack of the next one: a pack of one pass, the fit, a score. All pieces
   /// are done well before the next block is full.
   static constexpr int kPiecesPerPack = 6;
   static constexpr int kMostPasses = 4;
   static_assert(kPiecesPerPack * kGapBlockPacks > 2 * (2 * kGapBlockPacks + kMaxGapChecks + 3));
   static_assert(kPiecesPerPack * kGapBlockPacks > kMostPasses * (kGapBlockPacks + 1) + kMaxGapChecks + 2);
-  static constexpr double kShortestPack = 0.1;  ///< s: longer than coloured noise remembers.
+  static constexpr double kShortestPack = 0.1;  ///< s: longer than the correlation time of coloured noise.
   static constexpr int kNoChange = kGapBlockPacks;
 
   struct Recording {
     std::vector<DataPack> packs;
     std::array<bool, kGapBlockPacks> changed{};
     int count = 0;        ///< Complete ones.
-    bool drifts = false;  ///< Believed at some pack.
+    bool drifts = false;  ///< Probable at some pack.
   };
 
   /// @return true when a pack of the block is complete.
@@ -102,8 +102,8 @@ class GapWatch {
   std::unique_ptr<StateProbes> probes_;               ///< Null: the law has no states.
   std::unique_ptr<const DescribedFamily> described_;  ///< Null: built in.
   const GapFamily& family_;
-  /// One for each pass: each sees every pack once, in order. A trajectory bends more with its parameters than a law
-  /// does, and is fitted more often.
+  /// One for each pass: each sees every pack once, in order. A trajectory is less linear in its parameters than a law,
+  /// and is fitted more often.
   std::vector<std::unique_ptr<GapLineariser>> passes_;
   bool enabled_;
   int most_samples_;   ///< Of a pack of a block.

@@ -38,7 +38,7 @@ struct ConstantInfo {
   std::string_view above;  ///< Constant before this one that it has to be larger than; empty: none.
 };
 
-/// Other settings under which a compiled plant goes by a name of its own.
+/// Other settings of a compiled plant, under a name of their own.
 struct ModelVariant {
   std::string_view name;
   void (*apply)(EstimatorSettings* settings);  ///< Changes the defaults of the plant.
@@ -49,10 +49,10 @@ struct RatePair {
   double measured, predicted;
 };
 
-/// What the engine asks of a plant that is compiled in: facts, and functions that its slice core/plants/NAME/ defines.
-/// Nobody else knows it by name, except the lists in core/src/plants/.
+/// What the engine asks of a plant that is compiled in: facts, and functions that its folder core/plants/NAME/ defines.
+/// It is named nowhere else, except in the lists of core/src/plants/.
 ///
-/// Besides, the slice has a struct in model.hpp with
+/// The folder also has a struct in model.hpp with
 ///   static constexpr ModelInfo kInfo;
 ///   template <class S> static typename S::V Predict(const typename S::V* theta, const ModeData&, int n) noexcept;
 ///   template <class S> static typename S::V AddTo(typename S::V base, const typename S::V* theta, const ModeData&,
@@ -62,7 +62,7 @@ struct RatePair {
 struct CompiledPlant {
   std::array<SignalInfo, kMaxPackInputs> inputs;  ///< Columns of DataPack::u.
   SignalInfo output;
-  std::string_view output_word;  ///< What it is, for people.
+  std::string_view output_word;  ///< What it is, in words.
   /// What the law explains is the output; else the output is simulated from the parameters, over time.
   bool law_is_output;
   std::string_view no_contact_as;  ///< Why effects cannot act in contact or in free motion only; empty: they can.
@@ -79,7 +79,7 @@ struct CompiledPlant {
   double (*predict)(const double* theta, const ModeData& data, int n) noexcept;
   /// Of a plant that has a rate_unit, else null: that rate at sample n of a pack where a mode acts.
   RatePair (*rate)(const double* theta, const DataPack& pack, int n, const PlantConstants& constants) noexcept;
-  /// Sample n at time t of a run that looks like many, for warming up. @rt No heap, no lock, no throw.
+  /// Sample n at time t of a typical run, for warming up. @rt No heap, no lock, no throw.
   void (*typical_sample)(double t, std::size_t n, DataPack* pack) noexcept ARMCMC_NONBLOCKING;
   /// Null where the settings leave the law as it is. Allocates.
   std::unique_ptr<EffectRows> (*make_rows)(const EstimatorSettings& settings);

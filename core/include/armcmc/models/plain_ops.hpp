@@ -4,7 +4,7 @@
 
 namespace armcmc {
 
-/// The arithmetic that a model's Predict asks for, of the standard library and for one candidate.
+/// The arithmetic that a model's Predict needs, of the standard library and for one candidate.
 struct PlainOps {
   using V = double;
   static V Set(double a) noexcept { return a; }

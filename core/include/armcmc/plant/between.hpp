@@ -10,11 +10,11 @@ namespace armcmc {
 /// Course of a signal between two samples, for the integration of states: `between` in a plant file.
 enum class Between : std::uint8_t {
   kLinear,  ///< Straight line between the samples; the default.
-  kHeld,    ///< Stays what the last sample says: a command that a computer gives.
-  kSmooth,  ///< The cubic through the four samples around; at an end of what is known the parabola through three.
+  kHeld,    ///< Keeps the value of the last sample: a command from a computer.
+  kSmooth,  ///< The cubic through the four samples around; at an end of the known samples, the parabola through three.
 };
 
-/// From the word of a plant file; what is no word of these is kLinear.
+/// From the word in a plant file; any other word is kLinear.
 [[nodiscard]] constexpr Between BetweenNamed(std::string_view word) noexcept {
   return word == "held" ? Between::kHeld : word == "smooth" ? Between::kSmooth : Between::kLinear;
 }
@@ -35,7 +35,7 @@ enum class Between : std::uint8_t {
   if (between == Between::kHeld) return from;
   const double linear = from + part * (to - from);
   if (between == Between::kLinear || (earlier == nullptr && later == nullptr)) return linear;
-  // Newton's form of the polynomial through the samples there are.
+  // Newton's form of the polynomial through the available samples.
   const double before = earlier != nullptr ? to - 2.0 * from + *earlier : 0.0;  // second differences
   const double after = later != nullptr ? *later - 2.0 * to + from : 0.0;
   const double parabola = linear + 0.5 * part * (part - 1.0) * (earlier != nullptr ? before : after);

@@ -10,7 +10,7 @@ namespace armcmc {
 struct SignalDescription {
   std::string name;           ///< Letters, digits and "_"; not that of a function.
   std::string unit;           ///< "N s/m^2"; "1": a pure number.
-  std::string role;           ///< "position", "velocity", "force", ...: what effects of the catalogue ask for.
+  std::string role;           ///< "position", "velocity", "force", ...: what effects of the catalogue require.
   std::string derivative_of;  ///< Signal that it is the rate of; empty: of none.
   std::string between = {};   ///< What it does between samples, for states: "linear" (or empty), "held" or "smooth".
 };
@@ -27,8 +27,8 @@ struct ParameterDescription {
   std::string name;
   std::string unit;
   std::string prior = "normal";                ///< "normal", "uniform" or "lognormal".
-  double mean = 0.0;                           ///< Of the lognormal law: the median.
-  double sd = 0.0;                             ///< Of the lognormal law: of the logarithm.
+  double mean = 0.0;                           ///< For a lognormal prior: the median.
+  double sd = 0.0;                             ///< For a lognormal prior: that of the logarithm.
   std::optional<double> lower = std::nullopt;  ///< Left out: 8 sd below the mean.
   std::optional<double> upper = std::nullopt;  ///< Left out: 8 sd above the mean.
   bool per_mode = false;                       ///< Each mode has a value of its own.
@@ -46,7 +46,7 @@ struct ModeDescription {
   std::string when;      ///< Empty: always.
   std::string law;       ///< An expression; of a passive mode it may be empty: 0.
   std::string target;    ///< What the law explains, of signals; empty: the output.
-  bool passive = false;  ///< Its samples say nothing about the parameters.
+  bool passive = false;  ///< Its samples carry no information about the parameters.
 };
 
 /// A state: [states]. Integrated with the inputs by the classical Runge-Kutta method of order 4, in `substeps` equal
@@ -56,9 +56,9 @@ struct StateDescription {
   std::string unit;
   std::string role;
   std::string rate;         ///< d state/dt, an expression.
-  std::string start;        ///< Of signals at the first sample and parameters.
+  std::string start;        ///< Expression of parameters and of signals at the first sample.
   std::string measured_by;  ///< Signal that each pack starts from; empty: none.
-  int substeps = 1;         ///< Of one sample interval.
+  int substeps = 1;         ///< Integration steps per sample interval.
 };
 
 /// An additional published quantity, computed from parameters and constants: [report].
@@ -81,7 +81,7 @@ struct PlantDescription {
   std::string name;
   std::string title;
   std::string output;    ///< Signal that the law explains.
-  std::string law;       ///< Of the only mode; empty where `modes` has some.
+  std::string law;       ///< Law of the only mode; empty if `modes` is not.
   std::string predicts;  ///< What is shown as prediction of the output where modes explain a target.
   std::vector<SignalDescription> signals;
   std::vector<ConstantDescription> constants;

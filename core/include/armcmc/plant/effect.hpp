@@ -34,7 +34,7 @@ struct EffectParameter {
   std::string sd;
   std::string lower;  ///< Empty: 8 sd below the mean.
   std::string upper;
-  std::string none;  ///< Value at which the effect is not there; empty: a shape, which says nothing of that.
+  std::string none;  ///< Value at which the effect is absent; empty: a shape, which has no such value.
 };
 
 /// A number that the scales decide once, when the effect is added.
@@ -50,8 +50,7 @@ struct EffectConstant {
 ///   law        takes the place of what explains the output
 ///   rate       added to the rate of the state `of`; where it says `rate`, it takes that one's place
 ///   input      takes the place of the input `of` wherever the plant reads it, or of the state `of` wherever the law
-///   and
-///              other states read it
+///              and other states read it
 ///   parameter  takes the place of the parameter or constant `of` likewise
 ///
 /// What a mode explains instead of the output, its target T, is made of signals alone and stays so. Where an input or a
@@ -86,20 +85,20 @@ struct EffectForm {
   std::string reason;  ///< Why it is not for the estimator.
 };
 
-/// What the catalogue says of an effect.
+/// What the catalogue says about an effect.
 struct EffectEntry {
   std::string name;
   std::vector<std::string> aliases;  ///< Names that it has for plants of some kind.
-  std::string title;                 ///< For people.
+  std::string title;                 ///< For people to read.
   std::string family;
   std::vector<std::string> kin;  ///< Effects that act alike.
   bool single = false;           ///< Two of them in one place are pieces of some curve.
   bool resists = false;    ///< Its terms of the slot `output` resist motion: subtracted where the law falls with it.
-  std::string experiment;  ///< That would show it.
+  std::string experiment;  ///< Experiment that would reveal it.
   std::vector<EffectForm> forms;
 };
 
-/// What the names of a form stand for in a plant.
+/// What the names of a form represent in a plant.
 struct EffectBinding {
   std::size_t form = 0;                        ///< In EffectEntry::forms.
   std::map<std::string, std::string> symbols;  ///< Need -> signal, state or parameter of the plant.

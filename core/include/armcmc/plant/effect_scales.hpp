@@ -23,7 +23,7 @@ struct DataScales {
   double dt = 0.01;                               ///< s, between samples.
   double record = 10.0;                           ///< s, from the first sample to the last.
   double start = 0.0;                             ///< s, time of the first sample.
-  double period = 1.0;                            ///< s, in which the output goes to and fro.
+  double period = 1.0;                            ///< s, in which the output oscillates.
   double noise = 1.0;                             ///< Standard deviation, unit of the output.
   std::map<std::string, QuantityScale> quantity;  ///< Of every signal and state, by name.
 };
@@ -43,7 +43,7 @@ struct DataScales {
 ///
 /// The output varies by 30 standard deviations of the noise. A signal x varies by the output over the size
 /// (|mean| + sd, of a lognormal prior the median) of a parameter whose unit is the output's over that of x; rates
-/// follow from what they are the rate of, with a period of 1 s, and the other way round; all other signals are 1 in
+/// follow from what they are the rate of, with a period of 1 s, and vice versa; all other signals are 1 in
 /// their unit.
 [[nodiscard]] DataScales DefaultScales(const PlantDescription& plant);
 

@@ -25,7 +25,8 @@ class OutputTrajectory {
 
   [[nodiscard]] bool empty() const noexcept { return prediction_ == nullptr; }
 
-  /// Takes up a pack. A trajectory that is not finite, or that another pack came in between, begins anew at this one.
+  /// Processes a pack. A trajectory that is not finite, or that does not follow the previous pack, restarts at this
+  /// one.
   /// @return false where something that is needed is not finite.
   /// @pre !empty(), pack.Validate() == kOk.
   /// @rt No heap, no lock, no throw. O(samples).
@@ -38,7 +39,7 @@ class OutputTrajectory {
   /// @rt No heap, no lock, no throw. O(samples x operations).
   void Run(const ThetaTile& theta, PredictionTile* output) noexcept ARMCMC_NONBLOCKING;
 
-  /// The next pack begins anew.
+  /// The next pack restarts the trajectory.
   void Reset() noexcept ARMCMC_NONBLOCKING;
 
  private:

@@ -30,8 +30,8 @@ struct PlantState {
   int measured_by = -1;  ///< Signal; -1: none.
 };
 
-/// What is allowed in a plant and may still be a mistake: the key of the value, the position in it, from 1, and what to
-/// know of it.
+/// What is allowed in a plant and may still be a mistake: the key of the value, the position in it, from 1, and an
+/// explanation.
 struct PlantNote {
   std::string key;
   int column = 0;
@@ -51,7 +51,7 @@ class Plant {
   static constexpr int kMaxSampled = 8;
   static constexpr int kMaxStates = 8;
   static constexpr int kMaxPlantModes = 4;
-  static constexpr std::size_t kMaxNameLength = 31;  ///< What a message has room for.
+  static constexpr std::size_t kMaxNameLength = 31;  ///< Room in a message.
 
   /// Checks a description and builds the graph.
   /// @throws PlantError  naming the key, the position and what is wrong: an unknown name, units that do not fit, more
@@ -128,7 +128,7 @@ class Plant {
   int output_ = -1;
   std::uint64_t fingerprint_ = 0;
   std::uint64_t identity_ = 0;
-  std::map<std::string, int> mentions_;  ///< How often a text says a name.
+  std::map<std::string, int> mentions_;  ///< How often the texts mention a name.
 };
 
 }  // namespace armcmc

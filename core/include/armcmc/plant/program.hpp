@@ -19,16 +19,17 @@ namespace armcmc {
 
 class Remembered;
 
-/// What no parameter changes of one pack of a described plant.
+/// The parts of a pack of a described plant that depend on no parameter.
 struct PlantPack {
-  expression::TapeScalars scalars;                    ///< Of every sample, in any mode.
-  std::array<std::int8_t, kMaxPackSamples> mode{};    ///< That acts: of those that are sampled, their number for none.
-  std::array<std::uint8_t, kMaxPackSamples> law{};    ///< Of those that such a mode has.
-  std::array<double, kMaxPackSamples> target{};       ///< What the law of that mode explains.
-  std::array<double, kMaxPackSamples> passive{};      ///< What is shown where no sampled mode acts.
-  std::array<bool, kMaxPackSamples> passive_given{};  ///< A passive mode acts, and its law is given.
-  StateRun states;                                    ///< Inputs and start of the integration.
-  expression::PastLines past;                         ///< What candidates look up.
+  expression::TapeScalars scalars;  ///< Scalars of every sample, in any mode.
+  std::array<std::int8_t, kMaxPackSamples>
+      mode{};  ///< Sampled mode that acts; the number of sampled modes where none does.
+  std::array<std::uint8_t, kMaxPackSamples> law{};          ///< Index among the laws of that mode.
+  std::array<double, kMaxPackSamples> target{};             ///< What the law of that mode explains.
+  std::array<double, kMaxPackSamples> passive{};            ///< What is shown where no sampled mode acts.
+  std::array<bool, kMaxPackSamples> passive_given{};        ///< A passive mode acts, and its law is given.
+  StateRun states;                                          ///< Inputs and start of the integration.
+  expression::PastLines past;                               ///< What candidates look up.
   std::array<PlantPoint::Values, kMaxPackSamples> point{};  ///< What rates read of each sample as signals.
 };
 
@@ -36,15 +37,15 @@ struct PlantPack {
 /// changes.
 ///
 /// Modes whose parameters are all their own are sampled apart. Where a parameter is shared, all modes are sampled as
-/// one, which has a law for each; parameters of a mode then carry its name. So they are where the plant has states that
-/// a law needs, which go on from mode to mode.
+/// one, which has a law for each; parameters of a mode then carry its name. The same applies where a law needs states,
+/// which continue from mode to mode.
 class PlantProgram {
  public:
   /// kLaws: what is sampled. kPrediction: what is shown as prediction of the output where the modes explain a target,
   /// as a law of all parameters and states.
   enum class Part : std::uint8_t { kLaws, kPrediction };
 
-  /// @throws PlantError where the plant is past a limit of the estimator.
+  /// @throws PlantError where the plant exceeds a limit of the estimator.
   explicit PlantProgram(std::shared_ptr<const Plant> plant, Part part = Part::kLaws);
   PlantProgram(const PlantProgram&) = delete;  // info() points into it
   PlantProgram& operator=(const PlantProgram&) = delete;
@@ -57,19 +58,19 @@ class PlantProgram {
   [[nodiscard]] const PlantStates& states() const noexcept { return states_; }
   /// What the estimator needs to know; points into this object.
   [[nodiscard]] const ModelInfo& info() const noexcept { return info_; }
-  /// Of a sampled mode, and how many quantities of a sample they read.
+  /// Tapes of the laws of a sampled mode.
   [[nodiscard]] const std::vector<expression::Tape>& laws(int mode) const {
     return modes_[static_cast<std::size_t>(mode)].laws;
   }
   /// Number of values of each sample that the laws read.
   [[nodiscard]] int num_scalars() const noexcept { return num_scalars_; }
-  /// The parameter's prior as it is sampled: of a lognormal one that of the logarithm.
+  /// Priors as sampled: of a lognormal parameter, that of the logarithm.
   [[nodiscard]] const std::vector<ParameterDescription>& sampled() const noexcept { return sampled_; }
 
   /// Goes through the samples of a pack.
   /// @param pack    Its inputs are the plant's signals without the output.
-  /// @param memory  Of functions with memory: taken up, and left for the next pack.
-  /// @param before  States that the pack before has left, if this one continues it; else null.
+  /// @param memory  Of functions with memory: read, and updated for the next pack.
+  /// @param before  States at the end of the previous pack if this one continues it; else null.
   /// @param out     What the laws need of each sample.
   /// @return false where something that is needed is not finite.
   /// @pre pack.Validate() == kOk, pack.num_inputs >= info().num_inputs.
@@ -77,7 +78,7 @@ class PlantProgram {
   [[nodiscard]] bool Prepare(const DataPack& pack, expression::FeatureMemory* memory, const StateMemory* before,
                              PlantPack* out) const noexcept ARMCMC_NONBLOCKING;
 
-  /// What the last sample of a pack leaves to the states of the next one.
+  /// Stores what the next pack needs of the states at the last sample of this one.
   /// @pre Prepare() returned true for `pack`. @rt No heap, no lock, no throw.
   void Leave(const PlantPack& pack, int num_samples, StateMemory* memory) const noexcept ARMCMC_NONBLOCKING;
 
@@ -89,14 +90,14 @@ class PlantProgram {
   /// @rt No heap, no lock, no throw. O(samples).
   void Fill(const PlantPack& pack, int num_samples, int mode, ModeData* data) const noexcept ARMCMC_NONBLOCKING;
 
-  /// The law of a sampled mode is the plant's output, not something else that it explains.
+  /// Whether the law of a sampled mode predicts the plant's output, and not a target.
   [[nodiscard]] bool LawIsOutput(int mode) const noexcept ARMCMC_NONBLOCKING {
     return modes_[static_cast<std::size_t>(mode)].law_is_output;
   }
 
-  /// Of the laws: the prediction; null where the laws predict the output themselves.
+  /// The program of the prediction; null where the laws predict the output themselves.
   [[nodiscard]] const PlantProgram* prediction() const noexcept { return prediction_.get(); }
-  /// The prediction's parameter that parameter d is in a sampled mode.
+  /// Index, among the parameters of the prediction, of parameter d of a sampled mode.
   [[nodiscard]] int InPrediction(int mode, int d) const noexcept ARMCMC_NONBLOCKING {
     return in_prediction_[static_cast<std::size_t>(mode)][static_cast<std::size_t>(d)];
   }
@@ -105,8 +106,8 @@ class PlantProgram {
   [[nodiscard]] double Report(int r, const double* theta) const noexcept ARMCMC_NONBLOCKING;
   /// True where it is the sampled parameter r.
   [[nodiscard]] bool IsReportedAsSampled(int r) const noexcept ARMCMC_NONBLOCKING;
-  /// The sampled parameter d from its reported value.
-  /// Of a lognormal one, its logarithm. @rt No heap, no lock, no throw.
+  /// The sampled parameter d from its reported value; of a lognormal one, the logarithm.
+  /// @rt No heap, no lock, no throw.
   [[nodiscard]] double Sampled(int d, double reported) const noexcept ARMCMC_NONBLOCKING;
 
  private:
@@ -124,7 +125,7 @@ class PlantProgram {
     int target = 0;
     int passive = -1;
     int sampled = -1;            ///< Sampled mode, -1: passive.
-    int law = 0;                 ///< Of its laws.
+    int law = 0;                 ///< Index among its laws.
     bool passive_given = false;  ///< The law of a passive mode is given.
   };
 
@@ -134,12 +135,12 @@ class PlantProgram {
   [[nodiscard]] int OfActingMode(NodeOfMode node_of);
   [[nodiscard]] bool LawsNeedStates() const;
   void CompileModes();
-  /// One more for the newest sampled mode.
+  /// Adds a law to the newest sampled mode.
   void CompileLaw(int law, int target, const std::string& key, std::vector<int>* scalars);
   void CompileFeatures(const std::vector<int>& scalars, const Remembered& remembered);
   void MakePrediction();
   void CompileStates(Remembered* remembered, std::vector<int>* scalars);
-  /// Lays the samples before a pack down where candidates look them up.
+  /// Copies the samples before a pack to where candidates look them up.
   void LayDownPast(const expression::PastSamples& kept, int line, double first,
                    expression::PastLines* out) const noexcept ARMCMC_NONBLOCKING;
   void FillInfo();

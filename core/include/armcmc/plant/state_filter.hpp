@@ -16,17 +16,17 @@ namespace armcmc {
 
 /// Where the states of a described plant are, and how well that is known, from pack to pack.
 ///
-/// A trajectory goes on from where the last one ended, and where it ended is an estimate: from the start of that pack,
-/// corrected by what the pack has said on it, and from parameters that are uncertain themselves. A start that is off by
-/// one standard deviation of the noise is off by as much in every sample of a pack, which a hundred samples take for
-/// the parameters. So the start is marginalised, linearised about the mean of the posterior (the step of an extended
-/// Kalman filter over a whole pack, x a state, theta a parameter, P in units of the noise's variance s^2):
+/// A trajectory continues from where the last one ended, and where it ended is an estimate: from the start of that
+/// pack, corrected by that pack, and from parameters that are uncertain themselves. A start that is
+/// off by one standard deviation of the noise is off by as much in every sample of a pack, which a hundred samples take
+/// for the parameters. So the start is marginalised, linearised about the mean of the posterior (the step of an
+/// extended Kalman filter over a whole pack, x a state, theta a parameter, P in units of the noise's variance s^2):
 ///
 ///   A = (P^-1 + S' S)^-1,  x += A S' e,  P_end = f F A F' + ..,  G_end = F (G - A S' (S G + S_theta)) + F_theta
 ///
 /// S = d law / d x_start and F = d x_end / d x_start by differences, S_theta and F_theta those by the parameters; G =
 /// d x / d theta, as states and parameters that are learnt from the same packs are not independent. f > 1 so that a
-/// model that is a little off does not become sure of itself, and more where a pack leaves more than noise, or where
+/// model that is a little off does not become overconfident, and more where a pack leaves more than noise, or where
 /// the parameters bend what is linear here by as much as they are uncertain.
 class StateFilter {
  public:
@@ -46,8 +46,8 @@ class StateFilter {
   void Predict(const simd::Kernels& kernels, const std::array<double, kMaxParams>& mean, double noise_std,
                ModeData* data) noexcept ARMCMC_NONBLOCKING;
 
-  /// Of a pack that does not go on: takes the starts that the plant file gives for unknown, from the next Predict() on.
-  /// A recording often begins in motion.
+  /// Of a pack that continues no other: treats the starts that the plant file gives as unknown, from the next Predict()
+  /// on. A recording often begins in motion.
   /// @param mean  About which, as of Predict(), which was called.
   /// @return squares of the errors that are left with the starts of the file; negative: there is none to open.
   /// @rt As Predict().
@@ -70,7 +70,7 @@ class StateFilter {
               std::array<double, kMaxStates>* end) noexcept ARMCMC_NONBLOCKING;
 
  private:
-  /// Answers to a start that is off: `answer_[s]` of the law, `end_` of the states.
+  /// Responses to a change of the start: `answer_[s]` of the law, `end_` of the states.
   void Linearise(const simd::Kernels& kernels, const std::array<double, kMaxParams>& mean,
                  const std::array<double, kMaxParams>& sd, double noise_std,
                  const ModeData& data) noexcept ARMCMC_NONBLOCKING;

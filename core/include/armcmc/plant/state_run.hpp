@@ -8,7 +8,7 @@
 
 namespace armcmc {
 
-inline constexpr int kMaxStates = 8;           ///< Of a plant.
+inline constexpr int kMaxStates = 8;           ///< States of a plant.
 inline constexpr int kMaxStateCells = 65'536;  ///< Numbers that the rates of one pack need: rows x scalars.
 
 /// Numbers of kTileLanes candidates: value[state][lane].
@@ -17,21 +17,21 @@ struct alignas(64) StateTile {
 };
 
 /// The states of a described plant over the samples of one pack, as every candidate integrates them: the tape `step`
-/// takes them a substep of h further by the classical Runge-Kutta method,
+/// advances them by a substep h with the classical Runge-Kutta method,
 ///
 ///     x(t + h) = x + h/6 (k1 + 2 k2 + 2 k3 + k4),   k1 = f(x, t), k2 = f(x + h/2 k1, t + h/2),
 ///     k3 = f(x + h/2 k2, t + h/2), k4 = f(x + h k3, t + h),
 ///
-/// `substeps` times a sample interval, with inputs that are between samples what the plant says of them. A row holds
-/// the scalars of one substep: those of a pack follow each other.
+/// `substeps` times per sample interval, with inputs interpolated between samples as the plant says (Between). A row
+/// holds the scalars of one substep; the rows of a pack are contiguous.
 struct StateRun {
   const expression::Tape* step = nullptr;   ///< Null: the plant has no states.
   const expression::Tape* start = nullptr;  ///< State at the first sample, of the scalars of that sample.
   int num_states = 0;                       ///< At most kMaxStates.
-  int num_samples = 0;                      ///< Of the pack.
-  int substeps = 1;                         ///< Of one sample interval.
-  bool carried = false;  ///< Goes on from `value`, one interval before the first sample; else begins at that sample.
-  /// Of a state that begins with a number: whether it does, and the number.
+  int num_samples = 0;                      ///< Samples of the pack.
+  int substeps = 1;                         ///< Integration steps per sample interval.
+  bool carried = false;  ///< Continues from `value`, one interval before the first sample; else begins at that sample.
+  /// Whether a state begins with a number, and that number.
   std::array<bool, kMaxStates> given{};
   std::array<double, kMaxStates> value{};
   int stride = 0;  ///< Scalars of a row.

@@ -44,15 +44,15 @@ struct RememberedState {
   int state = 0;      ///< Its number.
   int argument = -1;  ///< Node.
   int tau = -1;       ///< Node; -1: an integral.
-  int late = -1;      ///< State that it is behind; -1: none, it is a low pass or an integral.
-  int rate = -1;      ///< Of a late one: node.
+  int late = -1;      ///< State that it delays; -1: none, it is a low pass or an integral.
+  int rate = -1;      ///< Rate of a delayed one: node.
 };
 
 /// What one pack of a plant with states leaves to the next.
 struct StateMemory {
-  bool known = false;                      ///< There is one.
+  bool known = false;                      ///< There is a previous pack.
   std::array<double, kMaxStates> state{};  ///< At its last sample, for the mean of the posterior after it.
-  PlantPoint::Values point{};              ///< Of its last sample; places count in the next pack.
+  PlantPoint::Values point{};              ///< Signals of its last sample; places are those in the next pack.
 };
 
 /// The states of a described plant, compiled: their starts and a step of Runge-Kutta's method as tapes, and everything
@@ -68,12 +68,12 @@ class PlantStates {
   PlantStates() = default;
   /// @param plant           Whose states they are.
   /// @param graph           Of its rates and starts; nodes are added to it.
-  /// @param rates, starts   A node of the graph a state, parameters replaced by those that are sampled.
+  /// @param rates, starts   One node of the graph per state, parameters replaced by those that are sampled.
   /// @param num_parameters  That are sampled.
   /// @param remembered      The last ones of them that are functions with memory.
   /// @param held_inputs     [of a point, from kFirstRemembered on] Held between samples, not linear.
   /// @param scalars         Of a sample, shared with the laws: those of the starts.
-  /// @throws PlantError where the plant is past a limit.
+  /// @throws PlantError where the plant exceeds a limit.
   PlantStates(const Plant& plant, expression::Graph* graph, const std::vector<int>& rates,
               const std::vector<int>& starts, const std::vector<RememberedState>& remembered,
               const std::vector<bool>& held_inputs, int num_parameters, std::vector<int>* scalars);
@@ -88,14 +88,14 @@ class PlantStates {
   [[nodiscard]] double output_in_start(int state) const noexcept {
     return output_in_start_[static_cast<std::size_t>(state)];
   }
-  /// The start is a number or a signal: no parameter says what it is.
+  /// The start is a number or a signal: it depends on no parameter.
   [[nodiscard]] bool has_given_start(int state) const noexcept { return given_start_[static_cast<std::size_t>(state)]; }
   [[nodiscard]] const expression::Tape& step() const noexcept { return step_; }
 
-  /// Lays the pack out for integration.
+  /// Prepares the pack for integration.
   /// @param pack    Whose samples are its steps.
   /// @param point   Of each of its samples.
-  /// @param before  What the pack before left, of one that this one continues; else null.
+  /// @param before  From the previous pack, if this one continues it; else null.
   /// @param out     What the integration reads.
   /// @return false where the pack has more samples than fit, or a start that is not finite.
   /// @rt No heap, no lock, no throw. O(samples x substeps x operations of the rates).
@@ -109,7 +109,7 @@ class PlantStates {
   int size_ = 0;
   int substeps_ = 1;
   bool all_measured_ = false;
-  std::array<Between, PlantPoint::kSize> between_{};  ///< Of what a point has.
+  std::array<Between, PlantPoint::kSize> between_{};  ///< Interpolation of each entry of a point.
   std::array<int, kMaxStates> measured_by_{};         ///< Signal, -1: none.
   std::array<double, kMaxStates> output_in_start_{};
   std::array<bool, kMaxStates> given_start_{};

@@ -5,7 +5,7 @@
 namespace armcmc::plant_sim {
 
 /// Notices that an estimator went silent or came back. Silent: it had answered, and then no estimate came for two
-/// periods (half a period of tolerance is added, so that one skipped pack with a late successor is no alarm).
+/// periods (half a period of tolerance is added, so that one skipped pack with a late successor raises no alarm).
 class EstimatorWatch {
  public:
   explicit EstimatorWatch(std::int64_t period_ns) noexcept : limit_ns_(period_ns * 5 / 2) {}

@@ -6,7 +6,7 @@
 namespace armcmc::plant_sim {
 
 inline constexpr std::int64_t kNanosPerSecond = 1'000'000'000;
-/// Whoever waits for a pack's turn looks at least this often whether it is to stop.
+/// How often, at least, code that waits for the time of a pack checks whether it has to stop.
 inline constexpr std::int64_t kLongestNap = kNanosPerSecond / 10;
 /// From the start of a program to sample 0: what is due first is not late because threads have just begun.
 inline constexpr std::int64_t kStartDelay = kNanosPerSecond / 10;

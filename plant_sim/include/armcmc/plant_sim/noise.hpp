@@ -17,9 +17,9 @@ enum class NoiseKind : std::uint8_t { kNone, kGaussian, kStudentT, kLaplace, kMi
 ///   e_k = correlation e_(k-1) + sqrt(1 - correlation^2) w_k,  e_0 = w_0,  w white by the law
 ///   measured = true + (1 + growth |true| / reference) e
 ///
-/// so that the colour leaves a standard deviation what it is. `std` is the scale of the law in the unit of the channel:
-/// the standard deviation (Gaussian), the scale of the t law, the mean absolute deviation b (Laplace), the standard
-/// deviation of the narrow part (mixture), the standard deviation (recorded).
+/// so that the correlation does not change the standard deviation. `std` is the scale of the law in the unit of the
+/// channel: the standard deviation (Gaussian), the scale of the t law, the mean absolute deviation b (Laplace), the
+/// standard deviation of the narrow part (mixture), the standard deviation (recorded).
 ///
 /// Recorded noise is that of a real sensor, a sample for a sample, from a place that is drawn: to its end and back, to
 /// its beginning and forth. Round and round it would be periodic.

@@ -11,7 +11,7 @@
 
 namespace armcmc::plant_sim {
 
-/// Encodes packs into preallocated buffers, applies the faults that were asked for, and hands the bytes on.
+/// Encodes packs into preallocated buffers, applies the requested faults, and passes the bytes on.
 class PackSender {
  public:
   /// @param prefix goes before every channel name. @param sink must outlive the sender.

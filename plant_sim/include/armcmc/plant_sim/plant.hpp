@@ -113,7 +113,7 @@ struct PlantFamily {
 
 /// All families, in the order in which messages list them.
 [[nodiscard]] const std::vector<const PlantFamily*>& PlantRegistry();
-/// The scenario that runs where nobody asks for another one.
+/// The default scenario.
 [[nodiscard]] std::string DefaultScenario();
 /// The family of that name, or nullptr.
 [[nodiscard]] const PlantFamily* FindPlantFamily(const std::string& name);

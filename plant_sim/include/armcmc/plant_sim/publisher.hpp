@@ -56,7 +56,7 @@ class Publisher {
   };
 
   void Run(std::int64_t start_ns) noexcept;
-  /// False when a stop was asked for.
+  /// False when a stop was requested.
   [[nodiscard]] bool WaitUntil(std::int64_t t_ns) const noexcept;
 
   std::int64_t span_ns_, period_ns_;

@@ -11,7 +11,7 @@
 namespace armcmc::plant_sim {
 
 /// A scenario in motion: plant, then hidden effects, then sensors. The truth is the plant's own, without the effects.
-/// Two simulations of one scenario and seed give the same samples to the bit, so whoever needs the samples runs one of
+/// Two simulations of one scenario and seed give bit-identical samples, so code that needs the samples runs one of
 /// its own.
 class Simulation {
  public:

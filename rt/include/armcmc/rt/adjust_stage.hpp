@@ -89,7 +89,7 @@ class AdjustStage {
 
  private:
   /// Drops the oldest packs while they cannot keep their deadline and a newer one waits.
-  void DropUnkeepable() noexcept ARMCMC_NONBLOCKING;
+  void DropTooLate() noexcept ARMCMC_NONBLOCKING;
   /// Counts a dropped pack, and records by how much it would have been late.
   void CountDropped(std::int64_t seq, MissCause cause, Nanos now_ns, Nanos lacked_ns) noexcept ARMCMC_NONBLOCKING;
   /// Counts a truncated or failed computation and raises its fault.

@@ -58,7 +58,7 @@ struct Counters {
   ///   lost            gaps in the pack numbers; duplicate, reordered: numbers that came again or late
   ///   restarts        the plant began a new run; silent_periods: periods without a pack
   ///   ring_full       packs that found the ring to adjust full
-  ///   foreign         messages of another type; fragments, malformed: datagrams that are no whole message
+  ///   foreign         messages of another type; fragments, malformed: datagrams that are not a complete message
   ///   rejected        packs that failed a check, by RejectCause
   struct alignas(64) Collect {
     Counter received, lost, duplicate, reordered, restarts, silent_periods, ring_full;
@@ -80,7 +80,7 @@ struct Counters {
     Counter errors, messages;  ///< Messages.
   } publish;
   alignas(64) FaultFlags faults;
-  alignas(64) std::array<Counter, kNumStages> heap_calls;  ///< Of each stage thread, after warm-up.
+  alignas(64) std::array<Counter, kNumStages> heap_calls;  ///< Heap calls of each stage thread, after warm-up.
 
   /// Rejected packs of all causes. Any thread, as for the two below.
   [[nodiscard]] std::int64_t Rejected() const noexcept {

@@ -40,7 +40,7 @@ class CpuTimeMeter {
   /// nothing is ever withheld.
   void SetTrusted(bool trusted) noexcept { trusted_.store(trusted, std::memory_order_relaxed); }
 
-  /// The thread was notified of work at woken_ns. 0: it was not, but looked by itself.
+  /// The thread was notified of work at woken_ns. 0: it was not, but checked on its own.
   void NoteWoken(Nanos woken_ns) noexcept ARMCMC_NONBLOCKING { woken_ns_ = woken_ns; }
   /// @return now, at which the work begins. @rt Two system calls, bounded.
   Nanos Start() noexcept ARMCMC_NONBLOCKING;
@@ -52,13 +52,13 @@ class CpuTimeMeter {
   /// @return withheld in between, ns >= 0. @rt Two system calls, bounded.
   [[nodiscard]] Nanos End(Nanos end_ns) noexcept ARMCMC_NONBLOCKING;
   /// The work went on after its End(), to end_ns: now. @return withheld in between, ns >= 0. @rt As End().
-  [[nodiscard]] Nanos GoOn(Nanos end_ns) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Nanos Continue(Nanos end_ns) noexcept ARMCMC_NONBLOCKING;
 
  private:
   /// CPU times up to a moment.
   struct Use {
-    Nanos all_ns = 0;    ///< Of the thread and of all others.
-    Nanos first_ns = 0;  ///< Of the thread and of those that go first.
+    Nanos all_ns = 0;    ///< Used by this thread and all others.
+    Nanos first_ns = 0;  ///< Used by this thread and those that go first.
   };
   [[nodiscard]] Use Used() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Nanos WithheldWaiting(Nanos now_ns, const Use& used) const noexcept ARMCMC_NONBLOCKING;

@@ -5,7 +5,7 @@ namespace armcmc::rt {
 /// Asks the kernel to keep every CPU out of the idle states that take time to leave, for as long as this lives.
 ///
 /// Linux does so while some process holds its PM QoS device open with a bound of 0 us on the time to wake up; an idle
-/// CPU then waits in a loop instead of halting. That costs power and heat. In a virtual machine it also saves the way
+/// CPU then waits in a loop instead of halting. That costs power and heat. In a virtual machine it also saves the path
 /// through the hypervisor, which is most of the time between an event and the thread that waits for it. Source: Linux,
 /// Documentation/power/pm_qos_interface.
 class CpuWakeRequest {

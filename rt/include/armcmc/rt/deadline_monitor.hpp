@@ -21,10 +21,10 @@ struct StepTimes {
   Nanos arrival_ns = 0;   ///< Kernel receive time of the pack.
   Nanos deadline_ns = 0;  ///< Absolute: release + deadline of the settings.
   std::array<Nanos, kNumStages> start_ns{}, end_ns{};
-  /// Of the CPU, while there was work: until start_ns, and from there to end_ns. See CpuTimeMeter. 0: nothing, or
-  /// unknown.
+  /// CPU time withheld while there was work, ns: before start_ns, and from there to end_ns. See CpuTimeMeter. 0: none,
+  /// or unknown.
   std::array<Nanos, kNumStages> withheld_before_ns{}, withheld_ns{};
-  Earlier adjusted_earlier;  ///< How much earlier adjust would have been through.
+  Earlier adjusted_earlier;  ///< How much earlier adjust would have finished.
 
   /// Time between begin and end of a stage, ns, stalls included.
   [[nodiscard]] Nanos Duration(Stage stage) const noexcept { return end_ns[IndexOf(stage)] - start_ns[IndexOf(stage)]; }
@@ -46,13 +46,13 @@ class DeadlineMonitor {
   /// Wake-ups of the witness on the CPU of a stage; without one no miss is attributed to the machine.
   void SetWitness(Stage stage, const WakeUpRing* wake_ups) noexcept { witness_[IndexOf(stage)] = wake_ups; }
 
-  /// Notes in times->adjusted_earlier what stalls and late packs cost a step that adjust has just been through, the
-  /// steps before it included. @rt O(wake-ups in the step).
+  /// Notes in times->adjusted_earlier what stalls and late packs cost a step that adjust has just finished, earlier
+  /// steps included. @rt O(wake-ups in the step).
   void RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING;
 
-  /// Adjust was busy with what follows the hand-over of its result.
+  /// Records the work of adjust after the hand-over of its result.
   /// @param times        Of the step that it belongs to.
-  /// @param end_ns       Until when.
+  /// @param end_ns       End of that work.
   /// @param withheld_ns  Of its CPU, since the hand-over. @rt O(wake-ups in between).
   void RecordRemembered(const StepTimes& times, Nanos end_ns, Nanos withheld_ns) noexcept ARMCMC_NONBLOCKING;
 
@@ -67,7 +67,7 @@ class DeadlineMonitor {
   MissCause RecordDropped(const StepTimes& times, Nanos now_ns, Nanos typical_ns,
                           Nanos withheld_ns = 0) noexcept ARMCMC_NONBLOCKING;
 
-  /// Judges a result that execute did not come to before the next one: always a miss.
+  /// Judges a result that execute did not process before the next one: always a miss.
   /// @param times      Of the step until then.
   /// @param now_ns     When it is given up.
   /// @param lacked_ns  By how much execute was late; at least 1 is assumed. @rt O(wake-ups since adjust).
@@ -83,12 +83,13 @@ class DeadlineMonitor {
 
  private:
   [[nodiscard]] Nanos StalledTime(Stage stage, Nanos begin_ns, Nanos end_ns) const noexcept ARMCMC_NONBLOCKING;
-  /// Of a stage that sleeps until the one before it hands over: that one wakes it, so a stall of either CPU delays it.
+  /// Stall of a stage that sleeps until the one before it hands over: that one wakes it, so a stall of either CPU
+  /// counts.
   [[nodiscard]] Nanos HandOverStall(Stage stage, Nanos ready_ns, Nanos start_ns) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Earlier Collected(const StepTimes& times) noexcept ARMCMC_NONBLOCKING;
   /// Of a step that went through a stage.
   [[nodiscard]] StageWork Work(Stage stage, Nanos ready_ns, const StepTimes& times) const noexcept ARMCMC_NONBLOCKING;
-  /// Of one that a stage came to at start_ns, and did not do.
+  /// Of a step that a stage reached at start_ns and did not process.
   [[nodiscard]] StageWork NoWork(Stage stage, Nanos ready_ns, Nanos start_ns,
                                  Nanos withheld_ns) const noexcept ARMCMC_NONBLOCKING;
 

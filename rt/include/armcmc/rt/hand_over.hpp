@@ -26,17 +26,18 @@ using PackRing = SpscRing<PackSlot, kPackRingCapacity>;
 
 /// What accompanies a pack from adjust to the message: identity, outcome and times.
 struct StepInfo {
-  std::int64_t seq = 0, run_id = 0;  ///< Of the pack.
-  Status status = Status::kOk;       ///< Of adjust.
-  StepTimes times;                   ///< Of collect and adjust; execute adds its own.
+  std::int64_t seq = 0, run_id = 0;  ///< Numbers of the pack.
+  Status status = Status::kOk;       ///< Result of adjust.
+  StepTimes times;                   ///< Times of collect and adjust; execute adds its own.
 };
 
 /// adjust -> execute: the newest complete result. Draws are not copied: the slots belong to the StepEngine, and
 /// info[slot] describes its result of the same number. If adjust finishes again before execute takes a result, the
 /// newer one replaces it, and the older one counts as not executed.
 struct ResultHandOver {
-  LatestValue latest;                              ///< Number of the slot with the newest result.
-  std::array<StepInfo, LatestValue::kSlots> info;  ///< Of each slot; owned by the stage that owns the slot.
+  LatestValue latest;  ///< Number of the slot with the newest result.
+  std::array<StepInfo, LatestValue::kSlots>
+      info;  ///< Of the result in each slot; owned by the stage that owns the slot.
 };
 
 /// execute -> publish: a finished step, with the verdict on its deadline.

@@ -24,7 +24,7 @@ namespace armcmc::rt {
 /// A plant that a pipeline estimates, as it is passed to its constructor.
 struct LanePlant {
   StepEngine* engine = nullptr;  ///< Outlives the pipeline.
-  std::string prefix;            ///< Of its channels.
+  std::string prefix;            ///< Prefix of its channels.
   bool record_packs = false;     ///< Keep copies of its packs for Lane::record().
 };
 
@@ -78,7 +78,7 @@ class Lane {
   friend class Pipeline;
 
   StepEngine* engine_;                  ///< The computation; belongs to the caller.
-  std::string prefix_;                  ///< Of all channels of this plant.
+  std::string prefix_;                  ///< Prefix of all channels of this plant.
   Counters counters_;                   ///< Written by the stages, each in its own group.
   DeadlineMonitor monitor_;             ///< Stage times and verdicts on deadlines.
   std::array<EventLog, 4> events_;      // collect, adjust, execute, publish: one producer each

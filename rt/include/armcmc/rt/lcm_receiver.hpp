@@ -89,7 +89,7 @@ class LcmReceiver {
   void Close() noexcept;
   [[nodiscard]] bool ReadOne(std::size_t* size, Nanos* arrival_ns) noexcept ARMCMC_NONBLOCKING;
 
-  /// Of the channel that the datagram in the buffer is of, if it is ours.
+  /// Kind of the datagram in the buffer, by its channel.
   [[nodiscard]] DatagramKind Sort(std::size_t size, Datagram* datagram) const noexcept ARMCMC_NONBLOCKING;
 
   std::vector<std::string> channels_;

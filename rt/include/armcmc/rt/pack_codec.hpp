@@ -26,7 +26,7 @@ enum class RejectCause : std::uint8_t {
   kNotFinite,       ///< NaN or infinity in a value that is used.
   kOutOfRange,      ///< A value beyond kMaxMagnitude, a pack number outside [1, 2^62], a negative plant time.
   kAllZero,         ///< Two samples or more and every value exactly zero: a dead sensor, no measurement.
-  kOverlap,         ///< n_samples is no multiple of PackFormat::overlap.
+  kOverlap,         ///< n_samples is not a multiple of PackFormat::overlap.
 };
 /// Number of values, kNone included.
 inline constexpr std::size_t kNumRejectCauses = 11;
@@ -80,7 +80,7 @@ class PackCodec {
   data_pack_t message_{};
   data_pack_v2_t described_{};
   std::array<std::uint8_t, sizeof(data_pack_v2_t::plant)> name_{};  ///< As packs of the plant carry it.
-  std::int64_t fingerprint_;                                        ///< Of the message type.
+  std::int64_t fingerprint_;                                        ///< Fingerprint of the message type.
   std::size_t encoded_size_;
   bool decoded_ = false;
 };

@@ -12,8 +12,8 @@ namespace armcmc::rt {
 struct PackFormat {
   PlantNumber plant = PlantNumber::kNone;  ///< kDescribed: by a file; else the number of a compiled plant.
   int num_inputs = 0;                      ///< Signals besides the output, in the order of the plant.
-  std::string_view name = {};              ///< Of a described plant; lives as long as the format is used.
-  std::uint64_t fingerprint = 0;           ///< Of a described plant's signals.
+  std::string_view name = {};              ///< Name of a described plant; must outlive the format.
+  std::uint64_t fingerprint = 0;           ///< Fingerprint of a described plant's signals.
   int overlap = 1;  ///< EstimatorSettings::overlap, of which the number of samples is a multiple.
 
   /// Name of the channel, without the prefix; static storage. @rt No heap, no lock, no throw. O(1).

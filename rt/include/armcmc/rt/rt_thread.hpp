@@ -38,7 +38,7 @@ class RtThread {
   using Entry = void (*)(void* context) noexcept;
   /// No limit for NoteCpuTime().
   static constexpr Nanos kNoLimit = std::numeric_limits<Nanos>::max();
-  static constexpr Nanos kShortTurnNs = 100'000;  ///< Of a thread that only looks at the clock and at a few numbers.
+  static constexpr Nanos kShortTurnNs = 100'000;  ///< Run time of a thread that only reads the clock and a few numbers.
 
   RtThread() = default;
   ~RtThread() { Join(); }

@@ -16,7 +16,7 @@ namespace armcmc::rt {
 struct SnapshotPart {
   std::int64_t seq = 0;          ///< Pack after which it was taken.
   std::size_t size = 0;          ///< Used bytes.
-  std::vector<std::byte> bytes;  ///< Of fixed size after construction.
+  std::vector<std::byte> bytes;  ///< Size is fixed after construction.
   /// The used bytes, as SnapshotReader takes them.
   [[nodiscard]] std::span<const std::byte> used() const noexcept { return {bytes.data(), size}; }
 };

@@ -59,12 +59,12 @@ class StageTimeline {
   /// @return how much earlier it would have been finished. @rt O(1).
   Earlier Do(const StageWork& work, const Earlier& ready) noexcept ARMCMC_NONBLOCKING {
     free_ = Begin(work, ready);
-    GoOn(work.end_ns, work.stall_ns);
+    Continue(work.end_ns, work.stall_ns);
     return free_;
   }
 
   /// The stage was busy with what it did last until end_ns, of which stalls took stall_ns. @rt O(1).
-  void GoOn(Nanos end_ns, Nanos stall_ns) noexcept ARMCMC_NONBLOCKING {
+  void Continue(Nanos end_ns, Nanos stall_ns) noexcept ARMCMC_NONBLOCKING {
     free_.without_stalls += stall_ns;
     free_.without_both += stall_ns;
     free_ns_ = end_ns;

@@ -106,7 +106,7 @@ class EstimatorEngine final : public StepEngine {
   SnapshotHandOver* snapshots_ = nullptr;
   bool warm_ = false;     // snapshots of the warm-up are not handed over
   bool learnt_ = false;   // by the newest Adjust()
-  std::int64_t seq_ = 0;  ///< Of the newest pack.
+  std::int64_t seq_ = 0;  ///< Number of the newest pack.
   std::vector<std::vector<std::byte>> resumed_adjusted_, resumed_executed_;  // by recursion
 };
 

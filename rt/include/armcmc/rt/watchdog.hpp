@@ -45,7 +45,7 @@ class Watchdog {
   /// @param now_ns      CLOCK_MONOTONIC.
   /// @param at_most_ns  Duration.
   /// @rt Wait-free.
-  void Promise(Watched watched, Nanos now_ns, Nanos at_most_ns) noexcept ARMCMC_NONBLOCKING {
+  void Announce(Watched watched, Nanos now_ns, Nanos at_most_ns) noexcept ARMCMC_NONBLOCKING {
     due_[static_cast<std::size_t>(watched)].store(now_ns + at_most_ns + slack_ns_, std::memory_order_relaxed);
   }
   /// The calling thread ends, or pauses: no further report is expected. @rt Wait-free.

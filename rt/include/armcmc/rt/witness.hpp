@@ -31,7 +31,7 @@ class WakeUpRing {
   /// kOrdinaryDelayNs of the part of [due, woke] that lies in the window.
   ///
   /// A wake-up that is overdue at `now` stalls until now. Stalls are added up, since a hypervisor that is short of time
-  /// takes it in many slices of a millisecond or two; a hundred ordinary wake-up latencies are no stall.
+  /// takes it in many slices of a millisecond or two; a hundred ordinary wake-up latencies are not a stall.
   /// A lower bound: what is taken between a wake-up and the next due time is not seen.
   /// @rt Wait-free, O(wake-ups since begin), at most kSize / 2, which is 2048 periods of the witness.
   [[nodiscard]] Nanos StalledTime(Nanos begin_ns, Nanos end_ns, Nanos now_ns) const noexcept ARMCMC_NONBLOCKING;
@@ -74,7 +74,7 @@ class Witness {
   [[nodiscard]] int cpu() const noexcept { return cpu_; }
   /// Time between its wake-ups, ns.
   [[nodiscard]] Nanos period_ns() const noexcept { return period_ns_; }
-  /// Whether the thread runs with its priority and on its CPU. Otherwise a late wake-up is no evidence of a stall of
+  /// Whether the thread runs with its priority and on its CPU. Otherwise a late wake-up is not evidence of a stall of
   /// the machine.
   [[nodiscard]] bool trustworthy() const noexcept { return thread_.placement().fifo && thread_.placement().pinned; }
   /// The newest wake-ups. Any time, from any thread.

@@ -34,18 +34,25 @@ void Declare(CLI::App* app, Arguments* a) {
   for (const std::string& name : StratumNames()) known += name + ", ";
   app->add_option("--strata", a->strata,
                   "Comma separated, of: " + known + kTies + " (default: all; recorded needs --recordings)")
+      ->type_name("NAME")
       ->delimiter(',');
   app->add_option("--logs-per-cell", a->logs_per_cell, "Recordings for each effect, strength and motion")
+      ->type_name("N")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app->add_option("--seed", a->seed, "Seed of everything random: the same seed gives the same recordings")
+      ->type_name("N")
       ->capture_default_str();
   app->add_option("--jobs", a->jobs, "Recordings to process in parallel")
+      ->type_name("N")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  app->add_option("--out", a->out, "Folder for bench.json, report.html and the generated scenarios")->required();
-  app->add_option("--plant", a->plant, "armcmc-plant (default: the one beside this program)");
-  app->add_option("--recordings", a->recordings, "Folder of real recordings, for the stratum recorded");
+  app->add_option("--out", a->out, "Folder for bench.json, report.html and the generated scenarios")
+      ->type_name("DIR")
+      ->required();
+  app->add_option("--plant", a->plant, "armcmc-plant (default: the one beside this program)")->type_name("FILE");
+  app->add_option("--recordings", a->recordings, "Folder of real recordings, for the stratum recorded")
+      ->type_name("DIR");
   app->add_flag("--keep", a->keep, "Keep recordings and sealed files");
   app->footer(
       "A blind test of the gap workflow: armcmc-plant, a separate process, hides an effect in a recording and writes\n"

@@ -234,7 +234,7 @@ std::vector<Gate> Gates(const std::vector<Outcome>& outcomes) {
     const char* name = imperfect ? "calibration, plant not the catalogue" : "calibration";
     const Calibration calibration = Calibrate(some);
     if (calibration.n > 0) g.Add(name, "expected error", calibration.error, 0.05, false, calibration.n);
-    const SureLabels sure = CountSure(some);
+    const ConfidentLabels sure = CountConfident(some);
     if (sure.n > 0) g.Add(name, "right when P >= 0.9", static_cast<double>(sure.right) / sure.n, 0.93, true, sure.n);
   }
   g.Quantile(

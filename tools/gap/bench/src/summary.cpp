@@ -161,8 +161,8 @@ Onsets LocateOnsets(const std::vector<Outcome>& outcomes) {
   return onsets;
 }
 
-SureLabels CountSure(const std::vector<Outcome>& outcomes) {
-  SureLabels sure;
+ConfidentLabels CountConfident(const std::vector<Outcome>& outcomes) {
+  ConfidentLabels sure;
   for (const Outcome& o : outcomes) {
     if (!Answered(o) || o.label_probability < kSure) continue;
     ++sure.n;

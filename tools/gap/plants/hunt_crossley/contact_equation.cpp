@@ -87,7 +87,7 @@ class ContactEquation final : public Equation {
     s.output_scale = Rms(s.output, weight);
     s.output_peak = Quantile(s.law_seen ? s.output : Vector(s.output.cwiseAbs()), kPeakQuantile);
     if (!Moves(recording.Column("x")) || !Moves(recording.Column("v")))
-      throw std::invalid_argument(recording.source + ": x or v does not move: a law of both cannot be told");
+      throw std::invalid_argument(recording.source + ": x or v does not move: a law of both cannot be identified");
     if (!(s.output_scale > 0.0) || !(s.output_peak > 0.0))
       throw std::invalid_argument(recording.source + ": f is not positive anywhere" +
                                   (s.law_seen ? " in contact: push must count as positive" : ": it does not change"));

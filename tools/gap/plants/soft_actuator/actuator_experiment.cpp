@@ -39,8 +39,8 @@ const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       {{"pressure_bias", "angle_bias"},
        {"pressure_steps",
-        "vent with a wide open valve to a few ten pascals above the atmosphere, and fill again: near p_atm the "
-        "vent flow feels every pascal of a pressure bias, and an angle bias not at all",
+        "vent with a wide open valve to a few tens of pascals above the atmosphere, and fill again: near p_atm the "
+        "vent flow is sensitive to every pascal of a pressure bias, and not at all to an angle bias",
         {4e3, 30.0, 15e3, 40.0, 30e3, 50.0},
         0.35,
         2e-4}},
@@ -56,17 +56,17 @@ const std::vector<Rule>& Rules() {
        {"u_triangle", "open and close both valves in slow triangles of two heights", {}, 2.0}},
       {{"joint_friction", "hysteresis"},
        {"fast_and_slow_fills",
-        "fill fast and slowly over the same way: hysteresis does not mind the speed",
+        "fill fast and slowly over the same range: hysteresis does not depend on the speed",
         {60e3, 20e3, 80e3, 40e3},
         1.0}},
       {{"joint_friction", "sensor_delay"},
        {"fast_and_slow_fills",
-        "fill fast and slowly over the same way: a delay shows with the speed only",
+        "fill fast and slowly over the same range: a delay shows only at speed",
         {60e3, 20e3, 80e3, 40e3},
         1.0}},
       {{"cubic_stiffness", "gravity_load"},
        {"pressure_steps",
-        "bend as far as it goes, and to many angles between",
+        "bend as far as it goes, and to many angles in between",
         {95e3, 10e3, 75e3, 40e3, 90e3, 20e3},
         0.5}}};
   return rules;

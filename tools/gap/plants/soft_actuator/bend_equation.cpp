@@ -102,7 +102,7 @@ class BendEquation final : public Equation {
       }
     }
     Matrix angles;
-    simulation.RunAbreast(s.t, gauge, start, runs, &angles);
+    simulation.RunInterleaved(s.t, gauge, start, runs, &angles);
     out->y = angles.col(0);
     out->elastic = Vector::Zero(s.rows());
     for (std::size_t i = 0; i < columns.size(); ++i)

@@ -100,8 +100,8 @@ void BendSimulation::Run(const Vector& t, const Vector& gauge, State x, const st
   Advance(t, gauge, rows, &lanes);
 }
 
-void BendSimulation::RunAbreast(const Vector& t, const Vector& gauge, State start,
-                                const std::vector<std::vector<Force>>& forces, Matrix* angles) const {
+void BendSimulation::RunInterleaved(const Vector& t, const Vector& gauge, State start,
+                                    const std::vector<std::vector<Force>>& forces, Matrix* angles) const {
   angles->resize(t.size(), static_cast<Eigen::Index>(forces.size()));
   std::vector<Lane> lanes;
   for (std::size_t run = 0; run < forces.size(); ++run)

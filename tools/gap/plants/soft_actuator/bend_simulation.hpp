@@ -36,8 +36,8 @@ class BendSimulation {
 
   /// Runs that differ in their forces only, from the same start; column by run. They go through the samples together: a
   /// step of one waits for its tanh, and meanwhile the others' are at work.
-  void RunAbreast(const Vector& t, const Vector& gauge, State start, const std::vector<std::vector<Force>>& forces,
-                  Matrix* angles) const;
+  void RunInterleaved(const Vector& t, const Vector& gauge, State start, const std::vector<std::vector<Force>>& forces,
+                      Matrix* angles) const;
 
   /// What an acceleration of each row adds to the angle, from rest.
   [[nodiscard]] Vector Response(const Vector& acceleration) const;

@@ -48,7 +48,7 @@ template <typename Function>
   return std::make_unique<Of>(std::move(function));
 }
 
-/// The order in which effects act, whatever the order they are asked for in. Between kParameters and kForce the
+/// The order in which effects act, whatever the order of the request. Between kParameters and kForce the
 /// constitutive law is evaluated on what the first two left.
 enum class EffectStage : std::uint8_t { kInput, kParameters, kForce, kSensorDynamics, kSensorStatics };
 

@@ -12,8 +12,9 @@ namespace armcmc::plant_sim {
 ///
 ///   R = rms over the run of (output with the effects - base law refitted to it) / sd of the output's noise
 ///
-/// Refitted means a constant correction of every base parameter, by least squares. What the base can absorb is no gap,
-/// and neither is what the law itself errs by: an effect is as strong in a plant with a LawError as in one without.
+/// Refitted means a constant correction of every base parameter, by least squares. What the base can absorb is not a
+/// gap, and neither is what the law itself errs by: an effect is as strong in a plant with a LawError as in one
+/// without.
 class GapMeter {
  public:
   virtual ~GapMeter() = default;

@@ -7,7 +7,7 @@
 
 namespace armcmc::plant_sim {
 
-/// When an effect acts. While it does not, it leaves every signal untouched to the bit; its memory runs on.
+/// When an effect acts. While it does not, it leaves every signal bit-identical; its memory keeps running.
 struct Gate {
   enum class Kind : std::uint8_t { kAlways, kContact, kFree, kFrom, kUntil };
 

@@ -10,7 +10,7 @@
 
 namespace armcmc::plant_sim {
 
-/// An effect that somebody asks for.
+/// A requested effect.
 struct EffectRequest {
   std::string name, variant;  ///< An empty variant: one of those of the name, drawn.
   Gate gate;
@@ -29,8 +29,8 @@ enum class HiddenKind : std::uint8_t { kNone, kSingle, kPair, kOutside };
 [[nodiscard]] std::vector<EffectRequest> ParseEffectRequests(const std::string& text, const Gate& gate,
                                                              double gap_ratio);
 
-/// Decides every parameter of the effects asked for. The same scenario, requests and seed give the same effects.
-/// @throws std::invalid_argument naming what is unknown, asked for twice, or out of reach.
+/// Chooses every parameter of the requested effects. The same scenario, requests and seed give the same effects.
+/// @throws std::invalid_argument naming what is unknown, requested twice, or out of range.
 [[nodiscard]] std::vector<HiddenEffect> DecideEffects(const Scenario& scenario,
                                                       const std::vector<EffectRequest>& requests, std::uint64_t seed);
 

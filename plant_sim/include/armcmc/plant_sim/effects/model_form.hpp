@@ -25,7 +25,7 @@ struct ModelEffect {
 /// What a model file, written for an estimator, says of a family of plants.
 struct ModelForm {
   std::vector<std::string> bases;    ///< Names by which such a file calls the family.
-  std::vector<std::string> ignored;  ///< Tables that say nothing of the plant; with "parameters" it keeps its own.
+  std::vector<std::string> ignored;  ///< Tables that do not concern the plant; with "parameters" it keeps its own.
   std::vector<ModelEffect> effects;
   bool in_this_order = false;  ///< Effects act in the order of that list, not in that of the file.
 };

@@ -66,7 +66,7 @@ class Expression {
 };
 
 /// Value of an operator or a function without memory. Conditions are 1 or 0, and hold where they are not 0.
-/// A negative base with a power that is no integer, a root or a logarithm of what has none: NaN.
+/// A negative base with a power that is not an integer, a root or a logarithm of what has none: NaN.
 [[nodiscard]] double Apply(const std::string& what, double a, double b, double c);
 
 }  // namespace armcmc::plant_sim::expression

@@ -25,7 +25,7 @@ struct ThresholdChoice {
   double threshold = 1.0;
   double measured_rate = 0.0;  ///< Share of the scores that reach it.
   bool extrapolated = false;   ///< Beyond what the data show: from an exponential tail.
-  bool at_floor = false;       ///< kSmallestThreshold already gives a smaller rate than was asked for.
+  bool at_floor = false;       ///< kSmallestThreshold already gives a smaller rate than requested.
 };
 
 /// The threshold that a share `rate` of packs reaches although nothing changed.

@@ -44,13 +44,13 @@ struct ExportSummary {
 /// sample interval; samples that packs share are written once.
 ///
 /// CSV: the first column "t [s]" is the time since the first event of the log, which is the same for all tables, then
-/// one column a number. Doubles read back to the bit.
+/// one column per number. Doubles read back exactly.
 /// MCAP: a row is a message in JSON with the names of the columns, nested at their dots; log_time is the event's time,
 /// of a sample its own time on the clock of the log; publish_time is what the message says of it where that lies within
 /// a second of log_time, else log_time. Numbers that are not finite are null.
 /// @param on_progress  Called with the share done.
-/// @throws support::InputError for a file that is no log, a channel that is not in it, nothing to write, or an output
-/// that cannot be written.
+/// @throws support::InputError for a file that is not a log, a channel that is not in it, nothing to write, or an
+/// output that cannot be written.
 /// @throws std::runtime_error when writing fails.
 ExportSummary ExportLog(const ExportRequest& request, const std::function<void(double)>& on_progress);
 

@@ -39,7 +39,7 @@ struct PlantScan {
   std::map<std::int64_t, double> start;  ///< s since the start of the log, at plant time zero of a run_id.
 };
 
-/// First look at a log: what can be exported, and under which names.
+/// First pass over a log: what can be exported, and under which names.
 struct LogScan {
   std::int64_t first_utime = 0;             ///< us, of the first event: time zero of every table.
   std::vector<ChannelScan> channels;        ///< In order of appearance.
@@ -48,7 +48,7 @@ struct LogScan {
 };
 
 /// @param on_progress  Called with the share read.
-/// @throws support::InputError when the file is no log.
+/// @throws support::InputError if the file is not a log.
 [[nodiscard]] LogScan ScanLog(const std::filesystem::path& path, const std::function<void(double)>& on_progress);
 
 }  // namespace armcmc::log_export

@@ -22,12 +22,13 @@ struct McapMessage {
 };
 
 /// Writes an MCAP file: schemas, channels and messages in chunks without compression, an index of the messages of each
-/// chunk, and a summary with which a reader finds everything from the end of the file. All checksums are there.
+/// chunk, and a summary with which a reader finds everything from the end of the file. All checksums are written.
 ///
+/// A writer of our own, because Debian has no MCAP library; a test reads its files with the reference implementation.
 /// Source: the MCAP format specification, https://mcap.dev/spec, format version 0.
 class McapWriter {
  public:
-  /// @param library      Who writes: "armcmc-export 0.1.0".
+  /// @param library      Name of the writing program: "armcmc-export 0.1.0".
   /// @param chunk_bytes  A chunk ends with the message that fills it.
   /// @throws support::InputError when the file cannot be written.
   McapWriter(std::filesystem::path path, std::string_view library, std::size_t chunk_bytes = 1U << 20U);

@@ -33,14 +33,14 @@ inline constexpr const char* kExcited = "soft_actuator_excited";
 inline const std::vector<std::string> kTakenForGranted = {"p_supply = 800000.0", "q1 = 0.0704", "q3 = 3319.4"};
 
 namespace actuator_detail {
-inline bool FeltByFlow(std::string_view effect) noexcept { return FlowEffects::Find(effect) >= 0; }
+inline bool ActsOnFlow(std::string_view effect) noexcept { return FlowEffects::Find(effect) >= 0; }
 /// The pressure that is measured enters both.
-inline bool FeltByBend(std::string_view effect) noexcept {
-  return !FeltByFlow(effect) || effect == PressureBias::kInfo.name;
+inline bool ActsOnBend(std::string_view effect) noexcept {
+  return !ActsOnFlow(effect) || effect == PressureBias::kInfo.name;
 }
 }  // namespace actuator_detail
 
 inline constexpr std::array<BenchEquation, 2> kActuatorEquations{
-    {{"flow law", actuator_detail::FeltByFlow}, {"bend equation", actuator_detail::FeltByBend}}};
+    {{"flow law", actuator_detail::ActsOnFlow}, {"bend equation", actuator_detail::ActsOnBend}}};
 
 }  // namespace armcmc::gap_bench

@@ -33,7 +33,7 @@ struct Fitted {
   [[nodiscard]] bool on_edge() const;
   /// Loss of log likelihood, in nats, if a coordinate is set to its prior mean and the others are refitted
   /// (linearised).
-  [[nodiscard]] double CostOfLeaving(Eigen::Index coordinate) const;
+  [[nodiscard]] double CostOfLeavingOut(Eigen::Index coordinate) const;
   /// Orthonormal basis of whitened_jacobian; computed once, by one thread before others ask for it, since every
   /// extension of the fit projects it out.
   [[nodiscard]] const Matrix& basis() const;
@@ -70,7 +70,7 @@ class Fitter {
   [[nodiscard]] Fitted Add(const Fitted& parent, const Term& term) const;
   /// Decrease of the sum of squares of `parent` at the best of the starts of Add: a lower bound of the decrease by Add,
   /// at a fraction of its cost.
-  [[nodiscard]] double Promise(const Fitted& parent, const Term& term) const;
+  [[nodiscard]] double LeastDecrease(const Fitted& parent, const Term& term) const;
 
  private:
   struct Descent;
@@ -82,7 +82,7 @@ class Fitter {
   /// Sum of squares and coordinates at each of the term's starts, amplitudes fitted, in increasing order of squares.
   [[nodiscard]] std::vector<std::pair<double, Vector>> Starts(const Fitted& parent, const Term& term) const;
   /// Halves amplitudes [first, first + count) until the simulation of the plant does not diverge.
-  void Tame(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const;
+  void ShrinkUntilFinite(const Hypothesis& hypothesis, Eigen::Index first, int count, Vector* theta) const;
   /// Fills at_bound, heldout and log_evidence.
   void Score(Fitted* fitted) const;
 

@@ -16,7 +16,7 @@ namespace armcmc::gap {
 
 /// Flexible correction under which a hypothesis was tested: unnamed physics, or a model error of the law. Its effects
 /// are then named only for their gain beyond the correction.
-struct Granted {
+struct FlexibleCorrection {
   std::string what;
   Fitted without, with;  ///< The correction alone, and with the effects of the hypothesis.
 };
@@ -26,8 +26,8 @@ struct Candidate {
   Fitted fit;
   std::optional<Remainder> remainder;
   double probability = 0.0;
-  std::size_t num_known = 0;         ///< Leading terms that belong to the model or to the flexible correction.
-  std::shared_ptr<Granted> granted;  ///< Null: no correction.
+  std::size_t num_known = 0;  ///< Leading terms that belong to the model or to the flexible correction.
+  std::shared_ptr<FlexibleCorrection> correction;  ///< Null: no correction.
 
   /// Terms beyond the known ones.
   [[nodiscard]] std::vector<Term> added() const;
@@ -63,8 +63,8 @@ struct Finding {
 /// Effects of every hypothesis that remains.
 [[nodiscard]] std::set<std::vector<std::string>> NamesOf(const Finding& finding);
 
-/// Withdraws the names of a finding: what is probable, but not adequate, is no explanation. That no effect of the
-/// catalogue explains the misfit then has at least the probability `least`, at the expense of all candidates.
+/// Withdraws the names of a finding: what is probable, but not adequate, does not explain the data. That no effect of
+/// the catalogue explains the misfit then has at least the probability `least`, at the expense of all candidates.
 void Withdraw(double least, Finding* finding);
 
 /// The third step: names the missing effects.
@@ -102,7 +102,7 @@ class Search {
   /// The verdict on an effect that acts in one to three events, by evidence, since no block can be left out.
   void JudgeEvents(const Candidates& singles, Finding* finding) const;
   /// Changes the verdict to unnamed if a few events remain unexplained and it is certain that something is missing.
-  void DoubtNothing(const Candidates& singles, Finding* finding) const;
+  void CheckUnexplainedEvents(const Candidates& singles, Finding* finding) const;
   /// @param parent  A candidate whose pairs have been computed (`extended`); may be null.
   [[nodiscard]] Candidates Pairs(const Candidates& order, const CandidatePtr& parent, const Candidates& extended) const;
   /// Single effects in combination with a flexible correction: that of `unlisted`, or the model error of the law,
@@ -115,11 +115,11 @@ class Search {
   [[nodiscard]] CandidatePtr LawError() const;
   /// Removes hypotheses with a flexible correction if one without it is better, or if their families are not in all of
   /// the equally good hypotheses.
-  void DropUnsure(Candidates* good) const;
+  void DropUncertain(Candidates* good) const;
   /// Refits the hypotheses of a verdict without their flexible correction: that is the model that is reported.
-  void TakeBack(Finding* finding) const;
+  void RemoveCorrections(Finding* finding) const;
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
-  [[nodiscard]] bool Outdone(const CandidatePtr& named, const CandidatePtr& unlisted) const;
+  [[nodiscard]] bool IsBeatenBy(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
   /// The same effects with the catalogue's formulas and without gates.
   [[nodiscard]] CandidatePtr Ungated(const CandidatePtr& pair) const;
@@ -129,9 +129,9 @@ class Search {
   /// @param kin  Both are of the same family, with similar formula errors.
   [[nodiscard]] double Margin(double gap, bool kin) const;
   /// Widens an uncertain name to a set, or withdraws it.
-  void Hedge(Finding* finding) const;
+  void WidenOrWithdraw(Finding* finding) const;
   /// Withdraws a name or a set with a probability below Thresholds::doubt.
-  void Doubt(Finding* finding) const;
+  void WithdrawImprobable(Finding* finding) const;
   [[nodiscard]] Candidates Near(const Candidates& sorted, double gap) const;
   [[nodiscard]] double Gain(const CandidatePtr& candidate) const;
   [[nodiscard]] double Closure(const CandidatePtr& candidate) const;
@@ -143,7 +143,7 @@ class Search {
   [[nodiscard]] double Ratio(const CandidatePtr& candidate) const;
   /// Probability that nothing is missing, from LogOdds of every effect, with a prior of one half. Sets the
   /// probabilities of the effects.
-  double WeighNothing(const Candidates& singles) const;
+  double ProbabilityOfNone(const Candidates& singles) const;
   [[nodiscard]] bool FamilyHolds(const CandidatePtr& best, const Candidates& singles) const;
   [[nodiscard]] Candidates OnePerName(const Candidates& candidates) const;
   /// Removes variant formulas from equally good hypotheses if the catalogue's own formula is among them.

@@ -31,13 +31,13 @@ struct Thresholds {
   double confirmed_elsewhere = 0.97;  ///< or the closed fraction outside the worst fifth of the blocks.
   double family_closure = 0.92;       ///< Closed fraction that names a family without an adequate formula.
   double family_lead = 0.90;          ///< Largest gain of any other family, relative to the best.
-  double granted_closure = 0.70;      ///< Closed fraction of a flexible correction and an effect with a remainder,
-  double granted_lead = 0.70;   ///< and largest gain of other families beyond the correction, relative to its gain.
-  double relaxed_share = 0.70;  ///< Least gain of a formula, relative to a flexible function of its variables.
-  double event_nats = 30.0;     ///< Evidence above which an effect in too few blocks for leave-out scores is named.
-  double event_excess = 10.0;   ///< Energy of a block, in robust standard deviations, above which it is an event,
-  double event_rest = 5.0;      ///< and below which an event counts as explained.
-  int min_active_blocks = 4;    ///< Least number of blocks in which an effect acts.
+  double corrected_closure = 0.70;    ///< Closed fraction of a flexible correction and an effect with a remainder,
+  double corrected_lead = 0.70;  ///< and largest gain of other families beyond the correction, relative to its gain.
+  double relaxed_share = 0.70;   ///< Least gain of a formula, relative to a flexible function of its variables.
+  double event_nats = 30.0;      ///< Evidence above which an effect in too few blocks for leave-out scores is named.
+  double event_excess = 10.0;    ///< Energy of a block, in robust standard deviations, above which it is an event,
+  double event_rest = 5.0;       ///< and below which an event counts as explained.
+  int min_active_blocks = 4;     ///< Least number of blocks in which an effect acts.
 };
 
 }  // namespace armcmc::gap

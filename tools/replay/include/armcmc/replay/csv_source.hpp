@@ -42,7 +42,7 @@ class CsvSource final : public PackSource {
   std::int64_t samples_per_pack_ = 0, stride_ = 0;
   std::vector<std::int64_t> number_;  // of each row
   std::size_t row_;
-  std::int64_t pack_ = 0;  // the last one looked at
+  std::int64_t pack_ = 0;  // the last one read
   std::int64_t last_pack_ = 0;
   std::int64_t incomplete_ = 0;  // packs used although samples are missing
   PackCounts counts_;

@@ -13,7 +13,7 @@
 namespace armcmc::replay {
 
 /// How many draws a run made at each pack. A deadline may have cut some; a repetition that cuts at the same
-/// number is equal to the bit.
+/// number is bit-identical.
 class DrawRecord {
  public:
   /// From the EST_ESTIMATE events of a log. Empty when the log has none.

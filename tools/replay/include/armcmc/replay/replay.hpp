@@ -14,7 +14,7 @@ namespace armcmc::replay {
 /// What a replay did.
 struct ReplaySummary {
   std::int64_t packs = 0;  ///< Used.
-  std::int64_t held = 0;   ///< Of those, packs that said nothing about any parameter.
+  std::int64_t held = 0;   ///< Of those, packs without information about any parameter.
   std::int64_t modifications = 0;
   std::int64_t truncated = 0;          ///< Cut at the recorded number of draws.
   std::int64_t refused = 0;            ///< By the estimator; nothing was learnt from them.

@@ -21,7 +21,7 @@ struct Verification {
 };
 
 /// Compares a replay with the EST_ESTIMATE, EST_POSTERIOR and EST_CHANGE messages of the same log, byte for byte. What
-/// only a clock knows (utime, t_release_ns, t_done_ns) is taken over from the log.
+/// only a clock knows (utime, t_release_ns, t_done_ns) is copied from the log.
 class Verifier {
  public:
   /// @param prefix    Of the channel names.

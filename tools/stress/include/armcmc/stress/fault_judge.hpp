@@ -73,7 +73,7 @@ class FaultJudge {
 
   void FinishSlot();
   [[nodiscard]] bool IsBefore(const estimator_status_t& status, const Slot& slot) const;
-  [[nodiscard]] std::int64_t NotOurs(const estimator_status_t& status) const;
+  [[nodiscard]] std::int64_t NotOwn(const estimator_status_t& status) const;
   /// Packs given up right after this one, which its status may tell already.
   [[nodiscard]] std::int64_t DroppedRightAfter(std::int64_t seq) const;
   /// The estimate to compare with after steps in which the data flowed on.

@@ -22,7 +22,7 @@ class Load {
   /// What runs, and what could not: "lcm-spy skipped: no display".
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   /// Keeps the files of the children short.
-  void Tend() const;
+  void TrimFiles() const;
 
  private:
   void Start(const std::vector<std::string>& command, const std::string& note);

@@ -33,7 +33,7 @@ class PlantRuns {
   void RunWithFaults();
   /// A run without faults, of so many ms.
   void RunQuietly(double ms);
-  /// A short run; it shows that the estimator goes on after the end of the plant before it, and dies itself.
+  /// A short run; it shows that the estimator continues after the end of the previous plant, and ends abruptly itself.
   void RunShortly();
   [[nodiscard]] bool estimator_died() const { return estimator_died_; }
 

@@ -13,7 +13,7 @@ struct StressedPlant {
   double noise_std;      ///< Unit of the output, of the plant and of the estimator's belief.
 };
 
-/// One plant; which it is, its slice says.
+/// One plant; its folder says which.
 [[nodiscard]] const StressedPlant& PlantUnderStress();
 
 }  // namespace armcmc::stress

@@ -46,7 +46,7 @@ void ApplyModelFile(const std::string& path, EstimatorSettings* settings);
 /// @throws ConfigError.
 [[nodiscard]] EstimatorSettings ReadModel(const std::string& model);
 
-/// The model file that reads back to the same parameters, constants, noise and effects, to the bit.
+/// The model file that reads back to the same parameters, constants, noise and effects, exactly.
 /// @param base  Built-in name that the settings were made from; empty: settings.model.
 [[nodiscard]] std::string ModelFileText(const EstimatorSettings& settings, const std::string& base = {});
 

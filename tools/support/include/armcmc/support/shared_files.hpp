@@ -10,7 +10,7 @@ namespace armcmc::support {
 /// files from any folder and after being moved.
 [[nodiscard]] std::filesystem::path SharedFolder(const std::string& kind);
 
-/// Makes SharedFolder() <prefix>/share/armcmc/<kind>, for code whose process is no program of the product: a Python
+/// Makes SharedFolder() <prefix>/share/armcmc/<kind>, for code whose process is not a program of this project: a Python
 /// interpreter. Set-up only: before other threads look for files. An empty path takes it back.
 void UseSharedPrefix(const std::filesystem::path& prefix);
 

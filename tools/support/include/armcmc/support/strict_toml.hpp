@@ -21,7 +21,7 @@ class ConfigError : public std::runtime_error {
 /// One table of a strictly read TOML file.
 ///
 /// Every getter names the key, its line and column and the allowed range when the type or value is wrong. Finish() then
-/// rejects every key that no getter asked for and names the nearest known key, so that a typo never passes.
+/// rejects every key that no getter requested and names the nearest known key, so that a typo never passes.
 class StrictTable {
  public:
   /// Reads a whole file. @throws ConfigError when it cannot be read or parsed (with line and column).

@@ -1,6 +1,6 @@
 #pragma once
 
-// One more version of a function for processors with wider vectors, the same to the bit: no operation is fused. Not
+// One more version of a function for processors with wider vectors, bit-identical: no operation is fused. Not
 // under sanitizers, which have to start before such a choice is made.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)

@@ -14,8 +14,8 @@ inline constexpr std::array<double, 3> kHalfWidths{0.674489750196082, 1.64485362
 /// Variance of the share of a run's packs whose intervals hold the truth, when the intervals are right.
 ///
 /// The packs of one run share their data, so that a run is a few decisions and not as many as it has packs; and the
-/// spread between runs says nothing when all of them cover. What the spread has to be follows from the posteriors: let
-/// e_j be the error of the posterior mean after pack j and s_j its standard deviation. The later of two estimates,
+/// spread between runs is uninformative when all of them cover. What the spread has to be follows from the posteriors:
+/// let e_j be the error of the posterior mean after pack j and s_j its standard deviation. The later of two estimates,
 /// k > j, has used all that the earlier one knew, hence e_k is uncorrelated with the correction e_j - e_k, hence
 ///
 ///   cov(e_j, e_k) = s_k^2,   r_jk = corr(e_j / s_j, e_k / s_k) = s_k / s_j.

@@ -20,7 +20,7 @@ struct MethodSpec {
 /// are for the contact only, as published.
 [[nodiscard]] std::vector<MethodSpec> PaperMethods(const EstimatorSettings& base);
 
-/// The settings that a scenario is estimated with: its noise law, which every method that can use one is told.
+/// The settings that a scenario is estimated with: its noise law, given to every method that can use one.
 /// @throws std::invalid_argument for an unknown scenario.
 [[nodiscard]] EstimatorSettings ScenarioSettings(const std::string& scenario);
 

@@ -46,7 +46,7 @@ struct Confusion {
 };
 
 /// Answers printed with a probability of 0.9 or more.
-struct SureLabels {
+struct ConfidentLabels {
   int n = 0, right = 0;
 };
 
@@ -73,7 +73,7 @@ struct Onsets {
 /// Share of the gap that is closed on held-out data, of those.
 [[nodiscard]] std::vector<double> Closures(const std::vector<Outcome>& outcomes);
 [[nodiscard]] Onsets LocateOnsets(const std::vector<Outcome>& outcomes);
-[[nodiscard]] SureLabels CountSure(const std::vector<Outcome>& outcomes);
+[[nodiscard]] ConfidentLabels CountConfident(const std::vector<Outcome>& outcomes);
 /// Value below which `share` of the values lie, linear between them; NaN of none.
 [[nodiscard]] double Quantile(std::vector<double> values, double share);
 

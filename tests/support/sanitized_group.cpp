@@ -5,11 +5,11 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-// What the tests of a room need where the room runs under a sanitizer, as one test of ctest.
+// What the tests of a group need where the group runs under a sanitizer, as one test of ctest.
 namespace armcmc::test {
 namespace {
 
-/// Ends the process when one TEST takes longer than any test does. The limit of ctest is that of the whole room:
+/// Ends the process when one TEST takes longer than any test does. The limit of ctest is that of the whole group:
 /// without this, a TEST that hangs costs an hour and has no name. The signal keeps its default action, which needs
 /// nothing from a process that hangs; the last line that GoogleTest printed names the TEST.
 class TimeLimit : public testing::EmptyTestEventListener {
