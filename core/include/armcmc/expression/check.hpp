@@ -25,9 +25,8 @@ struct Meaning {
 ///   - names that `scope` does not have;
 ///   - a number where a condition is needed, as in if(x, ..);
 ///   - sums and comparisons of unlike units, functions of arguments with a unit, time constants not in seconds. What
-///   has no unit
-///     of its own (numbers, constants without one) fits in a sum, and is a plain number in a product; constants
-///     without one fit in a product, too;
+///     has no unit of its own (numbers, constants without one) fits in a sum, and is a plain number in a product;
+///     constants without one fit in a product, too;
 ///   - x^p where p is not a whole number and the measured x can be negative. What `x >= 0` guards is not.
 ///
 /// @param syntax  The expression.
