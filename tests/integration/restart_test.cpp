@@ -23,7 +23,7 @@ TEST_F(Restart, AKilledPlantIsNoticedWithinTwoStepsAndANewOneContinues) {
   EXPECT_EQ(plant->Wait(5s).signal, SIGKILL);
 
   // By the estimator's words, and by its messages: the first one that flags the silence.
-  EXPECT_TRUE(estimator->WaitForErr("plant is silent", 10s)) << estimator->err();
+  EXPECT_TRUE(estimator->WaitForErr("plant has been silent", 10s)) << estimator->err();
   const auto silent = [this]() {
     for (const estimator_status_t& status : recorder_->statuses())
       if ((status.fault_flags & estimator_status_t::FAULT_PLANT_SILENT) != 0 && status.last_seq > 0) return status;
