@@ -242,8 +242,8 @@ TEST(ScenarioFile, RefusesARecordingThatIsNoneOrNotEven) {
   EXPECT_THAT(problem("0.0,0.1\n", kSteps), HasSubstr("fewer than two"));
   EXPECT_THAT(problem("0.0,hello\n0.5,0.6\n", kSteps), HasSubstr("motion.csv:2"));
   EXPECT_THAT(problem(kRamp, "0.0,2.0\n0.5,2.0\n"), HasSubstr("no noise"));
-  EXPECT_THAT(problem(kRamp, kSteps, "correlation = 0.5\n"), HasSubstr("has a colour"));
-  EXPECT_THAT(problem(kRamp, kSteps, "correlation_to = 0.5\n"), HasSubstr("has a colour"));
+  EXPECT_THAT(problem(kRamp, kSteps, "correlation = 0.5\n"), HasSubstr("has its own correlation"));
+  EXPECT_THAT(problem(kRamp, kSteps, "correlation_to = 0.5\n"), HasSubstr("has its own correlation"));
 }
 
 }  // namespace

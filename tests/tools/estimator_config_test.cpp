@@ -201,7 +201,7 @@ TEST(EstimatorConfig, WhatIsRegressedCanBeChosenForTheActuator) {
                 AllOf(HasSubstr("f.toml:4"), HasSubstr("model." + key), HasSubstr("has no rate to regress")));
   }
   EXPECT_THAT(ErrorOf(kActuator + "pressure_rate = true\nregress_rate = true\n"),
-              HasSubstr("another word for regress_rate"));
+              HasSubstr("means the same as regress_rate"));
   EXPECT_THAT(ErrorOf(kActuator + "regres_rate = true\n"), HasSubstr("did you mean regress_rate?"));
 }
 

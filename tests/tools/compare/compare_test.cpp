@@ -114,7 +114,7 @@ TEST_F(CompareProgram, AnotherMethodIsComparedToo) {
 TEST_F(CompareProgram, TheSameConfigurationGivesTheSameRun) {
   const test::Outcome o = Run({"--compare", dir_ / "a.toml"});
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(Page(), HasSubstr("Nothing that is known to change an estimate"));
+  EXPECT_THAT(Page(), HasSubstr("None that changes an estimate."));
   const std::string line = o.out.substr(o.out.find("log evidence"), 120);
   EXPECT_EQ(line.substr(0, line.find('\n')).back(), '0') << line;
 }

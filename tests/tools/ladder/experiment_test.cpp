@@ -190,7 +190,7 @@ TEST(SeparatingMotion, ForeseesNothingWhereALawReadsWhatTheMotionMakes) {
   plant.states = {{"w", "m/s", "velocity", "a", "v", "v", 1}};
   tie.base.model = std::make_shared<const identify::TrajectoryModel>(std::make_shared<const Plant>(plant), data.series);
   const gap::Experiment experiment = SeparatingMotion(data, tie, plant);
-  EXPECT_THAT(experiment.words, HasSubstr("cannot be foreseen: v depends on the motion itself"));
+  EXPECT_THAT(experiment.words, HasSubstr("cannot be predicted: v depends on the motion itself"));
   EXPECT_THAT(experiment.words, Not(HasSubstr("nats")));
   EXPECT_EQ(experiment.scenario_text, "");
 }
