@@ -2,6 +2,7 @@
 
 #include "armcmc/mode_sampler.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "armcmc/density_fit.hpp"
@@ -94,6 +95,7 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
   }
   SetElliptic(fit_fresh_.mean, Inverse(fit_fresh_.precision), kLaplaceInflation, &student_table_, &laplace_fresh_);
   num_persisted_ = 0;
+  ws->drift_factor.dim = 0;
   if (!use_previous) return;
   const auto add = [&](const Gaussian& fit) noexcept ARMCMC_NONBLOCKING {
     SetElliptic(fit.mean, Inverse(fit.precision), kLaplaceInflation, &student_table_,
@@ -105,7 +107,69 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
     return;
   }
   FitUnder(previous.mean, previous.covariance, data, ws, &fit_persisted_);
+  if (!drift_.Splits(previous) && drift_.Drifts(previous, 0)) LetDrift(data, previous, ws, &fit_persisted_);
   add(fit_persisted_);
+  if (drift_.Splits(previous)) FitApart(data, previous, ws);
+}
+
+void ModeSampler::LetDrift(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws,
+                           Gaussian* fit) noexcept {
+  if (data.states != nullptr) return;  // constant in the pack: see ModeData::before_end
+  ws->drift_factor.log_scale = previous.log_noise_scale;
+  ws->linear_levers.dim = 0;
+  for (int k = 0; k < 2; ++k) {  // about the fit, then about what becomes of it
+    const ParamVector about = fit->mean.head(space_.num_parameters);
+    const LocalLikelihood local = ExpandLikelihood(kernels_, model_, data, noise_, space_, about,
+                                                   previous.log_noise_scale, &ws->laplace, &ws->drift_factor);
+    if (!drift_.LetDrift(local, fit, &ws->drift_factor)) return;
+  }
+  if (noise_.kind() != NoiseKind::kGaussian) LineariseLevers(data, *fit, ws);
+}
+
+void ModeSampler::LineariseLevers(const ModeData& data, const Gaussian& fit, SamplerWorkspace* ws) const noexcept {
+  LinearLevers& near = ws->linear_levers;
+  const int dim = space_.dim;
+  near.dim = 0;
+  ParamMatrix root;
+  if (!CholeskyFactor(Inverse(fit.precision), &root)) return;
+  const ParamMatrix whiten = Inverse(root);
+  static_assert(1 + 2 * kMaxParams <= kTileLanes);
+  alignas(64) std::array<std::array<double, kTileLanes>, kMaxParams> u;
+  std::array<const double*, kMaxParams> rows{};
+  for (int d = 0; d < dim; ++d) {
+    auto& row = u[static_cast<std::size_t>(d)];
+    row.fill(fit.mean[d]);
+    for (int j = 0; j < dim; ++j) {
+      row[static_cast<std::size_t>(1 + 2 * j)] += root(d, j);
+      row[static_cast<std::size_t>(2 + 2 * j)] -= root(d, j);
+    }
+    rows[static_cast<std::size_t>(d)] = row.data();
+  }
+  alignas(64) std::array<double, kTileLanes> log_scale, log_likelihood;
+  kernels_.to_physical(space_, rows.data(), 0, &ws->theta[0], log_scale.data());
+  kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
+  kernels_.lever_sums(ws->drift_factor, noise_, data, ws->prediction, log_scale.data(), &ws->levers,
+                      log_likelihood.data());
+  for (int d = 0; d < dim; ++d) near.about[d] = fit.mean[d];
+  for (int m = 0; m < ws->drift_factor.dim; ++m) {
+    const double* const value = ws->levers.value[m];
+    near.at[m] = value[0];
+    for (int d = 0; d < dim; ++d) {
+      near.slope[m][d] = 0.0;
+      for (int j = 0; j < dim; ++j) near.slope[m][d] += 0.5 * (value[1 + 2 * j] - value[2 + 2 * j]) * whiten(j, d);
+    }
+  }
+  near.num_levers = ws->drift_factor.dim;
+  near.dim = dim;
+}
+
+void ModeSampler::LeversNear(const LinearLevers& near, const double* const* u, int first, LeverTile* levers) noexcept {
+  for (int m = 0; m < near.num_levers; ++m) {
+    double* const value = levers->value[m];
+    std::fill(value, value + kTileLanes, near.at[m]);
+    for (int d = 0; d < near.dim; ++d)
+      for (int l = 0; l < kTileLanes; ++l) value[l] += near.slope[m][d] * (u[d][first + l] - near.about[d]);
+  }
 }
 
 void ModeSampler::FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data,
@@ -131,6 +195,7 @@ void ModeSampler::FitApart(const ModeData& data, const PosteriorMemory& previous
     const DensityBlock& block = previous.block[static_cast<std::size_t>(b)];
     Gaussian fit;
     FitUnder(MeanOf(block), CovarianceOf(block), data, ws, &fit);
+    if (drift_.Drifts(previous, b)) LetDrift(data, previous, ws, &fit);
     SetElliptic(fit.mean, Inverse(fit.precision), kLaplaceInflation, &student_table_,
                 &laplace_persisted_[static_cast<std::size_t>(num_persisted_++)]);
   }

@@ -36,7 +36,7 @@ QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const Pa
                     std::cos(3.14159265358979323846 * static_cast<double>(k) * (static_cast<double>(j) + 0.5) / kNodes);
 }
 
-void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept {
+void QuadraticScore::TakeSums(const ModeData& data, const DriftFactor* factor, QuadraticScratch* scratch) noexcept {
   const int lanes = part_.curved < 0 ? kTileLanes : kNodes;
   const auto tiles = static_cast<std::size_t>(part_.num_linear) + 1;
   for (int first = 0; first < lanes; first += kTileLanes) {
@@ -63,6 +63,10 @@ void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) n
     std::array<double*, QuadraticForm::kMaxFunctions> rows{};
     for (std::size_t f = 0; f < rows.size(); ++f) rows[f] = &sums_[f][static_cast<std::size_t>(first)];
     kernels_.quadratic_sums(data, noise_.settings().mean, part_.num_linear, scratch->prediction.data(), rows.data());
+    if (form_.num_levers == 0) continue;
+    for (std::size_t f = 0; f < rows.size(); ++f) rows[f] = &lever_sums_[f][static_cast<std::size_t>(first)];
+    kernels_.lever_node_sums(*factor, data, noise_.settings().mean, part_.num_linear, scratch->prediction.data(),
+                             rows.data());
   }
 }
 
@@ -89,7 +93,7 @@ int QuadraticScore::Degree(double variance) const noexcept {
   return degree;
 }
 
-bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
+bool QuadraticScore::IsConfirmed(const ModeData& data, const DriftFactor* factor, const ParamVector& sd,
                                  QuadraticScratch* scratch) const noexcept {
   constexpr int kNear = kTileLanes / 2 - 1;  // odd, so that the centre is one of them
   constexpr double kReach = 4.0;             // standard deviations
@@ -117,16 +121,40 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& sd,
   Score(u.data(), 0, by_sums.data());
   for (std::size_t l = 0; l < kTileLanes; ++l)
     if (!(std::fabs(by_sums[l] - by_samples[l]) <= kConfirmed + kTolerance * std::fabs(by_samples[l]))) return false;
+  if (form_.num_levers == 0) return true;
+  LeverTile levers, levers_by_sums;
+  kernels_.lever_sums(*factor, noise_, data, scratch->prediction[0], log_scale.data(), &levers, by_samples.data());
+  Levers(u.data(), 0, &levers_by_sums);
+  for (int d = 0; d < form_.num_levers; ++d) {
+    double largest = 1.0;
+    for (const double v : levers.value[d]) largest = std::fmax(largest, std::fabs(v));
+    for (int l = 0; l < kTileLanes; ++l)
+      if (!(std::fabs(levers_by_sums.value[d][l] - levers.value[d][l]) <= kTolerance * largest)) return false;
+  }
   return true;
 }
 
-void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept {
+void QuadraticScore::Interpolate(const std::array<double, kNodes>& sums, int terms, double* series) const noexcept {
+  const CosineTable& transform = transform_[0];
+  for (std::size_t k = 0; k < static_cast<std::size_t>(terms); ++k) {
+    std::array<double, 4> part{};
+    for (std::size_t j = 0; j < kNodes; j += 4)
+      for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums[j + l];
+    series[k] = (part[0] + part[1]) + (part[2] + part[3]);
+  }
+}
+
+void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch,
+                             const DriftFactor* factor) noexcept {
   ready_ = false;
   const ParamVector& about = fit.mean;
   if (!applies_ || data.start_fit != nullptr || !about.allFinite()) return;
   num_samples_ = data.num_samples;
   for (int d = 0; d < space_.dim; ++d) form_.about[static_cast<std::size_t>(d)] = about[d];
-  TakeSums(data, scratch);
+  form_.num_levers = factor != nullptr ? factor->dim : 0;
+  const auto levers = static_cast<std::size_t>(form_.num_levers * (1 + part_.num_linear));
+  if (levers > QuadraticForm::kMaxFunctions) return;
+  TakeSums(data, factor, scratch);
   const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
   if (part_.curved < 0) {
     form_.degree = 0;
@@ -135,29 +163,31 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
       form_.coefficient[f][0] = sums_[f][0];
       ready_ = ready_ && std::isfinite(sums_[f][0]);
     }
+    for (std::size_t f = 0; f < levers; ++f) {
+      form_.lever[f][0] = lever_sums_[f][0];
+      ready_ = ready_ && std::isfinite(lever_sums_[f][0]);
+    }
     return;
   }
-  const CosineTable& transform = transform_[0];
-  for (std::size_t f = 0; f < functions; ++f)
-    for (std::size_t k = 0; k < kNodes; ++k) {
-      std::array<double, 4> part{};
-      for (std::size_t j = 0; j < kNodes; j += 4)
-        for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums_[f][j + l];
-      series_[f][k] = (part[0] + part[1]) + (part[2] + part[3]);
-    }
+  for (std::size_t f = 0; f < functions; ++f) Interpolate(sums_[f], kNodes, series_[f].data());
   const double scale = std::exp(space_.LogNoiseScale(about.data()));
   const int degree = Degree(scale * scale);
   if (degree < 0) return;
   form_.degree = degree;
   for (std::size_t f = 0; f < functions; ++f)
     std::copy_n(series_[f].begin(), static_cast<std::size_t>(degree) + 1, form_.coefficient[f].begin());
+  for (std::size_t f = 0; f < levers; ++f) Interpolate(lever_sums_[f], degree + 1, form_.lever[f].data());
   ParamVector sd = Inverse(fit.precision).diagonal();
   for (int d = 0; d < space_.dim; ++d) sd[d] = sd[d] > 0.0 ? std::sqrt(sd[d]) : 1.0;
-  ready_ = IsConfirmed(data, sd, scratch);
+  ready_ = IsConfirmed(data, factor, sd, scratch);
 }
 
 void QuadraticScore::Score(const double* const* u, int first, double* out) const noexcept {
   kernels_.score_quadratic(form_, space_, noise_, num_samples_, u, first, out);
+}
+
+void QuadraticScore::Levers(const double* const* u, int first, LeverTile* sums) const noexcept {
+  kernels_.levers_quadratic(form_, space_, u, first, sums);
 }
 
 }  // namespace armcmc

@@ -8,6 +8,7 @@
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/draw_pace.hpp"
 #include "armcmc/drift.hpp"
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/finish_time.hpp"
 #include "armcmc/forgetting.hpp"
 #include "armcmc/laplace.hpp"
@@ -45,6 +46,9 @@ class SamplerWorkspace {
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;
   LaplaceScratch laplace;
+  DriftFactor drift_factor;  ///< Of the blocks of the memory that drift.
+  LinearLevers linear_levers;
+  LeverTile levers;
   ThetaPair theta;
   PredictionTile prediction;
   QuadraticScratch quadratic;
@@ -177,6 +181,17 @@ class ModeSampler {
   /// Laplace fit under a memory with these moments.
   void FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data, SamplerWorkspace* ws,
                 Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
+  /// What becomes of a fit of parameters that drift where they also do so during the pack, and the factor of the
+  /// likelihood of that.
+  void LetDrift(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws,
+                Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
+  /// ws->linear_levers from candidates one standard deviation from the fit, each way along the columns of the root of
+  /// its covariance.
+  void LineariseLevers(const ModeData& data, const Gaussian& fit,
+                       SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
+  /// Levers of the candidates [first, first + kTileLanes).
+  static void LeversNear(const LinearLevers& near, const double* const* u, int first,
+                         LeverTile* levers) noexcept ARMCMC_NONBLOCKING;
   /// The Laplace fits of what rests and of what drifts: they may have come apart.
   void FitApart(const ModeData& data, const PosteriorMemory& previous,
                 SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;

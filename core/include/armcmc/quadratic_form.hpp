@@ -29,6 +29,10 @@ struct QuadraticForm {
   int degree = 0;  ///< 0, or odd.
   /// Of c, then for every i of b_i and of a_ij for j from i on: factor k of T_k at [k].
   alignas(64) std::array<std::array<double, kMaxDegree + 1>, kMaxFunctions> coefficient{};
+  /// Sums of the errors with the levers of a DriftFactor, l_m(u) = e_m(t) + sum_i s_mi(t) d_i: for every lever of e_m,
+  /// then of s_mi for every i.
+  int num_levers = 0;
+  alignas(64) std::array<std::array<double, kMaxDegree + 1>, kMaxFunctions> lever{};
 };
 
 }  // namespace armcmc

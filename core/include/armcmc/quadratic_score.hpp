@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/linear_part.hpp"
@@ -46,20 +47,24 @@ class QuadraticScore {
   /// The pack can be tried at all: the noise is Gaussian, and something is linear.
   [[nodiscard]] bool applies() const noexcept { return applies_; }
 
-  /// @param fit  Where the posterior lies, about.
+  /// @param fit     Where the posterior lies, about.
+  /// @param factor  Of parameters that drift, for Levers(); null where none do.
   /// @rt No heap, no lock, no throw. 2 (num_linear + 1) + 1 tiles of candidates, and their products.
-  void Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  void Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch,
+               const DriftFactor* factor = nullptr) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool ready() const noexcept { return ready_; }
 
   /// out[lane] = log-likelihood of u[., first + lane], kTileLanes of them. @pre ready().
   void Score(const double* const* u, int first, double* out) const noexcept ARMCMC_NONBLOCKING;
+  /// Sums of the scores of those candidates, as Kernels::lever_sums has them. @pre ready(), and Prepare() had a factor.
+  void Levers(const double* const* u, int first, LeverTile* sums) const noexcept ARMCMC_NONBLOCKING;
 
  private:
   static constexpr int kNodes = 2 * kTileLanes;
 
-  void TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  void TakeSums(const ModeData& data, const DriftFactor* factor, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   /// Candidates get what the samples give.
-  [[nodiscard]] bool IsConfirmed(const ModeData& data, const ParamVector& sd,
+  [[nodiscard]] bool IsConfirmed(const ModeData& data, const DriftFactor* factor, const ParamVector& sd,
                                  QuadraticScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
   /// Degree after which the series may end, -1 where they do not settle.
   [[nodiscard]] int Degree(double variance) const noexcept ARMCMC_NONBLOCKING;
@@ -75,7 +80,9 @@ class QuadraticScore {
   int num_samples_ = 0;
   QuadraticForm form_;
   std::vector<CosineTable> transform_;  ///< One, where a parameter is curved.
-  alignas(64) std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> sums_{};
+  /// The first terms of the series of sums at the Chebyshev points.
+  void Interpolate(const std::array<double, kNodes>& sums, int terms, double* series) const noexcept ARMCMC_NONBLOCKING;
+  alignas(64) std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> sums_{}, lever_sums_{};
   std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> series_{};
 };
 

@@ -124,5 +124,54 @@ void ScoreQuadratic(const QuadraticForm& form, const ParameterSpace& space, cons
   }
 }
 
+/// See Kernels::levers_quadratic.
+void LeversQuadratic(const QuadraticForm& form, const ParameterSpace& space, const double* const* u, int first,
+                     LeverTile* sums) noexcept ARMCMC_NONBLOCKING {
+  for (int v0 = 0; v0 < kVectors; v0 += kQuadraticGroup) {
+    const int lane = v0 * Simd::kLanes;
+    const auto coordinate = [&](int d, int g) noexcept { return Simd::Load(u[d] + first + lane + g * Simd::kLanes); };
+    ChebyshevBasis basis;
+    if (form.curved >= 0) {
+      QuadraticVectors t;
+      for (int g = 0; g < kQuadraticGroup; ++g) {
+        const V place = Simd::Fma(coordinate(form.curved, g), Simd::Set(form.slope), Simd::Set(form.origin));
+        t.at[g] = Simd::Min(Simd::Max(place, Simd::Set(-1.0)), Simd::Set(1.0));
+      }
+      basis.Fill(t, form.degree);
+    }
+    QuadraticVectors precision;
+    for (int g = 0; g < kQuadraticGroup; ++g) {
+      const V log_s =
+          space.samples_noise_scale()
+              ? Simd::Fma(Simd::Set(space.scale[static_cast<unsigned>(space.dim - 1)]), coordinate(space.dim - 1, g),
+                          Simd::Set(space.offset[static_cast<unsigned>(space.dim - 1)]))
+              : Simd::Set(space.log_noise_scale);
+      precision.at[g] = Simd::Exp2(log_s * Simd::Set(-2.0 * kLog2E));
+    }
+    unsigned f = 0;
+    for (int m = 0; m < form.num_levers; ++m) {
+      QuadraticVectors sum;
+      for (int i = 0; i <= form.num_linear; ++i, ++f) {
+        QuadraticVectors value;
+        if (form.curved >= 0) {
+          value = basis.Sum(form.lever[f].data(), form.degree);
+        } else {
+          for (int g = 0; g < kQuadraticGroup; ++g) value.at[g] = Simd::Set(form.lever[f][0]);
+        }
+        if (i == 0) {
+          sum = value;
+          continue;
+        }
+        const int d = form.linear[static_cast<unsigned>(i - 1)];
+        for (int g = 0; g < kQuadraticGroup; ++g)
+          sum.at[g] =
+              Simd::Fma(value.at[g], coordinate(d, g) - Simd::Set(form.about[static_cast<unsigned>(d)]), sum.at[g]);
+      }
+      for (int g = 0; g < kQuadraticGroup; ++g)
+        Simd::Store(&sums->value[m][lane + g * Simd::kLanes], sum.at[g] * precision.at[g]);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
