@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "armcmc/plant/error.hpp"
 
@@ -45,6 +46,23 @@ std::vector<Candidate> Candidates(const PlantDescription& plant, const std::vect
       }
     }
   return candidates;
+}
+
+bool SamePlace(const Candidate& a, const Candidate& b) {
+  return a.entry == b.entry && a.binding.form == b.binding.form && a.binding.symbols == b.binding.symbols;
+}
+
+std::optional<Candidate> SameOn(const PlantDescription& plant, const Candidate& effect, const DataScales& scales) {
+  for (const EffectBinding& binding : Bindings(plant, *effect.entry)) {
+    if (binding.form != effect.binding.form || binding.symbols != effect.binding.symbols) continue;
+    try {
+      auto composed = std::make_shared<const Plant>(AddEffect(plant, *effect.entry, binding, scales));
+      return Candidate{effect.entry, binding, std::move(composed), plant.parameters.size()};
+    } catch (const PlantError&) {  // beyond the limits of a plant
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace armcmc::ladder

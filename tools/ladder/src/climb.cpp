@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "bent_law.hpp"
+#include "bootstrap.hpp"
 #include "comparison.hpp"
-#include "confirmation.hpp"
-#include "constants.hpp"
-#include "curves.hpp"
-#include "derived_noise.hpp"
 #include "free_starts.hpp"
-#include "motion_rival.hpp"
+#include "naming.hpp"
 #include "open_tie.hpp"
-#include "plain_rivals.hpp"
+#include "reselect.hpp"
 #include "rung.hpp"
-#include "start_alone.hpp"
 #include "superseded.hpp"
 
 namespace armcmc::ladder {
@@ -38,121 +32,6 @@ class SharedProgress {
   const ClimbRequest& request_;
   std::mutex mutex_;
 };
-
-/// What was named on the rungs before.
-struct Before {
-  std::vector<const Candidate*> effects;
-  double explained = 0.0;  ///< Squared error that it removed, relative to what remains.
-
-  /// The named effect that acts like this one; null if none does.
-  [[nodiscard]] const Candidate* Like(const Contender& c) const {
-    const auto alike = std::find_if(effects.begin(), effects.end(),
-                                    [&](const Candidate* e) { return AreKin(*e->entry, *c.candidate.entry); });
-    return alike == effects.end() ? nullptr : *alike;
-  }
-  /// Whether an effect of another family is so small compared with it that an error of its formula would explain it.
-  [[nodiscard]] bool Dwarfs(const Contender& c) const {
-    constexpr double kFormulaError = 1.0 / 3.0;  // of the amplitude: formulas for the same physics differ by this much
-    return 1.0 - c.alone.folds < kFormulaError * kFormulaError * explained &&
-           std::none_of(effects.begin(), effects.end(),
-                        [&](const Candidate* e) { return e->entry->family == c.candidate.entry->family; });
-  }
-};
-
-/// Alternative explanations of what an effect explains.
-struct Rivals {
-  Constants constants;
-  DerivedNoise noise;
-  Curves curves;
-  BentLaw bent;
-  PlainRivals plain;
-  StartAlone start;
-  const View& view;
-  const Trial& base;
-  Before before;
-
-  /// @param exact  Nothing but noise is left, so that no curve of another shape can do better. A wrong constant, noise,
-  ///               or an error in an effect named earlier may still explain the same.
-  [[nodiscard]] std::optional<Rival> Of(const Contender& c, double floor, bool exact, bool smaller_part) {
-    std::optional<Rival> rival = constants.RivalOf(c);
-    if (!rival) rival = start.RivalOf(c, floor);
-    if (!rival) rival = MotionRivalOf(view, base, c);
-    if (!rival) rival = noise.RivalOf(c);
-    if (!rival) rival = bent.RivalOf(c);
-    if (!rival) rival = plain.RivalOf(c);
-    if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
-    if (rival || !before.Dwarfs(c)) return rival;
-    if (const Candidate* like = before.Like(c))
-      return Rival{like->entry->name + " had another formula", "acts alike and is three times as large"};
-    return curves.BendOf(c, before.effects);
-  }
-};
-
-/// Gives a name unless a rival rules it out.
-void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* rung, std::vector<std::string>* notes) {
-  for (bool again = true; again;) {
-    again = false;
-    Name(view, floor, open, rung);
-    for (const std::size_t i : rung->named) {
-      Contender& c = rung->contenders[i];
-      const std::optional<Rival> rival = rivals->Of(c, floor, !LeavesMore(view, c.trial, floor), open);
-      if (!rival) continue;
-      c.ruled_out = again = true;
-      if (rung->as_if.empty()) rung->as_if = rival->as_if;
-      notes->push_back(c.candidate.entry->name + " was not named: it acts as if " + rival->as_if + ", which " +
-                       rival->why);
-    }
-  }
-}
-
-/// What a name is checked against.
-struct NameChecks {
-  const Dataset& data;  ///< All of it.
-  const View& view;
-  double floor;
-  const Rung* open;  ///< The previous rung, if its name depends on this one; else null.
-  Rivals rivals;
-};
-
-/// Gives a name unless a rival rules it out or the held-out data contradict it.
-void NameAndConfirm(NameChecks* checks, Rung* rung, std::vector<std::string>* notes) {
-  double gained = 0.0;  // most of what is withdrawn
-  for (bool contradicted = false;;) {
-    NameOne(checks->view, checks->floor, false, &checks->rivals, rung, notes);
-    // Of two effects of the same size neither explains the larger part: the first may be named if the next completes
-    // it.
-    if (rung->named.empty() && checks->open == nullptr && !contradicted) {
-      NameOne(checks->view, checks->floor, true, &checks->rivals, rung, notes);
-      rung->open = !rung->named.empty();
-    }
-    if (rung->named.empty()) return;
-    Contender& leader = rung->contenders[rung->named.front()];
-    // What explains clearly less than an effect that is not there is not there either.
-    if (1.0 - leader.alone.folds < kAsGood * gained) {
-      notes->push_back(leader.candidate.entry->name + " was not named: it explains less than what was not named");
-      rung->open = false;
-      rung->named.clear();
-      return;
-    }
-    const Rung* const open = checks->open;
-    const double left = leader.alone.folds * (open != nullptr ? open->leader().alone.folds : 1.0);
-    const HeldOutErrors apart = ConfirmOnHeldOut(checks->data, open != nullptr ? open->base : rung->base, leader.trial,
-                                                 1.0 - left, NoiseIn(checks->view, leader.trial, checks->floor));
-    if (apart.agree) return;
-    if (!std::isfinite(apart.after) && open == nullptr) {
-      rung->open = true;
-      return;
-    }
-    char text[120];
-    std::snprintf(text, sizeof(text), " was not named: on the held-out data the error changes only from %.4g to %.4g",
-                  apart.before, apart.after);
-    notes->push_back(leader.candidate.entry->name + text);
-    gained = std::max(gained, 1.0 - leader.alone.folds);
-    leader.earned = rung->open = false;
-    rung->named.clear();
-    contradicted = true;
-  }
-}
 
 /// Index of the rung that named the same effect in the same place, if a second one would only draw a curve; else the
 /// number of rungs.
@@ -249,149 +128,208 @@ void GiveBackConstants(AsGiven given, Ladder* ladder, Trial* base) {
   ladder->free_constants.reset();
 }
 
+/// Names effects one after the other.
+class Climber {
+ public:
+  explicit Climber(const ClimbRequest& request) : request_(request), progress_(request) {
+    ladder_.entries = std::make_shared<const std::vector<EffectEntry>>(request.entries);
+    ladder_.plant = request.plant;
+    data_ = Compared(*ladder_.plant, request.data, request.most_simulated);
+  }
+
+  Ladder Run();
+
+ private:
+  enum class Next { kRung, kEnd };
+  /// Fits the plant without additions. @return whether its law has a finite value.
+  bool FitBase();
+  /// Names effects above those that are named, until nothing earns a name.
+  void NameMore();
+  /// Tries one rung above those that are named.
+  Next Step();
+  /// What follows when a rung has been given its name, or none.
+  Next Take(Rung rung, const DataScales& scales);
+  /// Whether something may be named above the tie.
+  Next AboveTie();
+  /// Tests the names again, each with those that follow it in the model. @return whether one was replaced or dropped
+  /// and more may be named.
+  bool NameAgain();
+  /// Repeats the first rung, which named nothing, with the constants of the plant fitted, if that removes enough.
+  bool FreeConstantsFor(Rung* rung, const DataScales& scales);
+
+  const ClimbRequest& request_;
+  SharedProgress progress_;
+  Ladder ladder_;
+  Dataset data_;  ///< The rows on which models are compared.
+  Trial base_;
+  std::set<std::string> families_;
+  int again_ = 2;  ///< Rungs that may be repeated from a better fit.
+  PlantDescription own_ = request_.plant->description();
+  Trial start_;                   ///< Base of the first rung.
+  std::optional<AsGiven> given_;  ///< The first rung, if it is repeated with other constants.
+  std::vector<std::string> first_notes_;
+  std::optional<OpenTie> tied_;
+  std::optional<AsTied> as_tied_;   ///< If a rung is tried above the tie.
+  std::vector<Candidate> dropped_;  ///< Effects that were named and did not hold.
+};
+
+Ladder Climber::Run() {
+  constexpr int kMostChanges = 4;
+  if (!FitBase()) return std::move(ladder_);
+  NameMore();
+  for (int k = 0; k < kMostChanges && NameAgain(); ++k) NameMore();
+  if (given_ && (ladder_.rungs.empty() || ladder_.rungs.front().named.empty()))
+    GiveBackConstants(std::move(*given_), &ladder_, &base_);
+  ladder_.final_trial = base_;
+  if (base_.judged) {
+    ladder_.flexible_gain = FlexibleGain(ladder_.view, base_);
+    ladder_.complete = !LeavesMore(ladder_.view, base_, ladder_.noise_floor);
+  }
+  return std::move(ladder_);
+}
+
+bool Climber::FitBase() {
+  progress_.Tell("fitting the model as it is", 0.0);
+  base_ = FitAlone(ladder_.plant, &data_);
+  if (!base_.fit.valid) {
+    ladder_.notes.push_back("the law has no finite value at any start: nothing was compared");
+    return false;
+  }
+  ladder_.noise_floor = request_.known_noise > 0.0 ? request_.known_noise
+                                                   : request_.noise_over_differences *
+                                                         NoiseFloor(data_, SmoothBut(base_), base_.model->active());
+  if (std::shared_ptr<const Plant> freed = WithFreeStarts(base_, data_, ladder_.noise_floor)) {
+    Eigen::VectorXd theta = identify::TrajectoryModel(freed, data_.series).Start();
+    theta.head(base_.fit.theta.size()) = base_.fit.theta;
+    if (Trial free = Refine(freed, data_, theta); free.fit.valid) {
+      ladder_.plant = std::move(freed);
+      base_ = std::move(free);
+    }
+  }
+  ladder_.base = start_ = base_;
+  first_notes_ = ladder_.notes;
+  return true;
+}
+
+void Climber::NameMore() {
+  while (ladder_.rungs.size() < static_cast<std::size_t>(request_.max_rungs))
+    if (Step() == Next::kEnd) break;
+  if (!ladder_.rungs.empty() && ladder_.rungs.back().open)  // the limit on rungs was reached
+    TakeBack(ladder_.rungs.size() - 1, &ladder_, &base_);
+}
+
+Climber::Next Climber::Step() {
+  const std::string which = "rung " + std::to_string(ladder_.rungs.size() + 1);
+  const double share = static_cast<double>(ladder_.rungs.size()) / request_.max_rungs;
+  const bool first = ladder_.rungs.empty();
+  const double floor = ladder_.noise_floor;
+  const DataScales scales = ScalesOf(data_, ladder_.plant->description(), floor);
+  ladder_.view = MakeView(data_, *base_.model, base_.fit.theta, scales.period);
+  LeaveOut(ladder_.view, &base_);
+  if (first && !given_) ladder_.base = base_;
+  Rung rung;
+  rung.base = base_;
+  rung.view = ladder_.view;
+  AddCandidates(*ladder_.entries, scales, &rung, &ladder_.notes);
+  progress_.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects", share);
+  TryAll(ladder_.plant, data_, ladder_.view, floor, &rung, &ladder_.notes);
+  if (Trial better = BetterBase(ladder_.plant, data_, rung); better.fit.valid && again_ > 0) {
+    base_ = std::move(better);
+    --again_;
+    return Next::kRung;
+  }
+  Bootstrap(&rung);
+  const Rung* const open = !first && ladder_.rungs.back().open ? &ladder_.rungs.back() : nullptr;
+  Judge(ladder_.view, floor, families_, open != nullptr ? open->leader().alone.folds : 1.0, &rung);
+  Sort(&rung);
+  std::vector<const Candidate*> before;
+  for (const Rung& earlier : ladder_.rungs) before.push_back(&earlier.leader().candidate);
+  if (first) start_ = base_;
+  const double explained = std::pow(start_.fit.error_sd / base_.fit.error_sd, 2) - 1.0;
+  NameAndConfirm({request_.data, data_, own_, ladder_.plant, scales, floor, open, std::move(before), explained}, &rung,
+                 &ladder_.notes);
+  if (first && rung.named.empty() && !given_ && LeavesMore(ladder_.view, base_, floor)) {
+    progress_.Tell(which + ": fitting constants", share);
+    if (FreeConstantsFor(&rung, scales)) return Next::kRung;
+  }
+  return Take(std::move(rung), scales);
+}
+
+bool Climber::FreeConstantsFor(Rung* rung, const DataScales& scales) {
+  ladder_.free_constants = Corrected(own_, ladder_.plant, data_, ladder_.view, scales, *rung);
+  if (!ladder_.free_constants) return false;
+  given_ = AsGiven{std::move(*rung), std::exchange(ladder_.plant, ladder_.free_constants->plant),
+                   std::exchange(ladder_.notes, first_notes_)};
+  base_ = ladder_.free_constants->trial;
+  own_.constants.clear();  // fitted: no rivals any more
+  return true;
+}
+
+Climber::Next Climber::Take(Rung rung, const DataScales& scales) {
+  const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
+  const bool open = !ladder_.rungs.empty() && ladder_.rungs.back().open;
+  if (!named && open) {
+    TakeBack(ladder_.rungs.size() - 1, &ladder_, &base_);
+    return Next::kEnd;
+  }
+  // What is named above a tie must not depend on which of its effects is present, nor on what may follow.
+  if (tied_ && (!named || rung.open || NamedAgain(ladder_, rung) != nullptr ||
+                !tied_->Extend(data_, ladder_.view, scales, ladder_.noise_floor, families_, rung))) {
+    base_ = std::move(as_tied_->base);
+    ladder_.view = std::move(as_tied_->view);
+    ladder_.notes = std::move(as_tied_->notes);
+    return Next::kEnd;
+  }
+  if (const Contender* second = NamedAgain(ladder_, rung)) {
+    ladder_.notes.push_back(second->candidate.entry->name +
+                            " was not named: one alone does not do, and two of them in one place are pieces of "
+                            "something that has another formula");
+    TakeBack(FirstWith(ladder_, second->candidate), &ladder_, &base_);
+    return Next::kEnd;
+  }
+  if (named && open) ladder_.rungs.back().open = false;
+  ladder_.rungs.push_back(std::move(rung));
+  if (!named) return Next::kEnd;
+  if (tied_)
+    tied_->Settle(&ladder_);
+  else
+    DropSuperseded(data_, &ladder_);
+  const Contender& leader = ladder_.rungs.back().leader();
+  ladder_.plant = leader.candidate.plant;
+  families_.insert(leader.candidate.entry->family);
+  base_ = leader.trial;
+  if (tied_ && tied_->decided()) tied_.reset();
+  if (tie && (tied_ || ladder_.rungs.back().open)) return Next::kEnd;
+  if (tie) tied_.emplace(ladder_.rungs.size() - 1, ladder_.rungs.back());
+  return tied_ ? AboveTie() : Next::kRung;
+}
+
+Climber::Next Climber::AboveTie() {
+  if (!LeavesMore(ladder_.view, base_, ladder_.noise_floor)) return Next::kEnd;
+  // Nothing simple is left if no function of the signals explains most of it.
+  const bool tie = ladder_.rungs.back().named.size() > 1;
+  if (tie && !(FlexibleGain(ladder_.view, base_) > kLargerPart)) return Next::kEnd;
+  as_tied_ = AsTied{base_, ladder_.view, ladder_.notes};
+  return Next::kRung;
+}
+
+bool Climber::NameAgain() {
+  const Again again{request_.data, data_, own_, ladder_.noise_floor, start_.fit.error_sd};
+  if (!Reselect(again, base_, &dropped_, &ladder_)) return false;
+  tied_.reset();
+  families_.clear();
+  for (const Rung& rung : ladder_.rungs) families_.insert(rung.leader().candidate.entry->family);
+  const Rung& last = ladder_.rungs.back();
+  ladder_.plant = last.leader().candidate.plant;
+  ladder_.view = last.view;
+  base_ = last.leader().trial;
+  if (last.named.size() < 2) return true;
+  tied_.emplace(ladder_.rungs.size() - 1, last);
+  return AboveTie() == Next::kRung;
+}
+
 }  // namespace
 
-Ladder Climb(const ClimbRequest& request) {
-  SharedProgress progress(request);
-  Ladder ladder;
-  ladder.entries = std::make_shared<const std::vector<EffectEntry>>(request.entries);
-  ladder.plant = request.plant;
-  Dataset data = Compared(*ladder.plant, request.data, request.most_simulated);
-
-  progress.Tell("fitting the model as it is", 0.0);
-  Trial base = FitAlone(ladder.plant, &data);
-  if (!base.fit.valid) {
-    ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
-    return ladder;
-  }
-  ladder.noise_floor = request.known_noise > 0.0
-                           ? request.known_noise
-                           : request.noise_over_differences * NoiseFloor(data, SmoothBut(base), base.model->active());
-  if (std::shared_ptr<const Plant> freed = WithFreeStarts(base, data, ladder.noise_floor)) {
-    Eigen::VectorXd theta = identify::TrajectoryModel(freed, data.series).Start();
-    theta.head(base.fit.theta.size()) = base.fit.theta;
-    if (Trial free = Refine(freed, data, theta); free.fit.valid) {
-      ladder.plant = std::move(freed);
-      base = std::move(free);
-    }
-  }
-  ladder.base = base;
-  std::set<std::string> families;
-  int again = 2;  // rungs that may be repeated from a better fit
-  PlantDescription own = request.plant->description();
-  Trial start = base;            // of the first rung
-  std::optional<AsGiven> given;  // the first rung, if it is repeated with other constants
-  const std::vector<std::string> first_notes = ladder.notes;
-  std::optional<OpenTie> tied;
-  std::optional<AsTied> as_tied;  // if a rung is tried above the tie
-  for (int r = 0; r < request.max_rungs; ++r) {
-    const std::string which = "rung " + std::to_string(r + 1);
-    const DataScales scales = ScalesOf(data, ladder.plant->description(), ladder.noise_floor);
-    Rung rung;
-    ladder.view = MakeView(data, *base.model, base.fit.theta, scales.period);
-    LeaveOut(ladder.view, &base);
-    if (r == 0 && !given) ladder.base = base;
-    rung.base = base;
-    rung.view = ladder.view;
-    for (Candidate& candidate : Candidates(ladder.plant->description(), *ladder.entries, scales, &ladder.notes))
-      rung.contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
-    progress.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
-                  static_cast<double>(r) / request.max_rungs);
-    TryAll(ladder.plant, data, ladder.view, ladder.noise_floor, &rung, &ladder.notes);
-    if (Trial better = BetterBase(ladder.plant, data, rung); better.fit.valid && again > 0) {
-      base = std::move(better);
-      --again;
-      --r;
-      continue;
-    }
-    Bootstrap(&rung);
-    const double floor = ladder.noise_floor;
-    const Rung* const open = !ladder.rungs.empty() && ladder.rungs.back().open ? &ladder.rungs.back() : nullptr;
-    Judge(ladder.view, floor, families, open != nullptr ? open->leader().alone.folds : 1.0, &rung);
-    Sort(&rung);
-    NameChecks checks{request.data,
-                      ladder.view,
-                      floor,
-                      open,
-                      {{own, ladder.plant, data, ladder.view, base, scales},
-                       {ladder.plant, data, ladder.view, base},
-                       {ladder.plant, data, ladder.view, base, scales},
-                       {ladder.plant, data, ladder.view, base, scales},
-                       {ladder.plant, data, ladder.view, base, scales, rung.contenders},
-                       {ladder.plant, data, ladder.view, base, scales},
-                       ladder.view,
-                       base,
-                       {}}};
-    Before& before = checks.rivals.before;
-    for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
-    if (r == 0) start = base;
-    before.explained = std::pow(start.fit.error_sd / base.fit.error_sd, 2) - 1.0;
-    NameAndConfirm(&checks, &rung, &ladder.notes);
-    if (r == 0 && rung.named.empty() && rung.as_if.empty() && LeavesMore(ladder.view, base, floor))
-      rung.as_if = checks.rivals.curves.Best();
-    const bool named = !rung.named.empty(), tie = rung.named.size() > 1;
-    if (r == 0 && !named && !given && LeavesMore(ladder.view, base, floor)) {
-      progress.Tell(which + ": fitting constants", static_cast<double>(r) / request.max_rungs);
-      ladder.free_constants = Corrected(own, ladder.plant, data, ladder.view, scales, rung);
-      if (ladder.free_constants) {
-        given = AsGiven{std::move(rung), std::exchange(ladder.plant, ladder.free_constants->plant),
-                        std::exchange(ladder.notes, first_notes)};
-        base = ladder.free_constants->trial;
-        own.constants.clear();  // fitted: no rivals any more
-        --r;
-        continue;
-      }
-    }
-    if (!named && open != nullptr) {
-      TakeBack(ladder.rungs.size() - 1, &ladder, &base);
-      break;
-    }
-    // What is named above a tie must not depend on which of its effects is present, nor on what may follow.
-    if (tied && (!named || rung.open || NamedAgain(ladder, rung) != nullptr ||
-                 !tied->Extend(data, ladder.view, scales, floor, families, *ladder.entries, rung))) {
-      base = std::move(as_tied->base);
-      ladder.view = std::move(as_tied->view);
-      ladder.notes = std::move(as_tied->notes);
-      break;
-    }
-    if (const Contender* second = NamedAgain(ladder, rung)) {
-      ladder.notes.push_back(second->candidate.entry->name +
-                             " was not named: one alone does not do, and two of them in one place are pieces of "
-                             "something that has another formula");
-      TakeBack(FirstWith(ladder, second->candidate), &ladder, &base);
-      break;
-    }
-    if (named && open != nullptr) ladder.rungs.back().open = false;
-    ladder.rungs.push_back(std::move(rung));
-    if (!named) break;
-    if (tied)
-      tied->Settle(&ladder);
-    else
-      DropSuperseded(data, &ladder);
-    const Contender& leader = ladder.rungs.back().leader();
-    ladder.plant = leader.candidate.plant;
-    families.insert(leader.candidate.entry->family);
-    base = leader.trial;
-    if (tied && tied->decided()) tied.reset();
-    if (tie && (tied || ladder.rungs.back().open)) break;
-    if (tie) tied.emplace(ladder.rungs.size() - 1, ladder.rungs.back());
-    if (tied) {
-      if (!LeavesMore(ladder.view, base, floor)) break;
-      // Nothing simple is left if no function of the signals explains most of it.
-      if (tie && !(FlexibleGain(ladder.view, base) > kLargerPart)) break;
-      as_tied = AsTied{base, ladder.view, ladder.notes};
-    }
-  }
-  if (!ladder.rungs.empty() && ladder.rungs.back().open)  // the limit on rungs was reached
-    TakeBack(ladder.rungs.size() - 1, &ladder, &base);
-  if (given && (ladder.rungs.empty() || ladder.rungs.front().named.empty()))
-    GiveBackConstants(std::move(*given), &ladder, &base);
-  ladder.final_trial = base;
-  if (base.judged) {
-    ladder.flexible_gain = FlexibleGain(ladder.view, base);
-    ladder.complete = !LeavesMore(ladder.view, base, ladder.noise_floor);
-  }
-  return ladder;
-}
+Ladder Climb(const ClimbRequest& request) { return Climber(request).Run(); }
 
 }  // namespace armcmc::ladder

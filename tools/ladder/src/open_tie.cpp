@@ -5,24 +5,11 @@
 #include <optional>
 #include <utility>
 
+#include "bootstrap.hpp"
 #include "comparison.hpp"
 #include "rung.hpp"
 
 namespace armcmc::ladder {
-namespace {
-
-/// The same effect in the same place of another model; empty if there is no room for it.
-std::optional<Candidate> SameOn(const PlantDescription& plant, const Candidate& effect,
-                                const std::vector<EffectEntry>& entries, const DataScales& scales) {
-  std::vector<std::string> notes;
-  for (Candidate& candidate : Candidates(plant, entries, scales, &notes))
-    if (candidate.entry == effect.entry && candidate.binding.form == effect.binding.form &&
-        candidate.binding.symbols == effect.binding.symbols)
-      return std::move(candidate);
-  return std::nullopt;
-}
-
-}  // namespace
 
 OpenTie::OpenTie(std::size_t place, const Rung& rung) : place_(place) {
   for (const std::size_t i : rung.named)
@@ -30,7 +17,7 @@ OpenTie::OpenTie(std::size_t place, const Rung& rung) : place_(place) {
 }
 
 bool OpenTie::Extend(const Dataset& data, const View& view, const DataScales& scales, double floor,
-                     const std::set<std::string>& families, const std::vector<EffectEntry>& entries, const Rung& next) {
+                     const std::set<std::string>& families, const Rung& next) {
   const EffectEntry* const entry = next.leader().candidate.entry;
   if (std::any_of(branches_.begin(), branches_.end(), [&](const Branch& b) { return b.effect.entry == entry; }))
     return false;
@@ -43,7 +30,7 @@ bool OpenTie::Extend(const Dataset& data, const View& view, const DataScales& sc
     if (b > 0) {
       const std::shared_ptr<const Plant> plant =
           std::make_shared<const Plant>(branch.trial.model->plant().description());
-      std::optional<Candidate> same = SameOn(plant->description(), with.candidate, entries, scales);
+      std::optional<Candidate> same = SameOn(plant->description(), with.candidate, scales);
       if (!same) return false;
       Rung alone;
       alone.base = branch.trial;

@@ -26,8 +26,7 @@ class OpenTie {
   /// nothing
   ///   is changed.
   [[nodiscard]] bool Extend(const Dataset& data, const View& view, const DataScales& scales, double floor,
-                            const std::set<std::string>& families, const std::vector<EffectEntry>& entries,
-                            const Rung& next);
+                            const std::set<std::string>& families, const Rung& next);
 
   /// Writes the first branch into the ladder: which effects of the rung are still tied, and the leaders of the rungs
   /// above it as fitted there.

@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <optional>
-#include <random>
 #include <utility>
 
 #include "armcmc/plant/error.hpp"
 #include "armcmc/support/parallel.hpp"
+#include "bootstrap.hpp"
 #include "comparison.hpp"
 
 namespace armcmc::ladder {
@@ -19,7 +18,6 @@ namespace {
 
 constexpr std::size_t kMostJudged =
     8;  // candidates of a rung that are judged, best first: those far behind are not named anyway
-constexpr int kBootstrap = 400;
 constexpr double kAtBound = 1e-3;     // of the logarithm of a frequency or damping ratio
 constexpr std::size_t kAnywhere = 8;  // starting points for all parameters of a simulated plant
 constexpr double kSure = 0.99;        // fraction of bootstrap samples in which it is better
@@ -86,6 +84,9 @@ bool IsDetermined(const View& view, const Contender& c) {
   return !any;
 }
 
+/// Whether only a few segments of the data show the effect.
+bool FewShow(const Contender& c) { return c.alone.blocks > 1.0 - kLeastGain || c.gain_share < kSure; }
+
 /// Number of starting points: one if only amplitudes are fitted, in which laws are linear; more for shape parameters.
 std::size_t StartsFor(const Contender& c) {
   constexpr std::size_t kOfShape = 8;
@@ -100,24 +101,6 @@ struct QuickBase {
   Dataset data;
   double square;  ///< Mean squared error.
 };
-
-/// Bootstrap samples of the short segments, the same at every call.
-/// @param see  Called for each sample with the squared errors of the base model and of those in `among`.
-template <class See>
-void ForEachSample(const Rung& rung, const std::vector<std::size_t>& among, See see) {
-  std::mt19937_64 random(400);
-  const std::size_t stretches = rung.base.stretches.size();
-  std::vector<double> weight, squares(among.size());
-  for (int b = 0; b < kBootstrap; ++b) {
-    weight.assign(stretches, 0.0);
-    for (std::size_t k = 0; k < stretches; ++k) weight[random() % stretches] += 1.0;
-    const auto total = [&](const std::vector<double>& of_stretch) {
-      return std::inner_product(weight.begin(), weight.end(), of_stretch.begin(), 0.0);
-    };
-    for (std::size_t k = 0; k < among.size(); ++k) squares[k] = total(rung.contenders[among[k]].trial.stretches);
-    see(total(rung.base.stretches), squares);
-  }
-}
 
 /// Signals and states that an effect needs.
 std::set<std::string> NeededBy(const Contender& c) {
@@ -140,22 +123,6 @@ bool IsTheSameWithMore(const View& view, const Trial& base, const Contender& c, 
   return apart.squaredNorm() < kSame * added.squaredNorm();
 }
 
-/// Fraction of bootstrap samples in which the first of those named is the best of them.
-double ShareOfFirst(const Rung& rung) {
-  int wins = 0;
-  ForEachSample(rung, rung.named, [&](double, const std::vector<double>& squares) {
-    if (std::min_element(squares.begin(), squares.end()) == squares.begin()) ++wins;
-  });
-  return static_cast<double>(wins) / kBootstrap;
-}
-
-/// Fraction of the bootstrap samples in which a family of those named has the smallest error of all that were compared.
-double WinShare(const Rung& rung) {
-  double share = 0.0;
-  for (const std::size_t i : rung.named) share += rung.contenders[i].win_share;
-  return share;
-}
-
 }  // namespace
 
 bool AreKin(const EffectEntry& a, const EffectEntry& b) {
@@ -163,6 +130,12 @@ bool AreKin(const EffectEntry& a, const EffectEntry& b) {
     return std::find(x.kin.begin(), x.kin.end(), y.name) != x.kin.end();
   };
   return lists(a, b) || lists(b, a);
+}
+
+void AddCandidates(const std::vector<EffectEntry>& entries, const DataScales& scales, Rung* rung,
+                   std::vector<std::string>* notes) {
+  for (Candidate& candidate : Candidates(rung->base.model->plant().description(), entries, scales, notes))
+    rung->contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
 }
 
 void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor, Rung* rung,
@@ -261,28 +234,6 @@ Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data,
   return best;
 }
 
-void Bootstrap(Rung* rung) {
-  std::vector<int> gains(rung->contenders.size(), 0);
-  std::vector<std::size_t> judged;
-  for (std::size_t i = 0; i < rung->contenders.size(); ++i)
-    if (rung->contenders[i].trial.judged) judged.push_back(i);
-  std::map<std::string, int> wins;
-  ForEachSample(*rung, judged, [&](double base, const std::vector<double>& squares) {
-    const auto least = std::min_element(squares.begin(), squares.end());
-    if (least != squares.end() && *least < base) {
-      const auto winner = judged[static_cast<std::size_t>(least - squares.begin())];
-      ++wins[rung->contenders[winner].candidate.entry->family];
-    }
-    for (std::size_t k = 0; k < judged.size(); ++k)
-      if (squares[k] < (1.0 - kLeastGain) * base) ++gains[judged[k]];
-  });
-  for (std::size_t i = 0; i < rung->contenders.size(); ++i) {
-    Contender& c = rung->contenders[i];
-    c.gain_share = static_cast<double>(gains[i]) / kBootstrap;
-    c.win_share = static_cast<double>(wins[c.candidate.entry->family]) / kBootstrap;
-  }
-}
-
 void Judge(const View& view, double floor, const std::set<std::string>& families, double before, Rung* rung) {
   for (Contender& c : rung->contenders) {
     if (!c.trial.judged) continue;
@@ -330,7 +281,7 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
     if (leader == SIZE_MAX || key(i) < key(leader)) leader = i;
   }
   rung->named = {leader};
-  rung->provisional = all[leader].alone.blocks > 1.0 - kLeastGain || all[leader].gain_share < kSure;
+  rung->provisional = FewShow(all[leader]);
   // A formula that leaves nothing but noise is exact: an effect that acts like it or contains it is no rival.
   const bool not_exact = LeavesMore(view, all[leader].trial, floor);
   std::set<std::string> families{all[leader].candidate.entry->family};
@@ -371,6 +322,16 @@ void Name(const View& view, double floor, bool open, Rung* rung) {
   }
   // A simpler effect is preferred to larger ones that are better; those do not count as rivals.
   rung->probability = rung->named.size() > 1 ? ShareOfFirst(*rung) : all[leader].gain_share;
+}
+
+void NameAs(std::vector<std::size_t> named, Rung* rung) {
+  std::sort(named.begin(), named.end(), [&](std::size_t a, std::size_t b) {
+    return rung->contenders[a].alone.folds < rung->contenders[b].alone.folds;
+  });
+  rung->named = std::move(named);
+  rung->open = false;
+  rung->provisional = FewShow(rung->leader());
+  rung->probability = rung->named.size() > 1 ? ShareOfFirst(*rung) : rung->leader().gain_share;
 }
 
 std::vector<std::size_t> StillTied(const Rung& rung) {

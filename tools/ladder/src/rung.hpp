@@ -8,6 +8,11 @@
 
 namespace armcmc::ladder {
 
+/// Adds every effect that the base model has a place for to the contenders.
+/// @param notes  Receives the reason if an effect is beyond the limits of a plant.
+void AddCandidates(const std::vector<EffectEntry>& entries, const DataScales& scales, Rung* rung,
+                   std::vector<std::string>* notes);
+
 /// Fits all candidates to a subset, refits the promising ones to all rows, and compares those that may be named with
 /// the base model.
 /// @param floor  Standard deviation of the noise. If only noise remains on the subset but not on all rows, all rows are
@@ -21,9 +26,6 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
 /// @return an invalid trial if there is none.
 [[nodiscard]] Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Rung& rung);
 
-/// Sets gain_share and win_share, by a bootstrap over the short segments.
-void Bootstrap(Rung* rung);
-
 /// Applies rule 1 of Climb() to every contender.
 /// @param families  Families named before, in which smaller effects may follow.
 /// @param before    Share of the error that the previous rung leaves, if its name is still open; otherwise 1.
@@ -33,6 +35,10 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
 /// are none.
 /// @param open  Also accept effects that remove less than half of the error.
 void Name(const View& view, double floor, bool open, Rung* rung);
+
+/// Names these contenders, whichever they are: several are a tie. Sets what depends on the name.
+/// @pre They are judged.
+void NameAs(std::vector<std::size_t> named, Rung* rung);
 
 /// The contenders that the best one of them does not exclude by rule 3 of Climb(): its kin, and families that win one
 /// bootstrap sample in twenty; the best first. All have to be judged.

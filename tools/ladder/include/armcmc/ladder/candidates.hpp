@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,12 @@ struct Candidate {
 /// @param entries  Must outlive the candidates.
 [[nodiscard]] std::vector<Candidate> Candidates(const PlantDescription& plant, const std::vector<EffectEntry>& entries,
                                                 const DataScales& scales, std::vector<std::string>* notes);
+
+/// Whether both are the same formula of one effect on the same quantities.
+[[nodiscard]] bool SamePlace(const Candidate& a, const Candidate& b);
+
+/// The same effect in the same place of another plant; empty if there is no room for it.
+[[nodiscard]] std::optional<Candidate> SameOn(const PlantDescription& plant, const Candidate& effect,
+                                              const DataScales& scales);
 
 }  // namespace armcmc::ladder

@@ -133,6 +133,15 @@ struct ClimbRequest {
 ///    of a curve that is neither (two backlashes approximate a hardening spring).
 /// 6. Once. If a rung names another formula of the effect that the rung before named, on the same quantities, and it
 ///    explains as much without that, it takes its place.
+/// 7. Together. An effect that is missing may first be named by another that acts like it and something else: a spring
+///    and dry friction look like a play. When nothing more earns a name, each earlier name is therefore tested again,
+///    with those that followed it in the model. It is dropped if it then removes less than a tenth of the squared
+///    error, unless one of them is another effect of its family, which describes it more closely, as asymmetric
+///    friction does dry friction. Otherwise all candidates are tried in its place by rules 1 to 5. An effect takes its
+///    place that has fewer parameters and passes rule 2, or leaves less than half of the error and is better in every
+///    kind of group, or if the same effect was named once more; several do if the data do not separate them. The names
+///    above are then given again, the effect that explains most first, and more may follow. What was dropped does not
+///    take a place again.
 ///
 /// If the first rung names nothing, the constants of the plant may hide an effect: they are a few percent off in most
 /// files. If all of them together, each up to 5 % from the file, remove a tenth of the squared error on left-out data,
