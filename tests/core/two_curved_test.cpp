@@ -96,8 +96,10 @@ struct TwoPowersCase {
 };
 
 TEST(TwoCurvedParameters, ScoreAsEverySampleDoes) {
-  // In the last one f_0 is curved, and meets what is curved otherwise.
-  for (const char* law : {"K*x^p + B*v*x^q + c", "K*v*x^q + B*x^p + c", "0.1*exp(p*x) + K*x + B*v*x^q + c*v"})
+  // In the third law a function of the second exponent precedes one of the first, and their product tells which is
+  // which; in the last one f_0 is curved, and meets what is curved otherwise.
+  for (const char* law :
+       {"K*x^p + B*v*x^q + c", "K*v*x^q + B*x^p + c", "K*v*exp(q*x) + B*x^p + c", "0.1*exp(p*x) + K*x + B*v*x^q + c*v"})
     for (const bool weighted : {false, true})
       for (const double spread : {0.01, 0.1, 1.0}) {
         TwoPowersCase c(TwoPowers(law), 0.1, weighted, spread);
