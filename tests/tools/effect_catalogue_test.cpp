@@ -36,9 +36,9 @@ PlantDescription Described(const std::string& name) {
 }
 
 const std::vector<std::string>& PlantNames() {
-  static const std::vector<std::string> kNames = {"friction_element", "hunt_crossley", "indentation",   "oscillator",
-                                                  "pendulum",         "servo_axis",    "soft_actuator", "two_tanks"};
-  return kNames;
+  static const std::vector<std::string> names = {"friction_element", "hunt_crossley", "indentation",   "oscillator",
+                                                 "pendulum",         "servo_axis",    "soft_actuator", "two_tanks"};
+  return names;
 }
 
 std::map<std::string, double> Means(const PlantDescription& plant) {
@@ -310,7 +310,7 @@ TEST_P(InPlant, EveryEffectFitsSymbolsThatAreCalledLikeItsOwn) {
       for (const std::string& own : OwnNames(entry.forms[binding.form]))
         for (const auto& [need, symbol] : binding.symbols) {
           if (taken.contains(own)) continue;
-          SCOPED_TRACE(entry.name + ": " + symbol + " called " + own);
+          SCOPED_TRACE(::testing::Message() << entry.name << ": " << symbol << " called " << own);
           const PlantDescription renamed = Renamed(plant, symbol, own);
           EffectBinding same = binding;
           for (auto& [other, bound] : same.symbols) bound = Renamed(bound, symbol, own);

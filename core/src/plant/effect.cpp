@@ -248,7 +248,7 @@ class Composer {
     const auto changed = [&](const std::string& law) {
       NameMap names = names_;
       names["law"] = law;
-      const std::string text = Inserted(term.formula, names);
+      std::string text = Inserted(term.formula, names);
       if (term.slot == "law") return text;
       // What is made of the law has the sign of the law already.
       const bool subtracted = subtracted_ && !Mentions(term.formula, "law");

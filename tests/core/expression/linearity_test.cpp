@@ -42,6 +42,7 @@ LinearPart PartOf(const std::vector<std::string>& texts) {
   Graph graph;
   const expression::Scope scope = test::PlantWords();
   std::vector<int> laws;
+  laws.reserve(texts.size());
   for (const std::string& text : texts) laws.push_back(graph.Lower(expression::Parse(text), scope, {}));
   return expression::FindLinearPart(&graph, laws, 3);
 }

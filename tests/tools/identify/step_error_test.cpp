@@ -77,7 +77,8 @@ TEST(StepError, StepsThatDivergeSaySo) {
 TEST(StepError, WhatIsTooStiffForAnyStepSaysWhatElseToDo) {
   const StepError stiff = Of(2, 1e4);
   EXPECT_FALSE(stiff.enough.has_value());
-  EXPECT_THAT(StepErrorText(stiff, kDt, kNoise), AllOf(HasSubstr("2 steps every"), HasSubstr("value at which it settles")));
+  EXPECT_THAT(StepErrorText(stiff, kDt, kNoise),
+              AllOf(HasSubstr("2 steps every"), HasSubstr("value at which it settles")));
 }
 
 }  // namespace
