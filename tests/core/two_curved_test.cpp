@@ -15,6 +15,7 @@
 #include "core/plant/described_packs.hpp"
 #include "core/plant/plants.hpp"
 #include "core/same_posteriors.hpp"
+#include "core/sample_scores.hpp"
 
 namespace armcmc::two_curved_test {
 namespace {
@@ -84,14 +85,7 @@ struct TwoPowersCase {
     return score;
   }
   [[nodiscard]] std::vector<double> Exactly(const simd::Kernels& kernels) const {
-    std::vector<double> out(kTileLanes);
-    auto theta = std::make_unique<ThetaTile>();
-    auto tile = std::make_unique<PredictionTile>();
-    alignas(64) std::array<double, kTileLanes> log_scale;
-    kernels.to_physical(space, u.data(), 0, theta.get(), log_scale.data());
-    kernels.predict(-1, *data, *theta, tile.get());
-    kernels.log_likelihood(noise, *data, *tile, log_scale.data(), out.data());
-    return out;
+    return test::ScoreEverySample(kernels, -1, space, noise, *data, u.data());
   }
 };
 
