@@ -210,24 +210,38 @@ Made Bead(double wave, double give = 0.0) {
   return Make(std::move(contact), std::move(series));
 }
 
-TEST(BestFit, IsTheBestOfThoseThatGoOnAlone) {
+TEST(BestFit, IsWhereTheBestOfAllFitsIsFound) {
   const Made made = Make(Oscillator(), Swing(300));
   std::vector<VectorXd> starts;
   for (int s = 0; s < 9; ++s) starts.push_back(VectorXd{{std::log(2.0 + s), 0.05 * s}});
-  std::vector<FitResult> alone;
-  for (const VectorXd& start : starts) alone.push_back(Fit(*made.model, made.rows, start, 2));
-  std::stable_sort(alone.begin(), alone.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   FitResult expected;
-  for (std::size_t k = 0; k < 4; ++k) {
-    FitResult fit = Fit(*made.model, made.rows, alone[k].theta, 6);
+  for (const VectorXd& start : starts) {
+    FitResult fit = Fit(*made.model, made.rows, start);
     if (!expected.valid || fit.cost < expected.cost) expected = std::move(fit);
   }
-  const FitResult best = BestFit(*made.model, made.rows, starts, 4, 6, false);
+  const FitResult best = BestFit(*made.model, made.rows, starts, 4, 12, false);
   ASSERT_TRUE(best.valid);
-  EXPECT_EQ(best.theta, expected.theta);
-  EXPECT_EQ(best.cost, expected.cost);
-  EXPECT_EQ(best.iterations, expected.iterations);
-  EXPECT_EQ(best.jacobian, expected.jacobian);
+  const FitResult refined = Fit(*made.model, made.rows, best.theta);
+  EXPECT_NEAR(refined.cost, expected.cost, 1e-3);
+  EXPECT_LT((refined.theta - expected.theta).norm(), 1e-7);
+  // A thousandth of the mean square is half a thousandth of the number of rows; the last step gained that at most.
+  EXPECT_LT(best.cost - refined.cost, 1e-3 * static_cast<double>(made.rows.size()));
+  VectorXd prediction;
+  Eigen::MatrixXd jacobian;
+  ASSERT_TRUE(made.model->Linearise(best.theta, &prediction, &jacobian));
+  EXPECT_EQ(best.prediction, prediction);
+  EXPECT_EQ(best.jacobian, jacobian);
+}
+
+TEST(BestFit, GoesOnFromMoreThanTheFirst) {
+  // After two steps from afar the start that will lead to the minimum is not yet the best.
+  const Made made = Make(Oscillator(), Swing(300));
+  std::vector<VectorXd> starts;
+  for (int s = 0; s < 9; ++s) starts.push_back(VectorXd{{std::log(2.0 + s), 0.05 * s}});
+  double best = HUGE_VAL;
+  for (const VectorXd& start : starts)
+    best = std::min(best, BestFit(*made.model, made.rows, {start}, 1, 12, false).cost);
+  EXPECT_NEAR(BestFit(*made.model, made.rows, starts, starts.size(), 12, false).cost, best, 1e-9);
 }
 
 TEST(Fit, AParameterThatIsFarOffDoesNotCarryTheOthersAway) {

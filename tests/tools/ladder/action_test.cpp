@@ -35,21 +35,21 @@ class Action : public ::testing::Test {
 };
 
 TEST_F(Action, FunctionsOfOneQuantityInOneEquationAreCurvesOfOneThing) {
-  EXPECT_TRUE(AreCurvesOfOneThing(Of("cubic_stiffness"), Of("quadratic_stiffness")));
-  EXPECT_TRUE(AreCurvesOfOneThing(Of("quadratic_stiffness"), Of("cubic_stiffness")));
-  EXPECT_TRUE(AreCurvesOfOneThing(Of("input_dead_band"), Of("input_saturation")));  // of the drive
+  EXPECT_TRUE(ActOnSameQuantity(Of("cubic_stiffness"), Of("quadratic_stiffness")));
+  EXPECT_TRUE(ActOnSameQuantity(Of("quadratic_stiffness"), Of("cubic_stiffness")));
+  EXPECT_TRUE(ActOnSameQuantity(Of("input_dead_band"), Of("input_saturation")));  // of the drive
 }
 
 TEST_F(Action, OfAnotherQuantityOrEquationTheyAreNot) {
-  EXPECT_FALSE(AreCurvesOfOneThing(Of("cubic_stiffness"), Of("drag")));                       // place and speed
-  EXPECT_FALSE(AreCurvesOfOneThing(Of("output_drift"), Of("periodic_disturbance", "load")));  // shown and felt
-  EXPECT_FALSE(AreCurvesOfOneThing(Of("cubic_stiffness"), Of("output_bias")));                // of nothing at all
+  EXPECT_FALSE(ActOnSameQuantity(Of("cubic_stiffness"), Of("drag")));                       // place and speed
+  EXPECT_FALSE(ActOnSameQuantity(Of("output_drift"), Of("periodic_disturbance", "load")));  // shown and felt
+  EXPECT_FALSE(ActOnSameQuantity(Of("cubic_stiffness"), Of("output_bias")));                // of nothing at all
 }
 
 TEST_F(Action, WhatHasAPastIsNoCurve) {
   for (const char* remembers : {"hysteresis", "input_hysteresis", "sensor_lag", "sensor_delay"}) {
     EXPECT_TRUE(Remembers(Of(remembers))) << remembers;
-    EXPECT_FALSE(AreCurvesOfOneThing(Of("cubic_stiffness"), Of(remembers))) << remembers;
+    EXPECT_FALSE(ActOnSameQuantity(Of("cubic_stiffness"), Of(remembers))) << remembers;
   }
   for (const char* forgets : {"cubic_stiffness", "drag", "output_drift", "input_saturation", "sensor_saturation"})
     EXPECT_FALSE(Remembers(Of(forgets))) << forgets;

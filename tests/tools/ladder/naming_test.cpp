@@ -3,12 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "armcmc/support/effect_library.hpp"
+#include "earlier_names.hpp"
 #include "rung.hpp"
 #include "shares.hpp"
 #include "tools/ladder/climb_rig.hpp"
@@ -59,6 +63,66 @@ struct Compared {
     return NamesOf(rung);
   }
 };
+
+/// How drag was tried where it explains a sixth of what the base leaves.
+struct TriedDrag {
+  bool refined, judged;
+};
+TriedDrag TryDrag(const std::set<std::string>* above_tie) {
+  constexpr double kDrag = 800.0;  // N s^2/m^2
+  const Dataset data =
+      test::AxisData([](const AxisSample& s) { return kDrag * std::abs(s.v) * s.v + 20.0 * std::sin(20.0 * s.t); });
+  const Ladder ladder = ClimbWith({"drag"}, data);
+  Rung rung = ladder.rungs[0];
+  for (Contender& c : rung.contenders) {
+    c.trial = {};
+    c.refined = false;
+  }
+  std::vector<std::string> notes;
+  const std::shared_ptr<const Plant> plant = std::make_shared<const Plant>(rung.base.model->plant().description());
+  TryAll(plant, rung.view.data, rung.view, ladder.noise_floor, above_tie, &rung, &notes);
+  const auto any = [&](auto which) { return std::any_of(rung.contenders.begin(), rung.contenders.end(), which); };
+  return {any([](const Contender& c) { return c.refined; }), any([](const Contender& c) { return c.trial.judged; })};
+}
+
+TEST(RuleOut, WhatIsTheSameWithMoreParametersIsRuledOutToo) {
+  // Dry friction without a peak: the law of Stribeck is that of Coulomb.
+  const Ladder ladder = ClimbWith({"coulomb_friction", "stribeck_friction", "drag"},
+                                  test::AxisData([](const AxisSample& s) { return 40.0 * Sign(s.v); }));
+  Rung rung = ladder.rungs[0];
+  ASSERT_THAT(NamesOf(rung), ElementsAre("coulomb_friction"));
+  RuleOut(rung.view, rung.named.front(), &rung);
+  while (true) {
+    Name(rung.view, ladder.noise_floor, false, &rung);
+    if (rung.named.empty()) break;
+    ASSERT_EQ(rung.leader().candidate.entry->name, "coulomb_friction") << "another form of it";
+    RuleOut(rung.view, rung.named.front(), &rung);
+  }
+  EXPECT_THAT(NamesOf(rung), IsEmpty());
+}
+
+TEST(EarlierNames, AnEffectThatIsLikeOneOfAFamilyIsLikeAllOfIt) {
+  const std::vector<EffectEntry> catalogue = support::ReadEffectLibrary();
+  const auto entry = [&](const std::string& name) {
+    return &*std::find_if(catalogue.begin(), catalogue.end(), [&](const EffectEntry& e) { return e.name == name; });
+  };
+  Candidate play;
+  play.entry = entry("backlash");
+  const EarlierNames before{{&play}, 1.0};
+  ASSERT_FALSE(AreKin(*play.entry, *entry("stribeck_friction"))) << "or the test shows nothing";
+  EXPECT_EQ(before.Like(*entry("stribeck_friction"), catalogue), &play) << "as dry friction does";
+  EXPECT_EQ(before.Like(*entry("coulomb_friction"), catalogue), &play);
+  EXPECT_EQ(before.Like(*entry("cogging"), catalogue), nullptr);
+}
+
+TEST(TryAll, AboveATieWhatRemovesASmallPartIsNotRefittedUnlessItsFamilyWasNamed) {
+  const TriedDrag anywhere = TryDrag(nullptr);
+  EXPECT_TRUE(anywhere.refined && anywhere.judged);
+  const std::set<std::string> other{"friction"}, its{"viscous friction"};
+  EXPECT_FALSE(TryDrag(&other).refined);
+  const TriedDrag of_its_family = TryDrag(&its);
+  EXPECT_TRUE(of_its_family.refined && of_its_family.judged);
+}
 
 TEST(Name, KinThatLeavesFarMoreIsExcluded) {
   Compared compared;

@@ -69,7 +69,7 @@ std::unique_ptr<Analysis> Analyse(const Equation& equation, const Recording& rec
   for (int pass = 0; pass < kNoisePasses; ++pass) {
     const Fitter fitter(equation, analysis->signals, whitener);
     const Fitted base = FitModel(fitter, analysis->catalogue, options);
-    whitener = NoiseLeftBy(fitter, Referee(fitter, base.predicted).Judge(base));
+    whitener = NoiseLeftBy(fitter, AdequacyCheck(fitter, base.predicted).Judge(base));
   }
   // What no additive basis expresses (an onset, a clipped force) hides in the first noise model.
   for (int pass = 0; pass < kSearchPasses; ++pass) {

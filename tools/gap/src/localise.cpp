@@ -128,18 +128,18 @@ std::vector<Where> FindWhere(const Equation& equation, const Analysis& analysis,
   const Fitted& base = analysis.finding.base->fit;
   const auto rows = static_cast<double>(analysis.signals.rows());
   const double variance = analysis.fitter->whitener().variance;
-  const Referee& referee = analysis.search->referee();
+  const AdequacyCheck& adequacy_check = analysis.search->adequacy_check();
   std::vector<Where> found;
   const double explainable = std::max(analysis.finding.gap, 1e-12);
-  found.resize(referee.groups().size());
+  found.resize(adequacy_check.groups().size());
   support::InParallel(found.size(), [&](std::size_t i) {
-    const std::string& name = referee.groups()[i].name;
-    const Vector gain = referee.GainOf(base, {name}, Matrix(analysis.signals.rows(), 0));
+    const std::string& name = adequacy_check.groups()[i].name;
+    const Vector gain = adequacy_check.GainOf(base, {name}, Matrix(analysis.signals.rows(), 0));
     const double size = std::max(2.0 * gain.sum() / rows, 0.0);
     found[i] = {name, "", std::clamp(size / explainable, 0.0, 1.0), size, 1.0 - bootstrap.ProbabilityAbove(gain, 0.0)};
   });
   const Line line = StrongestLine(base.whitened_residual, analysis.signals.dt);
-  const Vector gain = referee.GainOf(base, {}, Waves(analysis.signals.t, line.frequency, 1, 1));
+  const Vector gain = adequacy_check.GainOf(base, {}, Waves(analysis.signals.t, line.frequency, 1, 1));
   char words[64];
   std::snprintf(words, sizeof(words), "a line at %.3g Hz", line.frequency);
   const double size = std::max(2.0 * gain.sum() / rows, 0.0);

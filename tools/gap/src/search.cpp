@@ -29,7 +29,7 @@ Search::Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, c
       catalogue_(&catalogue),
       bootstrap_(&bootstrap),
       limits_(thresholds),
-      referee_(std::make_unique<Referee>(fitter, base.predicted)),
+      adequacy_check_(std::make_unique<AdequacyCheck>(fitter, base.predicted)),
       base_(std::make_shared<Candidate>()),
       rows_(static_cast<double>(fitter.signals().rows())) {
   base_->num_known = base.hypothesis.terms.size();
@@ -48,7 +48,7 @@ CandidatePtr Search::Make(Fitted fit, const CandidatePtr& parent) const {
 }
 
 const Remainder& Search::Judge(const CandidatePtr& candidate) const {
-  if (!candidate->remainder) candidate->remainder = referee_->Judge(candidate->fit);
+  if (!candidate->remainder) candidate->remainder = adequacy_check_->Judge(candidate->fit);
   return *candidate->remainder;
 }
 

@@ -111,7 +111,7 @@ void Search::RemoveCorrections(Finding* finding) const {
   if (std::any_of(finding->set.begin(), finding->set.end(), other_effect)) Withdraw(1.0 - limits_.doubt, finding);
   if (finding->set.empty() || !finding->best->correction) return;
   finding->approximate = true;
-  finding->remainder = std::max(2.0 * referee_->Judge(finding->best->fit).total() / rows_, 0.0);
+  finding->remainder = std::max(2.0 * adequacy_check_->Judge(finding->best->fit).total() / rows_, 0.0);
 }
 
 }  // namespace armcmc::gap

@@ -111,12 +111,12 @@ double HeldOut::MeasureNoiseFloor(const Trial& after) const {
   // The parameters may be wrong on these data, too: their columns are among those that are penalised, none is free.
   const Whitener& whitener = analysis_->fitter->whitener();
   const Fitter fitter(*equation_, tail_, whitener);
-  const Referee referee(fitter, after.predicted);
+  const AdequacyCheck adequacy_check(fitter, after.predicted);
   Fitted as_it_is;
   as_it_is.whitened_residual = after.whitened;
   as_it_is.whitened_jacobian = Matrix(after.whitened.size(), 0);
   as_it_is.heldout = -0.5 / whitener.variance * BlockSquares(after.whitened);
-  const Vector gain = referee.GainOfAll(as_it_is, after.whitened_jacobian);
+  const Vector gain = adequacy_check.GainOfAll(as_it_is, after.whitened_jacobian);
   const double squares = after.whitened.squaredNorm();
   const double explained = std::clamp(2.0 * whitener.variance * gain.sum(), 0.0, squares);
   return Rms(after.residual) * std::sqrt(1.0 - explained / squares);

@@ -56,15 +56,6 @@ void AddPrior(const FitProblem& problem, const Eigen::VectorXd& theta, double sq
   }
 }
 
-NormalSystem NormalEquations(const FitProblem& problem, const FitResult& fit) {
-  Eigen::MatrixXd jacobian = fit.jacobian(problem.rows, Eigen::all);
-  jacobian *= problem.spread.asDiagonal();
-  const Eigen::VectorXd error = (problem.model.target() - fit.prediction)(problem.rows);
-  NormalSystem normal{jacobian.transpose() * jacobian, jacobian.transpose() * error};
-  AddPrior(problem, fit.theta, error.squaredNorm(), error.size(), &normal);
-  return normal;
-}
-
 Eigen::MatrixXd Steps(const FitProblem& problem, const Eigen::VectorXd& theta, const NormalSystem& normal,
                       const std::vector<double>& dampings) {
   Eigen::MatrixXd thetas(theta.size(), static_cast<Eigen::Index>(dampings.size()));

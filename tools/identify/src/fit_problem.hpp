@@ -35,9 +35,6 @@ struct NormalSystem {
   Eigen::VectorXd right;   ///< [parameter]
 };
 
-/// Normal equations of a fit with the prior.
-[[nodiscard]] NormalSystem NormalEquations(const FitProblem& problem, const FitResult& fit);
-
 /// Weights J' J and J' e by the precision of the errors, and adds the prior.
 /// @param theta    Where they were taken.
 /// @param squares  Sum of squared errors.

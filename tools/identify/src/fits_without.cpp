@@ -8,37 +8,28 @@
 
 #include "armcmc/identify/fit.hpp"
 #include "fit_problem.hpp"
+#include "forward_differences.hpp"
 #include "levenberg_marquardt.hpp"
 #include "shared_runs.hpp"
 
 namespace armcmc::identify {
 namespace {
 
-/// Jacobian at some rows in units of the spread, by forward differences (backward at an upper bound).
-class ForwardDifferences : public PredictionUser {
+/// Jacobian at some rows in units of the spread, by forward differences.
+class JacobianThere : public PredictionUser {
  public:
-  ForwardDifferences(const FitProblem& problem, const Eigen::VectorXd& theta, const std::vector<Eigen::Index>& rows)
+  JacobianThere(const FitProblem& problem, const Eigen::VectorXd& theta, const std::vector<Eigen::Index>& rows)
       : problem_(problem), theta_(theta), rows_(rows) {}
 
   [[nodiscard]] Eigen::MatrixXd Request() override {
-    constexpr double kStep = 1e-5;
-    thetas_ = theta_.replicate(1, theta_.size() + 1);
-    for (Eigen::Index d = 0; d < theta_.size(); ++d) {
-      const double step = kStep * problem_.spread[d];
-      thetas_(d, d) += theta_[d] + step > problem_.upper[d] ? -step : step;
-    }
+    thetas_ = Displaced(problem_, theta_);
     return thetas_;
   }
   void Receive(const Eigen::Ref<const Eigen::MatrixXd>& predictions) override {
+    jacobian_ = ForwardJacobian(problem_, thetas_, predictions, rows_);
     done_ = true;
-    finite_ = predictions.row(0).allFinite();
-    if (!finite_) return;
-    const Eigen::VectorXd here = predictions.col(theta_.size())(rows_);
-    jacobian_.resize(here.size(), theta_.size());
-    for (Eigen::Index d = 0; d < theta_.size(); ++d)
-      jacobian_.col(d) = (predictions.col(d)(rows_) - here) * (problem_.spread[d] / (thetas_(d, d) - theta_[d]));
   }
-  [[nodiscard]] bool finite() const { return finite_; }
+  /// Empty if it is not finite.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
 
  private:
@@ -46,7 +37,6 @@ class ForwardDifferences : public PredictionUser {
   const Eigen::VectorXd theta_;
   const std::vector<Eigen::Index>& rows_;
   Eigen::MatrixXd thetas_, jacobian_;
-  bool finite_ = false;
 };
 
 }  // namespace
@@ -55,11 +45,10 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
                            const std::vector<std::vector<Eigen::Index>>& groups, int max_iterations) {
   constexpr int kSameJacobian = 2;
   constexpr double kMoves = 0.1;  // of the cost
-  const std::vector<double> dampings{0.0, 1e-2, 1.0, 100.0};
+  const std::vector<double> undamped{0.0}, damped{1e-2, 1.0, 100.0};
   FitProblem problem = MakeFitProblem(model, std::vector<std::uint8_t>(model.num_rows(), 0));
   problem.rows = rows;
   const auto num_groups = static_cast<Eigen::Index>(groups.size());
-  const auto trials = static_cast<Eigen::Index>(dampings.size());
   Eigen::MatrixXd jacobian = all.jacobian(rows, Eigen::all);
   jacobian *= problem.spread.asDiagonal();
   const Eigen::MatrixXd gram = jacobian.transpose() * jacobian;
@@ -85,36 +74,18 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
     gram_without.emplace_back(gram - part.back().transpose() * part.back());
     if (count_without(g) > 0) moving.push_back(g);
   }
-  // First steps with the Jacobian of the fit to all rows; the last one, with the Jacobian of each fit, shows whether it
-  // has converged.
-  for (int iteration = 0; iteration <= kSameJacobian && !moving.empty(); ++iteration) {
-    Eigen::MatrixXd thetas(all.theta.size(), static_cast<Eigen::Index>(moving.size()) * trials), predictions;
-    std::vector<std::unique_ptr<ForwardDifferences>> own;
-    for (std::size_t k = 0; k < moving.size() && iteration == kSameJacobian; ++k)
-      own.push_back(std::make_unique<ForwardDifferences>(problem, fits.theta.col(moving[k]), rows));
-    RunAll(model, &rows, own);
-    for (std::size_t k = 0; k < moving.size(); ++k) {
-      const Eigen::Index g = moving[k];
-      const std::vector<Eigen::Index>& group = groups[static_cast<std::size_t>(g)];
-      const Eigen::VectorXd e = fits.error.col(g), theta = fits.theta.col(g);
-      NormalSystem normal;
-      if (!own.empty() && own[k]->finite()) {
-        const Eigen::MatrixXd& its = own[k]->jacobian();
-        fits.jacobian[static_cast<std::size_t>(g)] = its * problem.spread.cwiseInverse().asDiagonal();
-        const Eigen::MatrixXd without = its(group, Eigen::all);
-        normal = {its.transpose() * its - without.transpose() * without,
-                  its.transpose() * e - without.transpose() * e(group)};
-      } else {
-        normal = {gram_without[static_cast<std::size_t>(g)],
-                  jacobian.transpose() * e - part[static_cast<std::size_t>(g)].transpose() * e(group)};
-      }
-      AddPrior(problem, theta, squares_without(e, g), count_without(g), &normal);
-      thetas.middleCols(static_cast<Eigen::Index>(k) * trials, trials) = Steps(problem, theta, normal, dampings);
-    }
+  // Steps of these groups with these dampings. Returns the places of the groups that none of them improves.
+  const auto step = [&](const std::vector<Eigen::Index>& of, const std::vector<NormalSystem>& normals,
+                        const std::vector<double>& dampings) {
+    const auto trials = static_cast<Eigen::Index>(dampings.size());
+    Eigen::MatrixXd thetas(all.theta.size(), static_cast<Eigen::Index>(of.size()) * trials), predictions;
+    for (std::size_t k = 0; k < of.size(); ++k)
+      thetas.middleCols(static_cast<Eigen::Index>(k) * trials, trials) =
+          Steps(problem, fits.theta.col(of[k]), normals[k], dampings);
     model.Predict(thetas, &predictions, &rows);
-    std::vector<Eigen::Index> still;
-    for (std::size_t k = 0; k < moving.size(); ++k) {
-      const Eigen::Index g = moving[k];
+    std::vector<std::size_t> worse;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const Eigen::Index g = of[k];
       const double before = cost(fits.error.col(g), fits.theta.col(g), g);
       double best = before;
       for (Eigen::Index c = static_cast<Eigen::Index>(k) * trials; c < static_cast<Eigen::Index>(k + 1) * trials; ++c) {
@@ -126,7 +97,51 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
         fits.theta.col(g) = thetas.col(c);
         fits.error.col(g) = e;
       }
-      if (iteration < kSameJacobian || before - best > kMoves) still.push_back(g);
+      if (!(best < before)) worse.push_back(k);
+    }
+    return worse;
+  };
+  // First steps with the Jacobian of the fit to all rows; the last one, with the Jacobian of each fit, shows whether it
+  // has converged.
+  for (int iteration = 0; iteration <= kSameJacobian && !moving.empty(); ++iteration) {
+    std::vector<std::unique_ptr<JacobianThere>> own;
+    for (std::size_t k = 0; k < moving.size() && iteration == kSameJacobian; ++k)
+      own.push_back(std::make_unique<JacobianThere>(problem, fits.theta.col(moving[k]), rows));
+    RunAll(model, &rows, own);
+    std::vector<NormalSystem> normals;
+    std::vector<double> before;
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      const Eigen::Index g = moving[k];
+      const std::vector<Eigen::Index>& group = groups[static_cast<std::size_t>(g)];
+      const Eigen::VectorXd e = fits.error.col(g), theta = fits.theta.col(g);
+      NormalSystem normal;
+      if (!own.empty() && own[k]->jacobian().size() > 0) {
+        const Eigen::MatrixXd& its = own[k]->jacobian();
+        fits.jacobian[static_cast<std::size_t>(g)] = its * problem.spread.cwiseInverse().asDiagonal();
+        const Eigen::MatrixXd without = its(group, Eigen::all);
+        normal = {its.transpose() * its - without.transpose() * without,
+                  its.transpose() * e - without.transpose() * e(group)};
+      } else {
+        normal = {gram_without[static_cast<std::size_t>(g)],
+                  jacobian.transpose() * e - part[static_cast<std::size_t>(g)].transpose() * e(group)};
+      }
+      AddPrior(problem, theta, squares_without(e, g), count_without(g), &normal);
+      normals.push_back(std::move(normal));
+      before.push_back(cost(e, theta, g));
+    }
+    // What a whole step does not improve, a damped one may.
+    std::vector<Eigen::Index> left;
+    std::vector<NormalSystem> of_left;
+    for (const std::size_t k : step(moving, normals, undamped)) {
+      left.push_back(moving[k]);
+      of_left.push_back(normals[k]);
+    }
+    if (!left.empty()) static_cast<void>(step(left, of_left, damped));
+    std::vector<Eigen::Index> still;
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      const Eigen::Index g = moving[k];
+      if (iteration < kSameJacobian || before[k] - cost(fits.error.col(g), fits.theta.col(g), g) > kMoves)
+        still.push_back(g);
     }
     moving = std::move(still);
   }
@@ -140,15 +155,21 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
     problems[m].rows.clear();
     for (std::size_t k = 0; k < rows.size(); ++k)
       if (in_group[k] == 0) problems[m].rows.push_back(rows[k]);
-    fitting.push_back(std::make_unique<LevenbergMarquardt>(problems[m], fits.theta.col(g), max_iterations, kMoves));
+    fitting.push_back(std::make_unique<LevenbergMarquardt>(problems[m], fits.theta.col(g), max_iterations, kMoves,
+                                                           Differences::kCentral));
   }
   RunAll(model, &rows, fitting);
+  std::vector<std::unique_ptr<JacobianThere>> there;
+  for (std::size_t m = 0; m < moving.size(); ++m)
+    there.push_back(std::make_unique<JacobianThere>(problem, fitting[m]->result().theta, rows));
+  RunAll(model, &rows, there);
   for (std::size_t m = 0; m < moving.size(); ++m) {
     const FitResult& fit = fitting[m]->result();
-    if (!fit.valid) continue;
+    if (!fit.valid || there[m]->jacobian().size() == 0) continue;
     fits.theta.col(moving[m]) = fit.theta;
     fits.error.col(moving[m]) = (model.target() - fit.prediction)(rows);
-    fits.jacobian[static_cast<std::size_t>(moving[m])] = fit.jacobian(rows, Eigen::all);
+    fits.jacobian[static_cast<std::size_t>(moving[m])] =
+        there[m]->jacobian() * problem.spread.cwiseInverse().asDiagonal();
   }
   return fits;
 }

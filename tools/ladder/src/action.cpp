@@ -54,14 +54,14 @@ bool Mentions(const EffectForm& form, const std::string& name) {
          std::any_of(form.states.begin(), form.states.end(), [&](const StateDescription& s) { return says(s.rate); });
 }
 
-bool AreCurvesOfOneThing(const Candidate& a, const Candidate& b) {
+bool ActOnSameQuantity(const Candidate& a, const Candidate& b) {
   const std::optional<Equations> of_a = ActionOf(a);
   if (!of_a || of_a->empty()) return false;
   const bool one = std::all_of(of_a->begin(), of_a->end(), [](const auto& e) { return e.second.size() == 1; });
   return one && of_a == ActionOf(b);
 }
 
-bool RespondsToNothing(const Candidate& effect) {
+bool IsIndependentOfSignals(const Candidate& effect) {
   const std::optional<Equations> of = ActionOf(effect);
   return of && !of->empty() && std::all_of(of->begin(), of->end(), [](const auto& e) {
            return std::all_of(e.second.begin(), e.second.end(),

@@ -6,7 +6,7 @@ namespace armcmc::ladder {
 
 /// Whether two effects are functions of the same signal, state or time, in the same equations; the functions may have
 /// different shapes.
-[[nodiscard]] bool AreCurvesOfOneThing(const Candidate& a, const Candidate& b);
+[[nodiscard]] bool ActOnSameQuantity(const Candidate& a, const Candidate& b);
 
 /// Whether an effect depends on the signal or state `name`, or, for "t", on time.
 [[nodiscard]] bool Reads(const Candidate& effect, const std::string& name);
@@ -21,7 +21,7 @@ namespace armcmc::ladder {
 [[nodiscard]] bool Mentions(const EffectForm& form, const std::string& name);
 
 /// Whether it acts the same wherever the plant is: an offset, or what depends on time alone.
-[[nodiscard]] bool RespondsToNothing(const Candidate& effect);
+[[nodiscard]] bool IsIndependentOfSignals(const Candidate& effect);
 
 /// Whether it acts on the law as a whole, and so on everything that the law contains.
 [[nodiscard]] bool ActsOnLaw(const Candidate& effect);

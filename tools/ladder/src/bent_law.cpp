@@ -54,9 +54,9 @@ void BentLaw::FitThem() {
 }
 
 std::optional<Rival> BentLaw::RivalOf(const Contender& c) {
-  if (!RespondsToNothing(c.candidate)) return std::nullopt;
+  if (!IsIndependentOfSignals(c.candidate)) return std::nullopt;
   if (!fitted_) FitThem();
-  const Contender* const bent = FirstAsGood(&*fitted_, view_, base_, c);
+  const Contender* const bent = FirstThatExplainsAsMuch(&*fitted_, view_, base_, c);
   if (bent == nullptr) return std::nullopt;
   const std::map<std::string, std::string>& symbols = bent->candidate.binding.symbols;
   return Rival{symbols.at("p") + " varied with " + symbols.at("x"), "explains as much"};

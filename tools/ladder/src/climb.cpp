@@ -14,6 +14,7 @@
 #include "constants.hpp"
 #include "curves.hpp"
 #include "derived_noise.hpp"
+#include "earlier_names.hpp"
 #include "free_starts.hpp"
 #include "motion_rival.hpp"
 #include "open_tie.hpp"
@@ -39,26 +40,6 @@ class SharedProgress {
   std::mutex mutex_;
 };
 
-/// What was named on the rungs before.
-struct Before {
-  std::vector<const Candidate*> effects;
-  double explained = 0.0;  ///< Squared error that it removed, relative to what remains.
-
-  /// The named effect that acts like this one; null if none does.
-  [[nodiscard]] const Candidate* Like(const Contender& c) const {
-    const auto alike = std::find_if(effects.begin(), effects.end(),
-                                    [&](const Candidate* e) { return AreKin(*e->entry, *c.candidate.entry); });
-    return alike == effects.end() ? nullptr : *alike;
-  }
-  /// Whether an effect of another family is so small compared with it that an error of its formula would explain it.
-  [[nodiscard]] bool Dwarfs(const Contender& c) const {
-    constexpr double kFormulaError = 1.0 / 3.0;  // of the amplitude: formulas for the same physics differ by this much
-    return 1.0 - c.alone.folds < kFormulaError * kFormulaError * explained &&
-           std::none_of(effects.begin(), effects.end(),
-                        [&](const Candidate* e) { return e->entry->family == c.candidate.entry->family; });
-  }
-};
-
 /// Alternative explanations of what an effect explains.
 struct Rivals {
   Constants constants;
@@ -69,7 +50,8 @@ struct Rivals {
   StartAlone start;
   const View& view;
   const Trial& base;
-  Before before;
+  EarlierNames before;
+  const std::vector<EffectEntry>& entries;
 
   /// @param exact  Nothing but noise is left, so that no curve of another shape can do better. A wrong constant, noise,
   ///               or an error in an effect named earlier may still explain the same.
@@ -82,14 +64,15 @@ struct Rivals {
     if (!rival) rival = plain.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
     if (rival || !before.Dwarfs(c)) return rival;
-    if (const Candidate* like = before.Like(c))
+    if (const Candidate* like = before.Like(*c.candidate.entry, entries))
       return Rival{like->entry->name + " had another formula", "acts alike and is three times as large"};
     return curves.BendOf(c, before.effects);
   }
 };
 
 /// Gives a name unless a rival rules it out.
-void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* rung, std::vector<std::string>* notes) {
+void NameUnlessRuledOut(const View& view, double floor, bool open, Rivals* rivals, Rung* rung,
+                        std::vector<std::string>* notes) {
   for (bool again = true; again;) {
     again = false;
     Name(view, floor, open, rung);
@@ -97,7 +80,8 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
       Contender& c = rung->contenders[i];
       const std::optional<Rival> rival = rivals->Of(c, floor, !LeavesMore(view, c.trial, floor), open);
       if (!rival) continue;
-      c.ruled_out = again = true;
+      RuleOut(view, i, rung);
+      again = true;
       if (rung->as_if.empty()) rung->as_if = rival->as_if;
       notes->push_back(c.candidate.entry->name + " was not named: it acts as if " + rival->as_if + ", which " +
                        rival->why);
@@ -106,7 +90,7 @@ void NameOne(const View& view, double floor, bool open, Rivals* rivals, Rung* ru
 }
 
 /// What a name is checked against.
-struct NameChecks {
+struct NamingContext {
   const Dataset& data;  ///< All of it.
   const View& view;
   double floor;
@@ -115,14 +99,14 @@ struct NameChecks {
 };
 
 /// Gives a name unless a rival rules it out or the held-out data contradict it.
-void NameAndConfirm(NameChecks* checks, Rung* rung, std::vector<std::string>* notes) {
+void NameAndConfirm(NamingContext* checks, Rung* rung, std::vector<std::string>* notes) {
   double gained = 0.0;  // most of what is withdrawn
   for (bool contradicted = false;;) {
-    NameOne(checks->view, checks->floor, false, &checks->rivals, rung, notes);
+    NameUnlessRuledOut(checks->view, checks->floor, false, &checks->rivals, rung, notes);
     // Of two effects of the same size neither explains the larger part: the first may be named if the next completes
     // it.
     if (rung->named.empty() && checks->open == nullptr && !contradicted) {
-      NameOne(checks->view, checks->floor, true, &checks->rivals, rung, notes);
+      NameUnlessRuledOut(checks->view, checks->floor, true, &checks->rivals, rung, notes);
       rung->open = !rung->named.empty();
     }
     if (rung->named.empty()) return;
@@ -297,7 +281,7 @@ Ladder Climb(const ClimbRequest& request) {
       rung.contenders.push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
     progress.Tell(which + ": fitting " + std::to_string(rung.contenders.size()) + " effects",
                   static_cast<double>(r) / request.max_rungs);
-    TryAll(ladder.plant, data, ladder.view, ladder.noise_floor, &rung, &ladder.notes);
+    TryAll(ladder.plant, data, ladder.view, ladder.noise_floor, tied ? &families : nullptr, &rung, &ladder.notes);
     if (Trial better = BetterBase(ladder.plant, data, rung); better.fit.valid && again > 0) {
       base = std::move(better);
       --again;
@@ -309,20 +293,21 @@ Ladder Climb(const ClimbRequest& request) {
     const Rung* const open = !ladder.rungs.empty() && ladder.rungs.back().open ? &ladder.rungs.back() : nullptr;
     Judge(ladder.view, floor, families, open != nullptr ? open->leader().alone.folds : 1.0, &rung);
     Sort(&rung);
-    NameChecks checks{request.data,
-                      ladder.view,
-                      floor,
-                      open,
-                      {{own, ladder.plant, data, ladder.view, base, scales},
-                       {ladder.plant, data, ladder.view, base},
-                       {ladder.plant, data, ladder.view, base, scales},
-                       {ladder.plant, data, ladder.view, base, scales},
-                       {ladder.plant, data, ladder.view, base, scales, rung.contenders},
-                       {ladder.plant, data, ladder.view, base, scales},
-                       ladder.view,
-                       base,
-                       {}}};
-    Before& before = checks.rivals.before;
+    NamingContext checks{request.data,
+                         ladder.view,
+                         floor,
+                         open,
+                         {{own, ladder.plant, data, ladder.view, base, scales},
+                          {ladder.plant, data, ladder.view, base},
+                          {ladder.plant, data, ladder.view, base, scales},
+                          {ladder.plant, data, ladder.view, base, scales},
+                          {ladder.plant, data, ladder.view, base, scales, rung.contenders},
+                          {ladder.plant, data, ladder.view, base, scales},
+                          ladder.view,
+                          base,
+                          {},
+                          *ladder.entries}};
+    EarlierNames& before = checks.rivals.before;
     for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
     if (r == 0) start = base;
     before.explained = std::pow(start.fit.error_sd / base.fit.error_sd, 2) - 1.0;

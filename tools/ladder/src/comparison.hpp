@@ -10,6 +10,12 @@ inline constexpr double kFarBetter = 2.0;    // factor by which a larger effect 
 inline constexpr double kAsGood = 0.95;      // of the best's gain: a simpler effect that reaches it comes first
 inline constexpr double kExplainsIt = 1.05;  // squared error of a rival that explains as much, over that of an effect
 
+/// Mean squared error of the fit.
+[[nodiscard]] inline double MeanSquare(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
+
+/// Number of parameters that its effect adds.
+[[nodiscard]] inline int NumParameters(const Contender& c) { return NumFormulaParameters(c.candidate.form()); }
+
 /// Error of a contender on left-out rows, relative to its base model.
 /// @param with_flexible  With the flexible function added to both.
 [[nodiscard]] Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool with_flexible);

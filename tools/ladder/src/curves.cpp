@@ -127,7 +127,7 @@ void Curves::FitThem() {
   support::InParallel(fitted_->size(), [&](std::size_t i) {
     Contender& c = (*fitted_)[i];
     try {
-      c.trial = Try(c.candidate.plant, QuickPart(*c.candidate.plant, data_, error), base_.fit.theta, 1);
+      c.trial = Try(c.candidate.plant, SubsetForFits(*c.candidate.plant, data_, error), base_.fit.theta, 1);
       if (c.trial.fit.valid) c.trial = Refine(c.candidate.plant, data_, c.trial.fit.theta);
       c.refined = c.trial.fit.valid;
       c.closed = c.refined ? 1.0 - std::pow(c.trial.fit.error_sd / base_.fit.error_sd, 2) : 0.0;
@@ -141,7 +141,7 @@ void Curves::FitThem() {
 bool Curves::Holds(const Contender& curve, const Contender& c) const {
   // A curve without memory that explains more rules out an effect with memory.
   if (Remembers(c.candidate)) return false;
-  if (AreCurvesOfOneThing(c.candidate, curve.candidate)) return true;
+  if (ActOnSameQuantity(c.candidate, curve.candidate)) return true;
   if (!Reads(c.candidate, FollowedBy(curve)) && !ActsOnLaw(c.candidate)) return false;
   const std::vector<Index>& rows = view_.active_rows;
   const VectorXd apart = (c.trial.fit.prediction - curve.trial.fit.prediction)(rows);

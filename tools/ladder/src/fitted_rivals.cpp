@@ -27,7 +27,8 @@ std::vector<Contender> FittedRivals(std::vector<Candidate> candidates, const Dat
   return fitted;
 }
 
-const Contender* FirstAsGood(std::vector<Contender>* rivals, const View& view, const Trial& base, const Contender& c) {
+const Contender* FirstThatExplainsAsMuch(std::vector<Contender>* rivals, const View& view, const Trial& base,
+                                         const Contender& c) {
   for (Contender& rival : *rivals) {
     if (!rival.refined) continue;
     if (!rival.trial.judged) {

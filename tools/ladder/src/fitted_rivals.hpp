@@ -13,7 +13,7 @@ namespace armcmc::ladder {
 
 /// The first of them that explains as much as an effect, on data left out; null: none does. Judges those that it asks.
 /// @pre c.trial.judged.
-[[nodiscard]] const Contender* FirstAsGood(std::vector<Contender>* rivals, const View& view, const Trial& base,
-                                           const Contender& c);
+[[nodiscard]] const Contender* FirstThatExplainsAsMuch(std::vector<Contender>* rivals, const View& view,
+                                                       const Trial& base, const Contender& c);
 
 }  // namespace armcmc::ladder

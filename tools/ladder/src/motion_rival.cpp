@@ -36,7 +36,7 @@ double PredictedShare(const View& view, const Eigen::VectorXd& value) {
 
 std::optional<Rival> MotionRivalOf(const View& view, const Trial& base, const Contender& c) {
   constexpr double kMost = 0.5;
-  if (c.candidate.Frequencies().empty() || !RespondsToNothing(c.candidate)) return std::nullopt;
+  if (c.candidate.Frequencies().empty() || !IsIndependentOfSignals(c.candidate)) return std::nullopt;
   const Eigen::VectorXd added = (c.trial.fit.prediction - base.fit.prediction)(view.active_rows);
   if (PredictedShare(view, added) <= kMost) return std::nullopt;
   return Rival{"the motion were its cause", "predicts more than half of it"};

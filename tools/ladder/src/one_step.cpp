@@ -41,7 +41,7 @@ std::vector<Candidate> BestByOneStep(std::vector<Candidate> all, std::size_t cou
                                      const std::shared_ptr<const Plant>& plant, const Dataset& data,
                                      const Trial& base) {
   constexpr double kAlike = 0.02;  // share of squared explanation in which two candidates with the same action differ
-  const Dataset quick = QuickPart(*plant, data, base.model->target() - base.fit.prediction);
+  const Dataset quick = SubsetForFits(*plant, data, base.model->target() - base.fit.prediction);
   const Index own = base.fit.theta.size();
   std::vector<VectorXd> left(all.size());
   VectorXd error;

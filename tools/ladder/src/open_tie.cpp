@@ -50,7 +50,7 @@ bool OpenTie::Extend(const Dataset& data, const View& view, const DataScales& sc
       LeaveOut(view, &alone.base);
       alone.contenders.push_back({std::move(*same), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
       std::vector<std::string> notes;
-      TryAll(plant, data, view, floor, &alone, &notes);
+      TryAll(plant, data, view, floor, &families, &alone, &notes);
       Bootstrap(&alone);
       Judge(view, floor, families, 1.0, &alone);
       with = std::move(alone.contenders.front());

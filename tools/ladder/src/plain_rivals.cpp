@@ -102,13 +102,13 @@ PlainRivals::PlainRivals(const std::shared_ptr<const Plant>& plant, const Datase
 bool PlainRivals::Lacked(const Candidate& rival) const {
   if (IsOfZero(rival))
     return std::none_of(contenders_.begin(), contenders_.end(), [&](const Contender& c) {
-      return c.candidate.form().terms.front().slot == "output" && RespondsToNothing(c.candidate) &&
+      return c.candidate.form().terms.front().slot == "output" && IsIndependentOfSignals(c.candidate) &&
              Reads(c.candidate, "t") == Reads(rival, "t") && c.candidate.Frequencies().empty();
     });
   const std::string signal = Bound(rival, "x"), parameter = Bound(rival, "p");
   if (!signal.empty() && (IsExplained(plant_->description(), signal) || !Limits(*plant_, signal))) return false;
   // A constant of the law that drifts is no other than an output that does.
-  if (!parameter.empty() && RespondsToNothing(rival)) return false;
+  if (!parameter.empty() && IsIndependentOfSignals(rival)) return false;
   return std::none_of(contenders_.begin(), contenders_.end(), [&](const Contender& c) {
     if (!parameter.empty()) return ActsOn(c.candidate, "parameter", parameter) && Reads(c.candidate, "t");
     return ActsOn(c.candidate, "input", signal) && !Remembers(c.candidate);
@@ -123,11 +123,11 @@ std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
     return all;
   };
   if (!plain_) plain_ = FittedRivals(lacked(plain_entries_), data_, base_);
-  const Contender* rival = FirstAsGood(&*plain_, view_, base_, c);
-  if (rival == nullptr && (Remembers(c.candidate) || RespondsToNothing(c.candidate))) {
+  const Contender* rival = FirstThatExplainsAsMuch(&*plain_, view_, base_, c);
+  if (rival == nullptr && (Remembers(c.candidate) || IsIndependentOfSignals(c.candidate))) {
     if (!slow_)
       slow_ = FittedRivals(BestByOneStep(lacked(slow_entries_), kMostDrifting, plant_, data_, base_), data_, base_);
-    rival = FirstAsGood(&*slow_, view_, base_, c);
+    rival = FirstThatExplainsAsMuch(&*slow_, view_, base_, c);
   }
   if (rival == nullptr) return std::nullopt;
   return Rival{AsIf(rival->candidate), "explains as much"};

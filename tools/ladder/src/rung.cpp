@@ -6,27 +6,21 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <random>
 #include <utility>
 
-#include "armcmc/plant/error.hpp"
-#include "armcmc/support/parallel.hpp"
 #include "comparison.hpp"
 
 namespace armcmc::ladder {
 namespace {
 
-constexpr std::size_t kMostJudged =
-    8;  // candidates of a rung that are judged, best first: those far behind are not named anyway
 constexpr int kBootstrap = 400;
-constexpr double kAtBound = 1e-3;     // of the logarithm of a frequency or damping ratio
-constexpr std::size_t kAnywhere = 8;  // starting points for all parameters of a simulated plant
-constexpr double kSure = 0.99;        // fraction of bootstrap samples in which it is better
-constexpr double kLikely = 0.95;      // the same if few events show it: the name is provisional
-constexpr double kAlike = 1.01;       // times the smallest error: equally good
-constexpr double kTie = 0.05;         // fraction of bootstrap samples that another family may win
-constexpr double kMostly = 0.5;       // fraction of bootstrap samples that a provisional name has to win
+constexpr double kAtBound = 1e-3;  // of the logarithm of a frequency or damping ratio
+constexpr double kSure = 0.99;     // fraction of bootstrap samples in which it is better
+constexpr double kLikely = 0.95;   // the same if few events show it: the name is provisional
+constexpr double kAlike = 1.01;    // times the smallest error: equally good
+constexpr double kTie = 0.05;      // fraction of bootstrap samples that another family may win
+constexpr double kMostly = 0.5;    // fraction of bootstrap samples that a provisional name has to win
 constexpr double kWithFlexible =
     0.95;  // squared error with a flexible remainder that a name has to reach in two of three tests,
 constexpr double kFarWithFlexible =
@@ -36,10 +30,6 @@ constexpr double kSameGain =
     0.999;  // of the leader's gain: what an integration of the plant errs by, and no formula, decides between kin
 constexpr double kLoses = 1.1;  // squared error on regions from which an effect is excluded
 constexpr double kSame = 0.02;  // of the mean square of what one adds: the other adds the same
-
-double Square(const Trial& trial) { return trial.fit.error_sd * trial.fit.error_sd; }
-
-int NumParameters(const Contender& c) { return NumFormulaParameters(c.candidate.form()); }
 
 /// Whether an oscillation is none: its frequency is too low for the data to show it, or its damping ratio, a lognormal
 /// parameter without a unit, is at the limit beyond which nothing resonates.
@@ -85,21 +75,6 @@ bool IsDetermined(const View& view, const Contender& c) {
   }
   return !any;
 }
-
-/// Number of starting points: one if only amplitudes are fitted, in which laws are linear; more for shape parameters.
-std::size_t StartsFor(const Contender& c) {
-  constexpr std::size_t kOfShape = 8;
-  const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
-  const bool shape =
-      std::any_of(parameters.begin(), parameters.end(), [](const EffectParameter& p) { return p.none != "0"; });
-  return shape ? kOfShape : 1;
-}
-
-/// The current model on a part of the data.
-struct QuickBase {
-  Dataset data;
-  double square;  ///< Mean squared error.
-};
 
 /// Bootstrap samples of the short segments, the same at every call.
 /// @param see  Called for each sample with the squared errors of the base model and of those in `among`.
@@ -165,102 +140,6 @@ bool AreKin(const EffectEntry& a, const EffectEntry& b) {
   return lists(a, b) || lists(b, a);
 }
 
-void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor, Rung* rung,
-            std::vector<std::string>* notes) {
-  constexpr double kWorthIt = 0.25, kNoGain = 0.05;
-  constexpr double kNoiseAlone = 1.2, kMoreThanNoise = 1.5;  // times its square
-  constexpr double kMostOfIt = 0.25;                         // of the variance of the output
-  std::vector<Contender>& all = rung->contenders;
-  const Eigen::VectorXd error = rung->base.model->target() - rung->base.fit.prediction;
-  // Candidates with memory are tried on another part of the data than those without.
-  std::array<std::optional<QuickBase>, 2> bases;
-  const auto quick = [&](const Contender& c) -> std::optional<QuickBase>& {
-    return bases[Remembers(*c.candidate.plant) ? 1 : 0];
-  };
-  for (const Contender& c : all)
-    if (std::optional<QuickBase>& base = quick(c); !base) {
-      base.emplace(QuickBase{QuickPart(*c.candidate.plant, data, error), 0.0});
-      base->square = Square(Refine(plant, base->data, rung->base.fit.theta));
-      // An effect with a later onset does not show at the start of runs.
-      if (base->square < kNoiseAlone * floor * floor && Square(rung->base) > kMoreThanNoise * floor * floor)
-        base.emplace(QuickBase{data, Square(rung->base)});
-    }
-  // Starts from the parameters in `known`, or from several points if it is empty.
-  const auto try_from = [&](const Eigen::VectorXd& known, std::size_t starts, Contender* c) {
-    Trial trial = Try(c->candidate.plant, quick(*c)->data, known, starts, c->candidate.Frequencies());
-    if (!trial.fit.valid || (c->trial.fit.valid && !(trial.fit.cost < c->trial.fit.cost))) return;
-    c->trial = std::move(trial);
-    c->closed = std::clamp(1.0 - Square(c->trial) / quick(*c)->square, 0.0, 1.0);
-  };
-  const bool simulated = IsSimulated(plant->description());
-  // The parameters of a simulated plant that explains little of its output say nothing about those that it has with
-  // what is missing.
-  const bool from_anywhere = simulated && UnexplainedShare(view, rung->base) > kMostOfIt;
-  std::vector<std::string> not_tried(all.size());
-  support::InParallel(all.size(), [&](std::size_t i) {
-    try {
-      try_from(rung->base.fit.theta, StartsFor(all[i]), &all[i]);
-      if (from_anywhere) try_from({}, kAnywhere, &all[i]);
-    } catch (const PlantError& why) {  // for example a rate that would need the memory of a state
-      not_tried[i] = all[i].candidate.entry->name + " was not tried: " + why.what();
-    }
-  });
-  for (const std::string& note : not_tried)
-    if (!note.empty() && std::find(notes->begin(), notes->end(), note) == notes->end()) notes->push_back(note);
-  const auto best_closing = [&] {
-    double best = kNoGain;
-    for (const Contender& c : all) best = std::max(best, c.closed);
-    return best;
-  };
-  const double quick_best = best_closing();
-  support::InParallel(all.size(), [&](std::size_t i) {
-    if (!all[i].trial.fit.valid || all[i].closed < kWorthIt * quick_best) return;
-    // What is missing may have distorted the fit of a simulated plant so much that no fit recovers from there.
-    if (simulated && !from_anywhere) try_from({}, kAnywhere, &all[i]);
-    all[i].trial = Refine(all[i].candidate.plant, data, all[i].trial.fit.theta);
-    all[i].refined = all[i].trial.fit.valid;
-    all[i].closed = all[i].refined ? std::clamp(1.0 - Square(all[i].trial) / Square(rung->base), 0.0, 1.0) : 0.0;
-  });
-  const double best = best_closing();
-  // Those with the largest gain are judged, a simple one before a larger one with the same gain.
-  std::vector<std::size_t> judged;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].refined && all[i].closed >= std::max(kNoGain, 2.0 * kWorthIt * best)) judged.push_back(i);
-  const auto worth = [&](std::size_t i) { return all[i].closed - 0.005 * static_cast<double>(NumParameters(all[i])); };
-  std::stable_sort(judged.begin(), judged.end(), [&](std::size_t a, std::size_t b) { return worth(a) > worth(b); });
-  judged.resize(std::min(judged.size(), kMostJudged));
-  support::InParallel(judged.size(), [&](std::size_t k) {
-    const std::size_t i = judged[k];
-    LeaveOut(view, &all[i].trial);
-    all[i].alone = Compare(view, all[i], rung->base, false);
-    all[i].with_flexible = Compare(view, all[i], rung->base, true);
-  });
-}
-
-Trial BetterBase(const std::shared_ptr<const Plant>& plant, const Dataset& data, const Rung& rung) {
-  constexpr std::size_t kTried = 4;
-  constexpr double kBetter = 0.99;  // of the error: more than the tolerance of a fit
-  Trial best;
-  if (!IsSimulated(plant->description())) return best;
-  std::vector<const Contender*> first;
-  for (const Contender& c : rung.contenders)
-    if (c.refined) first.push_back(&c);
-  std::stable_sort(first.begin(), first.end(),
-                   [](const Contender* a, const Contender* b) { return a->closed > b->closed; });
-  first.resize(std::min(first.size(), kTried));
-  std::vector<Trial> trials(first.size());
-  support::InParallel(first.size(), [&](std::size_t i) {
-    trials[i] = Refine(plant, data, first[i]->trial.fit.theta.head(rung.base.fit.theta.size()));
-  });
-  double least = kBetter * rung.base.fit.error_sd;
-  for (Trial& trial : trials)
-    if (trial.fit.valid && trial.fit.error_sd < least) {
-      least = trial.fit.error_sd;
-      best = std::move(trial);
-    }
-  return best;
-}
-
 void Bootstrap(Rung* rung) {
   std::vector<int> gains(rung->contenders.size(), 0);
   std::vector<std::size_t> judged;
@@ -290,7 +169,7 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
     const bool gains = c.alone.folds < 1.0 - kLeastGain && c.gain_share >= (families.empty() ? kLikely : kSure);
     // Many effects can each correct a law that is slightly wrong everywhere. What is really missing explains the larger
     // part of the unexplained error, or leaves nothing but noise.
-    const double noise = before * NoiseIn(view, c.trial, floor) / Square(rung->base);
+    const double noise = before * NoiseIn(view, c.trial, floor) / MeanSquare(rung->base);
     c.larger_part = before * c.alone.folds - noise < kLargerPart * (1.0 - noise) ||
                     families.contains(c.candidate.entry->family) || !LeavesMore(view, c.trial, floor);
     const bool elsewhere = c.alone.blocks < 1.0 && c.alone.regions < kLoses;
@@ -304,9 +183,18 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
   }
 }
 
+void RuleOut(const View& view, std::size_t which, Rung* rung) {
+  std::vector<Contender>& all = rung->contenders;
+  all[which].ruled_out = true;
+  for (Contender& c : all)
+    if (c.trial.judged && IsTheSameWithMore(view, rung->base, c, all[which])) c.ruled_out_with = true;
+}
+
 void Name(const View& view, double floor, bool open, Rung* rung) {
   std::vector<Contender>& all = rung->contenders;
-  const auto may = [open](const Contender& c) { return c.earned && !c.ruled_out && (open || c.larger_part); };
+  const auto may = [open](const Contender& c) {
+    return c.earned && !c.ruled_out && !c.ruled_out_with && (open || c.larger_part);
+  };
   double best = 0.0;
   for (const Contender& c : all)
     if (may(c)) best = std::max(best, 1.0 - c.alone.folds);

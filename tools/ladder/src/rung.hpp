@@ -12,9 +12,11 @@ namespace armcmc::ladder {
 /// the base model.
 /// @param floor  Standard deviation of the noise. If only noise remains on the subset but not on all rows, all rows are
 ///   used.
-/// @param notes  Receives the reason if an effect could not be tried.
-void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor, Rung* rung,
-            std::vector<std::string>* notes);
+/// @param above_tie  If the rung is above a tie, the families named before: an effect of another one has to remove the
+///   larger part there, and what comes nowhere near is not refitted. Null: a smaller part may earn a name.
+/// @param notes      Receives the reason if an effect could not be tried.
+void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor,
+            const std::set<std::string>* above_tie, Rung* rung, std::vector<std::string>* notes);
 
 /// A better fit of the base model, started from the parameters that it has in the best contenders. A simulated plant
 /// may be stuck far from its optimum; every effect that helps it out would then seem to be missing.
@@ -28,6 +30,10 @@ void Bootstrap(Rung* rung);
 /// @param families  Families named before, in which smaller effects may follow.
 /// @param before    Share of the error that the previous rung leaves, if its name is still open; otherwise 1.
 void Judge(const View& view, double floor, const std::set<std::string>& families, double before, Rung* rung);
+
+/// Rules out a contender, and with it those that are the same with more parameters or more signals: a Stribeck friction
+/// without a peak is the dry friction that a rival explains.
+void RuleOut(const View& view, std::size_t which, Rung* rung);
 
 /// Applies rules 2 and 3 of Climb() to the contenders that passed rule 1 and are not ruled out; names nothing if there
 /// are none.

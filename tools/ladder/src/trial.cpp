@@ -126,7 +126,7 @@ bool Remembers(const Plant& plant) {
   });
 }
 
-Dataset QuickPart(const Plant& plant, const Dataset& data, const Eigen::VectorXd& error) {
+Dataset SubsetForFits(const Plant& plant, const Dataset& data, const Eigen::VectorXd& error) {
   constexpr std::size_t kRows = 3000, kLong = 500, kShort = 50;
   if (IsSimulated(plant.description())) return Beginnings(data, kRows);
   return Remembers(plant) ? Windows(data, error, kLong, 2 * kRows) : Windows(data, error, kShort, kRows);
@@ -150,7 +150,7 @@ Dataset Compared(const Plant& plant, const Dataset& data, std::size_t most_simul
 
 Trial FitAlone(const std::shared_ptr<const Plant>& plant, Dataset* data) {
   constexpr std::size_t kStarts = 24;
-  Trial trial = Try(plant, QuickPart(*plant, *data, Deviation(*data, *plant)), {}, kStarts);
+  Trial trial = Try(plant, SubsetForFits(*plant, *data, Deviation(*data, *plant)), {}, kStarts);
   if (!trial.fit.valid) return trial;
   trial = Refine(plant, *data, trial.fit.theta);
   LeaveOutStarts(trial, data);

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "armcmc/gap/adequacy_check.hpp"
 #include "armcmc/gap/blocks.hpp"
 #include "armcmc/gap/fit.hpp"
-#include "armcmc/gap/referee.hpp"
 #include "armcmc/gap/thresholds.hpp"
 
 namespace armcmc::gap {
@@ -21,7 +21,7 @@ struct FlexibleCorrection {
   Fitted without, with;  ///< The correction alone, and with the effects of the hypothesis.
 };
 
-/// A fitted hypothesis with the result of the referee, once computed.
+/// A fitted hypothesis with the result of the adequacy check, once computed.
 struct Candidate {
   Fitted fit;
   std::optional<Remainder> remainder;
@@ -76,7 +76,7 @@ class Search {
 
   /// @param pairs  Whether pairs of effects are tested.
   [[nodiscard]] Finding Run(bool pairs) const;
-  [[nodiscard]] const Referee& referee() const { return *referee_; }
+  [[nodiscard]] const AdequacyCheck& adequacy_check() const { return *adequacy_check_; }
   [[nodiscard]] const CandidatePtr& base() const { return base_; }
   /// Whether a hypothesis leaves no significant remainder of a gap of that size.
   [[nodiscard]] bool Adequate(const CandidatePtr& candidate, double gap) const;
@@ -153,7 +153,7 @@ class Search {
   const std::vector<EffectForm>* catalogue_;
   const BlockBootstrap* bootstrap_;
   Thresholds limits_;
-  std::unique_ptr<Referee> referee_;
+  std::unique_ptr<AdequacyCheck> adequacy_check_;
   CandidatePtr base_;
   double rows_ = 0.0;
 };

@@ -30,7 +30,8 @@ struct FitResult {
 [[nodiscard]] FitResult Fit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,
                             const Eigen::VectorXd& start, int max_iterations = 30);
 
-/// The best of fits by cost. All begin with two steps; the `most_fits` best continue.
+/// The best of fits by cost, where Fit() begins. All begin with two steps; the `most_fits` best continue, as long as
+/// they gain a thousandth of the mean square in an iteration.
 /// @param along_one  Starts are first moved along one parameter at a time, the one that helps most: a parameter that
 ///   is far off is corrected without the others running away.
 [[nodiscard]] FitResult BestFit(const TrajectoryModel& model, const std::vector<std::uint8_t>& rows,

@@ -25,7 +25,7 @@ struct Comparison {
 /// Another effect that was tried on a rung, and its gain on left-out data.
 struct Contender {
   Candidate candidate;
-  Trial trial;               ///< Fitted to all training rows if promising, otherwise to the subset of QuickPart().
+  Trial trial;               ///< Fitted to all training rows if promising, otherwise to the subset of SubsetForFits().
   bool refined = false;      ///< Fitted to all training rows.
   double closed = 0.0;       ///< Share of the base model's squared error that the fit removes, [0, 1].
   Comparison alone;          ///< Relative to the base model, if trial.judged.
@@ -35,6 +35,7 @@ struct Contender {
   bool larger_part = false;  ///< It removes more than half of the unexplained error.
   bool earned = false;       ///< Rule 1 of Climb(): enough evidence for a name.
   bool ruled_out = false;    ///< Rule 4: a rival outside the catalogue explains more.
+  bool ruled_out_with = false;  ///< It is the same, with more parameters, as one that is ruled out.
 };
 
 /// A named effect, or several that the data cannot distinguish.

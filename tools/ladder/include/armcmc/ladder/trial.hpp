@@ -36,7 +36,7 @@ struct Trial {
 /// A subset of the data for quick fits: for a simulated plant the beginnings of its runs, otherwise segments, half of
 /// them where the model errs most; longer ones if the law has memory.
 /// @param error  [row] Residual of a fitted model.
-[[nodiscard]] Dataset QuickPart(const Plant& plant, const Dataset& data, const Eigen::VectorXd& error);
+[[nodiscard]] Dataset SubsetForFits(const Plant& plant, const Dataset& data, const Eigen::VectorXd& error);
 
 /// Whether the states of the plant are integrated from the beginning of each run (states of added effects do not
 /// count).

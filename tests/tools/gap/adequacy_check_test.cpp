@@ -1,6 +1,6 @@
 // What a flexible model without a name still predicts, and where.
 
-#include "armcmc/gap/referee.hpp"
+#include "armcmc/gap/adequacy_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "armcmc/gap/localise.hpp"
 #include "tools/gap/gap_rig.hpp"
 
-namespace armcmc::gap::referee_test {
+namespace armcmc::gap::adequacy_check_test {
 namespace {
 
 using test::Bench;
@@ -34,7 +34,7 @@ struct Lacking {
     bench = std::make_unique<Bench>(recording);
     fitter = std::make_unique<Fitter>(*bench->equation, bench->signals, White(kNoise));
     base = bench->Base(*fitter);
-    referee = std::make_unique<Referee>(*fitter, base.predicted);
+    adequacy_check = std::make_unique<AdequacyCheck>(*fitter, base.predicted);
   }
   /// Nats that it is worth beyond what the parameters of the law take of it.
   [[nodiscard]] double Explainable() const {
@@ -45,36 +45,36 @@ struct Lacking {
   std::unique_ptr<Bench> bench;
   std::unique_ptr<Fitter> fitter;
   Fitted base;
-  std::unique_ptr<Referee> referee;
+  std::unique_ptr<AdequacyCheck> adequacy_check;
 
  private:
   Vector lack_;
 };
 
-TEST(Referee, PredictsNothingOfNoise) {
+TEST(AdequacyCheck, PredictsNothingOfNoise) {
   const Lacking nothing(Vector::Zero(kRows), 0.0);
-  const Remainder left = nothing.referee->Judge(nothing.base);
+  const Remainder left = nothing.adequacy_check->Judge(nothing.base);
   EXPECT_LT(left.total(), 10.0);
   EXPECT_EQ(left.line_frequency, 0.0);
 }
 
-TEST(Referee, PredictsWhatTheLawLacksByTheVariableThatItDependsOn) {
+TEST(AdequacyCheck, PredictsWhatTheLawLacksByTheVariableThatItDependsOn) {
   const Vector v = Measure({}, kRows, 0.0, 3).recording.Column("v");
   const Lacking drag(v.cwiseProduct(v.cwiseAbs()), 1.0);
   const double worth = drag.Explainable();
   ASSERT_GT(worth, 500.0);
-  const double found = drag.referee->Judge(drag.base).total();
+  const double found = drag.adequacy_check->Judge(drag.base).total();
   EXPECT_GT(found, 0.8 * worth);
   EXPECT_LT(found, 1.05 * worth) << "no more than there is";
   const Matrix none(kRows, 0);
-  EXPECT_GT(drag.referee->GainOf(drag.base, {"speed"}, none).sum(), 0.7 * worth);
-  EXPECT_LT(drag.referee->GainOf(drag.base, {"time"}, none).sum(), 0.1 * worth);
+  EXPECT_GT(drag.adequacy_check->GainOf(drag.base, {"speed"}, none).sum(), 0.7 * worth);
+  EXPECT_LT(drag.adequacy_check->GainOf(drag.base, {"time"}, none).sum(), 0.1 * worth);
 }
 
-TEST(Referee, FindsASpectralLine) {
+TEST(AdequacyCheck, FindsASpectralLine) {
   const Vector t = Vector::LinSpaced(kRows, 0.0, 1e-3 * (kRows - 1));
   const Lacking hum((2.0 * std::numbers::pi * 31.0 * t.array()).sin(), 0.5);
-  const Remainder left = hum.referee->Judge(hum.base);
+  const Remainder left = hum.adequacy_check->Judge(hum.base);
   EXPECT_NEAR(left.line_frequency, 31.0, 0.1);
   EXPECT_GT(left.total(), 0.8 * hum.Explainable());
 }
@@ -104,4 +104,4 @@ TEST(FindWhere, SaysInWhichModeTheErrorIsAndOnWhatItDepends) {
 }
 
 }  // namespace
-}  // namespace armcmc::gap::referee_test
+}  // namespace armcmc::gap::adequacy_check_test

@@ -1,4 +1,4 @@
-#include "armcmc/gap/referee.hpp"
+#include "armcmc/gap/adequacy_check.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -64,7 +64,7 @@ Best ChooseRidge(const BlockGrams& grams, Eigen::Index num_free, double rows) {
 
 }  // namespace
 
-Referee::Referee(const Fitter& fitter, const Vector& predicted)
+AdequacyCheck::AdequacyCheck(const Fitter& fitter, const Vector& predicted)
     : fitter_(&fitter), groups_(fitter.equation().Groups(fitter.signals(), predicted)) {
   Eigen::Index count = 0;
   for (const FeatureGroup& group : groups_) count += group.columns.cols();
@@ -78,7 +78,7 @@ Referee::Referee(const Fitter& fitter, const Vector& predicted)
   grams_ = MakeGrams(columns_, Vector::Zero(columns_.rows()));
 }
 
-Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* unexplained) const {
+Vector AdequacyCheck::GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* unexplained) const {
   const Matrix free = FreeColumns(fitted);
   const Eigen::Index f = free.cols(), e = extra.cols(), p = columns_.cols();
   Matrix own(free.rows(), f + e);
@@ -109,7 +109,7 @@ Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra, Vector* une
   return -0.5 / fitter_->whitener().variance * best.squares - fitted.heldout;
 }
 
-Remainder Referee::Judge(const Fitted& fitted) const {
+Remainder AdequacyCheck::Judge(const Fitted& fitted) const {
   const Signals& signals = fitter_->signals();
   Remainder remainder;
   const Line line = StrongestLine(fitted.whitened_residual, signals.dt);
@@ -122,11 +122,11 @@ Remainder Referee::Judge(const Fitted& fitted) const {
   return remainder;
 }
 
-Vector Referee::GainOfAll(const Fitted& fitted, const Matrix& extra) const {
+Vector AdequacyCheck::GainOfAll(const Fitted& fitted, const Matrix& extra) const {
   return GainOfAll(fitted, UnitRms(extra), nullptr);
 }
 
-Vector Referee::GainOf(const Fitted& fitted, const std::vector<std::string>& groups, const Matrix& extra) const {
+Vector AdequacyCheck::GainOf(const Fitted& fitted, const std::vector<std::string>& groups, const Matrix& extra) const {
   std::vector<Eigen::Index> chosen;
   Eigen::Index at = 0;
   for (const FeatureGroup& group : groups_) {

@@ -18,10 +18,10 @@ struct Remainder {
 
 /// Adequacy test: ridge regression of the residual on piecewise linear functions of every variable, memory, reversals,
 /// and a spectral line. What it predicts on blocks left out is structure that the hypothesis lacks.
-class Referee {
+class AdequacyCheck {
  public:
   /// @param predicted  Prediction of the base model, from which features of the force are computed.
-  Referee(const Fitter& fitter, const Vector& predicted);
+  AdequacyCheck(const Fitter& fitter, const Vector& predicted);
 
   [[nodiscard]] Remainder Judge(const Fitted& fitted) const;
   /// Gain of the groups of these names and of `extra` columns (not whitened), alone.

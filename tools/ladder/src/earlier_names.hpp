@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "armcmc/ladder/climb.hpp"
+
+namespace armcmc::ladder {
+
+/// What was named on the rungs before.
+struct EarlierNames {
+  std::vector<const Candidate*> effects;
+  double explained = 0.0;  ///< Squared error that it removed, relative to what remains.
+
+  /// The named effect that acts like `entry`, or like another one of its family; null if none does.
+  /// @param entries  The catalogue.
+  [[nodiscard]] const Candidate* Like(const EffectEntry& entry, const std::vector<EffectEntry>& entries) const;
+  /// Whether an effect of another family is so small compared with it that an error of its formula would explain it.
+  /// @pre c.trial.judged.
+  [[nodiscard]] bool Dwarfs(const Contender& c) const;
+};
+
+}  // namespace armcmc::ladder
