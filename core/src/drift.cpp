@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "armcmc/density_fit.hpp"
 #include "armcmc/linear_algebra.hpp"
@@ -16,11 +15,6 @@ constexpr double kMixedReach = 6.0;     // standard deviations
 constexpr double kMixedTail = 1e-3;     // of a normal law in a mixture
 constexpr std::int64_t kBothParts = 4;  // in a snapshot, added to the part of the first block
 constexpr double kLeftOut = 1e-5;       // share below which a filter is left out of the mixture
-
-void MakeSymmetric(ParamMatrix* m) noexcept {
-  for (Eigen::Index i = 0; i < m->rows(); ++i)
-    for (Eigen::Index j = 0; j < i; ++j) (*m)(i, j) = (*m)(j, i) = 0.5 * ((*m)(i, j) + (*m)(j, i));
-}
 
 /// A with A C A' = R. @return false if C or R is not a covariance.
 bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noexcept {
@@ -40,9 +34,8 @@ bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noex
 }  // namespace
 
 Drift::Hypothesis Drift::Of(int h, double share) noexcept {
-  if (h == 0) return {.rate = 0.0, .persistence = 1.0, .prior = 1.0 - share};
-  const Law& law = kDrifts[static_cast<std::size_t>(h - 1)];
-  return {.rate = law.rate, .persistence = law.persistence, .prior = share * law.share};
+  if (h == 0) return {.rate = 0.0, .prior = 1.0 - share};
+  return {.rate = kRates[static_cast<std::size_t>(h - 1)], .prior = share / static_cast<double>(kRates.size())};
 }
 
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
@@ -156,6 +149,7 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   const double since = data.time_s - time_s_;
   Predict(since > 0.0 ? since : data.duration_s);
   ExpectDrift();
+  if (share_ >= kNegligible) drifting_ = JointOf(predicted_, Part::kDrift);
   const Moments from{
       .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
   carried_.valid = true;
@@ -210,7 +204,7 @@ void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
       f = predicted_[i];
     } else {
       const Hypothesis& law = hypotheses_[HypothesisOf(i)];
-      f.weight = i / kHypotheses + 1 == kGenerations ? law.prior : 0.0;
+      f.weight = i / kHypotheses + 1 == kSlots ? law.prior : 0.0;
       f.w = ParamVector::Zero(dim_);
       f.ww = ParamMatrix::Identity(dim_, dim_);
       f.ww *= law.rate * law.rate;
@@ -238,7 +232,6 @@ Drift::Sampled Drift::SampledBlock(const ModeData& data, const PosteriorMemory& 
 
 bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
   const LocalLikelihood& local = sampled.local;
-  const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
   std::array<double, kFilters> log_weight{};
   double top = -HUGE_VAL;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
@@ -246,28 +239,9 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
     Filter& f = bank_[i];
     f = predicted_[i];
     if (!(f.weight > 0.0)) continue;
-    // P = C (1 + H C)^-1, and w is updated through its covariance with u.
-    ParamMatrix spread = Product(local.information, f.uu);
-    spread += identity;
-    const ParamMatrix t = Inverse(spread);
-    const ParamVector apart = f.u - sampled.mean;
-    const ParamVector pulled = Multiply(local.information, apart);
-    const ParamVector residual = local.gradient - pulled;
-    const ParamVector step = Multiply(t, residual);
-    const ParamVector move = Multiply(f.uu, step);
-    log_weight[i] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
-                    0.5 * residual.dot(move) - 0.5 * std::log(std::fmax(Determinant(spread), 1e-300));
+    log_weight[i] = std::log(f.weight) + Observe(local, sampled.mean, local.in_pack && HypothesisOf(i) > 0, &f);
     if (!std::isfinite(log_weight[i])) return false;
     top = std::fmax(top, log_weight[i]);
-    f.u += move;
-    f.w += Multiply(f.uw.transpose(), step);
-    f.ww -= Product(Product(f.uw.transpose(), Product(t, local.information)), f.uw);
-    f.uw = Product(t.transpose(), f.uw);
-    f.uu = Product(f.uu, t);
-    MakeSymmetric(&f.uu);
-    MakeSymmetric(&f.ww);
-    if (!f.u.allFinite() || !f.w.allFinite() || !f.uu.allFinite() || !f.uw.allFinite() || !f.ww.allFinite())
-      return false;
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
@@ -285,21 +259,16 @@ bool Drift::Recentre(const Sampled& sampled) noexcept {
   // The posterior of the sampler's prior under the expanded likelihood: the bank itself, or a Gaussian with its
   // moments.
   const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
-  Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, sampled.part);
-  if (!as_the_bank) {
-    ParamMatrix spread = Product(local.information, now.covariance);
-    spread += ParamMatrix::Identity(dim_, dim_);
-    const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
-    now.covariance = Product(now.covariance, Inverse(spread));
-    MakeSymmetric(&now.covariance);
-    now.mean += Multiply(now.covariance, local.gradient - pulled);
-  }
+  Filter now = sampled.part == Part::kDrift && !as_the_bank ? drifting_
+                                                            : JointOf(as_the_bank ? bank_ : predicted_, sampled.part);
+  const bool moves = local.in_pack && sampled.part != Part::kRest;  // what rests has no velocity
+  if (!as_the_bank && !std::isfinite(Observe(local, sampled.mean, moves, &now))) return false;
   ParamMatrix map;
-  if (!MapBetween(now.covariance, sampled.covariance, &map)) return false;
+  if (!MapBetween(now.uu, sampled.covariance, &map)) return false;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
     Filter& f = bank_[i];
     if (!(f.weight > 0.0) || !IsOf(sampled.part, i)) continue;
-    f.u = sampled.mean + Multiply(map, f.u - now.mean);
+    f.u = sampled.mean + Multiply(map, f.u - now.u);
     f.uu = Product(Product(map, f.uu), map.transpose());
     MakeSymmetric(&f.uu);
     f.uw = Product(map, f.uw);
@@ -315,7 +284,6 @@ void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, 
   both_ = false;
   const bool known = started_;
   started_ = true;
-  packs_ = known ? packs_ + 1 : 0;
   if (known && !renewed) {
     const Sampled first = SampledBlock(data, next, 0, part, scratch);
     if (both) {
@@ -336,7 +304,6 @@ void Drift::Save(SnapshotWriter* out) const noexcept {
   out->PutFlag(started_);
   if (!started_) return;
   out->Put(time_s_);
-  out->Put(packs_);
   out->Put(static_cast<std::int64_t>(fitted_) + (both_ ? kBothParts : 0));
   const auto put = [out](const auto& m) noexcept ARMCMC_NONBLOCKING {
     out->PutRow(m.data(), static_cast<std::size_t>(m.size()));
@@ -356,7 +323,6 @@ void Drift::Restore(SnapshotReader* in) noexcept {
   const bool started = in->Flag();
   if (!started) return;
   time_s_ = in->Number();
-  packs_ = in->Integer(0, std::numeric_limits<std::int64_t>::max());
   const std::int64_t fitted = in->Integer(0, static_cast<std::int64_t>(Part::kDrift) + kBothParts);
   both_ = fitted >= kBothParts;
   fitted_ = static_cast<Part>(both_ ? fitted - kBothParts : fitted);

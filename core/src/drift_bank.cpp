@@ -1,4 +1,5 @@
-// The bank of filters between packs: generations, newcomers, time.
+// The bank of filters between packs: merging, newcomers, time.
+#include <array>
 #include <cmath>
 
 #include "armcmc/drift.hpp"
@@ -47,40 +48,76 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
   from->weight = 0.0;
 }
 
-void Drift::GrowOlder() noexcept {
-  // From the oldest on, so that none moves by two generations.
-  for (std::size_t g = kMergeAfter.size(); g-- > 0;) {
-    if (packs_ % kMergeAfter[g] != 0) continue;
-    for (std::size_t h = 0; h < kHypotheses; ++h)
-      Merge(&predicted_[g * kHypotheses + h], &predicted_[(g + 1) * kHypotheses + h]);
+Drift::Filter Drift::JointOf(const Bank& bank, Part part) noexcept {
+  Filter joint;
+  for (std::size_t i = 0; i < bank.size(); ++i) {
+    if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
+    Filter f = bank[i];
+    Merge(&f, &joint);
   }
+  return joint;
 }
 
-void Drift::AddNewcomers(double share) noexcept {
-  const Moments all = MomentsOf(predicted_, Part::kWhole);
-  for (Filter& f : predicted_) f.weight *= 1.0 - share;
-  // Starts anywhere in the bank, with a rate from the law of the hypothesis.
+void Drift::MakeRoom() noexcept {
   for (std::size_t h = 0; h < kHypotheses; ++h) {
-    Filter fresh{.weight = share * hypotheses_[h].prior * all.weight,
-                 .u = all.mean,
-                 .w = ParamVector::Zero(dim_),
-                 .uu = all.covariance,
-                 .uw = ParamMatrix::Zero(dim_, dim_),
-                 .ww = ParamMatrix::Identity(dim_, dim_)};
-    fresh.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
-    Merge(&fresh, &predicted_[h]);
+    const auto slot = [&](std::size_t k) noexcept -> Filter& { return predicted_[k * kHypotheses + h]; };
+    if (!(slot(0).weight > 0.0)) continue;
+    std::array<double, kSlots> entropy{};
+    for (std::size_t k = 0; k < kSlots; ++k) entropy[k] = slot(k).weight * LogVolume(slot(k), h > 0);
+    std::size_t closest = 0;
+    double least = HUGE_VAL;
+    for (std::size_t k = 0; k + 1 < kSlots; ++k) {
+      Filter from = slot(k);
+      Filter both = slot(k + 1);
+      Merge(&from, &both);
+      const double lost = both.weight * LogVolume(both, h > 0) - entropy[k] - entropy[k + 1];
+      if (lost < least) {
+        least = lost;
+        closest = k;
+      }
+    }
+    Merge(&slot(closest), &slot(closest + 1));
+    for (std::size_t k = closest; k > 0; --k) slot(k) = slot(k - 1);
+    slot(0).weight = 0.0;
   }
 }
 
-void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
+void Drift::AddNewcomers(double elapsed_s) noexcept {
+  const Moments rest = MomentsOf(predicted_, Part::kRest);
+  const Moments drift = MomentsOf(predicted_, Part::kDrift);
+  const double drift_share = 1.0 - hypotheses_[0].prior;
+  const double switched = -std::expm1(-kSwitching * elapsed_s);
+  const double begins = switched * drift_share;
+  const double ends = switched - begins;
+  for (std::size_t i = 0; i < predicted_.size(); ++i)
+    predicted_[i].weight *= IsOf(Part::kRest, i) ? 1.0 - begins : 1.0 - ends;
+  for (std::size_t h = 0; h < kHypotheses; ++h) {
+    const Moments& from = h == 0 ? drift : rest;
+    if (!(from.weight > 0.0)) continue;
+    const double share = h == 0 ? ends : switched * hypotheses_[h].prior;
+    predicted_[h] = Filter{.weight = share * from.weight,
+                           .u = from.mean,
+                           .w = ParamVector::Zero(dim_),
+                           .uu = from.covariance,
+                           .uw = ParamMatrix::Zero(dim_, dim_),
+                           .ww = ParamMatrix::Identity(dim_, dim_)};
+    predicted_[h].ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+  }
+}
+
+void Drift::Propagate(double rate, double elapsed_s, Filter* filter) const noexcept {
   Filter& f = *filter;
-  const double speed = law.rate * law.rate;
-  const double t = law.persistence;
-  const double phi = std::exp(-elapsed_s / t);
-  const double b = t * (1.0 - phi);
-  const double noise_w = speed * (1.0 - phi * phi);
-  const double noise_uw = speed * t * (1.0 - phi) * (1.0 - phi);
-  const double noise_u = std::fmax(speed * t * (2.0 * (elapsed_s - b) - b * (1.0 - phi)), 0.0);
+  const double speed = rate * rate;
+  const double t = kPersistence;
+  const double x = elapsed_s / t;
+  const double lost = -std::expm1(-x);
+  const double phi = 1.0 - lost;
+  const double b = t * lost;
+  const double noise_w = speed * lost * (1.0 + phi);
+  const double noise_uw = speed * t * lost * lost;
+  // The difference of nearly equal numbers over short times; there the first terms of its series.
+  const double noise_u =
+      speed * t * t * (x < 0.01 ? x * x * x * (2.0 / 3.0 - 0.5 * x) : 2.0 * (x - lost) - lost * lost);
   const ParamVector variance = f.uu.diagonal();
   f.u += b * f.w;
   for (int i = 0; i < dim_; ++i)
@@ -104,11 +141,12 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
 
 void Drift::Predict(double elapsed_s) noexcept {
   predicted_ = bank_;
-  GrowOlder();
-  AddNewcomers(1.0 - std::exp(-kSwitching * elapsed_s));
-  for (std::size_t i = 0; i < predicted_.size(); ++i)
-    if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
-      Propagate(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);
+  MakeRoom();
+  AddNewcomers(elapsed_s);
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    const double rate = hypotheses_[HypothesisOf(i)].rate;
+    if (predicted_[i].weight > 0.0 && rate > 0.0) Propagate(rate, elapsed_s, &predicted_[i]);
+  }
 }
 
 void Drift::ExpectDrift() noexcept {

@@ -109,6 +109,8 @@ void Estimator::Impl::PrepareMode(const DataPack& pack, const EffectPack& effect
   // Weights by the distance from the end of the pack, within the samples of the mode.
   for (int n = 0; n < data->num_samples; ++n)
     data->weight[static_cast<std::size_t>(n)] = rho > 0.0 ? std::exp(-rho * (data->num_samples - 1 - n)) : 1.0;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(data->num_samples); ++n)
+    data->before_end[n] = data->states == nullptr ? pack.dt * (pack.num_samples - 1 - data->sample[n]) : 0.0;
 }
 
 Estimator::Estimator(const EstimatorSettings& settings) : impl_(std::make_unique<Impl>(settings, nullptr)) {}

@@ -155,27 +155,43 @@ void Linearise(const ModeData& data, const NoiseModel& noise, const ParameterSpa
 
 LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                                  const ParameterSpace& space, const ParamVector& u, double log_noise_scale,
-                                 LaplaceScratch* scratch) noexcept {
+                                 LaplaceScratch* scratch, DriftFactor* factor) noexcept {
   const int np = space.num_parameters;
   SetAround(space, u, &scratch->theta);
   PredictAround(kernels, model, data, space, scratch);
-  LocalLikelihood local{ParamVector::Zero(np), ParamMatrix::Zero(np, np)};
+  const ParamVector none = ParamVector::Zero(np);
+  const ParamMatrix nothing = ParamMatrix::Zero(np, np);
+  LocalLikelihood local{none, nothing, none, nothing, nothing, data.states == nullptr};
   const double scale = std::exp(log_noise_scale);
   const double information = noise.information() / (scale * scale);
   ParamVector slope(np);
   for (int n = 0; n < data.num_samples; ++n) {
     const auto in = static_cast<std::size_t>(n);
     const double w = data.weight[in];
+    const double t = data.before_end[in];
     const double e = (data.target[in] - scratch->prediction.value[in][0] - noise.settings().mean) * w;
     const double score = noise.SquareWeight(e, scale) * e;
-    for (int d = 0; d < np; ++d) slope[d] = w * Slope(*scratch, in, d);
+    for (int d = 0; d < np; ++d) {
+      slope[d] = w * Slope(*scratch, in, d);
+      if (factor != nullptr) factor->lever[d][n] = t * slope[d];
+    }
     for (int i = 0; i < np; ++i) {
       local.gradient[i] += slope[i] * score;
       for (int j = 0; j <= i; ++j) local.information(i, j) += information * slope[i] * slope[j];
     }
+    if (!local.in_pack) continue;
+    for (int i = 0; i < np; ++i) {
+      local.speed_gradient[i] -= t * slope[i] * score;
+      for (int j = 0; j <= i; ++j) {
+        const double square = information * slope[i] * slope[j];
+        local.cross_information(i, j) -= t * square;
+        local.speed_information(i, j) += t * t * square;
+      }
+    }
   }
-  for (int i = 0; i < np; ++i)
-    for (int j = 0; j < i; ++j) local.information(j, i) = local.information(i, j);
+  for (ParamMatrix* m : {&local.information, &local.cross_information, &local.speed_information})
+    for (int i = 0; i < np; ++i)
+      for (int j = 0; j < i; ++j) (*m)(j, i) = (*m)(i, j);
   return local;
 }
 

@@ -11,6 +11,11 @@ ParamVector Multiply(const ParamMatrix& a, const ParamVector& b) noexcept ARMCMC
 ParamMatrix Product(const ParamMatrix& a, const ParamMatrix& b) noexcept ARMCMC_NONBLOCKING { return a * b; }
 ParamMatrix TimesOwnTranspose(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a * a.transpose(); }
 ParamMatrix Inverse(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a.inverse(); }
+void MakeSymmetric(ParamMatrix* a) noexcept {
+  for (Eigen::Index i = 0; i < a->rows(); ++i)
+    for (Eigen::Index j = 0; j < i; ++j) (*a)(i, j) = (*a)(j, i) = 0.5 * ((*a)(i, j) + (*a)(j, i));
+}
+
 double Determinant(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING { return a.determinant(); }
 
 bool IsPositiveDefinite(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING {

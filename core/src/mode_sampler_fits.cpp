@@ -94,6 +94,7 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
   }
   SetElliptic(fit_fresh_.mean, Inverse(fit_fresh_.precision), kLaplaceInflation, &student_table_, &laplace_fresh_);
   num_persisted_ = 0;
+  ws->drift_factor.dim = 0;
   if (!use_previous) return;
   const auto add = [&](const Gaussian& fit) noexcept ARMCMC_NONBLOCKING {
     SetElliptic(fit.mean, Inverse(fit.precision), kLaplaceInflation, &student_table_,
@@ -105,7 +106,21 @@ void ModeSampler::FitLaplace(const ModeData& data, const PosteriorMemory& previo
     return;
   }
   FitUnder(previous.mean, previous.covariance, data, ws, &fit_persisted_);
+  if (!drift_.Splits(previous) && drift_.Drifts(previous, 0)) LetDrift(data, previous, ws, &fit_persisted_);
   add(fit_persisted_);
+  if (drift_.Splits(previous)) FitApart(data, previous, ws);
+}
+
+void ModeSampler::LetDrift(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws,
+                           Gaussian* fit) noexcept {
+  if (data.states != nullptr) return;  // constant in the pack: see ModeData::before_end
+  ws->drift_factor.log_scale = previous.log_noise_scale;
+  for (int k = 0; k < 2; ++k) {  // about the fit, then about what becomes of it
+    const ParamVector about = fit->mean.head(space_.num_parameters);
+    const LocalLikelihood local = ExpandLikelihood(kernels_, model_, data, noise_, space_, about,
+                                                   previous.log_noise_scale, &ws->laplace, &ws->drift_factor);
+    if (!drift_.LetDrift(local, fit, &ws->drift_factor)) return;
+  }
 }
 
 void ModeSampler::FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data,
@@ -131,6 +146,7 @@ void ModeSampler::FitApart(const ModeData& data, const PosteriorMemory& previous
     const DensityBlock& block = previous.block[static_cast<std::size_t>(b)];
     Gaussian fit;
     FitUnder(MeanOf(block), CovarianceOf(block), data, ws, &fit);
+    if (drift_.Drifts(previous, b)) LetDrift(data, previous, ws, &fit);
     SetElliptic(fit.mean, Inverse(fit.precision), kLaplaceInflation, &student_table_,
                 &laplace_persisted_[static_cast<std::size_t>(num_persisted_++)]);
   }

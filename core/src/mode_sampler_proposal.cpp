@@ -242,7 +242,6 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
       *in_haste = now + ahead > time.deadline_ns;
       if (*in_haste) break;
     }
-    if (round == 0 && drift_.Splits(previous)) FitApart(data, previous, ws);
     const bool thin_but_right = on_ridge && (round > 1 || ess >= kMinimumEss);
     if (!thin_but_right) {  // otherwise more draws from the same proposal
       pooled = made;
@@ -264,7 +263,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
 
 void ModeSampler::PrepareScore(const ModeData& data, bool use_previous, SamplerWorkspace* ws) noexcept {
   const Gaussian& fit = use_previous ? fit_persisted_ : fit_fresh_;
-  quadratic_.Prepare(data, fit, &ws->quadratic);
+  quadratic_.Prepare(data, fit, &ws->quadratic, &ws->drift_factor);
   ws->powers.parameter = -1;
   if (noise_.kind() == NoiseKind::kGaussian) return;
   // Candidates are about as wide as the posterior of this pack alone: wider ones are few.
@@ -349,10 +348,12 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
   for (int k = last; k < end; ++k)  // lanes past the end repeat the last candidate; nothing reads their results
     for (int d = 0; d < out->dim; ++d) u[d][k] = u[d][last - 1];
 
+  alignas(64) std::array<double, kTileLanes> log_scale;
+  const bool drifts = ws->drift_factor.dim > 0;
   if (quadratic_.ready()) {
     for (int k = first; k < end; k += kTileLanes)
       quadratic_.Score(u, k, &ws->log_likelihood[static_cast<std::size_t>(k)]);
-  } else if (ws->powers.parameter < 0 || !ScoreNear(data, first, end, u, ws)) {
+  } else if (!drifts && (ws->powers.parameter < 0 || !ScoreNear(data, first, end, u, ws))) {
     ScoreAll(data, first, end, u, ws);
   }
   for (int k = first; k < end; k += kTileLanes) {
@@ -374,6 +375,19 @@ void ModeSampler::DrawAndScore(const Proposal& proposal, const PosteriorMemory& 
         kernels_.add_density(*component.block, u, k, component.share, q);
       }
     }
+    if (!drifts) continue;
+    kernels_.to_physical(space_, u, k, &ws->theta[0], log_scale.data());
+    if (quadratic_.ready()) {
+      quadratic_.Levers(u, k, &ws->levers);
+    } else {
+      kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
+      kernels_.lever_sums(ws->drift_factor, noise_, data, ws->prediction, log_scale.data(), &ws->levers,
+                          &ws->log_likelihood[at]);
+    }
+    for (int b = 0; b < previous.num_blocks; ++b)
+      if (drift_.Drifts(previous, b))
+        kernels_.apply_drift(ws->drift_factor, ws->levers, log_scale.data(), u, k,
+                             &ws->memory[static_cast<std::size_t>(b)][at]);
   }
 }
 

@@ -68,6 +68,7 @@ QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const Pa
     axis.slope = 2.0 / (space.upper[c] - space.lower[c]);
     axis.origin = -1.0 - axis.slope * space.lower[c];
   }
+  for (int i = 0; i <= part.num_linear; ++i) form_.lever_needs[static_cast<std::size_t>(i)] = part.NeedOf(i);
   std::size_t products = 0;
   ForFunctions(part.num_linear, [&](std::size_t f, int i, int j) {
     form_.needs[f] = static_cast<LinearPart::Need>(part.NeedOf(i) | part.NeedOf(j));
@@ -85,7 +86,7 @@ QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const Pa
           (k == 0 ? 1.0 : 2.0) / nodes_ * std::cos(kPi * k * (j + 0.5) / nodes_);
 }
 
-void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept {
+void QuadraticScore::TakeSums(const ModeData& data, const DriftFactor* factor, QuadraticScratch* scratch) noexcept {
   const auto tiles = static_cast<std::size_t>(part_.num_linear) + 1;
   for (int first = 0; first < nodes_; first += kTileLanes) {
     ThetaTile& theta = scratch->theta;
@@ -113,6 +114,9 @@ void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) n
     std::array<double*, QuadraticForm::kMaxFunctions> rows{};
     for (std::size_t f = 0; f < rows.size(); ++f) rows[f] = &sums_[f][static_cast<std::size_t>(first)];
     kernels_.quadratic_sums(data, noise_.settings().mean, part_.num_linear, scratch->prediction.data(), rows.data());
+    if (form_.num_levers == 0) continue;
+    for (std::size_t f = 0; f < rows.size(); ++f) rows[f] = &lever_sums_[f][static_cast<std::size_t>(first)];
+    kernels_.lever_node_sums(*factor, data, part_.num_linear, scratch->prediction.data(), rows.data());
   }
 }
 
@@ -246,8 +250,8 @@ bool QuadraticScore::EndEach(double variance, const ParamVector& centre) noexcep
   return settled;
 }
 
-bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& centre, const ParamVector& sd,
-                                 QuadraticScratch* scratch) const noexcept {
+bool QuadraticScore::IsConfirmed(const ModeData& data, const DriftFactor* factor, const ParamVector& centre,
+                                 const ParamVector& sd, QuadraticScratch* scratch) const noexcept {
   constexpr int kNear = kTileLanes / 2 - 1;  // odd, so that the centre is one of them
   constexpr double kReach = 4.0;             // standard deviations
   alignas(64) std::array<std::array<double, kTileLanes>, kMaxParams> rows;
@@ -278,22 +282,50 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& centre
   Score(u.data(), 0, by_sums.data());
   for (std::size_t l = 0; l < kTileLanes; ++l)
     if (!(std::fabs(by_sums[l] - by_samples[l]) <= kConfirmed + kTolerance * std::fabs(by_samples[l]))) return false;
+  if (form_.num_levers == 0) return true;
+  LeverTile levers, levers_by_sums;
+  kernels_.lever_sums(*factor, noise_, data, scratch->prediction[0], log_scale.data(), &levers, by_samples.data());
+  Levers(u.data(), 0, &levers_by_sums);
+  for (int d = 0; d < form_.num_levers; ++d) {
+    double largest = 1.0;
+    for (const double v : levers.value[d]) largest = std::fmax(largest, std::fabs(v));
+    for (int l = 0; l < kTileLanes; ++l)
+      if (!(std::fabs(levers_by_sums.value[d][l] - levers.value[d][l]) <= kTolerance * largest)) return false;
+  }
   return true;
+}
+
+void QuadraticScore::Interpolate(const std::array<double, kNodes>& sums, int terms, double* series) const noexcept {
+  const CosineTable& transform = transform_[0];
+  for (std::size_t k = 0; k < static_cast<std::size_t>(terms); ++k) {
+    std::array<double, 4> part{};
+    for (std::size_t j = 0; j < static_cast<std::size_t>(nodes_); j += 4)
+      for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums[j + l];
+    series[k] = (part[0] + part[1]) + (part[2] + part[3]);
+  }
+}
+
+bool QuadraticScore::TakeLevers() noexcept {
+  bool finite = true;
+  std::size_t f = 0;
+  for (int m = 0; m < form_.num_levers; ++m)
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(form_.num_linear); ++i, ++f) {
+      const LinearPart::Need need = form_.lever_needs[i];
+      form_.lever[f][0] = lever_sums_[f][0];
+      if (need != LinearPart::kNeither)
+        Interpolate(lever_sums_[f], form_.axis[need == LinearPart::kCurved ? 0 : 1].degree + 1, form_.lever[f].data());
+      finite = finite && std::isfinite(form_.lever[f][0]);
+    }
+  return finite;
 }
 
 void QuadraticScore::TakeSeries() noexcept {
   const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
-  const auto nodes = static_cast<std::size_t>(nodes_);
   const CosineTable& transform = transform_[0];
   for (std::size_t f = 0; f < functions; ++f) {
     if (form_.needs[f] == LinearPart::kNeither) series_[f] = {sums_[f][0]};
     if (form_.needs[f] != LinearPart::kCurved && form_.needs[f] != LinearPart::kSecond) continue;
-    for (std::size_t k = 0; k < nodes; ++k) {
-      std::array<double, 4> part{};
-      for (std::size_t j = 0; j < nodes; j += 4)
-        for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums_[f][j + l];
-      series_[f][k] = (part[0] + part[1]) + (part[2] + part[3]);
-    }
+    Interpolate(sums_[f], nodes_, series_[f].data());
   }
   for (std::size_t product = 0; product + 1 < grid_.size(); ++product) {
     TransformColumns(transform, grid_[product], &grid_.back());
@@ -301,7 +333,8 @@ void QuadraticScore::TakeSeries() noexcept {
   }
 }
 
-void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept {
+void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch,
+                             const DriftFactor* factor) noexcept {
   ready_ = false;
   if (!applies_ || data.start_fit != nullptr || !fit.mean.allFinite()) return;
   num_samples_ = data.num_samples;
@@ -311,7 +344,9 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
       const auto d = static_cast<std::size_t>(part_.linear[static_cast<std::size_t>(i)]);
       form_.about[d] = -space_.offset[d] / space_.scale[d];
     }
-  TakeSums(data, scratch);
+  form_.num_levers = factor != nullptr ? factor->dim : 0;
+  if (form_.num_levers * (1 + part_.num_linear) > static_cast<int>(QuadraticForm::kMaxFunctions)) return;
+  TakeSums(data, factor, scratch);
   const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
   if (form_.num_curved == 0) {
     ready_ = true;
@@ -319,6 +354,7 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
       form_.coefficient[f][0] = sums_[f][0];
       ready_ = ready_ && std::isfinite(sums_[f][0]);
     }
+    ready_ = TakeLevers() && ready_;
     return;
   }
   TakeProducts(*scratch);
@@ -337,11 +373,15 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
   }
   ParamVector sd = Inverse(fit.precision).diagonal();
   for (int d = 0; d < space_.dim; ++d) sd[d] = sd[d] > 0.0 ? std::sqrt(sd[d]) : 1.0;
-  ready_ = IsConfirmed(data, fit.mean, sd, scratch);
+  ready_ = TakeLevers() && IsConfirmed(data, factor, fit.mean, sd, scratch);
 }
 
 void QuadraticScore::Score(const double* const* u, int first, double* out) const noexcept {
   kernels_.score_quadratic(form_, space_, noise_, num_samples_, u, first, out);
+}
+
+void QuadraticScore::Levers(const double* const* u, int first, LeverTile* sums) const noexcept {
+  kernels_.levers_quadratic(form_, space_, u, first, sums);
 }
 
 }  // namespace armcmc

@@ -58,9 +58,9 @@ TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
   EXPECT_NEAR(bank.drift.share(), 0.3, 1e-12);
   // Rest is as it was; drift as wide as the mean over its hypotheses of an integrated Ornstein-Uhlenbeck process.
   double grown = 0.0;
+  constexpr double t = Drift::kPersistence;
   for (int h = 1; h < Drift::kHypotheses; ++h) {
     const Drift::Hypothesis law = Drift::Of(h, 1.0);
-    const double t = law.persistence;
     grown += law.prior * 2.0 * law.rate * law.rate * t * (2.0 - t * (1.0 - std::exp(-2.0 / t)));
   }
   const ParamMatrix rest = CovarianceOf(carried.block[0]), drift = CovarianceOf(carried.block[1]);

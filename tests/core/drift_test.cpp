@@ -236,7 +236,7 @@ TEST(Drift, ARestartGoesOnToTheBitAndAnOlderSnapshotIsTaken) {
   executed.resize(whole.estimator.SaveExecuted(executed));
   ASSERT_TRUE(resumed.estimator.Restore(adjusted, executed));
   constexpr std::size_t kFilter = 1 + 2 * 3 + 3 * 9;  // numbers of three parameters
-  constexpr std::size_t kDriftBytes = 1 + (3 + Drift::kFilters * kFilter) * sizeof(double);
+  constexpr std::size_t kDriftBytes = 1 + (2 + Drift::kFilters * kFilter) * sizeof(double);
   ASSERT_TRUE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes), executed));
   EXPECT_FALSE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes + 1), executed));
   ASSERT_TRUE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes), executed));

@@ -90,6 +90,36 @@ TEST(QuadraticScore, IsTheLogLikelihoodOfEverySample) {
       }
 }
 
+TEST(QuadraticScore, HasTheLeversOfADriftFactor) {
+  QuadraticScratch scratch(2);
+  const auto factor = std::make_unique<DriftFactor>();
+  factor->dim = 3;
+  for (int d = 0; d < 3; ++d)
+    for (int n = 0; n < kMaxPackSamples; ++n) factor->lever[d][n] = std::sin(0.1 * n + d) * (1.0 + d);
+  for (const bool estimate_std : {false, true})
+    for (const double spread : {0.01, 0.3}) {
+      const ContactCase c(0.1, estimate_std, true, spread);
+      for (const simd::Kernels* kernels : test::RunnableKernels()) {
+        QuadraticScore score(*kernels, 0, c.space, c.noise, kContactPart);
+        score.Prepare(c.data, c.about, &scratch, factor.get());
+        ASSERT_TRUE(score.ready()) << kernels->name;
+        const auto theta = std::make_unique<ThetaTile>();
+        const auto tile = std::make_unique<PredictionTile>();
+        alignas(64) std::array<double, kTileLanes> log_scale;
+        kernels->to_physical(c.space, c.u.data(), 0, theta.get(), log_scale.data());
+        kernels->predict(0, c.data, *theta, tile.get());
+        LeverTile expected, levers;
+        alignas(64) std::array<double, kTileLanes> log_likelihood;
+        kernels->lever_sums(*factor, c.noise, c.data, *tile, log_scale.data(), &expected, log_likelihood.data());
+        score.Levers(c.u.data(), 0, &levers);
+        for (int d = 0; d < 3; ++d)
+          for (int l = 0; l < kTileLanes; ++l)
+            EXPECT_NEAR(levers.value[d][l], expected.value[d][l], 1e-6 * (1.0 + std::fabs(expected.value[d][l])))
+                << kernels->name << ", lever " << d << ", lane " << l;
+      }
+    }
+}
+
 TEST(QuadraticScore, FusedInstructionSetsGiveTheSameBits) {
   const auto sets = test::FusedKernels();
   if (sets.size() < 2) GTEST_SKIP() << "this CPU runs one fused instruction set only";

@@ -83,6 +83,20 @@ void Check(int seeds, bool impulsive) {
 
 TEST(DriftCoverage, IntervalsHoldParametersThatDrift) { Check(6, false); }
 
+// Within a pack the parameters move by more than their standard deviations.
+TEST(DriftCoverage, IntervalsHoldParametersThatDriftFast) {
+  const Truth truth = [](double t) {
+    const double part = std::clamp((t - 1.0) / 4.0, 0.0, 1.0);
+    return test::ContactTruth{4.0 + 1.5 * part, 2.3 - 0.8 * part, 1.7 - 0.25 * part};
+  };
+  const Score fast = ScoreOf(20, ForgettingSettings{}.drift_share, false, NoiseKind::kGaussian, truth);
+  for (std::size_t d = 0; d < 3; ++d) {
+    ::testing::Test::RecordProperty("in95_" + std::to_string(d), std::to_string(fast.in95[d]));
+    // How fast the exponent moves shows late, along a ridge with the gains.
+    EXPECT_GT(fast.in95[d], d < 2 ? 0.90 : 0.80) << d;
+  }
+}
+
 TEST(DriftCoverage, IntervalsOfAPlantAtRestAreAsWithoutDrift) {
   // Spikes that the noise law does not have: in many packs something seems to have changed.
   const Truth at_rest = [](double) { return TruthAt(0.0); };

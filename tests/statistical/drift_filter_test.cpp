@@ -33,32 +33,39 @@ std::shared_ptr<const PlantProgram> Plant() {
   return test::Program(plant);
 }
 
+/// Over the samples of a pack, of an input x at a time t before its end, and the output y.
+struct Sums {
+  double xx = 0.0, xy = 0.0, txx = 0.0, txy = 0.0, ttxx = 0.0;
+};
+
 /// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, and when the parameter changed,
 /// (u, w) is Gaussian; of these histories, which grow in number with every pack, thousands are kept, the most probable
 /// ones.
 class Histories {
  public:
   explicit Histories(double share) : share_(share) {
-    for (int h = 0; h < Drift::kHypotheses; ++h) noise_[static_cast<std::size_t>(h)] = Noise(Drift::Of(h, share));
+    for (int h = 0; h < Drift::kHypotheses; ++h) noise_[static_cast<std::size_t>(h)] = Noise(Drift::Of(h, share).rate);
   }
 
   /// @param persisted  Share of what did not change in the prior of the pack. 0: a modification.
-  /// @param xx, xy     Sums over the pack.
-  void Add(double persisted, double xx, double xy) {
+  /// @param sums       Over the pack.
+  void Add(double persisted, const Sums& sums) {
     std::vector<History> next;
-    const double stays = std::exp(-Drift::kSwitching * kDuration);
+    const double switched = 1.0 - std::exp(-Drift::kSwitching * kDuration);
     if (histories_.empty()) {
-      // What begins with the first pack moves from then on.
-      for (int h = 0; h < Drift::kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
+      // What begins with the first pack moves from its end on.
+      for (int h = 0; h < Drift::kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0, true}));
     } else {
       for (const History& old : histories_) {
         std::vector<History> moved;
         History same = old;
-        same.weight *= stays;
+        same.weight *= 1.0 - switched * (old.law > 0 ? 1.0 - share_ : share_);
         moved.push_back(same);
+        // A drift begins at rest, and comes to rest.
         for (int h = 0; h < Drift::kHypotheses; ++h) {
+          if ((h > 0) == (old.law > 0)) continue;
           History begun = Begin(h, old);
-          begun.weight *= 1.0 - stays;
+          begun.weight *= switched;
           moved.push_back(begun);
         }
         for (const History& m : moved) {
@@ -66,6 +73,7 @@ class Histories {
           History changed = kept;
           kept.weight *= persisted;
           changed.weight *= 1.0 - persisted;
+          changed.new_in_pack = true;
           changed.u = changed.uw = 0.0;
           changed.uu = 1.0;
           if (kept.weight > 0.0) next.push_back(kept);
@@ -76,19 +84,30 @@ class Histories {
     double top = -HUGE_VAL;
     std::vector<double> log_weight;
     for (History& h : next) {
-      // y = a x + e, a = kMean + kSd u: information and pull in u.
-      const double information = kSd * kSd * xx / (kNoise * kNoise);
-      const double pull = kSd * (xy - kMean * xx) / (kNoise * kNoise);
-      const double gain = 1.0 / (1.0 + h.uu * information);
-      const double residual = pull - information * h.u;
-      log_weight.push_back(std::log(h.weight) + 0.5 * std::log(gain) + pull * h.u - 0.5 * information * h.u * h.u +
-                           0.5 * gain * h.uu * residual * residual);
+      // y = (a - t w) x + e, a = kMean + kSd u: information and pull in u, then in w.
+      const double unit = kSd / (kNoise * kNoise);
+      // What has changed is constant for the rest of the pack.
+      const double moves = !h.new_in_pack && h.law > 0 ? 1.0 : 0.0;
+      h.new_in_pack = false;
+      const double huu = kSd * unit * sums.xx, huw = -moves * kSd * unit * sums.txx;
+      const double hww = moves * kSd * unit * sums.ttxx;
+      const double pull = unit * (sums.xy - kMean * sums.xx), pull_w = -moves * unit * (sums.txy - kMean * sums.txx);
+      // (1 + P H)^-1 P, and the step from what is left of the pull.
+      const double a = 1.0 + h.uu * huu + h.uw * huw, b = h.uu * huw + h.uw * hww;
+      const double c = h.uw * huu + h.ww * huw, d = 1.0 + h.uw * huw + h.ww * hww;
+      const double determinant = a * d - b * c;
+      const double left = pull - huu * h.u - huw * h.w, left_w = pull_w - huw * h.u - hww * h.w;
+      const double uu = (d * h.uu - b * h.uw) / determinant, uw = (d * h.uw - b * h.ww) / determinant;
+      const double ww = (a * h.ww - c * h.uw) / determinant;
+      const double step = uu * left + uw * left_w, step_w = uw * left + ww * left_w;
+      log_weight.push_back(std::log(h.weight) - 0.5 * std::log(determinant) + h.u * (pull + left) / 2.0 +
+                           h.w * (pull_w + left_w) / 2.0 + 0.5 * (left * step + left_w * step_w));
       top = std::fmax(top, log_weight.back());
-      h.w += h.uw * gain * residual;
-      h.u += h.uu * gain * residual;
-      h.ww -= h.uw * h.uw * gain * information;
-      h.uw *= gain;
-      h.uu *= gain;
+      h.u += step;
+      h.w += step_w;
+      h.uu = uu;
+      h.uw = uw;
+      h.ww = ww;
     }
     double sum = 0.0;
     for (std::size_t i = 0; i < next.size(); ++i) sum += next[i].weight = std::exp(log_weight[i] - top);
@@ -130,6 +149,7 @@ class Histories {
     double weight;
     int law;
     double u, w, uu, uw, ww;
+    bool new_in_pack = false;
   };
 
   [[nodiscard]] History Begin(int h, History from) const {
@@ -143,8 +163,7 @@ class Histories {
   [[nodiscard]] History Pass(History h) const {
     if (h.law == 0) return h;
     const Noise& noise = noise_[static_cast<std::size_t>(h.law)];
-    const double t = Drift::Of(h.law, share_).persistence;
-    const double phi = std::exp(-kDuration / t), b = t * (1.0 - phi);
+    const double phi = std::exp(-kDuration / Drift::kPersistence), b = Drift::kPersistence * (1.0 - phi);
     h.uu += 2.0 * b * h.uw + b * b * h.ww + noise.uu;
     h.u += b * h.w;
     h.uw = phi * (h.uw + b * h.ww) + noise.uw;
@@ -158,14 +177,14 @@ class Histories {
     double uu = 0.0, uw = 0.0, ww = 0.0;
     Noise() = default;
     /// By small steps: nothing of the estimator's closed form.
-    explicit Noise(const Drift::Hypothesis& law) {
+    explicit Noise(double rate) {
       constexpr int kSteps = 2000;
       constexpr double kStep = kDuration / kSteps;
-      const double kept = std::exp(-kStep / law.persistence);
+      const double kept = std::exp(-kStep / Drift::kPersistence);
       for (int k = 0; k < kSteps; ++k) {
         uu += 2.0 * kStep * uw + kStep * kStep * ww;
         uw = kept * (uw + kStep * ww);
-        ww = kept * kept * ww + law.rate * law.rate * (1.0 - kept * kept);
+        ww = kept * kept * ww + rate * rate * (1.0 - kept * kept);
       }
     }
   };
@@ -187,20 +206,25 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
   double mean = 0.0, sd = 0.0, share = 0.0, worst_mean = 0.0, worst_sd = 0.0;
   int modifications = 0;
   for (std::int64_t seq = 1; seq <= kPacks; ++seq) {
-    double xx = 0.0, xy = 0.0;
+    Sums sums;
+    double before_end = kDuration;
     const DataPack pack = test::DescribedPack(*plant, seq, [&](double t) {
       // At rest, then a drift, which goes on through a jump, and stops.
       const double a = 1.2 + 0.15 * (std::clamp(t, 4.0, 12.0) - 4.0) - (t > 9.0 ? 2.0 : 0.0);
       test::PlantSample s;
       s.u[0] = 0.5 + 0.4 * std::sin(9.0 * t);
       s.y = a * s.u[0] + kNoise * normal();
-      xx += s.u[0] * s.u[0];
-      xy += s.u[0] * s.y;
+      before_end -= test::kSampleInterval;
+      sums.xx += s.u[0] * s.u[0];
+      sums.xy += s.u[0] * s.y;
+      sums.txx += before_end * s.u[0] * s.u[0];
+      sums.txy += before_end * s.u[0] * s.y;
+      sums.ttxx += before_end * before_end * s.u[0] * s.u[0];
       return s;
     });
     const ModeEstimate& e = rig.Step(pack).modes[0];
     modifications += e.decision == Decision::kModification ? 1 : 0;
-    exact.Add(e.decision == Decision::kModification ? 0.0 : e.lambda, xx, xy);
+    exact.Add(e.decision == Decision::kModification ? 0.0 : e.lambda, sums);
     const double off = (e.marginal[0].ar_ap - exact.Mean()) / exact.Sd();
     const double wider = e.marginal[0].is_sd / exact.Sd() - 1.0;
     mean += off * off / kPacks;

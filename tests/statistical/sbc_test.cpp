@@ -42,21 +42,29 @@ class Truth {
     Begin();
   }
   [[nodiscard]] const std::array<double, 3>& theta() const { return theta_; }
+  /// Where they were at each sample of the pack.
+  [[nodiscard]] const std::array<std::array<double, 3>, test::kPackSamples>& path() const { return path_; }
 
   void Pass(double elapsed_s) {
     if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
-    if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s)) Begin();
-    if (law_.rate == 0.0) return;
-    // Small steps of the speed's own process, within bounds.
-    constexpr int kSteps = 100;
-    const double step = elapsed_s / kSteps;
-    for (int k = 0; k < kSteps; ++k)
+    const double share = settings_.forgetting.drift_share;
+    const double goes_on = law_.rate == 0.0 ? 1.0 - share : share;
+    if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s) && normal_->Uniform() > goes_on) {
+      const bool rested = law_.rate == 0.0;
+      do Begin();
+      while ((law_.rate == 0.0) == rested);
+    }
+    // Within bounds.
+    const double step = elapsed_s / test::kPackSamples;
+    const double kept = std::exp(-step / Drift::kPersistence);
+    for (auto& at : path_) {
       for (std::size_t d = 0; d < 3; ++d) {
-        const double kept = std::exp(-step / law_.persistence);
         theta_[d] += step * speed_[d] * space_.scale[d];
         theta_[d] = std::clamp(theta_[d], settings_.parameters[d].lower, settings_.parameters[d].upper);
         speed_[d] = kept * speed_[d] + law_.rate * std::sqrt(1.0 - kept * kept) * (*normal_)();
       }
+      at = theta_;
+    }
   }
 
  private:
@@ -74,6 +82,7 @@ class Truth {
   const ParameterSpace& space_;
   Normal* normal_;
   std::array<double, 3> theta_{}, speed_{};
+  std::array<std::array<double, 3>, test::kPackSamples> path_{};
   Drift::Hypothesis law_;
 };
 
@@ -105,9 +114,15 @@ Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs,
         truth->Pass(test::kPackSamples * test::kSampleInterval);
         theta = truth->theta();
       }
-      estimator.Adjust(
-          MakeContactPack(sim * packs + k, motion, {theta[0], theta[1], theta[2]}, settings.noise[0].std, &normal), 0,
-          {}, result.get());
+      // Parameters that drift do so from sample to sample.
+      std::size_t n = 0;
+      const DataPack pack = test::FillContactPack(
+          sim * packs + k, [&](double t) { return motion.At(t); },
+          [&](double, const test::Place& at) {
+            const auto& now = truth && k > 1 ? truth->path()[n++] : theta;
+            return test::ContactTruth{now[0], now[1], now[2]}.Force(at.x, at.v) + settings.noise[0].std * normal();
+          });
+      estimator.Adjust(pack, 0, {}, result.get());
     }
     const ModeDraws& draws = result->modes[0];
     const int first = draws.burn_in;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
@@ -20,27 +21,29 @@ struct Kernels;
 
 /// Drift of the parameters of one mode, learnt from the packs.
 ///
-/// Under hypothesis h the standardised parameters u move at a velocity w with correlation time tau_h:
+/// Under hypothesis h the standardised parameters u move, each in a direction of its own, at a velocity that wanders:
 ///
-///   du/dt = w,   dw = -w / tau_h dt + s_h sqrt(2 / tau_h) dW,   w ~ N(0, s_h^2) in the long run
+///   du/dt = w,   w an Ornstein-Uhlenbeck process of standard deviation s_h and correlation time tau
 ///
-/// s_h is the rate, in prior standard deviations per second, the same for all parameters. h = 0 is "rest", s = 0. The
-/// others (kDrifts) are random walks, with correlation times of some packs, and trends. Walks alone are not enough:
-/// they would learn a steady drift anew in every pack, lag behind it, and prefer the smallest steps along directions
-/// that the data do not determine, with intervals that miss the truth. Trends alone react late to changes of the
-/// velocity, and their intervals miss those. A correlation time in between, 1 s, suits neither case.
+/// s_h is the rate, in prior standard deviations per second, the same for all parameters. h = 0 is "rest", s = 0. tau is
+/// long: over the seconds in which a drift shows, the path is nearly straight. If tau is shorter, the velocity is never
+/// known well on a path that is straight for long, with intervals that are too wide there; if it is longer, intervals
+/// miss the truth where the path bends.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
-///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from the whole bank with a
-///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
-///   age      it takes several packs to tell a new member from the old ones. So each hypothesis has one filter per
-///            generation, merged into the next older one every kMergeAfter packs by matching moments. If merged at
-///            once, new members that the data refute would widen those that the data support
+///   time     of what rests a part s (1 - e^{-kappa dt}), s the prior probability of drift, begins to drift, with a
+///            velocity of its own; of what drifts a part (1 - s) (1 - e^{-kappa dt}) comes to rest. Then u <- u + b w,
+///            w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
+///   age      it takes many packs to tell when a drift began, and how fast it is depends on that. So each hypothesis has
+///            kSlots filters in the order in which they began. To make room for the next one, those two neighbours are
+///            merged whose merging (by matching moments) loses least: W log|C| - w_1 log|C_1| - w_2 log|C_2|, an upper
+///            bound of the divergence (Runnalls 2007). Merged by age alone, old ones that still differ would be merged
+///            and recent ones that are equal would not
 ///   bounds   if the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean are divided
 ///            by c: after a long time without information a drifting parameter returns to P_0
-///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
-///            pi_h times the evidence of that, with every filter updated by the same a, H, m
+///   pack     log L(z) = g' z - z' H z / 2 of z = (u - m, w) about the posterior mean m, H the Fisher information (see
+///            LocalLikelihood); pi_h times the evidence of that, with every filter updated by the same g, H, m
 ///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
 ///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
 ///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
@@ -59,35 +62,29 @@ struct Kernels;
 /// (With a sampled noise scale P_drift is an affine map of P, too.) While drift is improbable (kNegligible), P is
 /// unchanged to the bit.
 ///
+/// Parameters also drift while a pack is recorded: u is where they stand at the end of the pack, and u - w t is where
+/// they were at a time t before. Taken for constant, they would bias what the pack says along directions that the
+/// samples hardly determine, by many standard deviations. DriftFactor corrects the likelihood of the candidates for
+/// that, with w | u as the moments of the part that drifts have it. Parameters that changed are constant in the pack
+/// that shows the change, and so are all of a law with states.
+///
 /// The noise scale is not a coordinate of the bank: its memory is wide enough (ModeSampler::AppendNoiseScale).
 class Drift {
  public:
-  struct Law {
-    double rate;         ///< s, prior standard deviations per s.
-    double persistence;  ///< tau, s.
-    double share;        ///< Of the prior of drift.
-  };
-  static constexpr std::array<Law, 9> kDrifts{{{0.03, 0.3, 0.05},
-                                               {0.1, 0.3, 0.05},
-                                               {0.3, 0.3, 0.05},
-                                               {1.0, 0.3, 0.05},
-                                               {0.003, 30.0, 0.16},
-                                               {0.01, 30.0, 0.16},
-                                               {0.03, 30.0, 0.16},
-                                               {0.1, 30.0, 0.16},
-                                               {0.3, 30.0, 0.16}}};
-  static constexpr double kSwitching = 0.01;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
-  static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
-  static constexpr int kHypotheses = 1 + static_cast<int>(kDrifts.size());
-  static constexpr std::array<int, 3> kMergeAfter{5, 15, 45};  ///< Packs; of the latest first.
-  static constexpr int kGenerations = 1 + static_cast<int>(kMergeAfter.size());
-  static constexpr int kFilters = kGenerations * kHypotheses;
+  /// s: prior standard deviations per s, alike in probability.
+  static constexpr std::array<double, 5> kRates{0.003, 0.01, 0.03, 0.1, 0.3};
+  static constexpr double kPersistence = 80.0;  ///< tau, s.
+  static constexpr double kSwitching = 0.01;     ///< kappa, 1/s: a drift begins or ends.
+  static constexpr double kNegligible = 0.02;    ///< Probability below which a part is left out of the prior of a pack.
+  static constexpr int kHypotheses = 1 + static_cast<int>(kRates.size());
+  static constexpr int kSlots = 6;  ///< Of a hypothesis.
+  static constexpr int kFilters = kSlots * kHypotheses;
 
   /// Of what the bank holds.
   enum class Part : std::uint8_t { kWhole, kRest, kDrift };
 
   struct Hypothesis {
-    double rate = 0.0, persistence = 1.0, prior = 1.0;
+    double rate = 0.0, prior = 1.0;
   };
   /// Hypothesis h where drift has the probability `share`.
   [[nodiscard]] static Hypothesis Of(int h, double share) noexcept ARMCMC_NONBLOCKING;
@@ -113,6 +110,16 @@ class Drift {
   [[nodiscard]] Part CarriedPart() const noexcept ARMCMC_NONBLOCKING;
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
+
+  /// Whether block b of what Carry() returned is of parameters that drift, also while the pack is recorded.
+  [[nodiscard]] bool Drifts(const PosteriorMemory& memory, int block) const noexcept ARMCMC_NONBLOCKING;
+  /// The posterior of those, in place of one under which the parameters are constant in the pack.
+  /// @param local     The pack about fit->mean.
+  /// @param[in,out] fit     In: its mean and precision under constant parameters.
+  /// @param[out] factor     All but `lever` and `log_scale`.
+  /// @return false, and both as they were, when some number is not finite.
+  /// @rt No heap, no lock, no throw. O(dim^3).
+  bool LetDrift(const LocalLikelihood& local, Gaussian* fit, DriftFactor* factor) const noexcept ARMCMC_NONBLOCKING;
 
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
@@ -141,7 +148,7 @@ class Drift {
     ParamVector u, w;
     ParamMatrix uu, uw, ww;
   };
-  /// Generation by generation, the latest first: in each a filter of every hypothesis.
+  /// Slot by slot, what began latest first: in each a filter of every hypothesis.
   using Bank = std::array<Filter, kFilters>;
   struct Moments {
     double weight = 0.0;
@@ -154,12 +161,27 @@ class Drift {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
+  /// One filter with the moments of a part of the bank.
+  [[nodiscard]] static Filter JointOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
-  void GrowOlder() noexcept ARMCMC_NONBLOCKING;
-  void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;
+  /// Bayes' rule for one filter. @param about  Where the likelihood was expanded.
+  /// @param moves  Also within the pack.
+  /// @return log of the evidence; NaN when some number is not finite.
+  [[nodiscard]] static double Observe(const LocalLikelihood& local, const ParamVector& about, bool moves,
+                                      Filter* filter) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] static double ObserveStill(const LocalLikelihood& local, const ParamVector& about,
+                                           Filter* filter) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] static double ObserveMoving(const LocalLikelihood& local, const ParamVector& about,
+                                            Filter* filter) noexcept ARMCMC_NONBLOCKING;
+  /// log det of the covariance of u, and w if it moves. 0 of an empty filter.
+  [[nodiscard]] static double LogVolume(const Filter& filter, bool moves) noexcept ARMCMC_NONBLOCKING;
+  /// Empties the first slot of each hypothesis.
+  void MakeRoom() noexcept ARMCMC_NONBLOCKING;
+  /// Members that have become what they are within the time elapsed.
+  void AddNewcomers(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
-  void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
+  void Propagate(double rate, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// Probability of drift in `predicted_`, and its expected rate.
   void ExpectDrift() noexcept ARMCMC_NONBLOCKING;
@@ -193,16 +215,16 @@ class Drift {
   std::array<Hypothesis, kHypotheses> hypotheses_;
   bool enabled_;
   bool started_ = false;
-  double time_s_ = 0.0;     ///< Of the pack that `bank_` has learnt from.
-  std::int64_t packs_ = 0;  ///< That it has learnt from.
-  Bank bank_;               ///< After that pack.
-  Bank predicted_;          ///< Before the next one.
+  double time_s_ = 0.0;  ///< Of the pack that `bank_` has learnt from.
+  Bank bank_;            ///< After that pack.
+  Bank predicted_;       ///< Before the next one.
   double share_ = 0.0, rate_ = 0.0;
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
   bool both_ = false;          ///< Its second block is the other part.
   bool split_ = false;
   bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;
+  Filter drifting_;  ///< Moments of the part of `predicted_` that drifts.
   PosteriorMemory carried_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
@@ -24,18 +25,25 @@ struct LaplaceScratch {
   PredictionTile prediction;
 };
 
-/// The log-likelihood of a pack about u, as far as the parameters go (the noise scale stays where it is):
+/// The log-likelihood of a pack about u, as far as the parameters go (the noise scale stays where it is), which are v
+/// at the end of the pack and got there at velocity w, so that they were v - w t at a time t before it:
 ///
-///   log L(v) = log L(u) + gradient' (v - u) - (v - u)' information (v - u) / 2
+///   log L(v, w) = log L(u, 0) + g' z - z' H z / 2,   z = (v - u, w)
 struct LocalLikelihood {
-  ParamVector gradient;     ///< [num_parameters]
-  ParamMatrix information;  ///< Fisher's, which unlike the curvature does not depend on the noise of the pack.
+  ParamVector gradient;     ///< g of v, [num_parameters].
+  ParamMatrix information;  ///< H of v; Fisher's, which unlike the curvature does not depend on the noise of the pack.
+  ParamVector speed_gradient;     ///< g of w.
+  ParamMatrix cross_information;  ///< H of v, by rows, and w.
+  ParamMatrix speed_information;  ///< H of w.
+  bool in_pack;                   ///< Whether parameters that drift do so within the pack; else g and H of w are zero.
 };
-/// @param u  [num_parameters] @rt No heap, no lock, no throw. One batch.
+/// @param u            [num_parameters]
+/// @param[out] factor  Where not null: its `lever`.
+/// @rt No heap, no lock, no throw. One batch.
 [[nodiscard]] LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const ModeData& data,
                                                const NoiseModel& noise, const ParameterSpace& space,
-                                               const ParamVector& u, double log_noise_scale,
-                                               LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+                                               const ParamVector& u, double log_noise_scale, LaplaceScratch* scratch,
+                                               DriftFactor* factor = nullptr) noexcept ARMCMC_NONBLOCKING;
 
 /// Mode and curvature of likelihood x Gaussian prior by a bounded number of Gauss-Newton steps:
 ///

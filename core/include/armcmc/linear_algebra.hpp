@@ -26,6 +26,8 @@ using ParamMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMa
 [[nodiscard]] ParamMatrix TimesOwnTranspose(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
 /// A^-1; not finite where A is singular.
 [[nodiscard]] ParamMatrix Inverse(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
+/// A <- (A + A') / 2.
+void MakeSymmetric(ParamMatrix* a) noexcept ARMCMC_NONBLOCKING;
 [[nodiscard]] double Determinant(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
 /// Whether a symmetric matrix, of which the lower half is read, is a covariance that can be inverted.
 [[nodiscard]] bool IsPositiveDefinite(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;

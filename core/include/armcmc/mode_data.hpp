@@ -29,6 +29,8 @@ struct alignas(64) ModeData {
   double duration_s = 0.0;                       ///< Duration of the whole pack, s.
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
+  /// Time from a sample to the end of the pack, s; 0 where the law has states, which remember earlier parameters.
+  std::array<double, kMaxPackSamples> before_end{};
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
   bool weighted = true;  ///< false: every weight is 1, and is not read for scoring.
   // Of a compiled plant with effects, else null: the prediction comes from there, features are not read.

@@ -8,6 +8,7 @@
 #include "armcmc/adjust_result.hpp"
 #include "armcmc/draw_pace.hpp"
 #include "armcmc/drift.hpp"
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/finish_time.hpp"
 #include "armcmc/forgetting.hpp"
 #include "armcmc/laplace.hpp"
@@ -45,6 +46,8 @@ class SamplerWorkspace {
   std::array<std::vector<double>, kMaxParams + 2> straight;  ///< Scratch of FitBlock.
   [[nodiscard]] std::array<double*, kMaxParams + 2> StraightRows() noexcept ARMCMC_NONBLOCKING;
   LaplaceScratch laplace;
+  DriftFactor drift_factor;  ///< Of the blocks of the memory that drift.
+  LeverTile levers;
   ThetaPair theta;
   PredictionTile prediction;
   QuadraticScratch quadratic;
@@ -176,6 +179,10 @@ class ModeSampler {
                   SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Laplace fit under a memory with these moments.
   void FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data, SamplerWorkspace* ws,
+                Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
+  /// What becomes of a fit of parameters that drift where they also do so during the pack, and the factor of the
+  /// likelihood of that.
+  void LetDrift(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws,
                 Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
   /// The Laplace fits of the constant and the drifting hypothesis, which may have separated.
   void FitApart(const ModeData& data, const PosteriorMemory& previous,

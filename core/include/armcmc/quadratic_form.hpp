@@ -52,6 +52,11 @@ struct QuadraticForm {
   /// Factor k of T_k at [k]; of a constant only the first.
   alignas(64) std::array<std::array<double, kMaxDegree + 1>, kMaxFunctions> coefficient{};
   std::vector<ProductSeries> product;  ///< Of the functions that need both, in their order.
+  /// Sums of the errors with the levers of a DriftFactor, l_m(u) = e_m(t) + sum_i s_mi(t) d_i, each a series of one t
+  /// at most: for every lever of e_m, then of s_mi for every i.
+  int num_levers = 0;
+  std::array<LinearPart::Need, kMaxParams + 1> lever_needs{};  ///< Of e_m, then of s_mi; the same for every lever.
+  alignas(64) std::array<std::array<double, kMaxDegree + 1>, kMaxFunctions> lever{};
 };
 
 }  // namespace armcmc

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/linear_algebra.hpp"
 #include "armcmc/linear_part.hpp"
@@ -49,13 +50,17 @@ class QuadraticScore {
   /// The pack can be tried at all: the noise is Gaussian, and something is linear.
   [[nodiscard]] bool applies() const noexcept { return applies_; }
 
-  /// @param fit  Where the posterior lies, about.
+  /// @param fit     Where the posterior lies, about.
+  /// @param factor  Of parameters that drift, for Levers(); null where none do.
   /// @rt No heap, no lock, no throw. 2 (num_linear + 1) + 1 tiles of candidates at most, and their products.
-  void Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  void Prepare(const ModeData& data, const Gaussian& fit, QuadraticScratch* scratch,
+               const DriftFactor* factor = nullptr) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] bool ready() const noexcept { return ready_; }
 
   /// out[lane] = log-likelihood of u[., first + lane], kTileLanes of them. @pre ready().
   void Score(const double* const* u, int first, double* out) const noexcept ARMCMC_NONBLOCKING;
+  /// Sums of the scores of those candidates, as Kernels::lever_sums has them. @pre ready(), and Prepare() had a factor.
+  void Levers(const double* const* u, int first, LeverTile* sums) const noexcept ARMCMC_NONBLOCKING;
 
  private:
   static constexpr int kNodes = 2 * kTileLanes;  ///< On a line; those of a grid are kTileLanes by kTileLanes.
@@ -63,14 +68,18 @@ class QuadraticScore {
   using CosineTable = std::array<std::array<double, kNodes>, kNodes>;
   using Grid = std::array<std::array<double, kTileLanes>, kTileLanes>;
 
-  void TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  void TakeSums(const ModeData& data, const DriftFactor* factor, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   /// The grids, from what TakeSums() leaves in `scratch`.
   void TakeProducts(const QuadraticScratch& scratch) noexcept ARMCMC_NONBLOCKING;
   /// Of what TakeSums() and TakeProducts() have left.
   void TakeSeries() noexcept ARMCMC_NONBLOCKING;
+  /// The first terms of the series of sums at the Chebyshev points.
+  void Interpolate(const std::array<double, kNodes>& sums, int terms, double* series) const noexcept ARMCMC_NONBLOCKING;
+  /// Series of the levers, as long as the longest one of their parameter. @return whether they are finite.
+  bool TakeLevers() noexcept ARMCMC_NONBLOCKING;
   /// Candidates get what the samples give.
-  [[nodiscard]] bool IsConfirmed(const ModeData& data, const ParamVector& centre, const ParamVector& sd,
-                                 QuadraticScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool IsConfirmed(const ModeData& data, const DriftFactor* factor, const ParamVector& centre,
+                                 const ParamVector& sd, QuadraticScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
   /// Degree after which all series of one parameter may end, -1 where they do not settle.
   [[nodiscard]] int Degree(double variance) const noexcept ARMCMC_NONBLOCKING;
   /// Ends every series by itself, where two parameters are curved. @return whether they settle.
@@ -92,7 +101,7 @@ class QuadraticScore {
   QuadraticForm form_;
   std::vector<CosineTable> transform_;  ///< One, where a parameter is curved.
   std::vector<Grid> grid_;              ///< For each ProductSeries: sums, then series; and one more.
-  alignas(64) std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> sums_{};
+  alignas(64) std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> sums_{}, lever_sums_{};
   std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> series_{};
 };
 

@@ -50,6 +50,7 @@ struct HuntCrossley {
       if (ModeOf(pack, n) != mode) continue;
       const auto in = static_cast<std::size_t>(n);
       const auto im = static_cast<std::size_t>(m++);
+      data->sample[im] = static_cast<std::int16_t>(n);
       const double x = pack.u[in][0];
       data->feature[0][im] = x > 0.0 ? std::fmax(std::log2(x), kLog2OfZero) : kLog2OfZero;
       data->feature[1][im] = pack.u[in][1];

@@ -66,6 +66,7 @@ struct SoftActuator {
       if (ModeOf(pack, n) != mode) continue;
       const auto& u = pack.u[static_cast<std::size_t>(n)];
       const auto im = static_cast<std::size_t>(m++);
+      data->sample[im] = static_cast<std::int16_t>(n);
       data->target[im] = u[static_cast<std::size_t>(mode)] * Head(u[2], mode, constants);
       data->feature[0][im] = u[3];
       data->feature[1][im] = u[3] * (u[2] - constants.p_atm);

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "armcmc/density_block.hpp"
+#include "armcmc/drift_factor.hpp"
 #include "armcmc/expression/operation.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
@@ -97,6 +98,25 @@ struct Kernels {
   /// out[lane] += factor * p(u[., first + lane]).
   void (*add_density)(const DensityBlock& block, const double* const* u, int first, double factor,
                       double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// log_likelihood() as Score() has it, and sums[d][lane] = sum_n lever_d[n] times -(d log p / de) of the error of
+  /// sample n.
+  void (*lever_sums)(const DriftFactor& factor, const NoiseModel& noise, const ModeData& data,
+                     const PredictionTile& tile, const double* log_scale, LeverTile* sums,
+                     double* log_likelihood) noexcept ARMCMC_NONBLOCKING;
+
+  /// Sums over the samples that make QuadraticForm::lever, for each lane, in the form's order, of what quadratic_sums
+  /// leaves in `prediction`.
+  void (*lever_node_sums)(const DriftFactor& factor, const ModeData& data, int num_linear,
+                          const PredictionTile* prediction, double* const* sums) noexcept ARMCMC_NONBLOCKING;
+
+  /// lever_sums() of u[., first + lane] under Gaussian noise, which the form has.
+  void (*levers_quadratic)(const QuadraticForm& form, const ParameterSpace& space, const double* const* u, int first,
+                           LeverTile* sums) noexcept ARMCMC_NONBLOCKING;
+
+  /// out[lane] *= the factor at u[., first + lane].
+  void (*apply_drift)(const DriftFactor& factor, const LeverTile& sums, const double* log_scale, const double* const* u,
+                      int first, double* out) noexcept ARMCMC_NONBLOCKING;
 
   /// out[lane] = P_0(u[., first + lane]): 0 outside the bounds.
   void (*initial_prior)(const ParameterSpace& space, const double* const* u, int first,

@@ -145,6 +145,7 @@ void UniformsOf(std::uint64_t origin, std::uint64_t first, std::uint64_t stride,
 }  // namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE
 
 #include "simd/density.inl"
+#include "simd/drift_factor.inl"
 #include "simd/elementary.inl"
 #include "simd/moments.inl"
 #include "simd/quadratic.inl"

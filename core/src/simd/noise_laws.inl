@@ -2,7 +2,8 @@
 //
 // Each takes errors of kGroup vectors of candidates, not yet divided by their scales, of which several advance together
 // so that the operations of one do not wait for each other, and is notified after every kRun samples. Its result is
-// (log-likelihood - samples (constant + Constant() - log scale)) / Slope(). All are even in the error.
+// (log-likelihood - samples (constant + Constant() - log scale)) / Slope(). All are even in the error. AddWithScore()
+// also gives -(d log p / de) as NoiseModel::SquareWeight has it.
 
 namespace armcmc::simd::ARMCMC_SIMD_NAMESPACE {
 namespace {
@@ -16,6 +17,13 @@ struct LaplaceSum {
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
   [[gnu::always_inline]] void Add(const V* e) noexcept {
     for (int g = 0; g < kGroup; ++g) sum[g] = sum[g] + Simd::Abs(e[g]);
+  }
+  [[gnu::always_inline]] void AddWithScore(const V* e, V* score) noexcept {
+    Add(e);
+    for (int g = 0; g < kGroup; ++g) {
+      const V z = e[g] * inverse[g];
+      score[g] = inverse[g] * z / Simd::Max(Simd::Abs(z), Simd::Set(0.5));
+    }
   }
   void EndRun() noexcept {}
   [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g]; }
@@ -31,6 +39,10 @@ struct GaussianSum {
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
   [[gnu::always_inline]] void Add(const V* e) noexcept {
     for (int g = 0; g < kGroup; ++g) sum[g] = Simd::Fma(e[g], e[g], sum[g]);
+  }
+  [[gnu::always_inline]] void AddWithScore(const V* e, V* score) noexcept {
+    Add(e);
+    for (int g = 0; g < kGroup; ++g) score[g] = e[g] * inverse[g] * inverse[g];
   }
   void EndRun() noexcept {}
   [[nodiscard]] V Result(int g) const noexcept { return sum[g] * inverse[g] * inverse[g]; }
@@ -66,20 +78,32 @@ struct LogProduct {
 /// log2 (1 + e^2 / nu). Factors are kept within what a run of them can hold.
 template <int kGroup>
 struct StudentSum : LogProduct<kGroup> {
-  StudentSum(const NoiseSettings& s, const V* inverse_scale) noexcept {
+  StudentSum(const NoiseSettings& s, const V* inverse_scale) noexcept : slope(Simd::Set(s.dof + 1.0)) {
     for (int g = 0; g < kGroup; ++g) rate[g] = inverse_scale[g] * inverse_scale[g] * Simd::Set(1.0 / s.dof);
   }
   static double Slope(const NoiseSettings& s) noexcept { return -0.5 * (s.dof + 1.0) * kLn2; }
   static V Constant(const NoiseSettings&) noexcept { return V{}; }
   [[gnu::always_inline]] void Add(const V* e) noexcept {
     V factor[static_cast<unsigned>(kGroup)];
+    AddFactor(e, factor);
+  }
+  [[gnu::always_inline]] void AddWithScore(const V* e, V* score) noexcept {
+    V factor[static_cast<unsigned>(kGroup)];
+    AddFactor(e, factor);
+    for (int g = 0; g < kGroup; ++g) score[g] = e[g] * rate[g] * slope / factor[g];
+  }
+
+  V slope;  ///< nu + 1
+  V rate[static_cast<unsigned>(kGroup)];
+
+ private:
+  /// @param[out] factor  1 + e^2 / (nu s^2)
+  [[gnu::always_inline]] void AddFactor(const V* e, V* factor) noexcept {
     for (int g = 0; g < kGroup; ++g) factor[g] = e[g] * e[g];
     for (int g = 0; g < kGroup; ++g) factor[g] = Simd::Fma(factor[g], rate[g], Simd::Set(1.0));
     for (int g = 0; g < kGroup; ++g) factor[g] = Simd::Min(factor[g], Simd::Set(1e30));
     for (int g = 0; g < kGroup; ++g) this->product[g] = this->product[g] * factor[g];
   }
-
-  V rate[static_cast<unsigned>(kGroup)];
 };
 
 /// log2 of p(e) = N(e; c) (w / c) [1 + r exp(-e^2/2 (1 - 1/c^2))], r = (1 - w) c / w, but for what every sample has
@@ -101,12 +125,15 @@ struct MixtureSum : LogProduct<kGroup> {
   }
   [[gnu::always_inline]] void Add(const V* e) noexcept {
     V power[static_cast<unsigned>(kGroup)];
-    for (int g = 0; g < kGroup; ++g) power[g] = e[g] * e[g];
-    for (int g = 0; g < kGroup; ++g) squares[g] = squares[g] + power[g];
-    for (int g = 0; g < kGroup; ++g) power[g] = Simd::Fma(power[g], inlier_rate[g], log2_ratio);
-    for (int g = 0; g < kGroup; ++g) power[g] = Simd::Max(power[g], Simd::Set(-1000.0));
-    S::template Exp2Each<kGroup>(power);
-    for (int g = 0; g < kGroup; ++g) this->product[g] = Simd::Fma(this->product[g], power[g], this->product[g]);
+    AddPower(e, power);
+  }
+  [[gnu::always_inline]] void AddWithScore(const V* e, V* score) noexcept {
+    V power[static_cast<unsigned>(kGroup)];
+    AddPower(e, power);
+    for (int g = 0; g < kGroup; ++g) {
+      const V inlier = power[g] / (power[g] + Simd::Set(1.0));
+      score[g] = Simd::Set(-2.0 * kLn2) * e[g] * Simd::Fma(inlier_rate[g], inlier, wide_rate[g]);
+    }
   }
   void EndRun() noexcept {
     if (++runs % 3 == 0) LogProduct<kGroup>::EndRun();
@@ -119,6 +146,17 @@ struct MixtureSum : LogProduct<kGroup> {
   V inlier_rate[static_cast<unsigned>(kGroup)], wide_rate[static_cast<unsigned>(kGroup)];
   V squares[static_cast<unsigned>(kGroup)] = {};
   int runs = 0;
+
+ private:
+  /// @param[out] power  r exp(-e^2/2 (1 - 1/c^2))
+  [[gnu::always_inline]] void AddPower(const V* e, V* power) noexcept {
+    for (int g = 0; g < kGroup; ++g) power[g] = e[g] * e[g];
+    for (int g = 0; g < kGroup; ++g) squares[g] = squares[g] + power[g];
+    for (int g = 0; g < kGroup; ++g) power[g] = Simd::Fma(power[g], inlier_rate[g], log2_ratio);
+    for (int g = 0; g < kGroup; ++g) power[g] = Simd::Max(power[g], Simd::Set(-1000.0));
+    S::template Exp2Each<kGroup>(power);
+    for (int g = 0; g < kGroup; ++g) this->product[g] = Simd::Fma(this->product[g], power[g], this->product[g]);
+  }
 };
 
 /// fn.template operator()<Law>(), Law the class template instance of the kind for kGroup vectors.

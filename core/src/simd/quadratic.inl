@@ -98,6 +98,21 @@ struct ChebyshevBasis {
   }
 };
 
+/// Of every t of the form. @param coordinate  Vector g of u_d of the candidates.
+template <class Coordinate>
+[[gnu::always_inline]] inline void FillBases(const QuadraticForm& form, const Coordinate& coordinate,
+                                             ChebyshevBasis* basis) noexcept {
+  for (int a = 0; a < form.num_curved; ++a) {
+    const QuadraticForm::Axis& axis = form.axis[static_cast<unsigned>(a)];
+    QuadraticVectors t;
+    for (int g = 0; g < kQuadraticGroup; ++g) {
+      const V place = Simd::Fma(coordinate(axis.parameter, g), Simd::Set(axis.slope), Simd::Set(axis.origin));
+      t.at[g] = Simd::Min(Simd::Max(place, Simd::Set(-1.0)), Simd::Set(1.0));
+    }
+    basis[a].Fill(t, axis.degree);
+  }
+}
+
 /// A function of a QuadraticForm that needs both of the curved parameters.
 QuadraticVectors SumOfProducts(const ProductSeries& series, const ChebyshevBasis* basis) noexcept {
   QuadraticVectors sum;
@@ -117,15 +132,7 @@ void ScoreQuadratic(const QuadraticForm& form, const ParameterSpace& space, cons
     const int lane = v0 * Simd::kLanes;
     const auto coordinate = [&](int d, int g) noexcept { return Simd::Load(u[d] + first + lane + g * Simd::kLanes); };
     ChebyshevBasis basis[static_cast<unsigned>(QuadraticForm::kMaxCurved)];
-    for (int a = 0; a < form.num_curved; ++a) {
-      const QuadraticForm::Axis& axis = form.axis[static_cast<unsigned>(a)];
-      QuadraticVectors t;
-      for (int g = 0; g < kQuadraticGroup; ++g) {
-        const V place = Simd::Fma(coordinate(axis.parameter, g), Simd::Set(axis.slope), Simd::Set(axis.origin));
-        t.at[g] = Simd::Min(Simd::Max(place, Simd::Set(-1.0)), Simd::Set(1.0));
-      }
-      basis[a].Fill(t, axis.degree);
-    }
+    FillBases(form, coordinate, basis);
     const ProductSeries* product = form.product.data();
     const auto function = [&](int f) noexcept {
       const auto i = static_cast<unsigned>(f);
@@ -164,6 +171,50 @@ void ScoreQuadratic(const QuadraticForm& form, const ParameterSpace& space, cons
       const V precision = Simd::Exp2(log_s * Simd::Set(-2.0 * kLog2E));
       Simd::Store(out + lane + g * Simd::kLanes,
                   Simd::Fma(Simd::Set(-0.5) * precision, sum.at[g], samples * (constant - log_s)));
+    }
+  }
+}
+
+/// See Kernels::levers_quadratic.
+void LeversQuadratic(const QuadraticForm& form, const ParameterSpace& space, const double* const* u, int first,
+                     LeverTile* sums) noexcept ARMCMC_NONBLOCKING {
+  for (int v0 = 0; v0 < kVectors; v0 += kQuadraticGroup) {
+    const int lane = v0 * Simd::kLanes;
+    const auto coordinate = [&](int d, int g) noexcept { return Simd::Load(u[d] + first + lane + g * Simd::kLanes); };
+    ChebyshevBasis basis[static_cast<unsigned>(QuadraticForm::kMaxCurved)];
+    FillBases(form, coordinate, basis);
+    QuadraticVectors precision;
+    for (int g = 0; g < kQuadraticGroup; ++g) {
+      const V log_s =
+          space.samples_noise_scale()
+              ? Simd::Fma(Simd::Set(space.scale[static_cast<unsigned>(space.dim - 1)]), coordinate(space.dim - 1, g),
+                          Simd::Set(space.offset[static_cast<unsigned>(space.dim - 1)]))
+              : Simd::Set(space.log_noise_scale);
+      precision.at[g] = Simd::Exp2(log_s * Simd::Set(-2.0 * kLog2E));
+    }
+    unsigned f = 0;
+    for (int m = 0; m < form.num_levers; ++m) {
+      QuadraticVectors sum;
+      for (int i = 0; i <= form.num_linear; ++i, ++f) {
+        QuadraticVectors value;
+        const LinearPart::Need need = form.lever_needs[static_cast<unsigned>(i)];
+        if (need == LinearPart::kNeither) {
+          for (int g = 0; g < kQuadraticGroup; ++g) value.at[g] = Simd::Set(form.lever[f][0]);
+        } else {
+          const unsigned a = need == LinearPart::kCurved ? 0 : 1;
+          value = basis[a].Sum(form.lever[f].data(), form.axis[a].degree);
+        }
+        if (i == 0) {
+          sum = value;
+          continue;
+        }
+        const int d = form.linear[static_cast<unsigned>(i - 1)];
+        for (int g = 0; g < kQuadraticGroup; ++g)
+          sum.at[g] =
+              Simd::Fma(value.at[g], coordinate(d, g) - Simd::Set(form.about[static_cast<unsigned>(d)]), sum.at[g]);
+      }
+      for (int g = 0; g < kQuadraticGroup; ++g)
+        Simd::Store(&sums->value[m][lane + g * Simd::kLanes], sum.at[g] * precision.at[g]);
     }
   }
 }
