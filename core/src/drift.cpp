@@ -147,7 +147,7 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   if (!started_) return last;
   // If the plant's time restarts, the elapsed time is unknown: at least one pack.
   const double since = data.time_s - time_s_;
-  Predict(since > 0.0 ? since : data.duration_s);
+  Predict(since > 0.0 ? since : data.duration_s, data.duration_s);
   ExpectDrift();
   if (share_ >= kNegligible) drifting_ = JointOf(predicted_, Part::kDrift);
   const Moments from{

@@ -5,6 +5,11 @@
 #include "armcmc/drift.hpp"
 
 namespace armcmc {
+namespace {
+
+constexpr double kShortestGap = 1e-3;  // s: what is shorter is rounding of the time of a sample
+
+}  // namespace
 
 Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
   const Eigen::Index dim = bank.back().u.size();
@@ -82,7 +87,7 @@ void Drift::MakeRoom() noexcept {
   }
 }
 
-void Drift::AddNewcomers(double elapsed_s) noexcept {
+void Drift::AddNewcomers(double elapsed_s, double turned) noexcept {
   const Moments rest = MomentsOf(predicted_, Part::kRest);
   const Moments drift = MomentsOf(predicted_, Part::kDrift);
   const double drift_share = 1.0 - hypotheses_[0].prior;
@@ -90,46 +95,72 @@ void Drift::AddNewcomers(double elapsed_s) noexcept {
   const double begins = switched * drift_share;
   const double ends = switched - begins;
   for (std::size_t i = 0; i < predicted_.size(); ++i)
-    predicted_[i].weight *= IsOf(Part::kRest, i) ? 1.0 - begins : 1.0 - ends;
+    predicted_[i].weight *= IsOf(Part::kRest, i) ? 1.0 - begins : (1.0 - ends) * (1.0 - turned);
   for (std::size_t h = 0; h < kHypotheses; ++h) {
-    const Moments& from = h == 0 ? drift : rest;
-    if (!(from.weight > 0.0)) continue;
-    const double share = h == 0 ? ends : switched * hypotheses_[h].prior;
-    predicted_[h] = Filter{.weight = share * from.weight,
-                           .u = from.mean,
-                           .w = ParamVector::Zero(dim_),
-                           .uu = from.covariance,
-                           .uw = ParamMatrix::Zero(dim_, dim_),
-                           .ww = ParamMatrix::Identity(dim_, dim_)};
-    predicted_[h].ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+    const auto add = [&](const Moments& from, double share) noexcept ARMCMC_NONBLOCKING {
+      if (!(share * from.weight > 0.0)) return;
+      Filter fresh{.weight = share * from.weight,
+                   .u = from.mean,
+                   .w = ParamVector::Zero(dim_),
+                   .uu = from.covariance,
+                   .uw = ParamMatrix::Zero(dim_, dim_),
+                   .ww = ParamMatrix::Identity(dim_, dim_)};
+      fresh.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+      Merge(&fresh, &predicted_[h]);
+    };
+    if (h == 0) {
+      add(drift, ends);
+      continue;
+    }
+    add(drift, (1.0 - ends) * turned * hypotheses_[h].prior / drift_share);
+    add(rest, switched * hypotheses_[h].prior);
   }
 }
 
-void Drift::Propagate(double rate, double elapsed_s, Filter* filter) const noexcept {
+void Drift::GoStraight(double elapsed_s, Filter* filter) const noexcept {
   Filter& f = *filter;
-  const double speed = rate * rate;
-  const double t = kPersistence;
-  const double x = elapsed_s / t;
-  const double lost = -std::expm1(-x);
-  const double phi = 1.0 - lost;
-  const double b = t * lost;
-  const double noise_w = speed * lost * (1.0 + phi);
-  const double noise_uw = speed * t * lost * lost;
-  // The difference of nearly equal numbers over short times; there the first terms of its series.
-  const double noise_u =
-      speed * t * t * (x < 0.01 ? x * x * x * (2.0 / 3.0 - 0.5 * x) : 2.0 * (x - lost) - lost * lost);
   const ParamVector variance = f.uu.diagonal();
-  f.u += b * f.w;
+  f.u += elapsed_s * f.w;
   for (int i = 0; i < dim_; ++i)
     for (int j = 0; j <= i; ++j)
-      f.uu(i, j) = f.uu(j, i) =
-          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j ? noise_u : 0.0);
+      f.uu(i, j) = f.uu(j, i) = f.uu(i, j) + elapsed_s * (f.uw(i, j) + f.uw(j, i)) + elapsed_s * elapsed_s * f.ww(i, j);
+  f.uw += elapsed_s * f.ww;
+  KeepWithin(variance, &f);
+}
+
+void Drift::GoOnTurning(double rate, double elapsed_s, Filter* filter) const noexcept {
+  Filter& f = *filter;
+  const double x = kTurning * elapsed_s;
+  const double lost = -std::expm1(-x);
+  const double kept = 1.0 - lost;
+  const double b = lost / kTurning;  // the mean path over the first velocity
+  const double cross = elapsed_s * kept;
+  // 2 / kappa_t^2 times (lost - x kept) and (x - lost) - (lost - x kept): differences of nearly equal numbers over
+  // short times, there the first terms of their series.
+  const double t2 = 2.0 * elapsed_s * elapsed_s;
+  const double of_first = x < 0.01 ? t2 * (1.0 / 2.0 - x * (1.0 / 3.0 - x / 8.0)) : t2 / (x * x) * (lost - x * kept);
+  const double of_later = x < 0.01 ? t2 * x * (1.0 / 6.0 - x / 12.0) : t2 / (x * x) * ((x - lost) - (lost - x * kept));
+  const double speed = rate * rate;
+  const ParamVector variance = f.uu.diagonal();
   for (int i = 0; i < dim_; ++i)
-    for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j ? noise_uw : 0.0);
-  f.w *= phi;
-  f.ww *= phi * phi;
-  for (int i = 0; i < dim_; ++i) f.ww(i, i) += noise_w;
-  for (int i = 0; i < dim_; ++i) {
+    for (int j = 0; j <= i; ++j)
+      f.uu(i, j) = f.uu(j, i) = f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + of_first * (f.ww(i, j) + f.w[i] * f.w[j]) -
+                                b * b * f.w[i] * f.w[j] + (i == j ? of_later * speed : 0.0);
+  for (int i = 0; i < dim_; ++i)
+    for (int j = 0; j < dim_; ++j)
+      f.uw(i, j) = kept * f.uw(i, j) + cross * f.ww(i, j) + (cross - b * kept) * f.w[i] * f.w[j] +
+                   (i == j ? (b - cross) * speed : 0.0);
+  for (int i = 0; i < dim_; ++i)
+    for (int j = 0; j <= i; ++j)
+      f.ww(i, j) = f.ww(j, i) = kept * (f.ww(i, j) + lost * f.w[i] * f.w[j]) + (i == j ? lost * speed : 0.0);
+  f.u += b * f.w;
+  f.w *= kept;
+  KeepWithin(variance, &f);
+}
+
+void Drift::KeepWithin(const ParamVector& variance, Filter* filter) noexcept {
+  Filter& f = *filter;
+  for (Eigen::Index i = 0; i < variance.size(); ++i) {
     const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
     const double shrink = std::sqrt(kept);
     f.u[i] *= kept;
@@ -139,14 +170,25 @@ void Drift::Propagate(double rate, double elapsed_s, Filter* filter) const noexc
   }
 }
 
-void Drift::Predict(double elapsed_s) noexcept {
-  predicted_ = bank_;
+void Drift::Pass(double elapsed_s, bool recorded) noexcept {
   MakeRoom();
-  AddNewcomers(elapsed_s);
+  AddNewcomers(elapsed_s, recorded ? -std::expm1(-kTurning * elapsed_s) : 0.0);
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
     const double rate = hypotheses_[HypothesisOf(i)].rate;
-    if (predicted_[i].weight > 0.0 && rate > 0.0) Propagate(rate, elapsed_s, &predicted_[i]);
+    if (!(predicted_[i].weight > 0.0) || !(rate > 0.0)) continue;
+    if (recorded) {
+      GoStraight(elapsed_s, &predicted_[i]);
+    } else {
+      GoOnTurning(rate, elapsed_s, &predicted_[i]);
+    }
   }
+}
+
+void Drift::Predict(double elapsed_s, double pack_s) noexcept {
+  predicted_ = bank_;
+  const double gap = elapsed_s - pack_s;
+  if (gap > kShortestGap) Pass(gap, false);
+  if (pack_s > 0.0) Pass(std::fmin(pack_s, elapsed_s), true);
 }
 
 void Drift::ExpectDrift() noexcept {
@@ -166,7 +208,7 @@ void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<doub
   ratio->fill(1.0);
   const double since = time_s - time_s_;
   if (!started_ || !last.valid || !(since > 0.0)) return;
-  Predict(since);
+  Predict(since, 0.0);
   ExpectDrift();
   if (share_ < kNegligible) return;
   const Moments now = MomentsOf(predicted_, Part::kWhole);

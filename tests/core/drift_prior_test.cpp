@@ -56,9 +56,9 @@ TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
   EXPECT_EQ(bank.drift.drifting_block(), 1);
   EXPECT_NEAR(carried.weight[0], 0.7, 1e-12);
   EXPECT_NEAR(bank.drift.share(), 0.3, 1e-12);
-  // Rest is as it was; drift as wide as the mean over its hypotheses of an integrated Ornstein-Uhlenbeck process.
+  // Rest is as it was; drift as wide as the mean over its hypotheses of a path that turns on and on.
   double grown = 0.0;
-  constexpr double t = Drift::kPersistence;
+  constexpr double t = 1.0 / Drift::kTurning;
   for (int h = 1; h < Drift::kHypotheses; ++h) {
     const Drift::Hypothesis law = Drift::Of(h, 1.0);
     grown += law.prior * 2.0 * law.rate * law.rate * t * (2.0 - t * (1.0 - std::exp(-2.0 / t)));
@@ -67,7 +67,7 @@ TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       EXPECT_NEAR(rest(i, j), bank.posterior.covariance(i, j), 1e-6);
-      // Pulled back to P_0 by what was lost: by the fastest walk a fifth of its growth.
+      // Pulled back to P_0 by what was lost: by the fastest a fifth of its growth.
       EXPECT_NEAR(drift(i, j) - bank.posterior.covariance(i, j), i == j ? grown : 0.0, 0.25 * grown) << i << j;
     }
 }

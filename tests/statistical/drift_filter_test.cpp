@@ -43,15 +43,14 @@ struct Sums {
 /// ones.
 class Histories {
  public:
-  explicit Histories(double share) : share_(share) {
-    for (int h = 0; h < Drift::kHypotheses; ++h) noise_[static_cast<std::size_t>(h)] = Noise(Drift::Of(h, share).rate);
-  }
+  explicit Histories(double share) : share_(share) {}
 
   /// @param persisted  Share of what did not change in the prior of the pack. 0: a modification.
   /// @param sums       Over the pack.
   void Add(double persisted, const Sums& sums) {
     std::vector<History> next;
     const double switched = 1.0 - std::exp(-Drift::kSwitching * kDuration);
+    const double turned = 1.0 - std::exp(-Drift::kTurning * kDuration);
     if (histories_.empty()) {
       // What begins with the first pack moves from its end on.
       for (int h = 0; h < Drift::kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0, true}));
@@ -59,16 +58,19 @@ class Histories {
       for (const History& old : histories_) {
         std::vector<History> moved;
         History same = old;
-        same.weight *= 1.0 - switched * (old.law > 0 ? 1.0 - share_ : share_);
+        const double goes_on = 1.0 - switched * (old.law > 0 ? 1.0 - share_ : share_);
+        same.weight *= goes_on * (old.law > 0 ? 1.0 - turned : 1.0);
         moved.push_back(same);
-        // A drift begins at rest, and comes to rest.
+        // A drift begins at rest, turns, and comes to rest.
         for (int h = 0; h < Drift::kHypotheses; ++h) {
-          if ((h > 0) == (old.law > 0)) continue;
+          if (h == 0 && old.law == 0) continue;
           History begun = Begin(h, old);
-          begun.weight *= switched;
+          begun.weight *= h > 0 && old.law > 0 ? goes_on * turned / share_ : switched;
           moved.push_back(begun);
         }
         for (const History& m : moved) {
+          // What has less would not be among those that are kept.
+          if (m.weight < 1e-13) continue;
           History kept = Pass(m);
           History changed = kept;
           kept.weight *= persisted;
@@ -160,36 +162,14 @@ class Histories {
     from.ww = law.rate * law.rate;
     return from;
   }
-  [[nodiscard]] History Pass(History h) const {
+  [[nodiscard]] static History Pass(History h) {
     if (h.law == 0) return h;
-    const Noise& noise = noise_[static_cast<std::size_t>(h.law)];
-    const double phi = std::exp(-kDuration / Drift::kPersistence), b = Drift::kPersistence * (1.0 - phi);
-    h.uu += 2.0 * b * h.uw + b * b * h.ww + noise.uu;
-    h.u += b * h.w;
-    h.uw = phi * (h.uw + b * h.ww) + noise.uw;
-    h.ww = phi * phi * h.ww + noise.ww;
-    h.w *= phi;
+    h.uu += 2.0 * kDuration * h.uw + kDuration * kDuration * h.ww;
+    h.u += kDuration * h.w;
+    h.uw += kDuration * h.ww;
     return h;
   }
 
-  /// What a speed that is known where the pack before ended adds until this one ends.
-  struct Noise {
-    double uu = 0.0, uw = 0.0, ww = 0.0;
-    Noise() = default;
-    /// By small steps: nothing of the estimator's closed form.
-    explicit Noise(double rate) {
-      constexpr int kSteps = 2000;
-      constexpr double kStep = kDuration / kSteps;
-      const double kept = std::exp(-kStep / Drift::kPersistence);
-      for (int k = 0; k < kSteps; ++k) {
-        uu += 2.0 * kStep * uw + kStep * kStep * ww;
-        uw = kept * (uw + kStep * ww);
-        ww = kept * kept * ww + rate * rate * (1.0 - kept * kept);
-      }
-    }
-  };
-
-  std::array<Noise, Drift::kHypotheses> noise_;
   double share_;
   std::vector<History> histories_;
 };

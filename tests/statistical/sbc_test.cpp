@@ -48,20 +48,21 @@ class Truth {
   void Pass(double elapsed_s) {
     if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
     const double share = settings_.forgetting.drift_share;
-    const double goes_on = law_.rate == 0.0 ? 1.0 - share : share;
+    const bool rested = law_.rate == 0.0;
+    const double goes_on = rested ? 1.0 - share : share;
     if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s) && normal_->Uniform() > goes_on) {
-      const bool rested = law_.rate == 0.0;
       do Begin();
       while ((law_.rate == 0.0) == rested);
+    } else if (!rested && normal_->Uniform() > std::exp(-Drift::kTurning * elapsed_s)) {
+      do Begin();
+      while (law_.rate == 0.0);
     }
     // Within bounds.
     const double step = elapsed_s / test::kPackSamples;
-    const double kept = std::exp(-step / Drift::kPersistence);
     for (auto& at : path_) {
       for (std::size_t d = 0; d < 3; ++d) {
         theta_[d] += step * speed_[d] * space_.scale[d];
         theta_[d] = std::clamp(theta_[d], settings_.parameters[d].lower, settings_.parameters[d].upper);
-        speed_[d] = kept * speed_[d] + law_.rate * std::sqrt(1.0 - kept * kept) * (*normal_)();
       }
       at = theta_;
     }

@@ -21,21 +21,24 @@ struct Kernels;
 
 /// Drift of the parameters of one mode, learnt from the packs.
 ///
-/// Under hypothesis h the standardised parameters u move, each in a direction of its own, at a velocity that wanders:
+/// Under hypothesis h the standardised parameters u move along straight lines, each in a direction of its own:
 ///
-///   du/dt = w,   w an Ornstein-Uhlenbeck process of standard deviation s_h and correlation time tau
+///   du/dt = w,   w ~ N(0, s_h^2)
 ///
-/// s_h is the rate, in prior standard deviations per second, the same for all parameters. h = 0 is "rest", s = 0. tau is
-/// long: over the seconds in which a drift shows, the path is nearly straight. If tau is shorter, the velocity is never
-/// known well on a path that is straight for long, with intervals that are too wide there; if it is longer, intervals
-/// miss the truth where the path bends.
+/// s_h is the rate, in prior standard deviations per second, the same for all parameters. h = 0 is "rest", s = 0. What
+/// rests begins to drift, and what drifts comes to rest (kSwitching) or turns: rate and velocity are then drawn anew
+/// (kTurning). A velocity that wandered instead, as an Ornstein-Uhlenbeck process does, would never be known well on a
+/// path that is straight for long.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
 ///   time     of what rests a part s (1 - e^{-kappa dt}), s the prior probability of drift, begins to drift, with a
-///            velocity of its own; of what drifts a part (1 - s) (1 - e^{-kappa dt}) comes to rest. Then u <- u + b w,
-///            w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
-///   age      it takes many packs to tell when a drift began, and how fast it is depends on that. So each hypothesis has
+///            velocity of its own; of what drifts a part (1 - s) (1 - e^{-kappa dt}) comes to rest, and of what goes on
+///            a part 1 - e^{-kappa_t dt} turns. Then u <- u + w dt
+///   gaps     a pack follows what drifts for its own duration. In the time before that no turn would show: every filter
+///            gets the moments of a path that turns on and on, whose velocity has the autocovariance s^2 e^{-kappa_t t}
+///   age      it takes many packs to tell when a drift began, and how fast it is depends on that. So each hypothesis
+///   has
 ///            kSlots filters in the order in which they began. To make room for the next one, those two neighbours are
 ///            merged whose merging (by matching moments) loses least: W log|C| - w_1 log|C_1| - w_2 log|C_2|, an upper
 ///            bound of the divergence (Runnalls 2007). Merged by age alone, old ones that still differ would be merged
@@ -73,11 +76,11 @@ class Drift {
  public:
   /// s: prior standard deviations per s, alike in probability.
   static constexpr std::array<double, 5> kRates{0.003, 0.01, 0.03, 0.1, 0.3};
-  static constexpr double kPersistence = 80.0;  ///< tau, s.
-  static constexpr double kSwitching = 0.01;     ///< kappa, 1/s: a drift begins or ends.
-  static constexpr double kNegligible = 0.02;    ///< Probability below which a part is left out of the prior of a pack.
+  static constexpr double kSwitching = 0.03;   ///< kappa, 1/s: a drift begins or ends.
+  static constexpr double kTurning = 0.014;    ///< kappa_t, 1/s: what drifts turns.
+  static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kHypotheses = 1 + static_cast<int>(kRates.size());
-  static constexpr int kSlots = 6;  ///< Of a hypothesis.
+  static constexpr int kSlots = 5;  ///< Of a hypothesis.
   static constexpr int kFilters = kSlots * kHypotheses;
 
   /// Of what the bank holds.
@@ -178,11 +181,18 @@ class Drift {
   [[nodiscard]] static double LogVolume(const Filter& filter, bool moves) noexcept ARMCMC_NONBLOCKING;
   /// Empties the first slot of each hypothesis.
   void MakeRoom() noexcept ARMCMC_NONBLOCKING;
-  /// Members that have become what they are within the time elapsed.
-  void AddNewcomers(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
-  /// u and w of one filter after a time without data.
-  void Propagate(double rate, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
-  void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  /// Members that have become what they are within the time elapsed. @param turned  Part of what goes on drifting.
+  void AddNewcomers(double elapsed_s, double turned) noexcept ARMCMC_NONBLOCKING;
+  /// u and w of one filter after a time without a turn.
+  void GoStraight(double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
+  /// After a time with any number of turns, the rate being kept: by its moments.
+  void GoOnTurning(double rate, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
+  /// @param variance  Of u, before it grew.
+  static void KeepWithin(const ParamVector& variance, Filter* filter) noexcept ARMCMC_NONBLOCKING;
+  /// @param recorded  A pack follows what happens.
+  void Pass(double elapsed_s, bool recorded) noexcept ARMCMC_NONBLOCKING;
+  /// @param pack_s  Duration of a pack at the end of the time elapsed; 0: none.
+  void Predict(double elapsed_s, double pack_s) noexcept ARMCMC_NONBLOCKING;
   /// Probability of drift in `predicted_`, and its expected rate.
   void ExpectDrift() noexcept ARMCMC_NONBLOCKING;
   void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
