@@ -213,6 +213,7 @@ Made Bead(double wave, double give = 0.0) {
 TEST(BestFit, IsWhereTheBestOfAllFitsIsFound) {
   const Made made = Make(Oscillator(), Swing(300));
   std::vector<VectorXd> starts;
+  starts.reserve(9);
   for (int s = 0; s < 9; ++s) starts.push_back(VectorXd{{std::log(2.0 + s), 0.05 * s}});
   FitResult expected;
   for (const VectorXd& start : starts) {
@@ -237,6 +238,7 @@ TEST(BestFit, GoesOnFromMoreThanTheFirst) {
   // After two steps from afar the start that will lead to the minimum is not yet the best.
   const Made made = Make(Oscillator(), Swing(300));
   std::vector<VectorXd> starts;
+  starts.reserve(9);
   for (int s = 0; s < 9; ++s) starts.push_back(VectorXd{{std::log(2.0 + s), 0.05 * s}});
   double best = HUGE_VAL;
   for (const VectorXd& start : starts)
