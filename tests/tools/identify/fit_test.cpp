@@ -235,15 +235,16 @@ TEST(BestFit, IsWhereTheBestOfAllFitsIsFound) {
 }
 
 TEST(BestFit, GoesOnFromMoreThanTheFirst) {
-  // After two steps from afar the start that will lead to the minimum is not yet the best.
+  // Of two starts far from k = 9 the one that fits better after two steps does not lead there.
   const Made made = Make(Oscillator(), Swing(300));
-  std::vector<VectorXd> starts;
-  starts.reserve(9);
-  for (int s = 0; s < 9; ++s) starts.push_back(VectorXd{{std::log(2.0 + s), 0.05 * s}});
-  double best = HUGE_VAL;
-  for (const VectorXd& start : starts)
-    best = std::min(best, BestFit(*made.model, made.rows, {start}, 1, 12, false).cost);
-  EXPECT_NEAR(BestFit(*made.model, made.rows, starts, starts.size(), 12, false).cost, best, 1e-9);
+  const VectorXd first{{std::log(101.0), 0.4}}, leads{{std::log(0.25), 0.0}};
+  const auto cost = [&](const std::vector<VectorXd>& starts, std::size_t most_fits, int iterations) {
+    return BestFit(*made.model, made.rows, starts, most_fits, iterations, false).cost;
+  };
+  ASSERT_LT(cost({first}, 1, 0), cost({leads}, 1, 0));
+  ASSERT_LT(cost({leads}, 1, 12), cost({first}, 1, 12) - 1000.0);
+  EXPECT_EQ(cost({leads, first}, 1, 12), cost({first}, 1, 12));
+  EXPECT_EQ(cost({leads, first}, 2, 12), cost({leads}, 1, 12));
 }
 
 TEST(Fit, AParameterThatIsFarOffDoesNotCarryTheOthersAway) {

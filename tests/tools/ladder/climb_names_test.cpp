@@ -130,6 +130,8 @@ TEST(Climb, NoFrictionIsNamedThatAnErrorInTheFormulaOfAPlayWouldExplain) {
   ASSERT_EQ(ladder.rungs.size(), 2u);
   EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("backlash"));
   EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty());
+  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr(
+                                "stribeck_friction was not named: it acts as if backlash had another formula")));
 }
 
 TEST(Climb, ASpringStiffensAboutAPlaceOfItsOwn) {

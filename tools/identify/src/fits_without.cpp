@@ -16,9 +16,9 @@ namespace armcmc::identify {
 namespace {
 
 /// Jacobian at some rows in units of the spread, by forward differences.
-class JacobianThere : public PredictionUser {
+class JacobianAt : public PredictionUser {
  public:
-  JacobianThere(const FitProblem& problem, const Eigen::VectorXd& theta, const std::vector<Eigen::Index>& rows)
+  JacobianAt(const FitProblem& problem, const Eigen::VectorXd& theta, const std::vector<Eigen::Index>& rows)
       : problem_(problem), theta_(theta), rows_(rows) {}
 
   [[nodiscard]] Eigen::MatrixXd Request() override {
@@ -104,9 +104,9 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
   // First steps with the Jacobian of the fit to all rows; the last one, with the Jacobian of each fit, shows whether it
   // has converged.
   for (int iteration = 0; iteration <= kSameJacobian && !moving.empty(); ++iteration) {
-    std::vector<std::unique_ptr<JacobianThere>> own;
+    std::vector<std::unique_ptr<JacobianAt>> own;
     for (std::size_t k = 0; k < moving.size() && iteration == kSameJacobian; ++k)
-      own.push_back(std::make_unique<JacobianThere>(problem, fits.theta.col(moving[k]), rows));
+      own.push_back(std::make_unique<JacobianAt>(problem, fits.theta.col(moving[k]), rows));
     RunAll(model, &rows, own);
     std::vector<NormalSystem> normals;
     std::vector<double> before;
@@ -159,9 +159,9 @@ FitsWithout FitWithoutEach(const TrajectoryModel& model, const FitResult& all, c
                                                            Differences::kCentral));
   }
   RunAll(model, &rows, fitting);
-  std::vector<std::unique_ptr<JacobianThere>> there;
+  std::vector<std::unique_ptr<JacobianAt>> there;
   for (std::size_t m = 0; m < moving.size(); ++m)
-    there.push_back(std::make_unique<JacobianThere>(problem, fitting[m]->result().theta, rows));
+    there.push_back(std::make_unique<JacobianAt>(problem, fitting[m]->result().theta, rows));
   RunAll(model, &rows, there);
   for (std::size_t m = 0; m < moving.size(); ++m) {
     const FitResult& fit = fitting[m]->result();
