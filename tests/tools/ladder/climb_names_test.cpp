@@ -106,34 +106,6 @@ TEST(Climb, ASpringThatActsThroughPlayIsNamed) {
   EXPECT_NEAR(ladder.final_trial.fit.theta[3], 1500.0, 60.0);
 }
 
-TEST(Climb, NoFrictionIsNamedThatAnErrorInTheFormulaOfAPlayWouldExplain) {
-  // A stop of power 1.5 on either side of the play, where the effect has a linear one, leaves what dry friction
-  // imitates; that of Stribeck, which is not known to act like a play, is of its family.
-  double driven = 0.0;
-  const Dataset data = test::AxisData(
-      [&](const AxisSample& s) {
-        constexpr double kHalf = 0.0125, kTakenUp = 0.004;  // m
-        driven = std::clamp(driven, s.q - kHalf - kTakenUp, s.q + kHalf + kTakenUp);
-        const double pressed = std::max(std::abs(s.q - driven) - kHalf, 0.0) / kTakenUp;
-        return 20.0 * Sign(s.q - driven) * std::pow(pressed, 1.5);
-      },
-      3,
-      [](double t) {
-        constexpr double kSize = 0.05, kW = 2.7;
-        const double angle = kW * t + 1.0;
-        return AxisSample{t, kSize * std::sin(angle), kSize * kW * std::cos(angle), -kSize * kW * kW * std::sin(angle)};
-      });
-  PlantDescription plant = test::AxisPlant();
-  plant.parameters[1].mean = 180.0;
-  plant.parameters[1].sd = 0.1;
-  const Ladder ladder = ClimbWith({"backlash", "coulomb_friction", "stribeck_friction"}, data, plant);
-  ASSERT_EQ(ladder.rungs.size(), 2u);
-  EXPECT_THAT(NamesOf(ladder.rungs[0]), ElementsAre("backlash"));
-  EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty());
-  EXPECT_THAT(ladder.notes, ::testing::Contains(::testing::HasSubstr(
-                                "stribeck_friction was not named: it acts as if backlash had another formula")));
-}
-
 TEST(Climb, ASpringStiffensAboutAPlaceOfItsOwn) {
   const Ladder ladder =
       ClimbWith({"cubic_stiffness", "quadratic_stiffness", "cogging", "output_drift", "baseline_tilt"},

@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "armcmc/support/effect_library.hpp"
-#include "earlier_names.hpp"
 #include "rung.hpp"
 #include "shares.hpp"
 #include "tools/ladder/climb_rig.hpp"
@@ -99,20 +97,6 @@ TEST(RuleOut, WhatIsTheSameWithMoreParametersIsRuledOutToo) {
     RuleOut(rung.view, rung.named.front(), &rung);
   }
   EXPECT_THAT(NamesOf(rung), IsEmpty());
-}
-
-TEST(EarlierNames, AnEffectThatIsLikeOneOfAFamilyIsLikeAllOfIt) {
-  const std::vector<EffectEntry> catalogue = support::ReadEffectLibrary();
-  const auto entry = [&](const std::string& name) {
-    return &*std::find_if(catalogue.begin(), catalogue.end(), [&](const EffectEntry& e) { return e.name == name; });
-  };
-  Candidate play;
-  play.entry = entry("backlash");
-  const EarlierNames before{{&play}, 1.0};
-  ASSERT_FALSE(AreKin(*play.entry, *entry("stribeck_friction"))) << "or the test shows nothing";
-  EXPECT_EQ(before.Like(*entry("stribeck_friction"), catalogue), &play) << "as dry friction does";
-  EXPECT_EQ(before.Like(*entry("coulomb_friction"), catalogue), &play);
-  EXPECT_EQ(before.Like(*entry("cogging"), catalogue), nullptr);
 }
 
 TEST(TryAll, AboveATieWhatRemovesASmallPartIsNotRefittedUnlessItsFamilyWasNamed) {

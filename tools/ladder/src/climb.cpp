@@ -51,7 +51,6 @@ struct Rivals {
   const View& view;
   const Trial& base;
   EarlierNames before;
-  const std::vector<EffectEntry>& entries;
 
   /// @param exact  Nothing but noise is left, so that no curve of another shape can do better. A wrong constant, noise,
   ///               or an error in an effect named earlier may still explain the same.
@@ -64,7 +63,7 @@ struct Rivals {
     if (!rival) rival = plain.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
     if (rival || !before.Dwarfs(c)) return rival;
-    if (const Candidate* like = before.Like(*c.candidate.entry, entries))
+    if (const Candidate* like = before.Like(*c.candidate.entry))
       return Rival{like->entry->name + " had another formula", "acts alike and is three times as large"};
     return curves.BendOf(c, before.effects);
   }
@@ -305,8 +304,7 @@ Ladder Climb(const ClimbRequest& request) {
                           {ladder.plant, data, ladder.view, base, scales},
                           ladder.view,
                           base,
-                          {},
-                          *ladder.entries}};
+                          {}}};
     EarlierNames& before = checks.rivals.before;
     for (const Rung& earlier : ladder.rungs) before.effects.push_back(&earlier.leader().candidate);
     if (r == 0) start = base;

@@ -6,12 +6,9 @@
 
 namespace armcmc::ladder {
 
-const Candidate* EarlierNames::Like(const EffectEntry& entry, const std::vector<EffectEntry>& entries) const {
-  const auto alike = std::find_if(effects.begin(), effects.end(), [&](const Candidate* named) {
-    return std::any_of(entries.begin(), entries.end(), [&](const EffectEntry& other) {
-      return other.family == entry.family && AreKin(*named->entry, other);
-    });
-  });
+const Candidate* EarlierNames::Like(const EffectEntry& entry) const {
+  const auto alike = std::find_if(effects.begin(), effects.end(),
+                                  [&](const Candidate* named) { return AreKin(*named->entry, entry); });
   return alike == effects.end() ? nullptr : *alike;
 }
 

@@ -11,9 +11,8 @@ struct EarlierNames {
   std::vector<const Candidate*> effects;
   double explained = 0.0;  ///< Squared error that it removed, relative to what remains.
 
-  /// The named effect that acts like `entry`, or like another one of its family; null if none does.
-  /// @param entries  The catalogue.
-  [[nodiscard]] const Candidate* Like(const EffectEntry& entry, const std::vector<EffectEntry>& entries) const;
+  /// The named effect that acts like `entry`; null if none does.
+  [[nodiscard]] const Candidate* Like(const EffectEntry& entry) const;
   /// Whether an effect of another family is so small compared with it that an error of its formula would explain it.
   /// @pre c.trial.judged.
   [[nodiscard]] bool Dwarfs(const Contender& c) const;
