@@ -110,8 +110,8 @@ std::array<double, kMaxParams> Variances(const simd::Kernels& kernels, const Wei
 
 /// True if straightening removed more variance from some coordinate than its coefficients would remove from noise. Both
 /// variances are of the same draws: between different sets of a few thousand they vary by more than a bend removes.
-bool BendPays(const std::array<double, kMaxParams>& before, const std::array<double, kMaxParams>& after, int dim,
-              double ess) noexcept {
+bool BendReducesVariance(const std::array<double, kMaxParams>& before, const std::array<double, kMaxParams>& after,
+                         int dim, double ess) noexcept {
   for (int i = 1; i < dim; ++i) {
     const int coefficients = DensityBlock::kDegree + 1 + (i > 1 ? i + 1 : 0);
     const double pays = 0.004 + 2.5 * coefficients / ess;
@@ -210,7 +210,7 @@ bool FitBends(const simd::Kernels& kernels, const WeightedDraws& draws, double* 
   for (auto& thickness : block->thickness) thickness = {0.0, 0.0};
   FitThickness(draws, ess, scratch, block);
   for (int i = 1; i < dim; ++i) block->tapered = block->tapered || block->Tapers(i);
-  block->bent = block->tapered || BendPays(before, Variances(kernels, draws, scratch), dim, ess);
+  block->bent = block->tapered || BendReducesVariance(before, Variances(kernels, draws, scratch), dim, ess);
   return block->bent;
 }
 

@@ -21,7 +21,7 @@ struct Moments {
   ParamMatrix covariance;
 };
 
-Moments WeightedMoments(const simd::Kernels& kernels, const WeightedDraws& draws) noexcept {
+Moments WeightedMoments(const simd::Kernels& kernels, const WeightedDraws& draws, bool calibrated) noexcept {
   const int dim = draws.dim;
   Moments m;
   m.mean = ParamVector::Zero(dim);
@@ -34,7 +34,7 @@ Moments WeightedMoments(const simd::Kernels& kernels, const WeightedDraws& draws
   for (int d = 0; d < dim; ++d) m.mean[d] = sums[static_cast<std::size_t>(2 + d)] / m.sum;
   // About the mean, in a second pass: the covariance of a posterior far from the origin would cancel otherwise.
   // Unbiased for weighted draws: a recursion that lost 1 / ESS of its variance in every pack would contract.
-  const double unbiased = 1.0 / std::fmax(1.0 - m.square / (m.sum * m.sum), 0.5);
+  const double unbiased = calibrated ? 1.0 : 1.0 / std::fmax(1.0 - m.square / (m.sum * m.sum), 0.5);
   kernels.second_moments(dim, draws.u.data(), draws.weight, m.mean.data(), draws.size, sums.data());
   std::size_t t = 0;
   for (int i = 0; i < dim; ++i)
@@ -123,7 +123,7 @@ void Smooth(double h, std::array<double, kNodes>* values) noexcept {
 ///
 /// The roughness of a histogram would enter every later posterior as prior, which harms the recursion more than the
 /// loss of shape.
-double ShareOfOwnShape(const std::array<double, kNodes>& mass, double total, double ess) noexcept {
+double HistogramWeight(const std::array<double, kNodes>& mass, double total, double ess) noexcept {
   double skewness = 0.0;
   double kurtosis = 0.0;
   for (int n = 0; n < kNodes; ++n) {
@@ -198,7 +198,7 @@ ParamMatrix CovarianceOf(const DensityBlock& block) noexcept {
 
 double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const FitOptions& options,
                 double* const* scratch, MarginalTable* tables, DensityBlock* block) noexcept {
-  const Moments moments = WeightedMoments(kernels, draws);
+  const Moments moments = WeightedMoments(kernels, draws, options.calibrated);
   if (!(moments.sum > 0.0)) return 0.0;
   const double ess = moments.sum * moments.sum / moments.square;
   if (!(ess >= kMinimumEss) || !moments.mean.allFinite() || !moments.covariance.allFinite()) return ess;
@@ -238,7 +238,8 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
     const double* e = scratch[i];
     double square = 0.0;
     kernels.second_moments(1, &e, draws.weight, &first[ii], draws.size, &square);
-    const double freedom = block->bent && i > 0 ? DensityBlock::kDegree + 1.0 : 1.0;
+    const double mean = options.calibrated ? 0.0 : 1.0;
+    const double freedom = block->bent && i > 0 ? DensityBlock::kDegree + mean : mean;
     sd[ii] = std::sqrt(std::fmax(square / moments.sum / std::fmax(1.0 - freedom / ess, 0.5), 1e-12));
     const double per_node = MarginalTable::kNodesPerUnit / sd[ii];
     const double origin = kReach * MarginalTable::kNodesPerUnit - first[ii] * per_node;
@@ -254,7 +255,7 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
   const std::array<double, kNodes> tail = NormalMasses(options.tail_sd);
   for (int i = 0; i < dim; ++i) {
     const auto ii = static_cast<std::size_t>(i);
-    const double own = options.shrink_to_normal ? ShareOfOwnShape(histogram[ii], moments.sum, ess) : 1.0;
+    const double own = options.shrink_to_normal ? HistogramWeight(histogram[ii], moments.sum, ess) : 1.0;
     Smooth(bandwidth, &histogram[ii]);
     for (std::size_t n = 0; n < kNodes; ++n) {
       auto& value = histogram[ii][n];

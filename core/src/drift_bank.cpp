@@ -47,7 +47,7 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
   from->weight = 0.0;
 }
 
-void Drift::GrowOlder() noexcept {
+void Drift::MergeOlderGenerations() noexcept {
   // From the oldest on, so that none moves by two generations.
   for (std::size_t g = kMergeAfter.size(); g-- > 0;) {
     if (packs_ % kMergeAfter[g] != 0) continue;
@@ -56,7 +56,7 @@ void Drift::GrowOlder() noexcept {
   }
 }
 
-void Drift::AddNewcomers(double share) noexcept {
+void Drift::AddFreshFilters(double share) noexcept {
   const Moments all = MomentsOf(predicted_, Part::kWhole);
   for (Filter& f : predicted_) f.weight *= 1.0 - share;
   // Starts anywhere in the bank, with a rate from the law of the hypothesis.
@@ -104,8 +104,8 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
 
 void Drift::Predict(double elapsed_s) noexcept {
   predicted_ = bank_;
-  GrowOlder();
-  AddNewcomers(1.0 - std::exp(-kSwitching * elapsed_s));
+  MergeOlderGenerations();
+  AddFreshFilters(1.0 - std::exp(-kSwitching * elapsed_s));
   for (std::size_t i = 0; i < predicted_.size(); ++i)
     if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
       Propagate(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);

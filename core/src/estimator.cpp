@@ -68,7 +68,7 @@ Estimator::Impl::Impl(const EstimatorSettings& s, const Impl* lender)
   }
   workspace = lender != nullptr ? lender->workspace
                                 : std::make_shared<SamplerWorkspace>(dim, settings.sampler.max_draws, num_linear);
-  ShowPrior();
+  ReportPrior();
   ForgetStates();
 }
 
@@ -82,7 +82,7 @@ void Estimator::Impl::ForgetStates() noexcept {
   state_noise = std::exp(space.log_noise_scale);
 }
 
-void Estimator::Impl::ShowPrior() noexcept {
+void Estimator::Impl::ReportPrior() noexcept {
   for (ShownEstimates& s : shown) {
     s = ShownEstimates{};
     if (!predicts_from_prior()) continue;
@@ -237,7 +237,7 @@ void Estimator::Impl::ExpectStates(AdjustResult* result) noexcept {
   if (state_filter.empty()) return;
   states_due = result;
   ModeData* data = adjust_data.data();
-  state_filter.TrustStart();
+  state_filter.ForgetOpenStarts();
   state_filter.Predict(kernels, state_mean, state_noise, data);
   if (data->num_samples == 0) return;
   const ModeMemory& memory = *memories[0];
@@ -305,7 +305,7 @@ void Estimator::Reset() noexcept {
   for (auto& memory : s.memories) memory->slot[0].valid = memory->slot[1].valid = false;
   for (auto& sampler : s.samplers) sampler->drift().Forget();
   for (auto& estimate : s.last_estimates) estimate = ModeEstimate{};
-  s.ShowPrior();
+  s.ReportPrior();
   s.known_draws.fill(false);
   if (s.predictor) s.predictor->Reset();
   s.trajectory.Reset();

@@ -33,7 +33,7 @@ struct Estimator::Impl {
   Impl(const EstimatorSettings& s, const Impl* lender);
 
   /// The estimates shown before the first pack: the prior's mean if it predicts the output, else none.
-  void ShowPrior() noexcept ARMCMC_NONBLOCKING;
+  void ReportPrior() noexcept ARMCMC_NONBLOCKING;
   void PrepareMode(const DataPack& pack, const EffectPack& effects, int mode,
                    ModeData* data) const noexcept ARMCMC_NONBLOCKING;
 

@@ -184,7 +184,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   bool in_haste = false;
   int pilot = RunPilot(data, previous, use_previous, lambda, lambda_q, wanted,
                        {deadline_ns, clock, limit, anchor_ns, informed}, stream, ws, &proposal, out, &in_haste);
-  if (in_haste) target = pilot + DrawsInHaste(pilot, wanted);
+  if (in_haste) target = pilot + DrawsWithoutFullPilot(pilot, wanted);
 
   // A truncated run ends between two chunks. Only the end of the loop depends on `limit`: a run limited to as many
   // draws makes the same chunks, and so repeats it to the bit.
@@ -196,7 +196,8 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   double slowness = 1.0;
   while (made < target || made == pilot) {  // at most max(8, max_draws / kChunkDraws) + 2 turns
     // A replay infers the number of pilot rounds from the draws after the pilot: at least those of a hurried pack.
-    const int several = made == pilot ? std::max(DrawsInHaste(pilot, wanted), ChunkDraws(wanted)) : ChunkDraws(wanted);
+    const int several =
+        made == pilot ? std::max(DrawsWithoutFullPilot(pilot, wanted), ChunkDraws(wanted)) : ChunkDraws(wanted);
     const int chunk = std::min(several, (made < target ? target : wanted) - made);
     const Nanos start = clock.Now();
     const double ahead = worst_draw_ns * chunk + slowness * static_cast<double>(TimeAfter(made + chunk, informed));
@@ -251,7 +252,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   kernels_.divide(&ws->weight[static_cast<std::size_t>(pilot)], sum, padded - pilot, out->weight + pilot);
   std::fill(out->weight + made, out->weight + padded, 0.0);
   out->kish_ess = sum * sum / square;
-  ReduceSamplingError(pilot, made, use_previous, ws, out);
+  const bool calibrated = ReduceSamplingError(pilot, made, use_previous, ws, out);
   out->log_evidence = reference + std::log(sum / (made - pilot));
   out->decision = mismatch.decision;
   out->zeta = mismatch.zeta;
@@ -262,7 +263,8 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   RunChain(stream_of(kAcceptStream), pilot, ws, out);
   unfinished_ = {
       .data = &data, .previous = &previous, .lambda = lambda, .first = pilot, .mass_first = 0.0, .mass_new = 1.0};
-  ShareAmongPriors(ws, out);
+  unfinished_.calibrated = calibrated;
+  SplitMassByPrior(ws, out);
   out->known = informed;
   out->updated = true;
   // Each at its usual speed: a pack that was slow throughout does not affect the estimate for the next.

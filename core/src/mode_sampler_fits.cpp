@@ -125,7 +125,8 @@ void ModeSampler::FitUnder(const ParamVector& mean, const ParamMatrix& covarianc
   (void)LaplaceFit(kernels_, model_, data, noise_, space_, prior, start, kModeTolerance, &ws->laplace, fit);
 }
 
-void ModeSampler::FitApart(const ModeData& data, const PosteriorMemory& previous, SamplerWorkspace* ws) noexcept {
+void ModeSampler::FitConstantAndDrifting(const ModeData& data, const PosteriorMemory& previous,
+                                         SamplerWorkspace* ws) noexcept {
   num_persisted_ = 0;
   for (int b = 0; b < previous.num_blocks; ++b) {
     const DensityBlock& block = previous.block[static_cast<std::size_t>(b)];

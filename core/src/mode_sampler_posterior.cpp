@@ -70,14 +70,14 @@ void ModeSampler::FindMode(const ModeData& data, bool climb, SamplerWorkspace* w
   for (int d = 0; d < space_.dim; ++d) out->mode_u[static_cast<std::size_t>(d)] = best[d];
 }
 
-void ModeSampler::ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
+bool ModeSampler::ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
                                       ModeDraws* out) const noexcept {
   const auto offset = static_cast<std::size_t>(first);
   ProposalDraws draws{.size = last - first, .u = {}, .proposal = &ws->proposal[offset], .weight = out->weight + first};
   for (int d = 0; d < space_.dim; ++d)
     draws.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
-  (void)ReduceVariance(kernels_, use_previous ? fit_persisted_ : fit_fresh_, &normal_table_, draws,
-                       {&ws->group_weight[offset], &ws->first_share[offset]});  // both free until Compress
+  return ReduceVariance(kernels_, use_previous ? fit_persisted_ : fit_fresh_, &normal_table_, draws,
+                        {&ws->group_weight[offset], &ws->first_share[offset]});  // both free until Compress
 }
 
 void ModeSampler::RunChain(const RandomStream& stream, int first, SamplerWorkspace* ws, ModeDraws* out) const noexcept {
@@ -122,7 +122,7 @@ void ModeSampler::AppendNoiseScale(int first, int count, const double* weight, M
   AppendIndependent(mean, sd, student_table_, table, block);
 }
 
-void ModeSampler::ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept {
+void ModeSampler::SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcept {
   // The first block of the memory, the second, or a new draw from P_0.
   Unfinished& u = unfinished_;
   const bool split = drift_.Splits(*u.previous);
@@ -170,6 +170,8 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
   for (int d = 0; d < group.dim; ++d)
     group.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
 
+  FitOptions options = kMemoryFit;
+  options.calibrated = unfinished_.calibrated;
   const double mass_first = unfinished_.mass_first;
   next->num_blocks = 0;
   for (int k = out->draws; k < first + RoundUpToTile(count); ++k) ws->group_weight[static_cast<std::size_t>(k)] = 0.0;
@@ -185,7 +187,7 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
     }
     const auto b = static_cast<std::size_t>(next->num_blocks);
     const auto fit = [&]() noexcept {
-      return FitBlock(kernels_, group, kMemoryFit, ws->StraightRows().data(), next->tables[b].data(), &next->block[b]);
+      return FitBlock(kernels_, group, options, ws->StraightRows().data(), next->tables[b].data(), &next->block[b]);
     };
     bool fitted = fit() >= kMinimumEss;
     // Too few effective draws of a group that must be kept: its posterior to a power below one, times the

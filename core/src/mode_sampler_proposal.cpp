@@ -28,7 +28,7 @@ constexpr FitOptions kPilotFit{
 constexpr double kTailInflation = 2.5;  // of the straightened coordinates, for the tails of a bent fit
 
 /// The same bends with heavier tails: each straightened coordinate by `law`, and wider.
-DensityBlock WithTails(const DensityBlock& fit, const MarginalTable* law) noexcept {
+DensityBlock WithHeavyTails(const DensityBlock& fit, const MarginalTable* law) noexcept {
   DensityBlock wide = fit;
   for (int i = 0; i < wide.dim; ++i) {
     const auto ii = static_cast<std::size_t>(i);
@@ -77,7 +77,7 @@ void ModeSampler::BuildProposal(const PosteriorMemory& previous, double lambda_q
     // would have nothing but P_0 for it, and most of the weight.
     for (int b = 0; b < num_pilot_blocks; ++b) {
       const auto i = static_cast<std::size_t>(b);
-      tail_blocks_[i] = WithTails(pilot_blocks_[i], &student_table_);
+      tail_blocks_[i] = WithHeavyTails(pilot_blocks_[i], &student_table_);
       proposal->Add(&tail_blocks_[i], rest * laplace / num_pilot_blocks);
     }
   } else if (!use_previous || may_have_changed_) {
@@ -232,7 +232,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
     }
     const bool last = round + 1 == kMaxPilotRounds || (round + 1 >= kPilotRounds && made + size > wanted / 2);
     if (!last && size > 2 * kTileLanes) {  // shorter rounds cost nothing
-      const int after_round = made + size + DrawsInHaste(made + size, wanted);
+      const int after_round = made + size + DrawsWithoutFullPilot(made + size, wanted);
       if (after_round > time.limit) break;
       const Nanos now = time.clock.Now();
       worst_round_ns = std::max(worst_round_ns, now - before);
@@ -242,7 +242,7 @@ int ModeSampler::RunPilot(const ModeData& data, const PosteriorMemory& previous,
       *in_haste = now + ahead > time.deadline_ns;
       if (*in_haste) break;
     }
-    if (round == 0 && drift_.Splits(previous)) FitApart(data, previous, ws);
+    if (round == 0 && drift_.Splits(previous)) FitConstantAndDrifting(data, previous, ws);
     const bool thin_but_right = on_ridge && (round > 1 || ess >= kMinimumEss);
     if (!thin_but_right) {  // otherwise more draws from the same proposal
       pooled = made;

@@ -85,7 +85,7 @@ QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const Pa
           (k == 0 ? 1.0 : 2.0) / nodes_ * std::cos(kPi * k * (j + 0.5) / nodes_);
 }
 
-void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept {
+void QuadraticScore::AccumulateSums(const ModeData& data, QuadraticScratch* scratch) noexcept {
   const auto tiles = static_cast<std::size_t>(part_.num_linear) + 1;
   for (int first = 0; first < nodes_; first += kTileLanes) {
     ThetaTile& theta = scratch->theta;
@@ -116,7 +116,7 @@ void QuadraticScore::TakeSums(const ModeData& data, QuadraticScratch* scratch) n
   }
 }
 
-void QuadraticScore::TakeProducts(const QuadraticScratch& scratch) noexcept {
+void QuadraticScore::TabulateProducts(const QuadraticScratch& scratch) noexcept {
   std::size_t product = 0;
   ForFunctions(part_.num_linear, [&](std::size_t f, int i, int j) noexcept ARMCMC_NONBLOCKING {
     if (form_.needs[f] != LinearPart::kBoth) return;
@@ -281,7 +281,7 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& centre
   return true;
 }
 
-void QuadraticScore::TakeSeries() noexcept {
+void QuadraticScore::ExpandInSeries() noexcept {
   const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
   const auto nodes = static_cast<std::size_t>(nodes_);
   const CosineTable& transform = transform_[0];
@@ -311,7 +311,7 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
       const auto d = static_cast<std::size_t>(part_.linear[static_cast<std::size_t>(i)]);
       form_.about[d] = -space_.offset[d] / space_.scale[d];
     }
-  TakeSums(data, scratch);
+  AccumulateSums(data, scratch);
   const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
   if (form_.num_curved == 0) {
     ready_ = true;
@@ -321,8 +321,8 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
     }
     return;
   }
-  TakeProducts(*scratch);
-  TakeSeries();
+  TabulateProducts(*scratch);
+  ExpandInSeries();
   const double scale = std::exp(space_.LogNoiseScale(fit.mean.data()));
   if (part_.second >= 0) {
     if (!EndEach(scale * scale, fit.mean)) return;

@@ -12,7 +12,7 @@ constexpr double kPinned = 1e12;      // precision that holds a coordinate
 constexpr double kEvenShare = 0.2;    // share of the proposal that is spread evenly over the relevant anchors
 constexpr double kNegligible = 14.0;  // nats below the best anchor
 
-int WorstKnown(const ParameterSpace& space, const ParamMatrix& covariance) noexcept {
+int LeastCertainParameter(const ParameterSpace& space, const ParamMatrix& covariance) noexcept {
   int worst = 0;
   for (int d = 1; d < space.num_parameters; ++d)
     if (covariance(d, d) > covariance(worst, worst)) worst = d;
@@ -62,7 +62,7 @@ int FollowRidge(const simd::Kernels& kernels, int model, const ModeData& data, c
                 const ParameterSpace& space, const Gaussian& prior, const Gaussian& fit, int count,
                 LaplaceScratch* scratch, std::array<RidgeAnchor, kRidgeAnchors>* anchors) noexcept {
   const ParamMatrix covariance = Inverse(fit.precision);
-  const int j = WorstKnown(space, covariance);
+  const int j = LeastCertainParameter(space, covariance);
   const auto ij = static_cast<std::size_t>(j);
   const double sd = std::sqrt(std::fmax(covariance(j, j), 0.0));
   const double from = std::fmax(space.lower[ij], fit.mean[j] - kRidgeReach * sd);

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using support::StrictTable;
 
-void SayWhatIsUsual(const DescribedPlant& plant, const DescribedScenario& scenario) {
+void PrintDefaults(const DescribedPlant& plant, const DescribedScenario& scenario) {
   std::string moves;
   for (const auto& [name, program] : scenario.inputs) {
     char text[160];
@@ -120,7 +120,7 @@ int RunDescribed(const fs::path& plant_file, const DescribedRequest& request, co
   DescribedScenario scenario;
   if (request.scenario.empty()) {
     scenario = UsualScenario(plant);
-    SayWhatIsUsual(plant, scenario);
+    PrintDefaults(plant, scenario);
   } else {
     scenario_table = StrictTable::FromFile(request.scenario);
     scenario = ReadDescribedScenario(*scenario_table);

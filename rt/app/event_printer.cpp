@@ -43,7 +43,7 @@ const char* KindName(std::size_t kind) {
 std::string Count(std::int64_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
 /// Lines that every user wants; the others only with --verbose.
-bool IsNews(EventKind kind) { return kind != EventKind::kPacksLost && kind != EventKind::kPackDropped; }
+bool IsShownByDefault(EventKind kind) { return kind != EventKind::kPacksLost && kind != EventKind::kPackDropped; }
 
 }  // namespace
 
@@ -91,7 +91,7 @@ void EventPrinter::Line(Nanos t_ns, const std::string& text) {
 }
 
 void EventPrinter::Print(const rt::Event& event) {
-  if (!verbose_ && !IsNews(event.kind)) return;
+  if (!verbose_ && !IsShownByDefault(event.kind)) return;
   const auto kind = static_cast<std::size_t>(event.kind);
   if (printed_[kind] >= kMaxPerSecond) {
     ++held_back_[kind];

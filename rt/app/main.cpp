@@ -65,8 +65,8 @@ void WarnWhenDegraded(const rt::Pipeline& pipeline) {
 /// Prints events until the pipeline stops by itself or a signal of the set asks it to.
 /// A service manager hears that all stages are alive, and only then.
 /// @return false when a stage hangs and the configuration wants the process to end then.
-bool Attend(rt::Pipeline* pipeline, const sigset_t& signals, const std::vector<std::unique_ptr<PlantRun>>& plants,
-            EventPrinter* printer) {
+bool SuperviseUntilStopped(rt::Pipeline* pipeline, const sigset_t& signals,
+                           const std::vector<std::unique_ptr<PlantRun>>& plants, EventPrinter* printer) {
   constexpr timespec kPoll{0, 50'000'000};
   ServiceNotify service;
   service.Ready();
@@ -91,9 +91,9 @@ bool Attend(rt::Pipeline* pipeline, const sigset_t& signals, const std::vector<s
 }
 
 /// What runs beside the pipeline looks at its lanes until it is stopped.
-struct StopBeforeThePipelineGoes {
+struct StopPlantsOnExit {
   const std::vector<std::unique_ptr<PlantRun>>& plants;
-  ~StopBeforeThePipelineGoes() {
+  ~StopPlantsOnExit() {
     for (const auto& plant : plants) plant->Stop();
   }
 };
@@ -123,7 +123,7 @@ int Run(const Options& options) {
   for (const auto& plant : plants)
     lanes.push_back(plant->ForPipeline(injects ? static_cast<rt::StepEngine*>(&disturbed) : &plant->engine()));
   rt::Pipeline pipeline(configuration.rt, lanes, pipeline_options);
-  const StopBeforeThePipelineGoes stop_plants{plants};
+  const StopPlantsOnExit stop_plants{plants};
   const auto say = [](const std::string& line) { std::cerr << line + "\n"; };
   for (std::size_t i = 0; i < plants.size(); ++i)
     plants[i]->Resume(&pipeline.lane(i), [&say](const std::string& line) { say(std::string(kName) + ": " + line); });
@@ -142,7 +142,7 @@ int Run(const Options& options) {
   }
   for (const auto& plant : plants) plant->Start(start_ns, options.verbose, say);
   EventPrinter printer(std::cerr, start_ns, options.verbose);  // of what concerns no plant in particular
-  if (!Attend(&pipeline, signals, plants, &printer)) {
+  if (!SuperviseUntilStopped(&pipeline, signals, plants, &printer)) {
     std::cerr << kName << ": a stage hangs and [rt.watchdog] on_hang = \"exit\": the process ends now.\n";
     std::_Exit(support::kExitFailure);  // a thread that hangs cannot be joined
   }

@@ -35,7 +35,7 @@ Nanos DeadlineMonitor::HandOverStall(Stage stage, Nanos ready_ns, Nanos start_ns
 }
 
 StageWork DeadlineMonitor::NoWork(Stage stage, Nanos ready_ns, Nanos start_ns, Nanos withheld_ns) const noexcept {
-  const Nanos begin_ns = timeline_[IndexOf(stage)].CouldBegin(ready_ns);
+  const Nanos begin_ns = timeline_[IndexOf(stage)].EarliestStart(ready_ns);
   const bool slept = begin_ns == ready_ns;
   const Nanos seen_ns = slept ? HandOverStall(stage, begin_ns, start_ns) : StalledTime(stage, begin_ns, start_ns);
   // Two views of the same time, neither of which sees too much.

@@ -15,7 +15,7 @@ Status DisturbedEngine::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef
   // Without a clock it is the warm-up, which meets no faults.
   if (clock.read == nullptr) return engine_->Adjust(pack, deadline_ns, clock, slot);
   pack_[static_cast<std::size_t>(slot)] = pack.seq;
-  if (injection_->Squeezes(pack.seq)) deadline_ns = clock.Now();
+  if (injection_->CutsDraws(pack.seq)) deadline_ns = clock.Now();
   Status status = Status::kOk;
   if (injection_->Collapses(pack.seq)) {
     for (int i = 0; i < kRepeats; ++i) {

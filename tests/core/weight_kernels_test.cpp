@@ -44,10 +44,15 @@ TEST(RatioKernel, IsZeroWhereTheDivisorIsNotPositive) {
   }
 }
 
-TEST(ReweighKernel, MultipliesByTheLinearControlAndNeverBelowZero) {
+TEST(ReweighKernel, MultipliesByTheQuadraticControlAndNeverBelowZero) {
   const std::vector<double> u0 = Normals(4), u1 = Normals(5), g = Normals(6), before = Normals(7);
   const double* const u[] = {u0.data(), u1.data()};
-  const simd::LinearControl control{.dim = 2, .most = 0.5, .constant = 0.3, .slope = {-0.7, 0.2}};
+  const simd::QuadraticControl control{.dim = 2,
+                                       .most = 0.5,
+                                       .constant = 0.3,
+                                       .centre = {0.1, -0.4},
+                                       .slope = {-0.7, 0.2},
+                                       .curvature = {{0.15}, {-0.3, 0.05}}};
   std::vector<double> fused;
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
     std::vector<double> weight = before;
@@ -55,7 +60,8 @@ TEST(ReweighKernel, MultipliesByTheLinearControlAndNeverBelowZero) {
     double expected_sum = 0.0;
     int none = 0;
     for (std::size_t k = 0; k < kCount; ++k) {
-      const double inner = 0.3 - 0.7 * u0[k] + 0.2 * u1[k];
+      const double a = u0[k] - 0.1, b = u1[k] + 0.4;
+      const double inner = 0.3 - 0.7 * a + 0.2 * b + 0.15 * a * a - 0.3 * a * b + 0.05 * b * b;
       const double expected = before[k] * std::fmax(0.5 - g[k] * inner, 0.0);
       ASSERT_NEAR(weight[k], expected, 1e-14) << kernels->name << " " << k;
       expected_sum += expected;

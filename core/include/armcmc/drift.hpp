@@ -156,8 +156,8 @@ class Drift {
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
-  void GrowOlder() noexcept ARMCMC_NONBLOCKING;
-  void AddNewcomers(double share) noexcept ARMCMC_NONBLOCKING;
+  void MergeOlderGenerations() noexcept ARMCMC_NONBLOCKING;
+  void AddFreshFilters(double share) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
   void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;

@@ -127,9 +127,9 @@ class ModeSampler {
   [[nodiscard]] const Drifted& drifted() const noexcept { return drifted_; }
 
  private:
-  /// Draws after a pilot that there was no time to finish. made + DrawsInHaste(made) rises with every round of more
-  /// than two tiles, and so tells how many rounds there were.
-  static constexpr int DrawsInHaste(int made, int wanted) noexcept {
+  /// Draws after a pilot that there was no time to finish. made + DrawsWithoutFullPilot(made) rises with every round of
+  /// more than two tiles, and so tells how many rounds there were.
+  static constexpr int DrawsWithoutFullPilot(int made, int wanted) noexcept {
     return std::min(kChunkDraws, (wanted - made) / 8 / kTileLanes * kTileLanes);
   }
   /// Between two readings of the clock: a quarter of the draws, whole tiles.
@@ -147,6 +147,7 @@ class ModeSampler {
     /// What was carried on through time is rest and drift in two blocks: the more probable is handed on, and the other
     /// unless it is improbable.
     bool split = false;
+    bool calibrated = false;  ///< The weights, by control variates.
     Drift::Part part = Drift::Part::kRest;
   };
 
@@ -178,8 +179,8 @@ class ModeSampler {
   void FitUnder(const ParamVector& mean, const ParamMatrix& covariance, const ModeData& data, SamplerWorkspace* ws,
                 Gaussian* fit) noexcept ARMCMC_NONBLOCKING;
   /// The Laplace fits of the constant and the drifting hypothesis, which may have separated.
-  void FitApart(const ModeData& data, const PosteriorMemory& previous,
-                SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
+  void FitConstantAndDrifting(const ModeData& data, const PosteriorMemory& previous,
+                              SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Laplace fits under P_0 from the best of some draws of it: a law that is not linear may have several modes, and the
   /// mean of P_0 may lie beside none of them. Leaves the best by its mass in `fit`, which has the log posterior `best`.
   void FitFromScattered(const ModeData& data, const RandomStream& stream, SamplerWorkspace* ws, double best,
@@ -209,8 +210,8 @@ class ModeSampler {
   /// Draws in rounds until the posterior is known well enough to draw the rest from: Laplace fits; where they are a
   /// poor match, the ridge; where that fails, too, powers of the posterior that come nearer to it round by round.
   ///
-  /// A round that would not leave time for a chunk of draws is not begun: then `in_haste`, and DrawsInHaste() follow. A
-  /// run that is limited to as many draws as that makes the same rounds.
+  /// A round that would not leave time for a chunk of draws is not begun: then `in_haste`, and DrawsWithoutFullPilot()
+  /// follow. A run that is limited to as many draws as that makes the same rounds.
   /// @param[out] proposal  For the rest. @return the number of draws made, at most half of `wanted` after the first
   /// kPilotRounds.
   int RunPilot(const ModeData& data, const PosteriorMemory& previous, bool use_previous, double lambda, double lambda_q,
@@ -223,14 +224,14 @@ class ModeSampler {
   /// is P_0 alone.
   void FindMode(const ModeData& data, bool climb, SamplerWorkspace* ws,
                 ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
-  /// Control variates on the weights [first, last) of the result; the chain keeps its own.
-  void ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
+  /// Control variates on the weights [first, last) of the result; the chain keeps its own. @return whether they apply.
+  bool ReduceSamplingError(int first, int last, bool use_previous, SamplerWorkspace* ws,
                            ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   /// The chain over the draws from `first` on, the first after the pilot.
   void RunChain(const RandomStream& stream, int first, SamplerWorkspace* ws,
                 ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
-  void ShareAmongPriors(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+  void SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law with a standard
   /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not considered

@@ -63,11 +63,11 @@ class QuadraticScore {
   using CosineTable = std::array<std::array<double, kNodes>, kNodes>;
   using Grid = std::array<std::array<double, kTileLanes>, kTileLanes>;
 
-  void TakeSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
-  /// The grids, from what TakeSums() leaves in `scratch`.
-  void TakeProducts(const QuadraticScratch& scratch) noexcept ARMCMC_NONBLOCKING;
-  /// Of what TakeSums() and TakeProducts() have left.
-  void TakeSeries() noexcept ARMCMC_NONBLOCKING;
+  void AccumulateSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// The grids, from what AccumulateSums() leaves in `scratch`.
+  void TabulateProducts(const QuadraticScratch& scratch) noexcept ARMCMC_NONBLOCKING;
+  /// Of what AccumulateSums() and TabulateProducts() have left.
+  void ExpandInSeries() noexcept ARMCMC_NONBLOCKING;
   /// Candidates get what the samples give.
   [[nodiscard]] bool IsConfirmed(const ModeData& data, const ParamVector& centre, const ParamVector& sd,
                                  QuadraticScratch* scratch) const noexcept ARMCMC_NONBLOCKING;

@@ -65,7 +65,7 @@ class Assembler {
   [[nodiscard]] int Size() const { return static_cast<int>(tape_.code.size()); }
 
   /// Whether v reads the result of the previous instruction from the accumulator.
-  [[nodiscard]] static bool TakesUp(const Virtual& v, int value) {
+  [[nodiscard]] static bool ReadsAccumulator(const Virtual& v, int value) {
     const auto from = std::find(v.registers.begin(), v.registers.end(), value);
     if (from == v.registers.end() || v.op == TapeOp::kLinear) return false;
     const auto at = from - v.registers.begin();
@@ -85,7 +85,7 @@ class Assembler {
         });
         // The next value of a state, written before the last reader of the state, would have to be copied.
         const bool result = std::find(results_.begin(), results_.end(), next->to) != results_.end();
-        if (!ready || result || !TakesUp(*next, at->to)) continue;
+        if (!ready || result || !ReadsAccumulator(*next, at->to)) continue;
         std::rotate(at + 1, next, next + 1);
         break;
       }
@@ -93,7 +93,7 @@ class Assembler {
   }
 
   /// Register a first: the result of the previous instruction, if the arithmetic allows it.
-  void PutFirst(Virtual* v) const {
+  void PutResultFirst(Virtual* v) const {
     const auto from = std::find(v->registers.begin(), v->registers.end(), previous_);
     if (previous_ < 0 || from == v->registers.end() || from == v->registers.begin()) return;
     const auto at = from - v->registers.begin();
@@ -113,7 +113,7 @@ class Assembler {
 
   void One(int at) {
     Virtual v = order_[At(at)];
-    PutFirst(&v);
+    PutResultFirst(&v);
     if (v.op == TapeOp::kAddLinear && v.registers.size() == 2 && v.registers[0] != previous_) {
       v.op = TapeOp::kScaleAdd;
       std::swap(v.registers[0], v.registers[1]);

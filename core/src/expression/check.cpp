@@ -183,7 +183,7 @@ class Checker {
     guards_.resize(before);
     const Known no = Node(at.argument[2]);
     Known known;
-    known.unit = Alike(at.column, yes.unit, no.unit, "the two results of if");
+    known.unit = CommonUnit(at.column, yes.unit, no.unit, "the two results of if");
     known.range = Hull(yes.range, no.range);
     known.condition = yes.condition && no.condition;
     known.sampled = condition.sampled || yes.sampled || no.sampled;
@@ -200,11 +200,11 @@ class Checker {
 
   static std::string Name(const UnitState& state) { return state.unit ? state.unit->Text() : "an unknown unit"; }
 
-  /// Alike() of the two sides of a sum or comparison.
-  [[nodiscard]] UnitState SidesAlike(const SyntaxNode& at, const UnitState& a, const UnitState& b,
-                                     std::string_view what) const {
+  /// CommonUnit() of the two sides of a sum or comparison.
+  [[nodiscard]] UnitState CommonUnitOfSides(const SyntaxNode& at, const UnitState& a, const UnitState& b,
+                                            std::string_view what) const {
     try {
-      return Alike(at.column, a, b, what);
+      return CommonUnit(at.column, a, b, what);
     } catch (const Error& error) {
       std::string hint = NumberHint(syntax_, at.argument[1], *b.unit, *a.unit);
       if (hint.empty()) hint = NumberHint(syntax_, at.argument[0], *a.unit, *b.unit);
@@ -212,7 +212,7 @@ class Checker {
     }
   }
 
-  static UnitState Alike(int column, const UnitState& a, const UnitState& b, std::string_view what) {
+  static UnitState CommonUnit(int column, const UnitState& a, const UnitState& b, std::string_view what) {
     if (a.number || b.number) return a.number && !b.number ? b : a;
     if (!a.unit || !b.unit) return a.unit ? a : b;
     if (a.unit->Same(*b.unit)) return a;
@@ -243,15 +243,17 @@ class Checker {
     const UnitState plain{Unit{}, false};
     switch (at.op) {
       case Op::kAdd:
-      case Op::kSubtract: return SidesAlike(at, x, y, at.op == Op::kAdd ? "the sum is of " : "the difference is of ");
+      case Op::kSubtract:
+        return CommonUnitOfSides(at, x, y, at.op == Op::kAdd ? "the sum is of " : "the difference is of ");
       case Op::kMin:
-      case Op::kMax: return Alike(at.column, x, y, "the comparison is of ");
+      case Op::kMax: return CommonUnit(at.column, x, y, "the comparison is of ");
       case Op::kLess:
       case Op::kLessEqual:
       case Op::kEqual:
-      case Op::kNotEqual: (void)SidesAlike(at, x, y, "the comparison is of "); return plain;
+      case Op::kNotEqual: (void)CommonUnitOfSides(at, x, y, "the comparison is of "); return plain;
       case Op::kClamp:
-        return Alike(at.column, Alike(at.column, x, y, "a value and its bound"), a[2].unit, "a value and its bound");
+        return CommonUnit(at.column, CommonUnit(at.column, x, y, "a value and its bound"), a[2].unit,
+                          "a value and its bound");
       case Op::kMultiply:
       case Op::kDivide:
         if (!x.unit || !y.unit) return {};

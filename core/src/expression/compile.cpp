@@ -152,7 +152,7 @@ class Builder {
                                                                      : ScaledRegister(b, a.constant);
     if (b.terms.empty()) return Product(b, a);
     // Factors of lone registers go before the product, where they may meet others.
-    if (IsLone(a) && IsLone(b)) {
+    if (IsSingleRegister(a) && IsSingleRegister(b)) {
       const Term& x = a.terms[0];
       const Term& y = b.terms[0];
       return {graph_.Number(0.0),
@@ -170,7 +170,7 @@ class Builder {
              return once(t.reg) && (t.other < 0 || once(t.other)) && !graph_.at(t.factor).varies;
            });
   }
-  [[nodiscard]] bool IsLone(const Linear& value) const {
+  [[nodiscard]] bool IsSingleRegister(const Linear& value) const {
     return value.terms.size() == 1 && value.terms[0].other < 0 && graph_.IsNumber(value.constant, 0.0);
   }
 
@@ -204,8 +204,8 @@ class Builder {
           // A sum is divided as a whole where the divisor can be 0: infinite parts of it would have no sum.
           const bool bounded = graph_.IsNumber(factor) && std::isfinite(graph_.at(factor).value);
           const Linear above = Value(a);
-          return bounded || IsLone(above) || above.terms.empty() ? Product({factor, {}}, above)
-                                                                 : ScaledRegister(above, factor);
+          return bounded || IsSingleRegister(above) || above.terms.empty() ? Product({factor, {}}, above)
+                                                                           : ScaledRegister(above, factor);
         }
         const Linear above = Value(a);
         if (above.terms.empty())
@@ -260,7 +260,7 @@ class Builder {
       // For 0 a finite number below every other logarithm: 0^p is 0, and 0^0 is 1.
       const int log2 = graph_.Make(Op::kMax, graph_.Make(Op::kLog2, base), graph_.Number(-1e300));
       const Linear p = Value(exponent);
-      if (IsLone(p))
+      if (IsSingleRegister(p))
         return Emit(TapeOp::kExp2S, {p.terms[0].reg}, {Scalar(graph_.Make(Op::kMultiply, p.terms[0].factor, log2))});
       return Emit(TapeOp::kExp2S, {Materialise(p)}, {Scalar(log2)});
     }

@@ -18,8 +18,9 @@ bool HasStates(const EstimatorSettings& settings) {
   return settings.plant != nullptr && settings.plant->states().size() > 0;
 }
 
-std::vector<std::unique_ptr<GapLineariser>> MakePasses(const EstimatorSettings& settings, int model,
-                                                       const simd::Kernels& kernels, bool judges_passive, int count) {
+std::vector<std::unique_ptr<GapLineariser>> MakeLinearisers(const EstimatorSettings& settings, int model,
+                                                            const simd::Kernels& kernels, bool judges_passive,
+                                                            int count) {
   std::vector<std::unique_ptr<GapLineariser>> passes(At(count));
   for (auto& pass : passes) pass = std::make_unique<GapLineariser>(settings, model, kernels, judges_passive);
   return passes;
@@ -40,7 +41,7 @@ GapWatch::GapWatch(const EstimatorSettings& settings, int model, const simd::Ker
                      : nullptr),
       family_(described_ != nullptr ? static_cast<const GapFamily&>(*described_)
                                     : CompiledModels()[At(model)]->compiled->gap_family()),
-      passes_(MakePasses(settings, model, kernels, family_.judges_passive(), probes_ ? kMostPasses : 2)),
+      passes_(MakeLinearisers(settings, model, kernels, family_.judges_passive(), probes_ ? kMostPasses : 2)),
       enabled_(settings.gap_watch.enabled && CanWatch(passes_[0]->num_columns())),
       most_samples_(probes_ ? probes_->most_samples() : kMaxPackSamples),
       shortest_s_(probes_ ? std::numeric_limits<double>::infinity() : kShortestPack),

@@ -138,7 +138,7 @@ class FormBinder {
   }
 
   /// One text of the plant, lets put in, says all of them: a constant has no role that tells what it is of.
-  [[nodiscard]] bool SaidTogether() const {
+  [[nodiscard]] bool OccurInOneExpression() const {
     std::vector<std::string> texts{plant_.law, plant_.predicts};
     for (const ModeDescription& mode : plant_.modes) texts.insert(texts.end(), {mode.law, mode.target});
     for (const StateDescription& state : plant_.states) texts.push_back(state.rate);
@@ -152,7 +152,7 @@ class FormBinder {
   bool TermsFit() {
     const bool of_constant = std::any_of(form_.needs.begin(), form_.needs.end(),
                                          [](const EffectNeed& need) { return need.kind == "constant"; });
-    if (of_constant && !SaidTogether()) {
+    if (of_constant && !OccurInOneExpression()) {
       why_ = "no expression of it reads such a constant together with the others";
       return false;
     }

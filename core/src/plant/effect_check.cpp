@@ -18,14 +18,14 @@ bool IsAmong(const NameList& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string InARow(const NameList& names) {
+std::string CommaSeparated(const NameList& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
 }
 
 void ExpectOneOf(const std::string& key, const std::string& value, const NameList& known) {
-  if (!IsAmong(known, value)) throw PlantError(key, 0, "expected " + InARow(known), value, known);
+  if (!IsAmong(known, value)) throw PlantError(key, 0, "expected " + CommaSeparated(known), value, known);
 }
 
 /// Everything of one form.
@@ -148,7 +148,8 @@ class FormChecker {
       NameList known = {"output", "noise", "dt", "record", "period", "start"};
       for (const EffectNeed& need : form_.needs) known.push_back(need.name);
       throw PlantError(key_ + key, error.column(),
-                       '"' + error.name() + "\" is not a known size; there are " + InARow(known), error.name(), known);
+                       '"' + error.name() + "\" is not a known size; there are " + CommaSeparated(known), error.name(),
+                       known);
     } catch (const expression::Error& error) {
       throw PlantError(key_ + key, error.column(), error.what());
     }

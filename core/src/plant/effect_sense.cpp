@@ -125,7 +125,7 @@ std::vector<std::string> Laws(const PlantDescription& plant) {
 }
 
 /// 1 where all laws that read the signal rise with it, -1 where all fall, 0 otherwise.
-int SlopeIn(const PlantDescription& plant, const std::string& signal) {
+int SignOfSlopeIn(const PlantDescription& plant, const std::string& signal) {
   int slope = 0;
   for (const std::string& law : Laws(plant)) {
     const Syntax syntax = expression::Parse(WithoutLets(plant, law));
@@ -144,7 +144,7 @@ int SenseOfResistance(const PlantDescription& plant) {
   for (const char* role : {"acceleration", "velocity", "position"})
     for (const SignalDescription& signal : written.signals) {
       if (signal.role != role || signal.name == written.output) continue;
-      const int slope = SlopeIn(written, signal.name);
+      const int slope = SignOfSlopeIn(written, signal.name);
       if (slope != 0) return slope;
     }
   return 1;

@@ -22,8 +22,8 @@ std::string Joined(std::initializer_list<std::string_view> parts) {
 }
 
 /// Null where the plant has no such let.
-template <class SomePlant>
-auto* LetCalled(SomePlant& plant, const std::string& name) {
+template <class PlantType>
+auto* LetCalled(PlantType& plant, const std::string& name) {
   const auto let = std::find_if(plant.lets.begin(), plant.lets.end(), [&](const auto& l) { return l.name == name; });
   return let == plant.lets.end() ? nullptr : &*let;
 }
@@ -49,7 +49,7 @@ std::string ReferenceTo(const SignalDescription& signal, const DataScales& scale
 }
 
 /// Empty where the text depends on time.
-std::string AtOnePlace(std::string text, const DataScales& scales, PlantDescription* plant) {
+std::string AtReferencePoint(std::string text, const DataScales& scales, PlantDescription* plant) {
   for (const StateDescription& state : plant->states)
     if (Mentions(text, state.name)) text = WithoutLets(*plant, Inserted(text, {{state.name, state.start}}));
   for (const std::string& name : NamesIn(text))
@@ -93,8 +93,8 @@ void SetTargetSizes(const DataScales& scales, PlantDescription* plant) {
     const LetDescription* as_felt = LetCalled(*plant, Joined({prefix, kAsFelt, number}));
     LetDescription* size = LetCalled(*plant, Joined({prefix, kSize, number}));
     if (as_felt == nullptr || size == nullptr) continue;  // a let of the plant's own
-    const std::string read = AtOnePlace(WithoutLets(*plant, as_read->text), scales, plant);
-    const std::string felt = AtOnePlace(WithoutLets(*plant, as_felt->text), scales, plant);
+    const std::string read = AtReferencePoint(WithoutLets(*plant, as_read->text), scales, plant);
+    const std::string felt = AtReferencePoint(WithoutLets(*plant, as_felt->text), scales, plant);
     size->text = read.empty() || felt.empty() ? "1" : Joined({"if(", read, " == 0, 1, (", read, ")/(", felt, "))"});
   }
 }

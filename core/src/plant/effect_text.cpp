@@ -29,8 +29,8 @@ std::size_t NumberLength(std::string_view text, std::size_t at) noexcept {
 }
 
 /// Calls on_name for every name, on_rest for everything else.
-template <class OnName, class OnRest>
-void Walk(std::string_view text, const OnName& on_name, const OnRest& on_rest) {
+template <class OnName, class OnOther>
+void Walk(std::string_view text, const OnName& on_name, const OnOther& on_rest) {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t length = 1;
     if (IsLetter(text[at])) {

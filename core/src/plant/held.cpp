@@ -14,7 +14,7 @@ using expression::SymbolKind;
 namespace {
 
 /// tau and half a sample.
-int HalfASampleLater(expression::Graph* graph, int tau) {
+int PlusHalfASample(expression::Graph* graph, int tau) {
   return graph->Make(Op::kAdd, tau,
                      graph->Make(Op::kMultiply, graph->Number(0.5), graph->Symbol(SymbolKind::kInterval, 0)));
 }
@@ -67,7 +67,7 @@ int HeldForms::Remembering(int node, bool between) {  // NOLINT(misc-no-recursio
   if (at.op != Op::kDelay) return graph_.Make(at.op, Visit(at.argument[0], true), tau, graph_.Number(1.0));
   const int of = Visit(at.argument[0], between);
   if (between) return graph_.Make(at.op, of, tau);
-  if (graph_.at(tau).sampled) return graph_.Make(at.op, of, HalfASampleLater(&graph_, tau));
+  if (graph_.at(tau).sampled) return graph_.Make(at.op, of, PlusHalfASample(&graph_, tau));
   return graph_.Make(at.op, of, tau, graph_.Number(1.0));
 }
 

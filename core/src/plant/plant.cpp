@@ -79,7 +79,7 @@ Plant::Plant(PlantDescription description) : description_(std::move(description)
   AddRates();
   AddReports();
   UseHeldForms();
-  CheckParametersAreFelt();
+  CheckParametersHaveInfluence();
   Identify();
 }
 

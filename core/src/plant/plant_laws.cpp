@@ -123,7 +123,7 @@ void Plant::UseHeldForms() {
   }
 }
 
-void Plant::CheckParametersAreFelt() const {
+void Plant::CheckParametersHaveInfluence() const {
   for (std::size_t d = 0; d < description_.parameters.size(); ++d) {
     const std::string& name = description_.parameters[d].name;
     const std::string key = "parameters." + name;

@@ -288,8 +288,8 @@ void PlantProgram::FillInfo() {
   for (std::size_t r = 0; r < nodes.size(); ++r) info_.reported[r] = {names_[r], units_[r]};
 }
 
-void PlantProgram::LayDownPast(const expression::PastSamples& kept, int line, double first,
-                               expression::PastLines* out) const noexcept {
+void PlantProgram::CopyPastSamples(const expression::PastSamples& kept, int line, double first,
+                                   expression::PastLines* out) const noexcept {
   constexpr int kLength = expression::kMaxDelaySamples;
   const auto& samples = kept.line[static_cast<std::size_t>(line)];
   double* newest = &out->value[static_cast<std::size_t>(expression::PastLines::Place(line, -1))];
@@ -338,7 +338,7 @@ bool PlantProgram::Prepare(const DataPack& pack, expression::FeatureMemory* memo
     std::copy_n(value.begin() + first_remembered_, num_remembered_, point.begin() + PlantPoint::kFirstRemembered);
     for (int l = 0; l < num_lines_; ++l) {
       const double kept = value[static_cast<std::size_t>(first_line_ + l)];
-      if (n == 0) LayDownPast(memory->kept, l, kept, &out->past);
+      if (n == 0) CopyPastSamples(memory->kept, l, kept, &out->past);
       out->past.value[static_cast<std::size_t>(expression::PastLines::Place(l, n))] = kept;
       finite = finite && std::isfinite(kept);
     }

@@ -67,12 +67,12 @@ int Remembered::Shifted(int node, Op op, int tau, bool in_rate) {  // NOLINT(mis
   // A chain in which every link is used twice has an exponential number of paths.
   const std::tuple<int, Op, int, bool> key{node, op, tau, in_rate};
   if (const auto known = shifted_.find(key); known != shifted_.end()) return known->second;
-  const int made = ShiftedAnew(node, op, tau, in_rate);
+  const int made = MakeShifted(node, op, tau, in_rate);
   shifted_.emplace(key, made);
   return made;
 }
 
-int Remembered::ShiftedAnew(int node, Op op, int tau, bool in_rate) {  // NOLINT(misc-no-recursion): see Visit
+int Remembered::MakeShifted(int node, Op op, int tau, bool in_rate) {  // NOLINT(misc-no-recursion): see Visit
   const GraphNode at = graph_.at(node);
   if (!at.varies) return node;
   if (!at.sampled) {
@@ -83,7 +83,7 @@ int Remembered::ShiftedAnew(int node, Op op, int tau, bool in_rate) {  // NOLINT
   }
   const std::string name(expression::InfoOf(op).name);
   if (at.op == Op::kSymbol)
-    return LateState(at.index, op == Op::kDelay ? Visit(tau, true) : graph_.Symbol(SymbolKind::kInterval, 0));
+    return DelayedState(at.index, op == Op::kDelay ? Visit(tau, true) : graph_.Symbol(SymbolKind::kInterval, 0));
   if (at.op == Op::kLowpass && !graph_.at(at.argument[1]).varies)
     return AddState(Shifted(at.argument[0], op, tau, true), Visit(at.argument[1], true));
   if (at.op == Op::kDelay && op == Op::kDelay)
@@ -116,7 +116,7 @@ int Remembered::NewState(const RememberedState& state) {
   return graph_.Symbol(SymbolKind::kState, number);
 }
 
-int Remembered::LateState(int state, int tau) {  // NOLINT(misc-no-recursion): as deep as there are states
+int Remembered::DelayedState(int state, int tau) {  // NOLINT(misc-no-recursion): as deep as there are states
   if (const auto known = late_.find({state, tau}); known != late_.end())
     return graph_.Symbol(SymbolKind::kState, known->second);
   const State& of = of_plant_[static_cast<std::size_t>(state)];

@@ -57,10 +57,10 @@ class Remembered {
  private:
   int Visit(int node, bool in_rate);
   int Shifted(int node, expression::Op op, int tau, bool in_rate);
-  int ShiftedAnew(int node, expression::Op op, int tau, bool in_rate);
+  int MakeShifted(int node, expression::Op op, int tau, bool in_rate);
   int AddState(int argument, int tau);
   int NewState(const RememberedState& state);
-  int LateState(int state, int tau);
+  int DelayedState(int state, int tau);
   /// @param held  Between samples, though it may not be made of what is.
   int Input(int node, bool held = false);
   int PastOf(int node, int tau);

@@ -172,7 +172,7 @@ void AddDensity(const DensityBlock& block, const double* const* u, int first, do
 }
 
 template <int kDim>
-void StraightenOf(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept {
+void StraightenForDimension(const DensityBlock& block, const double* const* u, int count, double* const* e) noexcept {
   for (int k = 0; k < count; k += Simd::kLanes) {
     V straight[static_cast<unsigned>(kDim)];
     V c;
@@ -183,7 +183,7 @@ void StraightenOf(const DensityBlock& block, const double* const* u, int count, 
 
 void Straighten(const DensityBlock& block, const double* const* u, int count,
                 double* const* e) noexcept ARMCMC_NONBLOCKING {
-  ForDimension(block.dim, [&]<int kDim>() noexcept { StraightenOf<kDim>(block, u, count, e); });
+  ForDimension(block.dim, [&]<int kDim>() noexcept { StraightenForDimension<kDim>(block, u, count, e); });
 }
 
 }  // namespace

@@ -25,11 +25,13 @@ struct PriorTerms {
 };
 
 /// See Kernels::reweigh.
-struct LinearControl {
+struct QuadraticControl {
   int dim = 0;
   double most = 1.0;
   double constant = 0.0;
+  double centre[kMaxParams] = {};
   double slope[kMaxParams] = {};
+  double curvature[kMaxParams][kMaxParams] = {};  ///< Lower triangle; the rest is not read.
 };
 
 /// The hot loops, once per instruction set. All work on kTileLanes candidates side by side, one candidate a lane:
@@ -175,8 +177,9 @@ struct Kernels {
   Chosen (*count_chosen)(const std::int8_t* choice, int limit, const double* inside,
                          int count) noexcept ARMCMC_NONBLOCKING;
 
-  /// weight[k] *= max(0, most - g[k] (constant + sum_d slope_d u_d[k])). @return their sum. count a multiple of 8.
-  double (*reweigh)(const LinearControl& control, const double* const* u, const double* g, int count,
+  /// weight[k] *= max(0, most - g[k] (constant + sum_i z_i (slope_i + sum_{j <= i} curvature_ij z_j))) with
+  /// z_i = u_i[k] - centre_i. @return their sum. count a multiple of 8.
+  double (*reweigh)(const QuadraticControl& control, const double* const* u, const double* g, int count,
                     double* weight) noexcept ARMCMC_NONBLOCKING;
 
   /// First k with the largest a[k] b[k], all of them >= 0; b may be null, which is 1.

@@ -99,7 +99,7 @@ class TapeGroup {
   }
   /// For functions of several vectors side by side.
   template <class F>
-  [[gnu::always_inline]] static void Fours(Vec* a, F f) noexcept {
+  [[gnu::always_inline]] static void InFours(Vec* a, F f) noexcept {
     constexpr std::size_t kFour = kVectors < 4 ? kVectors : 4;
     Vec value[kVectors / kFour][kFour];
     Each([&value, a](std::size_t v) { value[v / kFour][v % kFour] = a[v]; });
@@ -181,28 +181,28 @@ class TapeGroup {
       case TapeOp::kAbs: Unary(x, [](Vec a) { return Simd::Abs(a); }); break;
       case TapeOp::kSign: Unary(x, [](Vec a) { return Math::Sign(a); }); break;
       case TapeOp::kSqrt: SquareRoots(x); break;
-      case TapeOp::kExp: Fours(x, [](auto& a) { Math::Exp(a); }); break;
+      case TapeOp::kExp: InFours(x, [](auto& a) { Math::Exp(a); }); break;
       case TapeOp::kExp2S:
         Unary(x, [s = Scalar(i.b)](Vec a) { return a * s; });
-        Fours(x, [](auto& a) { Math::Exp2(a); });
+        InFours(x, [](auto& a) { Math::Exp2(a); });
         break;
-      case TapeOp::kLog: Fours(x, [](auto& a) { Math::Log(a, 0.69314718055994530942); }); break;
-      case TapeOp::kLog2: Fours(x, [](auto& a) { Math::Log(a, 1.0); }); break;
-      case TapeOp::kLog10: Fours(x, [](auto& a) { Math::Log(a, 0.30102999566398119521); }); break;
+      case TapeOp::kLog: InFours(x, [](auto& a) { Math::Log(a, 0.69314718055994530942); }); break;
+      case TapeOp::kLog2: InFours(x, [](auto& a) { Math::Log(a, 1.0); }); break;
+      case TapeOp::kLog10: InFours(x, [](auto& a) { Math::Log(a, 0.30102999566398119521); }); break;
       case TapeOp::kPower:
-        Fours(x, [b = Register(i.b)](auto& a) mutable {
+        InFours(x, [b = Register(i.b)](auto& a) mutable {
           Math::Power(a, b);
           b += std::size(a) * Simd::kLanes;
         });
         break;
       case TapeOp::kPowerInt: WholePower(x, i.b); break;
-      case TapeOp::kSin: Fours(x, [](auto& a) { Math::Sin(a); }); break;
-      case TapeOp::kCos: Fours(x, [](auto& a) { Math::Cos(a); }); break;
+      case TapeOp::kSin: InFours(x, [](auto& a) { Math::Sin(a); }); break;
+      case TapeOp::kCos: InFours(x, [](auto& a) { Math::Cos(a); }); break;
       case TapeOp::kTan: Long(x, [](Vec a) { return Math::Tan(a); }); break;
       case TapeOp::kAsin: Long(x, [](Vec a) { return Math::Asin(a); }); break;
       case TapeOp::kAcos: Long(x, [](Vec a) { return Math::Acos(a); }); break;
       case TapeOp::kAtan: Long(x, [](Vec a) { return Math::Atan(a); }); break;
-      case TapeOp::kTanh: Fours(x, [](auto& a) { Math::Tanh(a); }); break;
+      case TapeOp::kTanh: InFours(x, [](auto& a) { Math::Tanh(a); }); break;
       case TapeOp::kMin: Binary(x, i, [](Vec a, Vec b) { return Math::Min(a, b); }); break;
       case TapeOp::kMax: Binary(x, i, [](Vec a, Vec b) { return Math::Max(a, b); }); break;
       // No check needed: the hardware's return their second argument if one is NaN.

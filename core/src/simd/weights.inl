@@ -80,15 +80,20 @@ void Ratio(const double* a, const double* b, int count, double* out) noexcept AR
   }
 }
 
-double Reweigh(const LinearControl& control, const double* const* u, const double* g, int count,
+double Reweigh(const QuadraticControl& control, const double* const* u, const double* g, int count,
                double* weight) noexcept ARMCMC_NONBLOCKING {
   Sums<1> sum;
   for (int k = 0; k < count; k += 8)
     for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
       const int at = k + static_cast<int>(p) * Simd::kLanes;
+      V z[kMaxParams];
       V inner = Simd::Set(control.constant);
-      for (int d = 0; d < control.dim; ++d)
-        inner = Simd::Fma(Simd::Set(control.slope[d]), Simd::Load(u[d] + at), inner);
+      for (int i = 0; i < control.dim; ++i) {
+        z[i] = Simd::Load(u[i] + at) - Simd::Set(control.centre[i]);
+        V slope = Simd::Set(control.slope[i]);
+        for (int j = 0; j <= i; ++j) slope = Simd::Fma(Simd::Set(control.curvature[i][j]), z[j], slope);
+        inner = Simd::Fma(slope, z[i], inner);
+      }
       const V factor = Simd::Max(Simd::Fma(-Simd::Load(g + at), inner, Simd::Set(control.most)), V{});
       const V w = Simd::Load(weight + at) * factor;
       Simd::Store(weight + at, w);

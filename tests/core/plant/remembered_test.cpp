@@ -184,7 +184,7 @@ TEST(Remembered, ARateMayHaveADeadTime) {
 }
 
 /// T' = (K u - T) / tau from a start that is no rest.
-PlantDescription LateState(const std::string& law) {
+PlantDescription DelayedState(const std::string& law) {
   PlantDescription plant = Late(law + " + 1e-300*late/tau");
   plant.states = {{"T", "1", "", "(K*u - T)/tau", "0", "", 10}};
   return plant;
@@ -196,11 +196,11 @@ TEST(Remembered, ADelayedStateIsTheStateSomeTimeAgo) {
   const auto late = [&](int samples) {
     return [&y, samples](int n) { return kGain * y[static_cast<std::size_t>(std::max(n - samples, 1) - 1)]; };
   };
-  ExpectLaw(LateState("delay(T, 0.05)"), late(5), 1e-7);
-  ExpectLaw(LateState("delay(T, 0.5)"), late(50), 1e-7);
-  ExpectLaw(LateState("previous(T)"), late(1), 1e-7);
+  ExpectLaw(DelayedState("delay(T, 0.05)"), late(5), 1e-7);
+  ExpectLaw(DelayedState("delay(T, 0.5)"), late(50), 1e-7);
+  ExpectLaw(DelayedState("previous(T)"), late(1), 1e-7);
   ExpectLaw(
-      LateState("T - delay(T, 0.05) + delay(T^2, 0.05)"),
+      DelayedState("T - delay(T, 0.05) + delay(T^2, 0.05)"),
       [&](int n) {
         const double x = late(5)(n);
         return late(0)(n) - x + x * x;
@@ -217,7 +217,7 @@ TEST(Remembered, ADelayOfAStateMayBeSampled) {
     return y[n - 1] + (from - static_cast<double>(n)) * (y[n] - y[n - 1]);
   };
   ExpectLaw(
-      LateState("delay(T, late)"), [&](int n) { return kGain * at(n - kLate / kDt); }, 0.03);
+      DelayedState("delay(T, late)"), [&](int n) { return kGain * at(n - kLate / kDt); }, 0.03);
 }
 
 PlantDescription HeldInput(const std::string& law) {
@@ -281,7 +281,7 @@ TEST(Remembered, ADelayOfWhatIsHeldIsHeld) {
 
 // Where nobody measured how a run begins, the late state begins as openly as the state does; a low pass has its input.
 TEST(Remembered, ALateStateBeginsAsTheStateDoes) {
-  const auto plant = test::Program(LateState("delay(T, 0.05) + lowpass(T, tau)"));
+  const auto plant = test::Program(DelayedState("delay(T, 0.05) + lowpass(T, tau)"));
   ASSERT_EQ(plant->states().size(), 3);
   EXPECT_TRUE(plant->states().has_given_start(0));
   EXPECT_TRUE(plant->states().has_given_start(1));
@@ -299,10 +299,10 @@ void ExpectLawError(const PlantDescription& plant, const std::string& key, const
 }
 
 TEST(Remembered, WhatCannotBeLookedUpSaysWhatToDo) {
-  PlantDescription measured = LateState("delay(T, late)");
+  PlantDescription measured = DelayedState("delay(T, late)");
   measured.states[0].measured_by = "y";
   ExpectLawError(measured, "law", "of a state that is measured: take it of its signal");
-  PlantDescription feedback = LateState("T");
+  PlantDescription feedback = DelayedState("T");
   feedback.states[0].rate = "(K*u - delay(T, 0.05))/tau";
   ExpectLawError(feedback, "states.T.rate", "a state that moves itself late");
   PlantDescription many = Late("delay(a, 0.05) + 1e-300*late/tau");

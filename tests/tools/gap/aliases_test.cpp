@@ -34,7 +34,7 @@ struct Asked {
   double stiffness = 0.0;  ///< K of the base law; 0: the law is not seen.
 };
 
-Asked Ask(const Recording& recording) {
+Asked RunDiagnosis(const Recording& recording) {
   const auto equation = MakeEquation("hunt_crossley");
   const Diagnosis diagnosis = CompareOnly(*equation, recording);
   Analysis& analysis = *diagnosis.wide;
@@ -89,7 +89,7 @@ TEST(Aliases, AWrongGainPassesForTheParametersAndGetsNoName) {
 }
 
 TEST(Aliases, ARichMotionShowsEveryEffect) {
-  const Asked asked = Ask(Measure({}, 6000, kNoise, 12).recording);
+  const Asked asked = RunDiagnosis(Measure({}, 6000, kNoise, 12).recording);
   ASSERT_FALSE(asked.aliases.empty()) << "the gain, at least";
   for (const std::string& line : asked.aliases) {
     EXPECT_EQ(line.find("never acts"), std::string::npos) << line;
@@ -100,7 +100,7 @@ TEST(Aliases, ARichMotionShowsEveryEffect) {
 }
 
 TEST(Aliases, SayWhatAShallowMotionHidesWhatItPassesForAndWhatLooksAlikeInIt) {
-  const Asked without = Ask(Shallow(0.0)), with = Ask(Shallow(0.1 * kNoise));
+  const Asked without = RunDiagnosis(Shallow(0.0)), with = RunDiagnosis(Shallow(0.1 * kNoise));
   const std::string line = LineOf(with.aliases, "force_bias: the parameters absorb it");
   ASSERT_FALSE(line.empty());
   const double told = PercentOf(line, "K");
@@ -116,7 +116,7 @@ TEST(Aliases, NameWhatNeverActs) {
   Recording recording = Measure({}, 6000, kNoise, 13).recording;
   recording.columns[1].array() -= 2.0;  // free motion only
   recording.columns[3] = kNoise * test::Noise(6000, 14);
-  const Asked asked = Ask(recording);
+  const Asked asked = RunDiagnosis(recording);
   for (const char* effect : {"stress_relaxation", "adhesion", "stiffness_drift"})
     EXPECT_FALSE(LineOf(asked.aliases, std::string(effect) + ": never acts").empty()) << effect;
   EXPECT_TRUE(LineOf(asked.aliases, "coulomb_friction: never acts").empty());

@@ -127,10 +127,10 @@ TEST(Hats, SumToOneAndAreOneAtTheirKnot) {
   const Vector series = 3.0 * Noise(2000, 1);
   const Vector knots = QuantileKnots(series, Vector::Ones(2000), 9);
   ASSERT_EQ(knots.size(), 9);
-  const Matrix hats = Hats(series, knots);
+  const Matrix hats = HatFunctions(series, knots);
   EXPECT_TRUE(hats.rowwise().sum().isApprox(Vector::Ones(2000), 1e-14));
   EXPECT_GE(hats.minCoeff(), 0.0);
-  EXPECT_TRUE(Hats(knots, knots).isApprox(Matrix::Identity(9, 9), 1e-14));
+  EXPECT_TRUE(HatFunctions(knots, knots).isApprox(Matrix::Identity(9, 9), 1e-14));
   // Linear between the knots, constant beyond the ends.
   const Vector clamped = series.cwiseMax(knots[0]).cwiseMin(knots[8]);
   EXPECT_TRUE((hats * knots).isApprox(clamped, 1e-13));
@@ -140,12 +140,12 @@ TEST(Hats, WithoutDataThereAreNoColumnsAndAConstantHasOne) {
   const Vector series = Noise(100, 1);
   const Vector none = QuantileKnots(series, Vector::Zero(100), 8);
   EXPECT_EQ(none.size(), 0);
-  EXPECT_EQ(Hats(series, none).rows(), 100);
-  EXPECT_EQ(Hats(series, none).cols(), 0);
+  EXPECT_EQ(HatFunctions(series, none).rows(), 100);
+  EXPECT_EQ(HatFunctions(series, none).cols(), 0);
   const Vector constant = Vector::Constant(100, 2.0);
   const Vector one = QuantileKnots(constant, Vector::Ones(100), 8);
   ASSERT_EQ(one.size(), 1);
-  EXPECT_TRUE(Hats(constant, one).isApprox(Vector::Ones(100)));
+  EXPECT_TRUE(HatFunctions(constant, one).isApprox(Vector::Ones(100)));
 }
 
 TEST(Bristle, BendsToItsLimitTurnsOverADistanceAndRestsInAHold) {

@@ -78,8 +78,8 @@ TEST_F(HeldOutTest, WhatHappensInAFewStretchesIsPutAside) {
   Recording shown = recording_;
   shown.columns[3].segment(kDiagnosed + 200, 200).array() += 10.0 * kNoise;
   const HeldOut data(*equation_, *diagnosis_.wide, shown, kDiagnosed);
-  EXPECT_GT(data.ClosedElsewhere(base_, best_), 0.97);
-  EXPECT_EQ(data.ClosedElsewhere(base_, base_), 0.0);
+  EXPECT_GT(data.ClosedOutsideWorstBlocks(base_, best_), 0.97);
+  EXPECT_EQ(data.ClosedOutsideWorstBlocks(base_, base_), 0.0);
 }
 
 TEST_F(HeldOutTest, AnEffectIsFoundBesideAnotherThatOnlyTheHeldOutDataShow) {

@@ -35,7 +35,7 @@ class Tangent {
       : basis_(OrthonormalBasis(base.whitened_jacobian)), jacobian_(&base.whitened_jacobian) {}
 
   [[nodiscard]] Vector Outside(const Vector& g) const { return g - basis_ * (basis_.transpose() * g); }
-  [[nodiscard]] double Absorbed(const Vector& g) const {
+  [[nodiscard]] double ShareInTangent(const Vector& g) const {
     return (basis_.transpose() * g).squaredNorm() / g.squaredNorm();
   }
   /// The change of the coordinates that looks like an effect.
@@ -86,7 +86,7 @@ std::vector<std::string> Aliases(const Equation& equation, const Analysis& analy
   const Vector predicted = analysis.fitter->whitener().Apply(base.predicted);
   const double noise = std::sqrt(analysis.fitter->whitener().variance * static_cast<double>(predicted.size()));
   std::vector<std::string> texts;
-  if (predicted.squaredNorm() > 0.0 && tangent.Absorbed(predicted) > kAbsorbed)
+  if (predicted.squaredNorm() > 0.0 && tangent.ShareInTangent(predicted) > kAbsorbed)
     texts.push_back("a wrong gain or unit of the " + equation.output_name() +
                     ": the parameters absorb it. One percent too much looks like " +
                     BiasText(equation, analysis, Vector(0.01 * tangent.Bias(predicted))));
@@ -98,7 +98,7 @@ std::vector<std::string> Aliases(const Equation& equation, const Analysis& analy
     for (const Vector& g : signatures.of) {
       if (!(g.squaredNorm() > kNothing * predicted.squaredNorm())) continue;
       if (strongest == nullptr || g.squaredNorm() > strongest->squaredNorm()) strongest = &g;
-      absorbed = absorbed && tangent.Absorbed(g) > kAbsorbed;
+      absorbed = absorbed && tangent.ShareInTangent(g) > kAbsorbed;
       outside.emplace_back(tangent.Outside(g));
     }
     if (strongest == nullptr)

@@ -69,7 +69,7 @@ std::vector<EffectFinding> Effects(const Diagnosis& diagnosis, const CandidatePt
 
 /// Two effects of one family that the data cannot distinguish may both act, and share what either would explain alone:
 /// a latency may be part delay, part lag.
-std::vector<std::vector<std::string>> BothOfAFamily(const Finding& finding) {
+std::vector<std::vector<std::string>> PairsOfOneFamily(const Finding& finding) {
   std::vector<std::vector<std::string>> both;
   for (auto a = finding.set.begin(); a != finding.set.end(); ++a)
     for (auto b = std::next(a); b != finding.set.end(); ++b) {
@@ -105,7 +105,7 @@ std::string Sentence(const Result& result, const Finding& finding, const std::st
     case Verdict::kAmbiguous: {
       std::vector<std::string> sets;
       for (const CandidatePtr& candidate : finding.set) sets.push_back(Joined(Texts(candidate), " and "));
-      for (const std::vector<std::string>& names : BothOfAFamily(finding)) sets.push_back(Joined(names, " and "));
+      for (const std::vector<std::string>& names : PairsOfOneFamily(finding)) sets.push_back(Joined(names, " and "));
       return "Missing" + in + ": one of " + Joined(sets, ", or ") + "; these data cannot tell which.";
     }
     case Verdict::kUnnamed: break;
@@ -137,7 +137,7 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
   if (!finding.set.empty()) result->effects = Effects(diagnosis, finding.best, min_active, &result->determined);
   if (finding.verdict == Verdict::kAmbiguous) {
     for (const CandidatePtr& candidate : finding.set) result->ambiguous_set.push_back(candidate->names());
-    for (std::vector<std::string>& names : BothOfAFamily(finding)) result->ambiguous_set.push_back(std::move(names));
+    for (std::vector<std::string>& names : PairsOfOneFamily(finding)) result->ambiguous_set.push_back(std::move(names));
   }
   const double full = std::max(finding.gap, 1e-12);
   const auto rows = static_cast<double>(diagnosis.wide->signals.rows());

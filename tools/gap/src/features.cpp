@@ -70,7 +70,7 @@ Vector QuantileKnots(const std::vector<double>& sorted, int count) {
 
 Vector EvenKnots(int count) { return Vector::LinSpaced(count, 0.0, 1.0); }
 
-Matrix Hats(const Vector& series, const Vector& knots) {
+Matrix HatFunctions(const Vector& series, const Vector& knots) {
   Matrix hats = Matrix::Zero(series.size(), knots.size());
   if (knots.size() == 0) return hats;
   for (Eigen::Index i = 0; i < series.size(); ++i) {

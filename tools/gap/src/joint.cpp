@@ -86,7 +86,8 @@ std::unique_ptr<Analysis> AnalyseLike(const Equation& equation, const Recording&
   return analysis;
 }
 
-std::vector<Asked> Ask(const Analysis& first, const Analysis& analysis, const std::vector<CandidatePtr>& members) {
+std::vector<Asked> CompareMembers(const Analysis& first, const Analysis& analysis,
+                                  const std::vector<CandidatePtr>& members) {
   const Eigen::Index num_base = analysis.finding.base->fit.theta.size();
   std::vector<Asked> asked;
   for (const CandidatePtr& member : members) {
@@ -139,7 +140,7 @@ void Join(const Equation& equation, const Recording& recording, const Diagnosis&
   const auto excluded = [&](const CandidatePtr& member) { return !Among(second->finding.set, member); };
   if (second->finding.verdict == Verdict::kAmbiguous && !std::all_of(members.begin(), members.end(), excluded))
     std::erase_if(members, excluded);
-  std::vector<Asked> asked = Ask(*first.wide, *analysis, members);
+  std::vector<Asked> asked = CompareMembers(*first.wide, *analysis, members);
   if (asked.empty()) return;
   Finding finding = second->finding;
   finding.base = analysis->finding.base;

@@ -51,7 +51,7 @@ void Weigh(const CandidatePtr& candidate, double log_odds, Finding* finding) {
 }
 
 /// Asks the other equations, none of which has a gap, on the members of an ambiguous set.
-void Consult(PlantDiagnosis* plant) {
+void ResolveByOtherEquations(PlantDiagnosis* plant) {
   EquationDiagnosis& carrier = plant->equations[plant->carrier];
   Finding& finding = carrier.diagnosis.finding;
   if (finding.verdict != Verdict::kAmbiguous) return;
@@ -172,7 +172,7 @@ PlantDiagnosis DiagnosePlant(const std::string& model, const Recording& recordin
   if (!nowhere.empty())
     throw std::invalid_argument("the workflow knows no effect of " + model + " called " + nowhere.front().first);
   plant.carrier = CarrierOf(plant.equations);
-  Consult(&plant);
+  ResolveByOtherEquations(&plant);
   KeepShared(&plant);
   return plant;
 }

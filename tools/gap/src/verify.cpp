@@ -122,7 +122,7 @@ double HeldOut::MeasureNoiseFloor(const Trial& after) const {
   return Rms(after.residual) * std::sqrt(1.0 - explained / squares);
 }
 
-double HeldOut::ClosedElsewhere(const Fitted& before, const Fitted& after) const {
+double HeldOut::ClosedOutsideWorstBlocks(const Fitted& before, const Fitted& after) const {
   constexpr Eigen::Index kKept = kNumBlocks - kNumBlocks / 5;
   const Whitener& whitener = analysis_->fitter->whitener();
   const Vector first = BlockSquares(Try(before).residual), second = BlockSquares(Try(after).residual);

@@ -108,8 +108,8 @@ void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds&
     return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
   };
   const auto holds_elsewhere = [&](const CandidatePtr& c) {
-    const double share = c->correction ? heldout.ClosedElsewhere(c->correction->without, c->correction->with)
-                                       : heldout.ClosedElsewhere(finding.base->fit, c->fit);
+    const double share = c->correction ? heldout.ClosedOutsideWorstBlocks(c->correction->without, c->correction->with)
+                                       : heldout.ClosedOutsideWorstBlocks(finding.base->fit, c->fit);
     return share > limits.confirmed_elsewhere;
   };
   // Something else may be at work there, too.
@@ -215,14 +215,14 @@ Parts Divide(const WorkflowRequest& request) {
 }
 
 /// The held-out rows, in the equation that carries the diagnosis.
-HeldOut RestOf(const PlantDiagnosis& plant, const Parts& parts) {
+HeldOut EvaluateHeldOut(const PlantDiagnosis& plant, const Parts& parts) {
   const EquationDiagnosis& carrying = plant.carrying();
   return {*carrying.equation, *carrying.diagnosis.wide, parts.shown, parts.first_shown};
 }
 
 /// Whether the held-out rows contradict the model that explains the first part: the coverage of its 95 % bands is far
 /// too low, or its residual is far from white.
-bool RestContradicts(const EquationDiagnosis& one, const HeldOut& rest) {
+bool HeldOutRowsContradict(const EquationDiagnosis& one, const HeldOut& rest) {
   const Finding& finding = one.diagnosis.finding;
   const CandidatePtr& best = finding.set.empty() ? finding.base : finding.best;
   const Fit fit = rest.Judge(rest.Try(best->correction ? best->correction->with : best->fit));
@@ -230,7 +230,7 @@ bool RestContradicts(const EquationDiagnosis& one, const HeldOut& rest) {
 }
 
 /// Whether the named effect is so small that the held-out rows can neither confirm nor contradict it.
-bool RestCannotConfirm(const EquationDiagnosis& one, const HeldOut& rest) {
+bool HeldOutIsInconclusive(const EquationDiagnosis& one, const HeldOut& rest) {
   const Diagnosis& diagnosis = one.diagnosis;
   if (diagnosis.finding.set.empty()) return false;
   return ShowGap(*one.equation, rest, *diagnosis.bootstrap, diagnosis.finding.base->fit, diagnosis.finding.best->fit,
@@ -245,8 +245,8 @@ bool NeedsWholeRecording(const WorkflowRequest& request, const HeldOut& rest, co
   const Finding& first = plant.carrying().diagnosis.finding;
   const bool several = plant.equations.size() > 1;
   if (first.verdict == Verdict::kUnnamed) return several && !first.events_s.empty();
-  return (several && first.verdict == Verdict::kNone) || RestContradicts(plant.carrying(), rest) ||
-         RestCannotConfirm(plant.carrying(), rest);
+  return (several && first.verdict == Verdict::kNone) || HeldOutRowsContradict(plant.carrying(), rest) ||
+         HeldOutIsInconclusive(plant.carrying(), rest);
 }
 
 /// Diagnoses the whole recording if its first part shows no gap, shows single events that nothing explains, or suggests
@@ -265,7 +265,7 @@ std::string DiagnoseAll(const WorkflowRequest& request, const Parts& parts, cons
   if (first.set.empty()) {
     if (first.verdict == Verdict::kNone ? nothing : all.set.empty()) return {};
   } else {
-    if (RestContradicts(whole.carrying(), RestOf(whole, parts))) return {};
+    if (HeldOutRowsContradict(whole.carrying(), EvaluateHeldOut(whole, parts))) return {};
     const std::string named = "the first 70 % of the recording name " + Joined(Texts(first.best), " and ");
     found = named + ", which the rest contradicts";
     if (nothing) {
@@ -273,7 +273,7 @@ std::string DiagnoseAll(const WorkflowRequest& request, const Parts& parts, cons
       return named + ", all of it shows nothing beyond the noise";
     }
     const bool other = !all.set.empty() && NamesOf(all) != NamesOf(first);
-    if (!other || !RestContradicts(plant->carrying(), rest)) return {};
+    if (!other || !HeldOutRowsContradict(plant->carrying(), rest)) return {};
   }
   *plant = std::move(whole);
   found += ": no data were held out, and the gap is evaluated on diagnosed data. ";
@@ -312,7 +312,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
 
   clock.Begin("compare and name", 0.0);
   PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
-  std::optional<HeldOut> rest(RestOf(plant, parts));
+  std::optional<HeldOut> rest(EvaluateHeldOut(plant, parts));
   const std::string whole_note = DiagnoseAll(request, parts, *rest, &plant);
   if (!whole_note.empty()) result.notes.push_back(whole_note);
   std::optional<PlantDiagnosis> earlier;
@@ -335,7 +335,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
       if (!equation->name().empty()) where.feature = equation->name() + ": " + where.feature;
   }
   if (can_name) result.aliases = Aliases(*equation, analysis);
-  if (!whole_note.empty() || earlier) rest.emplace(RestOf(plant, parts));
+  if (!whole_note.empty() || earlier) rest.emplace(EvaluateHeldOut(plant, parts));
   const HeldOut& heldout = *rest;
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
     clock.Begin("confirm", 0.72);

@@ -42,7 +42,7 @@ BentLaw::BentLaw(const std::shared_ptr<const Plant>& plant, const Dataset& data,
                  const DataScales& scales)
     : plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{BentEntry()} {}
 
-void BentLaw::FitThem() {
+void BentLaw::FitRivals() {
   constexpr std::size_t kMostFitted = 4;  // of different action
   const DataScales scales = WithRanges(scales_, FeaturesOf(*base_.model, base_.fit.theta), view_.active_rows);
   std::vector<std::string> notes;  // what does not fit a limit is no rival
@@ -55,7 +55,7 @@ void BentLaw::FitThem() {
 
 std::optional<Rival> BentLaw::RivalOf(const Contender& c) {
   if (!IsIndependentOfSignals(c.candidate)) return std::nullopt;
-  if (!fitted_) FitThem();
+  if (!fitted_) FitRivals();
   const Contender* const bent = FirstThatExplainsAsMuch(&*fitted_, view_, base_, c);
   if (bent == nullptr) return std::nullopt;
   const std::map<std::string, std::string>& symbols = bent->candidate.binding.symbols;

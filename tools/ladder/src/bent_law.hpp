@@ -31,7 +31,7 @@ class BentLaw {
   [[nodiscard]] std::optional<Rival> RivalOf(const Contender& c);
 
  private:
-  void FitThem();
+  void FitRivals();
 
   const std::shared_ptr<const Plant>& plant_;
   const Dataset& data_;

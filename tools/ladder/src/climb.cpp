@@ -62,7 +62,7 @@ struct Rivals {
     if (!rival) rival = bent.RivalOf(c);
     if (!rival) rival = plain.RivalOf(c);
     if (!rival && !exact) rival = curves.RivalOf(c, smaller_part);
-    if (rival || !before.Dwarfs(c)) return rival;
+    if (rival || !before.FormulaErrorExplains(c)) return rival;
     if (const Candidate* like = before.Like(*c.candidate.entry))
       return Rival{like->entry->name + " had another formula", "acts alike and is three times as large"};
     return curves.BendOf(c, before.effects);
@@ -162,7 +162,7 @@ const Contender* NamedAgain(const Ladder& ladder, const Rung& rung) {
 
 /// The series whose sample-to-sample changes measure the noise: the output or, if the law explains a target instead,
 /// the error of the law. Inputs that switch make a target jump, and its noise is that of the signals in the law.
-Eigen::VectorXd SmoothBut(const Trial& base) {
+Eigen::VectorXd SeriesForNoise(const Trial& base) {
   const std::vector<ModeDescription>& modes = base.model->plant().description().modes;
   const bool target = std::any_of(modes.begin(), modes.end(), [](const auto& mode) { return !mode.target.empty(); });
   return target ? Eigen::VectorXd(base.model->target() - base.fit.prediction) : base.model->target();
@@ -219,7 +219,7 @@ struct AsTied {
 
 /// Returns to the constants of the file, since nothing was named with others either. Those others are what the misfit
 /// looks like if they explain all of it, or nothing else does.
-void GiveBackConstants(AsGiven given, Ladder* ladder, Trial* base) {
+void RestoreConstants(AsGiven given, Ladder* ladder, Trial* base) {
   const FreeConstants& free = *ladder->free_constants;
   const bool all = !LeavesMore(given.rung.view, free.trial, ladder->noise_floor);
   if (all || given.rung.as_if.empty()) given.rung.as_if = AsIf(free, free.trial, given.rung.view.data.training);
@@ -247,9 +247,9 @@ Ladder Climb(const ClimbRequest& request) {
     ladder.notes.push_back("the law has no finite value at any start: nothing was compared");
     return ladder;
   }
-  ladder.noise_floor = request.known_noise > 0.0
-                           ? request.known_noise
-                           : request.noise_over_differences * NoiseFloor(data, SmoothBut(base), base.model->active());
+  ladder.noise_floor = request.known_noise > 0.0 ? request.known_noise
+                                                 : request.noise_over_differences *
+                                                       NoiseFloor(data, SeriesForNoise(base), base.model->active());
   if (std::shared_ptr<const Plant> freed = WithFreeStarts(base, data, ladder.noise_floor)) {
     Eigen::VectorXd theta = identify::TrajectoryModel(freed, data.series).Start();
     theta.head(base.fit.theta.size()) = base.fit.theta;
@@ -348,7 +348,7 @@ Ladder Climb(const ClimbRequest& request) {
     ladder.rungs.push_back(std::move(rung));
     if (!named) break;
     if (tied)
-      tied->Settle(&ladder);
+      tied->ResolveTie(&ladder);
     else
       DropSuperseded(data, &ladder);
     const Contender& leader = ladder.rungs.back().leader();
@@ -368,7 +368,7 @@ Ladder Climb(const ClimbRequest& request) {
   if (!ladder.rungs.empty() && ladder.rungs.back().open)  // the limit on rungs was reached
     TakeBack(ladder.rungs.size() - 1, &ladder, &base);
   if (given && (ladder.rungs.empty() || ladder.rungs.front().named.empty()))
-    GiveBackConstants(std::move(*given), &ladder, &base);
+    RestoreConstants(std::move(*given), &ladder, &base);
   ladder.final_trial = base;
   if (base.judged) {
     ladder.flexible_gain = FlexibleGain(ladder.view, base);

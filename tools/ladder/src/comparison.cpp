@@ -93,7 +93,7 @@ Comparison Compare(const View& view, const Contender& c, const Trial& base_trial
   return {ratio(GroupKind::kFold), ratio(GroupKind::kBlock), ratio(GroupKind::kRegion)};
 }
 
-std::string LeavesLess(double times) {
+std::string LeavesLessText(double times) {
   char text[64];
   std::snprintf(text, sizeof(text), "leaves %.1f times less squared error on data left out", times);
   return text;

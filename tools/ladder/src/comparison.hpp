@@ -21,7 +21,7 @@ inline constexpr double kExplainsIt = 1.05;  // squared error of a rival that ex
 [[nodiscard]] Comparison Compare(const View& view, const Contender& c, const Trial& base_trial, bool with_flexible);
 
 /// "leaves 4.5 times less squared error on data left out"
-[[nodiscard]] std::string LeavesLess(double times);
+[[nodiscard]] std::string LeavesLessText(double times);
 
 /// Whether `a` has less error than `b` in folds, blocks and regions.
 [[nodiscard]] bool BetterEverywhere(const Contender& a, const Contender& b);

@@ -10,7 +10,7 @@ namespace armcmc::ladder {
 namespace {
 
 /// Whether the second model is better in nearly every bootstrap sample of blocks of the rows.
-bool SurelyBetter(const WholeRun& first, const WholeRun& second, const std::vector<Eigen::Index>& rows) {
+bool IsSignificantlyBetter(const WholeRun& first, const WholeRun& second, const std::vector<Eigen::Index>& rows) {
   constexpr double kSurely = 0.99;
   constexpr unsigned long long kSeed = 400;
   if (rows.size() < static_cast<std::size_t>(gap::kNumBlocks)) return false;
@@ -29,7 +29,7 @@ HeldOutErrors ConfirmOnHeldOut(const Dataset& data, const Trial& before, const T
   const double was = FitOn(first, rows, 1.0).rmse, is = FitOn(second, rows, 1.0).rmse;
   const double removed = was * was - is * is;
   const bool all_of_it = removed > kAgain * (was * was - noise) && second.error.size() > 0;
-  return {was, is, removed > kAgain * gain * was * was || (all_of_it && SurelyBetter(first, second, rows))};
+  return {was, is, removed > kAgain * gain * was * was || (all_of_it && IsSignificantlyBetter(first, second, rows))};
 }
 
 }  // namespace armcmc::ladder

@@ -40,7 +40,7 @@ Constants::Constants(const PlantDescription& own, const std::shared_ptr<const Pl
                      const View& view, const Trial& base, const DataScales& scales)
     : own_(own), plant_(plant), data_(data), view_(view), base_(base), scales_(scales), entries_{OffEntry()} {}
 
-void Constants::FitThem() {
+void Constants::FitRivals() {
   fitted_.emplace();
   std::vector<std::string> notes;  // what does not fit a limit is no rival
   Other all;
@@ -104,7 +104,7 @@ std::string Constants::AsIf(const Other& other) {
 }
 
 std::optional<Rival> Constants::RivalOf(const Contender& c) {
-  if (!fitted_) FitThem();
+  if (!fitted_) FitRivals();
   // A simulated plant may be stuck in a minimum from which the effect helped it out.
   if (const Eigen::VectorXd own = c.trial.fit.theta.head(base_.fit.theta.size());
       IsSimulated(plant_->description()) && std::find(from_.begin(), from_.end(), own) == from_.end()) {

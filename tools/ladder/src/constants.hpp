@@ -29,7 +29,7 @@ class Constants {
     Contender contender{};
     bool left_out = false;  ///< Whether `contender` is known on data left out.
   };
-  void FitThem();
+  void FitRivals();
   /// Fits from the values `own` of the plant's own parameters, and keeps what is better than before.
   void FitOne(const Eigen::VectorXd& own, Other* other) const;
   void FitFrom(const Eigen::VectorXd& own);

@@ -119,7 +119,7 @@ std::vector<Candidate> Curves::MostPromising() const {
   return BestByOneStep(std::move(all), kFitted, plant_, data_, base_);
 }
 
-void Curves::FitThem() {
+void Curves::FitRivals() {
   fitted_.emplace();
   for (Candidate& candidate : MostPromising())
     fitted_->push_back({std::move(candidate), {}, false, 0.0, {}, {}, 0.0, 0.0, false, false, false});
@@ -158,7 +158,7 @@ void Curves::Judge(Contender* curve) {
 }
 
 std::optional<Rival> Curves::BendOf(const Contender& c, const std::vector<const Candidate*>& before) {
-  if (!fitted_) FitThem();
+  if (!fitted_) FitRivals();
   for (Contender& curve : *fitted_) {
     const std::string followed = FollowedBy(curve);
     const auto bent =
@@ -172,7 +172,7 @@ std::optional<Rival> Curves::BendOf(const Contender& c, const std::vector<const 
 }
 
 std::string Curves::Best() {
-  if (!fitted_) FitThem();
+  if (!fitted_) FitRivals();
   if (fitted_->empty() || fitted_->front().closed < kLargerPart) return "";
   Contender& best = fitted_->front();
   Judge(&best);
@@ -180,7 +180,7 @@ std::string Curves::Best() {
 }
 
 std::optional<Rival> Curves::RivalOf(const Contender& c, bool smaller_part) {
-  if (!fitted_) FitThem();
+  if (!fitted_) FitRivals();
   if (fitted_->empty()) return std::nullopt;
   // The best curve and those nearly as good: often several act alike, and one that represents the effect is enough.
   const double left = kAsWell * (1.0 - fitted_->front().closed);
@@ -195,7 +195,7 @@ std::optional<Rival> Curves::RivalOf(const Contender& c, bool smaller_part) {
     const double times = c.alone.folds / std::max(curve.alone.folds, 1e-12);
     // A curve need not be better where it extrapolates, but it must not be worse.
     if (times < kFarBetter || curve.alone.blocks > c.alone.blocks || curve.alone.regions > 1.0) continue;
-    rival = Rival{AsIf(curve), LeavesLess(times) + ", and has another shape"};
+    rival = Rival{AsIf(curve), LeavesLessText(times) + ", and has another shape"};
   }
   return rival;
 }

@@ -37,7 +37,7 @@ class Curves {
   [[nodiscard]] std::string Best();
 
  private:
-  void FitThem();
+  void FitRivals();
   void Judge(Contender* curve);
   /// The curves that explain most, one for each different action, ranked by one Gauss-Newton step.
   [[nodiscard]] std::vector<Candidate> MostPromising() const;

@@ -32,7 +32,7 @@ std::vector<double> SmoothedOver(const std::vector<double>& value, const std::ve
 
 }  // namespace
 
-void DerivedNoise::FitIt() {
+void DerivedNoise::FitSmoothed() {
   fitted_ = true;
   const PlantDescription& plant = plant_->description();
   std::vector<std::size_t> derived;
@@ -67,13 +67,13 @@ bool DerivedNoise::GainsThere(const Contender& c) const {
 }
 
 std::optional<Rival> DerivedNoise::RivalOf(const Contender& c) {
-  if (!fitted_) FitIt();
+  if (!fitted_) FitSmoothed();
   if (!best_ || best_->contender.alone.folds > 1.0 - kLeastGain) return std::nullopt;
   if (!BetterEverywhere(best_->contender, c) && GainsThere(c)) return std::nullopt;
   char text[64];
   std::snprintf(text, sizeof(text), "signals that are rates of others were smoother, over %.2g s", best_->sd);
   const double times = c.alone.folds / std::max(best_->contender.alone.folds, 1e-12);
-  return Rival{text, times > 1.0 ? LeavesLess(times) : "leaves little of what it explains"};
+  return Rival{text, times > 1.0 ? LeavesLessText(times) : "leaves little of what it explains"};
 }
 
 }  // namespace armcmc::ladder

@@ -29,7 +29,7 @@ class DerivedNoise {
     Dataset data;
     Contender contender;
   };
-  void FitIt();
+  void FitSmoothed();
   /// Whether an effect keeps at least half of its gain on the smoothed signals.
   [[nodiscard]] bool GainsThere(const Contender& c) const;
 

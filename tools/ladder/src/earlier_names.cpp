@@ -12,7 +12,7 @@ const Candidate* EarlierNames::Like(const EffectEntry& entry) const {
   return alike == effects.end() ? nullptr : *alike;
 }
 
-bool EarlierNames::Dwarfs(const Contender& c) const {
+bool EarlierNames::FormulaErrorExplains(const Contender& c) const {
   constexpr double kFormulaError = 1.0 / 3.0;  // of the amplitude: formulas for the same physics differ by this much
   return 1.0 - c.alone.folds < kFormulaError * kFormulaError * explained &&
          std::none_of(effects.begin(), effects.end(),

@@ -15,7 +15,7 @@ struct EarlierNames {
   [[nodiscard]] const Candidate* Like(const EffectEntry& entry) const;
   /// Whether an effect of another family is so small compared with it that an error of its formula would explain it.
   /// @pre c.trial.judged.
-  [[nodiscard]] bool Dwarfs(const Contender& c) const;
+  [[nodiscard]] bool FormulaErrorExplains(const Contender& c) const;
 };
 
 }  // namespace armcmc::ladder

@@ -15,7 +15,8 @@ constexpr double kMostOfRun = 0.5;    // in more of the rows than that; where a 
 constexpr double kMostGuessed = 0.1;  // begin so, than that; else these rows are left out (see LeaveOutStarts)
 
 /// @param which  States whose starts are freed.
-PlantDescription Freed(PlantDescription plant, const std::set<std::string>& which, const DataScales& scales) {
+PlantDescription WithFreeStartsOf(PlantDescription plant, const std::set<std::string>& which,
+                                  const DataScales& scales) {
   for (StateDescription& state : plant.states) {
     if (!which.contains(state.name)) continue;
     const auto size = scales.quantity.find(state.name);
@@ -46,7 +47,8 @@ std::shared_ptr<const Plant> WithFreeStarts(const Trial& trial, const Dataset& d
   for (const StateDescription& state : own.states) {
     const bool number = !state.start.empty() && state.start.find_first_not_of("0123456789.+-eE") == std::string::npos;
     if (state.start != own.output && !number) continue;
-    const identify::TrajectoryModel model(std::make_shared<const Plant>(Freed(own, {state.name}, scales)), data.series);
+    const identify::TrajectoryModel model(std::make_shared<const Plant>(WithFreeStartsOf(own, {state.name}, scales)),
+                                          data.series);
     Eigen::VectorXd theta = model.Start(), prediction;
     theta.head(trial.fit.theta.size()) = trial.fit.theta;
     Eigen::MatrixXd jacobian;
@@ -62,7 +64,7 @@ std::shared_ptr<const Plant> WithFreeStarts(const Trial& trial, const Dataset& d
     const double most_of_run = number || begin_so > 1 ? kMostGuessed : kMostOfRun;
     if (static_cast<double>(rows) > most_of_run * static_cast<double>(change.size())) felt.insert(state.name);
   }
-  return felt.empty() ? nullptr : std::make_shared<const Plant>(Freed(own, felt, scales));
+  return felt.empty() ? nullptr : std::make_shared<const Plant>(WithFreeStartsOf(own, felt, scales));
 }
 
 PlantDescription WithOwnStarts(PlantDescription plant, const PlantDescription& own) {

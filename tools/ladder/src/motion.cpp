@@ -106,8 +106,10 @@ std::string Sines(const Frame& f) {
 std::string SinesWords(const Frame& f) {
   return Words("as a sum of three sines of #, # and # Hz", {0.5 * f.hz, 1.35 * f.hz, 3.05 * f.hz});
 }
-std::string OneWayQuick(const Frame& f) { return Over(f, Strokes(Steady(f.hz) + " + 0.7*sin(" + Steady(f.hz) + ")")); }
-std::string OneWayQuickWords(const Frame& f) {
+std::string UnequalStrokes(const Frame& f) {
+  return Over(f, Strokes(Steady(f.hz) + " + 0.7*sin(" + Steady(f.hz) + ")"));
+}
+std::string UnequalStrokesWords(const Frame& f) {
   return Words("to and fro in # s, up about three times as quickly as down", {1.0 / f.hz});
 }
 
@@ -143,7 +145,7 @@ constexpr std::array<Program, 8> kPrograms = {{{"strokes", ConstantSpeed, Consta
                                                {"strokes_at_places", Places, PlacesWords},
                                                {"steps_and_holds", Steps, StepsWords},
                                                {"sines", Sines, SinesWords},
-                                               {"one_way_quick", OneWayQuick, OneWayQuickWords}}};
+                                               {"one_way_quick", UnequalStrokes, UnequalStrokesWords}}};
 
 /// The input of which a signal is a derivative, and the order; the signal itself if it is none.
 std::pair<std::size_t, std::size_t> RootOf(const PlantDescription& plant, std::size_t signal) {

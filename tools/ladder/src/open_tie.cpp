@@ -75,7 +75,7 @@ bool OpenTie::Extend(const Dataset& data, const View& view, const DataScales& sc
   return true;
 }
 
-void OpenTie::Settle(Ladder* ladder) const {
+void OpenTie::ResolveTie(Ladder* ladder) const {
   Rung& rung = ladder->rungs[place_];
   rung.named.clear();
   for (const Branch& branch : branches_) rung.named.push_back(branch.tied);

@@ -31,7 +31,7 @@ class OpenTie {
 
   /// Writes the first branch into the ladder: which effects of the rung are still tied, and the leaders of the rungs
   /// above it as fitted there.
-  void Settle(Ladder* ladder) const;
+  void ResolveTie(Ladder* ladder) const;
 
   [[nodiscard]] bool decided() const { return branches_.size() == 1; }
 

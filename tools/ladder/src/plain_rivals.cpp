@@ -99,7 +99,7 @@ PlainRivals::PlainRivals(const std::shared_ptr<const Plant>& plant, const Datase
       plain_entries_{ShiftedZero(false), ShiftedZero(true), ShiftedLimit()},
       slow_entries_{DriftingParameter()} {}
 
-bool PlainRivals::Lacked(const Candidate& rival) const {
+bool PlainRivals::IsNotInCatalogue(const Candidate& rival) const {
   if (IsOfZero(rival))
     return std::none_of(contenders_.begin(), contenders_.end(), [&](const Contender& c) {
       return c.candidate.form().terms.front().slot == "output" && IsIndependentOfSignals(c.candidate) &&
@@ -119,7 +119,7 @@ std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
   const auto lacked = [&](const std::vector<EffectEntry>& entries) {
     std::vector<std::string> notes;  // what does not fit a limit of plants is no rival
     std::vector<Candidate> all = Candidates(plant_->description(), entries, scales_, &notes);
-    std::erase_if(all, [&](const Candidate& candidate) { return !Lacked(candidate); });
+    std::erase_if(all, [&](const Candidate& candidate) { return !IsNotInCatalogue(candidate); });
     return all;
   };
   if (!plain_) plain_ = FittedRivals(lacked(plain_entries_), data_, base_);

@@ -34,7 +34,7 @@ class PlainRivals {
 
  private:
   /// Whether the rival is one in this plant that no contender is.
-  [[nodiscard]] bool Lacked(const Candidate& rival) const;
+  [[nodiscard]] bool IsNotInCatalogue(const Candidate& rival) const;
 
   const std::shared_ptr<const Plant>& plant_;
   const Dataset& data_;

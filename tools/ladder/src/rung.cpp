@@ -33,7 +33,7 @@ constexpr double kSame = 0.02;  // of the mean square of what one adds: the othe
 
 /// Whether an oscillation is none: its frequency is too low for the data to show it, or its damping ratio, a lognormal
 /// parameter without a unit, is at the limit beyond which nothing resonates.
-bool OscillatesNot(const Contender& c) {
+bool IsNotResonant(const Contender& c) {
   const Eigen::VectorXd lower = c.trial.model->Lower(), upper = c.trial.model->Upper();
   const std::vector<Frequency> frequencies = c.candidate.Frequencies();
   const std::vector<EffectParameter>& parameters = c.candidate.form().parameters;
@@ -178,7 +178,7 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
     const bool survives = below(kWithFlexible) >= 2 || (below(kFarWithFlexible) >= 1 && below(1.0) == 3);
-    c.earned = gains && elsewhere && survives && !OscillatesNot(c) && IsDetermined(view, c) &&
+    c.earned = gains && elsewhere && survives && !IsNotResonant(c) && IsDetermined(view, c) &&
                !WorseThanConstant(view, c.trial);
   }
 }

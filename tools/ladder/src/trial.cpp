@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 constexpr double kRidge = 1.0;
 
 /// Sorted values of the first non-constant signal with the unit of the parameter; empty if there is none.
-std::vector<double> PlacesOf(const identify::TrajectoryModel& model, const Dataset& data,
-                             const ParameterDescription& parameter) {
+std::vector<double> CandidatePlaces(const identify::TrajectoryModel& model, const Dataset& data,
+                                    const ParameterDescription& parameter) {
   const PlantDescription& plant = model.plant().description();
   for (std::size_t s = 0; s < plant.signals.size(); ++s) {
     if (static_cast<int>(s) == model.plant().output() || plant.signals[s].unit != parameter.unit) continue;
@@ -91,7 +91,7 @@ std::vector<Eigen::VectorXd> Starts(const identify::TrajectoryModel& model, cons
                                     const std::vector<Frequency>& frequencies) {
   const Eigen::VectorXd centre = model.Start(), spread = model.Spread(), lower = model.Lower(), upper = model.Upper();
   std::vector<std::vector<double>> places;
-  for (const ParameterDescription& p : model.parameters()) places.push_back(PlacesOf(model, data, p));
+  for (const ParameterDescription& p : model.parameters()) places.push_back(CandidatePlaces(model, data, p));
   std::mt19937_64 random(977);
   const auto uniform = [&] { return (static_cast<double>(random() >> 11U) + 0.5) * 0x1p-53; };
   std::vector<Eigen::VectorXd> starts;

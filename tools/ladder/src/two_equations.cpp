@@ -106,7 +106,7 @@ std::optional<PlantDescription> PredictionOf(const DiagnosisRequest& whole, cons
 /// A prediction whose error exceeds the variation of the output has wrong constants or units. Any effect that deforms
 /// it strongly, such as a saturation, would then seem to explain the output, so no effect may be named in it.
 /// @return a note that says so; empty if the prediction is good enough to be diagnosed.
-std::string TooFarOff(const Equation& prediction) {
+std::string ReasonNotDiagnosable(const Equation& prediction) {
   Dataset data = DatasetOf(prediction.request.recording);
   const Trial trial = FitAlone(std::make_shared<const Plant>(prediction.file.plant.description()), &data);
   if (!trial.fit.valid) return {};
@@ -225,7 +225,7 @@ std::string Names(const Equation& equation, const std::vector<std::size_t>& whic
 }
 
 /// Decides a tie with the other equation, which has no gap: it confirms or rejects each effect by its likelihood ratio.
-void Consult(const Equation& asked, Equation* carrier, std::vector<std::string>* notes) {
+void ResolveByOtherEquations(const Equation& asked, Equation* carrier, std::vector<std::string>* notes) {
   constexpr double kDecisive = 5.0;  // nats
   std::vector<std::size_t> open = NamedOrEquivalent(carrier->ladder());
   if (open.size() < 2) return;
@@ -353,7 +353,7 @@ Diagnosis DiagnoseBoth(const DiagnosisRequest& request) {
   if (const std::optional<PlantDescription> prediction = PredictionOf(request, law.ladder().base)) {
     equations.push_back(MakeEquation(request, *prediction, "prediction of " + plant.output));
     Equation& last = *equations.back();
-    if (const std::string far_off = TooFarOff(last); !far_off.empty()) {
+    if (const std::string far_off = ReasonNotDiagnosable(last); !far_off.empty()) {
       notes.push_back(far_off);
       for (const EffectEntry& entry : support::EffectsFor(last.file.effects))
         last.request.without.push_back(entry.name);
@@ -369,7 +369,7 @@ Diagnosis DiagnoseBoth(const DiagnosisRequest& request) {
   const bool shared = prediction != nullptr && KeepShared(*prediction, &law, &notes);
   Equation* const carrier = shared ? &law : chosen->get();
   Equation* const other = prediction == nullptr ? nullptr : carrier == prediction ? &law : prediction;
-  if (other != nullptr && carrier->Names() && !other->HasGap()) Consult(*other, carrier, &notes);
+  if (other != nullptr && carrier->Names() && !other->HasGap()) ResolveByOtherEquations(*other, carrier, &notes);
   FollowUp(carrier->request, carrier->data, &carrier->diagnosis);
   if (carrier->Names() || (other != nullptr && other->Names()))
     MakeModels(request, law, shared ? nullptr : prediction, &carrier->diagnosis);

@@ -124,7 +124,7 @@ bool FaultJudge::Agrees(const Step& step, const Step& reference, bool relearns) 
   return true;
 }
 
-const char* FaultJudge::Hindrance(const Step& step, const Step& reference, const FaultSpec& fault) const {
+const char* FaultJudge::ReasonNotNormal(const Step& step, const Step& reference, const FaultSpec& fault) const {
   if (!step.has_estimate) return "no estimate";
   if (!step.has_status) return "no status";
   if (step.truncated) return "truncated";
@@ -187,7 +187,7 @@ void FaultJudge::FinishSlot() {
   for (std::int64_t seq = over + 1; seq < slot.end; ++seq) {
     const auto found = steps_.find(seq);
     const Step step = found != steps_.end() ? found->second : Step{};
-    const char* hindrance = Hindrance(step, reference, fault);
+    const char* hindrance = ReasonNotNormal(step, reference, fault);
     if (hindrance == nullptr) {
       // Of those before it. Packs given up in favour of this one left no step that could have told.
       const std::int64_t given_up = from_outside ? std::min(std::max(step.not_ours, step.dropped), missing) : 0;

@@ -39,7 +39,8 @@ void RecordTrouble(const FaultOutcome& outcome, FlightRecorder* recorder) {
   }
 }
 
-void Tally(const std::vector<FaultOutcome>& outcomes, FlightRecorder* recorder, std::vector<FaultTally>* tallies) {
+void CountOutcomes(const std::vector<FaultOutcome>& outcomes, FlightRecorder* recorder,
+                   std::vector<FaultTally>* tallies) {
   for (const FaultOutcome& outcome : outcomes) {
     RecordTrouble(outcome, recorder);
     auto found =
@@ -122,7 +123,7 @@ PhaseResult RunPhase(const StressOptions& options, const std::string& load_name,
     load.TrimFiles();
     if (result.rss_start_kb == 0 && SecondsSince(start_ns) > 1.5) result.rss_start_kb = estimator.rss_kb();
     progress(std::min(1.0, SecondsSince(start_ns) / seconds));
-    Tally(judge.TakeOutcomes(), &recorder, &result.faults);
+    CountOutcomes(judge.TakeOutcomes(), &recorder, &result.faults);
   };
   PlantRuns runs({&options, options.lcm_url, scenario, &bus, &judge, &estimator, tick}, layout);
   const double one_run = static_cast<double>(layout.last_pack) * options.period_ms * 1e-3;

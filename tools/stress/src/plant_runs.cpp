@@ -53,7 +53,7 @@ void PlantRuns::Start(const std::string& plan, std::vector<Slot> slots, bool log
   plant_ = std::make_unique<Child>(command, options.work / "plant.log");
 }
 
-void PlantRuns::Attend(double most_ms) {
+void PlantRuns::Supervise(double most_ms) {
   const Nanos end_ns = rt::MonotonicNow() + ToNanos(most_ms + kPlantStartMs);
   while (!context_.judge->finished() && rt::MonotonicNow() < end_ns && plant_->running()) {
     context_.bus->Poll(kPollMs, context_.judge);
@@ -123,7 +123,7 @@ void PlantRuns::Pause(double ms) {
 void PlantRuns::RunWithFaults() {
   const FaultSpec* full = Selected("log_disk_full");
   Start(layout_.plant_plan, layout_.slots, full != nullptr);
-  Attend(static_cast<double>(layout_.last_pack + 10) * context_.options->period_ms * 1.2 + 2000.0);
+  Supervise(static_cast<double>(layout_.last_pack + 10) * context_.options->period_ms * 1.2 + 2000.0);
   plant_->Signal(SIGTERM);
   plant_->Wait(10'000);
   if (full != nullptr) {
@@ -144,7 +144,7 @@ void PlantRuns::RunQuietly(double ms) {
 void PlantRuns::RunShortly() {
   Start("", {}, false);
   const double wanted_ms = 12.0 * context_.options->period_ms + 500.0;
-  Attend(wanted_ms);
+  Supervise(wanted_ms);
   Pause(3.0 * context_.options->period_ms);
   plant_->Signal(SIGKILL);
   plant_->Wait(1000);

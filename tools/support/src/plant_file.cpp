@@ -110,7 +110,7 @@ PlantDescription Describe(StrictTable root) {
 }
 
 /// The plant as it stands in the file, and with the effects that the file uses.
-PlantFile Understood(StrictTable root) {
+PlantFile Interpreted(StrictTable root) {
   PlantEffects effects = ReadPlantEffects(root);
   PlantDescription description = Describe(root);
   PlantDescription used;
@@ -137,21 +137,21 @@ PlantFile Understood(StrictTable root) {
 
 }  // namespace
 
-Plant ReadPlant(const std::filesystem::path& path) { return Understood(StrictTable::FromFile(path)).plant; }
+Plant ReadPlant(const std::filesystem::path& path) { return Interpreted(StrictTable::FromFile(path)).plant; }
 
-PlantFile ReadPlantFile(const std::filesystem::path& path) { return Understood(StrictTable::FromFile(path)); }
+PlantFile ReadPlantFile(const std::filesystem::path& path) { return Interpreted(StrictTable::FromFile(path)); }
 
 std::shared_ptr<const PlantProgram> ReadPlantProgram(const std::filesystem::path& path) {
   const StrictTable root = StrictTable::FromFile(path);
   try {
-    return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(Understood(root).plant));
+    return std::make_shared<const PlantProgram>(std::make_shared<const Plant>(Interpreted(root).plant));
   } catch (const PlantError& error) {
     throw PlacedError(root, error);
   }
 }
 
 Plant PlantFromText(std::string_view text, std::string_view name) {
-  return Understood(StrictTable::FromText(text, name)).plant;
+  return Interpreted(StrictTable::FromText(text, name)).plant;
 }
 
 }  // namespace armcmc::support

@@ -12,7 +12,7 @@
 namespace armcmc::support {
 namespace {
 
-int Complain(const std::string& name, const std::string& what, int code) {
+int PrintError(const std::string& name, const std::string& what, int code) {
   std::cerr << name << ": " << ErrorLine(what) << '\n';
   return code;
 }
@@ -30,25 +30,25 @@ int RunProgram(CLI::App& app, const std::string& name, int argc, char** argv, co
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);
   } catch (const CLI::Error& error) {
-    return Complain(name, std::string(error.what()) + " (see " + name + " --help)", kExitBadInput);
+    return PrintError(name, std::string(error.what()) + " (see " + name + " --help)", kExitBadInput);
   }
   try {
     std::optional<EscapedOutput> escaped;
     if (output == Output::kText) escaped.emplace();
     const int code = body();
     // A full disk or a closed pipe shows only now.
-    if (!std::cout.flush()) return Complain(name, "cannot write to standard output", kExitFailure);
+    if (!std::cout.flush()) return PrintError(name, "cannot write to standard output", kExitFailure);
     return code;
   } catch (const ConfigError& error) {
-    return Complain(name, error.what(), kExitBadInput);
+    return PrintError(name, error.what(), kExitBadInput);
   } catch (const InputError& error) {
-    return Complain(name, error.what(), kExitBadInput);
+    return PrintError(name, error.what(), kExitBadInput);
   } catch (const std::invalid_argument& error) {
-    return Complain(name, error.what(), kExitBadInput);
+    return PrintError(name, error.what(), kExitBadInput);
   } catch (const std::bad_alloc&) {
-    return Complain(name, "out of memory", kExitFailure);
+    return PrintError(name, "out of memory", kExitFailure);
   } catch (const std::exception& error) {
-    return Complain(name, error.what(), kExitFailure);
+    return PrintError(name, error.what(), kExitFailure);
   }
 }
 

@@ -85,7 +85,7 @@ struct StrictTable::Node {
   std::vector<std::string> asked;      ///< Keys that a getter asked for, in order.
   std::vector<std::pair<std::string, std::shared_ptr<Node>>> children;
 
-  [[nodiscard]] const toml::node* Ask(std::string_view key) {
+  [[nodiscard]] const toml::node* Lookup(std::string_view key) {
     if (std::find(asked.begin(), asked.end(), key) == asked.end()) asked.emplace_back(key);
     return Peek(key);
   }
@@ -107,12 +107,12 @@ struct StrictTable::Node {
   }
   /// What is said of an unknown key that is nearly `key`, and where it stands; nothing, and where the table stands.
   [[nodiscard]] std::pair<std::string, toml::source_position> MeantFor(std::string_view key) const {
-    for (const std::string& name : Unasked())
+    for (const std::string& name : UnreadKeys())
       if (Nearest(name, {std::string(key)}) == key)
         return {" (" + PathOf(name) + " is set; is it a typo?)", table->get(name)->source().begin};
     return {"", at};
   }
-  [[nodiscard]] std::vector<std::string> Unasked() const {
+  [[nodiscard]] std::vector<std::string> UnreadKeys() const {
     std::vector<std::string> names;
     if (table == nullptr) return names;
     for (const auto& [key, value] : *table)
@@ -138,7 +138,7 @@ struct StrictTable::Node {
   }
   /// Unknown keys of this table and those below, with their places.
   void CollectUnknown(std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, std::string>>* problems) const {
-    for (const std::string& name : Unasked()) {
+    for (const std::string& name : UnreadKeys()) {
       const toml::source_position place = table->get(name)->source().begin;
       std::string text = Place(place) + PathOf(name) + ": unknown key" + DidYouMean(name, asked);
       if (Nearest(name, asked).empty() && !asked.empty())
@@ -215,41 +215,41 @@ bool StrictTable::IsTable(std::string_view key) const {
 }
 
 void StrictTable::LeaveToOthers(std::string_view key) {
-  static_cast<void>(node_->Ask(key));
+  static_cast<void>(node_->Lookup(key));
   std::erase_if(node_->children, [key](const auto& child) { return child.first == key; });
 }
 
 double StrictTable::Number(std::string_view key, double fallback, double lo, double hi) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   return node == nullptr ? fallback : node_->CheckedNumber(key, *node, lo, hi);
 }
 
 std::int64_t StrictTable::Integer(std::string_view key, std::int64_t fallback, std::int64_t lo, std::int64_t hi) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   return node == nullptr ? fallback : node_->CheckedInteger(key, *node, lo, hi);
 }
 
 bool StrictTable::Boolean(std::string_view key, bool fallback) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) return fallback;
   if (!node->is_boolean()) throw node_->Wrong(key, *node, "true or false");
   return *node->value<bool>();
 }
 
 std::string StrictTable::Text(std::string_view key, std::string_view fallback) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   return node == nullptr ? std::string(fallback) : node_->CheckedText(key, *node);
 }
 
 std::string StrictTable::Choice(std::string_view key, std::string_view fallback,
                                 const std::vector<std::string>& allowed) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   return node == nullptr ? std::string(fallback) : node_->CheckedChoice(key, *node, allowed);
 }
 
 std::vector<double> StrictTable::Numbers(std::string_view key, const std::vector<double>& fallback,
                                          std::size_t min_size, std::size_t max_size, double lo, double hi) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) return fallback;
   const toml::array* array = node->as_array();
   if (array == nullptr || array->size() < min_size || array->size() > max_size) {
@@ -265,7 +265,7 @@ std::vector<double> StrictTable::Numbers(std::string_view key, const std::vector
 
 std::vector<std::vector<double>> StrictTable::NumberLists(std::string_view key, std::size_t size, double lo,
                                                           double hi) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) return {};
   const std::string expected = "lists of " + std::to_string(size) + " numbers, as in [[0, 15]]";
   const toml::array* array = node->as_array();
@@ -281,45 +281,45 @@ std::vector<std::vector<double>> StrictTable::NumberLists(std::string_view key, 
 }
 
 double StrictTable::RequiredNumber(std::string_view key, double lo, double hi) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) throw node_->Missing(key, ANumber(lo, hi));
   return node_->CheckedNumber(key, *node, lo, hi);
 }
 
 std::int64_t StrictTable::RequiredInteger(std::string_view key, std::int64_t lo, std::int64_t hi) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) throw node_->Missing(key, AnInteger(lo, hi));
   return node_->CheckedInteger(key, *node, lo, hi);
 }
 
 void StrictTable::RequireSchema() {
   constexpr std::int64_t kSchema = 1;
-  const toml::node* node = node_->Ask("schema");
+  const toml::node* node = node_->Lookup("schema");
   if (node != nullptr && node->value<std::int64_t>().value_or(0) > kSchema)
     throw node_->Wrong("schema", *node, std::to_string(kSchema) + "; the file is of a newer version of the program");
   (void)RequiredInteger("schema", kSchema, kSchema);
 }
 
 std::string StrictTable::RequiredText(std::string_view key) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) throw node_->Missing(key, "a string in quotes");
   return node_->CheckedText(key, *node);
 }
 
 std::string StrictTable::RequiredChoice(std::string_view key, const std::vector<std::string>& allowed) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) throw node_->Missing(key, "one of " + Listed(allowed));
   return node_->CheckedChoice(key, *node, allowed);
 }
 
 StrictTable StrictTable::Table(std::string_view key) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node != nullptr && !node->is_table()) throw node_->Wrong(key, *node, "a table, [" + node_->PathOf(key) + "]");
   return StrictTable(node_->Child(key, "", node == nullptr ? nullptr : node->as_table()));
 }
 
 std::vector<StrictTable> StrictTable::Tables(std::string_view key) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   std::vector<StrictTable> tables;
   if (node == nullptr) return tables;
   const toml::array* array = node->as_array();
@@ -333,7 +333,7 @@ std::vector<StrictTable> StrictTable::Tables(std::string_view key) {
 }
 
 std::vector<std::string> StrictTable::Texts(std::string_view key) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) return {};
   if (node->is_string()) return {*node->value<std::string>()};
   const toml::array* array = node->as_array();
@@ -344,7 +344,7 @@ std::vector<std::string> StrictTable::Texts(std::string_view key) {
 }
 
 std::vector<StrictTable::TextOrTable> StrictTable::TextsOrTables(std::string_view key) {
-  const toml::node* node = node_->Ask(key);
+  const toml::node* node = node_->Lookup(key);
   if (node == nullptr) return {};
   const toml::array* array = node->as_array();
   if (array == nullptr) throw node_->Wrong(key, *node, "names in quotes, or tables, in [ ]");

@@ -105,12 +105,12 @@ class Loop {
     const double patience = noted_ ? kRemind_s : kStale_s;
     if (now - heard < patience) return;
     if (state_.status && now - state_.status_s < kStale_s) return;
-    std::cerr << "armcmc-watch: " << WaitingText(state_) << Strangers() << '\n';
+    std::cerr << "armcmc-watch: " << WaitingText(state_) << ForeignTrafficText() << '\n';
     last_note_s_ = now;
     noted_ = true;
   }
 
-  [[nodiscard]] std::string Strangers() const {
+  [[nodiscard]] std::string ForeignTrafficText() const {
     if (state_.bus.foreign + state_.bus.undecodable == 0) return "";
     return " (" + std::to_string(state_.bus.foreign) + " messages of a foreign type, " +
            std::to_string(state_.bus.undecodable) + " undecodable)";
@@ -119,8 +119,8 @@ class Loop {
   int Finish() {
     terminal_.reset();
     if (options_.duration_s > 0.0 && state_.steps == 0) {
-      std::cerr << "armcmc-watch: no step in " << options_.duration_s << " s: " << WaitingText(state_) << Strangers()
-                << '\n';
+      std::cerr << "armcmc-watch: no step in " << options_.duration_s << " s: " << WaitingText(state_)
+                << ForeignTrafficText() << '\n';
       return support::kExitFailure;
     }
     return support::kExitOk;

@@ -101,7 +101,7 @@ class Plant {
   /// Functions with memory of what is held between samples.
   void UseHeldForms();
   /// @throws PlantError  for a parameter that influences neither a law nor a state.
-  void CheckParametersAreFelt() const;
+  void CheckParametersHaveInfluence() const;
   /// Sets fingerprint() and identity().
   void Identify();
   void AddSymbol(const std::string& key, expression::Symbol symbol);

@@ -141,8 +141,8 @@ class PlantProgram {
   void MakePrediction();
   void CompileStates(Remembered* remembered, std::vector<int>* scalars);
   /// Copies the samples before a pack to where candidates look them up.
-  void LayDownPast(const expression::PastSamples& kept, int line, double first,
-                   expression::PastLines* out) const noexcept ARMCMC_NONBLOCKING;
+  void CopyPastSamples(const expression::PastSamples& kept, int line, double first,
+                       expression::PastLines* out) const noexcept ARMCMC_NONBLOCKING;
   void FillInfo();
   /// The node with the plant's parameters replaced by those that are sampled in one of its modes.
   [[nodiscard]] int InMode(int node, std::size_t active);

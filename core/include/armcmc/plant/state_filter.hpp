@@ -37,7 +37,7 @@ class StateFilter {
   [[nodiscard]] bool empty() const noexcept { return plant_ == nullptr || plant_->size() == 0; }
 
   /// Before a pack: starts are what the plant file says.
-  void TrustStart() noexcept ARMCMC_NONBLOCKING { opened_.fill(0.0); }
+  void ForgetOpenStarts() noexcept ARMCMC_NONBLOCKING { opened_.fill(0.0); }
 
   /// Before the first draw of a pack: sets data->start_fit.
   /// @param mean       Of the posterior before the pack.

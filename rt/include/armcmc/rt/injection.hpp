@@ -56,10 +56,10 @@ class Injection {
   /// @param stage  Which one calls. @param pack  Number of the pack that it works on.
   void Disturb(Stage stage, std::int64_t pack) noexcept ARMCMC_NONBLOCKING;
   /// Whether the draws of this pack are to be cut at once. By adjust. @rt No heap, no lock, no throw. O(plan).
-  [[nodiscard]] bool Squeezes(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
+  [[nodiscard]] bool CutsDraws(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
     return Take(InjectionKind::kSqueeze, pack, 1) != nullptr;
   }
-  /// Whether the posterior is to be driven into a wrong point after this pack. By adjust. @rt As Squeezes().
+  /// Whether the posterior is to be driven into a wrong point after this pack. By adjust. @rt As CutsDraws().
   [[nodiscard]] bool Collapses(std::int64_t pack) noexcept ARMCMC_NONBLOCKING {
     return Take(InjectionKind::kCollapse, pack, 1) != nullptr;
   }

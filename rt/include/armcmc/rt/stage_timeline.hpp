@@ -37,7 +37,7 @@ class StageTimeline {
  public:
   /// When the stage could have begun with input that was there at ready_ns: max(ready_ns, end of the work before).
   /// @rt O(1).
-  [[nodiscard]] Nanos CouldBegin(Nanos ready_ns) const noexcept ARMCMC_NONBLOCKING {
+  [[nodiscard]] Nanos EarliestStart(Nanos ready_ns) const noexcept ARMCMC_NONBLOCKING {
     return std::max(ready_ns, free_ns_);
   }
 
@@ -45,7 +45,7 @@ class StageTimeline {
   /// @param work   When its input was there, and when it began and ended.
   /// @param ready  How much earlier its input would have been there. @rt O(1).
   [[nodiscard]] Earlier Begin(const StageWork& work, const Earlier& ready) const noexcept ARMCMC_NONBLOCKING {
-    const Nanos begin = CouldBegin(work.ready_ns);
+    const Nanos begin = EarliestStart(work.ready_ns);
     const auto gained = [&](Nanos ready_gain, Nanos free_gain) {
       return begin - std::max(work.ready_ns - ready_gain, free_ns_ - free_gain);
     };

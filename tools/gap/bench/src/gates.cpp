@@ -20,7 +20,7 @@ bool Right(const Outcome& o) { return o.grade == Grade::kRight; }
 bool Wrong(const Outcome& o) { return IsGrade(o, {Grade::kWrong, Grade::kFailed}); }
 bool FamilyHolds(const Outcome& o) { return IsGrade(o, {Grade::kRight, Grade::kTie, Grade::kFamily}); }
 bool Flagged(const Outcome& o) { return o.grade == Grade::kUnnamed; }
-bool NamesAnything(const Outcome& o) { return !SetsOf(o.answer.result).empty(); }
+bool HasName(const Outcome& o) { return !SetsOf(o.answer.result).empty(); }
 
 Test In(std::initializer_list<const char*> strata) {
   const std::vector<std::string> names(strata.begin(), strata.end());
@@ -124,8 +124,8 @@ void AddMotions(Gatherer* g) {
       [](const Outcome& o) { return o.when_right.value_or(false); }, 0.85, true);
   g->Share("poor", "wrong", poor, Wrong, 0.01, false);
   g->Share(
-      "poor", "truth in the set, where there is one", [&](const Outcome& o) { return poor(o) && NamesAnything(o); },
-      Covers, 0.99, true);
+      "poor", "truth in the set, where there is one", [&](const Outcome& o) { return poor(o) && HasName(o); }, Covers,
+      0.99, true);
   g->Share("ties", "right alone after the experiment", In({"ties"}), Right, 0.90, true);
   g->Share("ties", "wrong", In({"ties"}), Wrong, 0.02, false);
   g->Share("paper", "truth in the set", paper, Covers, 1.0, true);
@@ -134,7 +134,7 @@ void AddMotions(Gatherer* g) {
 
 /// Whether the halves of a recording are given names that cannot both be right.
 bool Contradict(const Outcome& first, const Outcome& second) {
-  const auto sets = [](const Outcome& o) { return JudgedSets(o.what, o.truth, o.answer.result); };
+  const auto sets = [](const Outcome& o) { return ScoredSets(o.what, o.truth, o.answer.result); };
   const auto a = sets(first), b = sets(second);
   return !a.empty() && !b.empty() && std::none_of(a.begin(), a.end(), [&](const auto& set) {
     return std::find(b.begin(), b.end(), set) != b.end();

@@ -45,7 +45,7 @@ std::pair<Eigen::Index, Eigen::Index> RowsOf(Part part, Eigen::Index rows) {
 
 /// All that the tool is given: the model, a recording, after a tie the one before it, and which effects its catalogue
 /// lacks.
-Answer Ask(const std::filesystem::path& recording, const std::filesystem::path& earlier, const Case& what) {
+Answer RunDiagnosis(const std::filesystem::path& recording, const std::filesystem::path& earlier, const Case& what) {
   Answer answer;
   const double start = CpuSeconds();
   try {
@@ -173,7 +173,7 @@ Outcome RunCase(const PlantProcess& plant, const Case& what, bool keep) {
   try {
     if (!plant.Make(what) || (what.earlier && !plant.Make(*what.earlier))) return outcome;
     outcome.grade = Grade::kFailed;
-    outcome.answer = Ask(plant.Recording(what), what.earlier ? plant.Recording(*what.earlier) : "", what);
+    outcome.answer = RunDiagnosis(plant.Recording(what), what.earlier ? plant.Recording(*what.earlier) : "", what);
     outcome.truth = ReadSealed(plant.Sealed(what), what.model);
     if (outcome.answer.error.empty()) Score(plant, &outcome);
   } catch (const std::exception& error) {

@@ -59,7 +59,7 @@ std::string NameIn(const std::string& text) { return text.substr(0, text.find(' 
 
 /// The truth that an answer is held against: what no catalogue lists needs no name where it only stands beside what one
 /// does.
-Truth ToBeNamed(const Truth& truth) {
+Truth NameableTruth(const Truth& truth) {
   const auto outside = [](const TrueEffect& effect) { return effect.kind == "outside"; };
   Truth named = truth;
   if (!std::all_of(truth.effects.begin(), truth.effects.end(), outside)) std::erase_if(named.effects, outside);
@@ -69,7 +69,7 @@ Truth ToBeNamed(const Truth& truth) {
 /// What is said of the effects that are to be named, each once: what the recording holds by itself is left out, and
 /// what is rightly said of the others.
 Names Judged(const Case& what, const Truth& truth, Names said) {
-  const Names all = NamesOf(truth), names = NamesOf(ToBeNamed(truth));
+  const Names all = NamesOf(truth), names = NamesOf(NameableTruth(truth));
   const auto holds = [](const Names& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
@@ -131,7 +131,7 @@ Names FamiliesOf(const Names& names) {
   return families;
 }
 
-std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result) {
+std::vector<Names> ScoredSets(const Case& what, const Truth& truth, const gap::Result& result) {
   std::vector<Names> sets = SetsOf(result);
   for (Names& set : sets) set = Judged(what, truth, std::move(set));
   std::sort(sets.begin(), sets.end());
@@ -140,8 +140,8 @@ std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::R
 }
 
 Grade GradeOf(const Case& what, const Truth& all, const gap::Result& result) {
-  const Truth truth = ToBeNamed(all);
-  const std::vector<Names> sets = JudgedSets(what, all, result);
+  const Truth truth = NameableTruth(all);
+  const std::vector<Names> sets = ScoredSets(what, all, result);
   const bool only_own = sets.size() == 1 && sets.front().empty();
   const bool none = result.verdict == gap::Verdict::kNone || only_own;
   if (truth.effects.empty()) return none ? Grade::kRight : sets.empty() ? Grade::kUnnamed : Grade::kWrong;
@@ -184,7 +184,7 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
 }
 
 bool LabelRight(const Case& what, const Truth& all, const std::string& label) {
-  const Truth truth = ToBeNamed(all);
+  const Truth truth = NameableTruth(all);
   if (truth.effects.empty())
     return label == "none" || std::find(what.own.begin(), what.own.end(), label) != what.own.end();
   if (label == "none") return false;

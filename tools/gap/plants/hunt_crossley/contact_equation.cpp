@@ -39,7 +39,7 @@ double LeftOfNoise(double noise_sd, int window) { return noise_sd * std::sqrt(2.
 /// Where noise hides on which side of the surface a sample lies, the force says it: it belongs to the side whose
 /// nearest sample it resembles. A force that jumps there (adhesion) would otherwise be wrong by the whole jump, and
 /// that one sample would outweigh thousands.
-void SettleSides(const Vector& force, double position_noise, Vector* position) {
+void AssignContactSide(const Vector& force, double position_noise, Vector* position) {
   constexpr double kSure = 3.0;  // standard deviations
   const auto sure = [&](Eigen::Index i) { return std::abs((*position)[i]) > kSure * position_noise; };
   const Eigen::Index rows = position->size();
@@ -232,7 +232,7 @@ class ContactEquation final : public Equation {
     const Vector& x = recording.Column("x");
     const Vector all = Vector::Ones(s.rows());
     s.at(Role::kPosition) = SavitzkyGolay(x, window, 0);
-    SettleSides(s.output, LeftOfNoise(Rms(x - s.at(Role::kPosition), all), window), &s.at(Role::kPosition));
+    AssignContactSide(s.output, LeftOfNoise(Rms(x - s.at(Role::kPosition), all), window), &s.at(Role::kPosition));
     s.at(Role::kVelocity) = SavitzkyGolay(v, window, 0);
     s.velocity_noise = Rms(v - s.at(Role::kVelocity), all);
     s.smoothed_velocity_noise = LeftOfNoise(s.velocity_noise, window);
@@ -259,15 +259,15 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
   const std::vector<double> x_inside = Sorted(x, s.active), v_inside = Sorted(v, s.active);
 
   std::vector<FeatureGroup> groups;
-  groups.push_back({"depth", JoinColumns(Gated(Hats(x, QuantileKnots(x_inside, 8)), s.active), free)});
-  groups.push_back({"speed", Hats(v, QuantileKnots(v, all, 9))});
-  groups.push_back({"speed in contact", Gated(Hats(v, QuantileKnots(v_inside, 5)), s.active)});
-  groups.push_back({"time", Hats(time, EvenKnots(9))});
-  groups.push_back({"time x force", Gated(Hats(time, EvenKnots(4)), predicted)});
-  groups.push_back({"acceleration", Hats(a, QuantileKnots(a, all, 6))});
-  groups.push_back(
-      {"direction of motion", JoinColumns(Gated(Hats(x, QuantileKnots(x_inside, 5)), direction.cwiseProduct(s.active)),
-                                          direction.cwiseProduct(free))});
+  groups.push_back({"depth", JoinColumns(Gated(HatFunctions(x, QuantileKnots(x_inside, 8)), s.active), free)});
+  groups.push_back({"speed", HatFunctions(v, QuantileKnots(v, all, 9))});
+  groups.push_back({"speed in contact", Gated(HatFunctions(v, QuantileKnots(v_inside, 5)), s.active)});
+  groups.push_back({"time", HatFunctions(time, EvenKnots(9))});
+  groups.push_back({"time x force", Gated(HatFunctions(time, EvenKnots(4)), predicted)});
+  groups.push_back({"acceleration", HatFunctions(a, QuantileKnots(a, all, 6))});
+  groups.push_back({"direction of motion",
+                    JoinColumns(Gated(HatFunctions(x, QuantileKnots(x_inside, 5)), direction.cwiseProduct(s.active)),
+                                direction.cwiseProduct(free))});
   Matrix memory(s.rows(), 4);
   for (int i = 0; i < 4; ++i) memory.col(i) = depth - Leaky(depth, 30.0 * std::pow(samples / 300.0, i / 3.0));
   groups.push_back({"memory of the past", memory});
@@ -281,10 +281,10 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
   change.col(1) = SavitzkyGolay(rate, 3, 1);
   change.col(2) = predicted - Leaky(predicted, 20.0);
   groups.push_back({"rate of force", change});
-  groups.push_back({"force", Gated(Hats(predicted, QuantileKnots(predicted, s.active, 6)), s.active)});
-  groups.push_back(
-      {"depth x speed",
-       Gated(Products(Hats(x, QuantileKnots(x_inside, 4)), Hats(v, QuantileKnots(v_inside, 4))), s.active)});
+  groups.push_back({"force", Gated(HatFunctions(predicted, QuantileKnots(predicted, s.active, 6)), s.active)});
+  groups.push_back({"depth x speed", Gated(Products(HatFunctions(x, QuantileKnots(x_inside, 4)),
+                                                    HatFunctions(v, QuantileKnots(v_inside, 4))),
+                                           s.active)});
   return groups;
 }
 

@@ -221,16 +221,16 @@ std::vector<FeatureGroup> BendEquation::Groups(const Signals& s, const Vector& p
   const Vector time = s.Elapsed();
   const Vector direction = (rate / (0.03 * s.scale_of(Role::kVelocity))).array().tanh();
   std::vector<FeatureGroup> groups;
-  groups.push_back({"angle", felt(Hats(angle, QuantileKnots(angle, all, 8)))});
-  groups.push_back({"rate", felt(Hats(rate, QuantileKnots(rate, all, 9)))});
-  groups.push_back({"direction of motion", felt(Gated(Hats(angle, QuantileKnots(angle, all, 4)), direction))});
-  groups.push_back(
-      {"acceleration", felt(Hats(s.at(Role::kAcceleration), QuantileKnots(s.at(Role::kAcceleration), all, 6)))});
-  groups.push_back({"time", Hats(time, EvenKnots(9))});
-  groups.push_back({"time x angle", Gated(Hats(time, EvenKnots(4)), predicted)});
-  groups.push_back({"time x acceleration", felt(Gated(Hats(time, EvenKnots(6)), s.at(Role::kAcceleration)))});
-  groups.push_back({"angle x rate", felt(Products(Hats(angle, QuantileKnots(angle, all, 3)),
-                                                  Hats(rate, QuantileKnots(rate, all, 4))))});
+  groups.push_back({"angle", felt(HatFunctions(angle, QuantileKnots(angle, all, 8)))});
+  groups.push_back({"rate", felt(HatFunctions(rate, QuantileKnots(rate, all, 9)))});
+  groups.push_back({"direction of motion", felt(Gated(HatFunctions(angle, QuantileKnots(angle, all, 4)), direction))});
+  groups.push_back({"acceleration",
+                    felt(HatFunctions(s.at(Role::kAcceleration), QuantileKnots(s.at(Role::kAcceleration), all, 6)))});
+  groups.push_back({"time", HatFunctions(time, EvenKnots(9))});
+  groups.push_back({"time x angle", Gated(HatFunctions(time, EvenKnots(4)), predicted)});
+  groups.push_back({"time x acceleration", felt(Gated(HatFunctions(time, EvenKnots(6)), s.at(Role::kAcceleration)))});
+  groups.push_back({"angle x rate", felt(Products(HatFunctions(angle, QuantileKnots(angle, all, 3)),
+                                                  HatFunctions(rate, QuantileKnots(rate, all, 4))))});
   Matrix memory(s.rows(), 3);
   for (int i = 0; i < 3; ++i) memory.col(i) = gauge - Leaky(gauge, 30.0 * std::pow(6.0, i));
   groups.push_back({"memory of the pressure", felt(memory)});

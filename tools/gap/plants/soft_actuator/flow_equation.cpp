@@ -206,12 +206,12 @@ std::vector<FeatureGroup> FlowEquation::Groups(const Signals& s, const Vector& p
   for (Eigen::Index i = 0; i < s.rows(); ++i) flow[i] = ValveHead(v[i], gauge[i], constants_);
   const Vector size = v.cwiseAbs();
   std::vector<FeatureGroup> groups;
-  const Matrix pressure = Hats(gauge, QuantileKnots(gauge, all, 7));
+  const Matrix pressure = HatFunctions(gauge, QuantileKnots(gauge, all, 7));
   groups.push_back({"pressure", pressure});
   groups.push_back({"pressure while filling", Gated(pressure, s.active)});
   groups.push_back({"pressure x rate", JoinColumns(Gated(pressure, s.active.cwiseProduct(predicted)),
                                                    Gated(pressure, vent.cwiseProduct(predicted)))});
-  const Matrix opening = Hats(size, QuantileKnots(size, all, 9));
+  const Matrix opening = HatFunctions(size, QuantileKnots(size, all, 9));
   groups.push_back(
       {"opening", JoinColumns(Gated(opening, s.active.cwiseProduct(flow)), Gated(opening, vent.cwiseProduct(flow)))});
   Matrix changes(s.rows(), 8);
@@ -227,9 +227,10 @@ std::vector<FeatureGroup> FlowEquation::Groups(const Signals& s, const Vector& p
   for (int i = 0; i < 3; ++i) rates.col(i + 1) = predicted - Leaky(predicted, 4.0 * std::pow(6.0, i));
   groups.push_back({"change of the rate", rates});
   groups.push_back({"filling or venting", JoinColumns(s.active, vent)});
-  groups.push_back({"time", Hats(time, EvenKnots(9))});
-  groups.push_back({"time x rate", JoinColumns(Gated(Hats(time, EvenKnots(4)), predicted.cwiseProduct(s.active)),
-                                               Gated(Hats(time, EvenKnots(4)), predicted.cwiseProduct(vent)))});
+  groups.push_back({"time", HatFunctions(time, EvenKnots(9))});
+  groups.push_back(
+      {"time x rate", JoinColumns(Gated(HatFunctions(time, EvenKnots(4)), predicted.cwiseProduct(s.active)),
+                                  Gated(HatFunctions(time, EvenKnots(4)), predicted.cwiseProduct(vent)))});
   Matrix memory(s.rows(), 3);
   for (int i = 0; i < 3; ++i) memory.col(i) = gauge - Leaky(gauge, 30.0 * std::pow(6.0, i));
   groups.push_back({"memory of the pressure", memory});

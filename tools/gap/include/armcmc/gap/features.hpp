@@ -22,7 +22,7 @@ namespace armcmc::gap {
 /// `count` knots from 0 to 1.
 [[nodiscard]] Vector EvenKnots(int count);
 /// Piecewise linear basis: column k is 1 at knot k and 0 at the others, constant beyond the ends. [row][knot]
-[[nodiscard]] Matrix Hats(const Vector& series, const Vector& knots);
+[[nodiscard]] Matrix HatFunctions(const Vector& series, const Vector& knots);
 /// Every column times `weight`.
 [[nodiscard]] Matrix Gated(const Matrix& columns, const Vector& weight);
 /// Columns of both.

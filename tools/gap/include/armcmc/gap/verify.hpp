@@ -30,7 +30,7 @@ class HeldOut {
   [[nodiscard]] double NoiseFloor(const Trial& after) const;
   /// Share of the gap that `after` closes outside the fifth of the blocks with the largest error, with the noise of the
   /// diagnosis.
-  [[nodiscard]] double ClosedElsewhere(const Fitted& before, const Fitted& after) const;
+  [[nodiscard]] double ClosedOutsideWorstBlocks(const Fitted& before, const Fitted& after) const;
   /// Whether the difference between the predictions of `before` and `after` is present in the held-out data as
   /// predicted: the regression of the residual of `before` on it, both whitened, has a slope whose 95 % interval lies
   /// between 2/3 and 3/2. What else these data contain does not matter then.

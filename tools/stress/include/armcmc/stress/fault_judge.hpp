@@ -80,7 +80,7 @@ class FaultJudge {
   [[nodiscard]] Step Followed(std::int64_t first, std::int64_t last) const;
   [[nodiscard]] bool Agrees(const Step& step, const Step& reference, bool relearns) const;
   /// nullptr for a normal step, else what it lacks.
-  [[nodiscard]] const char* Hindrance(const Step& step, const Step& reference, const FaultSpec& fault) const;
+  [[nodiscard]] const char* ReasonNotNormal(const Step& step, const Step& reference, const FaultSpec& fault) const;
 
   std::int64_t period_ns_;
   std::vector<Slot> slots_;

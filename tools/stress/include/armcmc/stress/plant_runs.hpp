@@ -40,7 +40,7 @@ class PlantRuns {
  private:
   void Start(const std::string& plan, std::vector<Slot> slots, bool log_fails);
   /// Until the judge has seen all slots, or the time is over.
-  void Attend(double most_ms);
+  void Supervise(double most_ms);
   void DriveSignals();
   void BeginSignal(const FaultSpec& fault);
   void EndSignal(const FaultSpec& fault);

@@ -21,7 +21,7 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 /// The sets of an answer: names as in the sealed file, each once, without what the recording holds by itself
 /// (Case::own) and nobody hid, and without what is rightly named though it needs no name, since the plant's own
 /// catalogue lacks it.
-[[nodiscard]] std::vector<Names> JudgedSets(const Case& what, const Truth& truth, const gap::Result& result);
+[[nodiscard]] std::vector<Names> ScoredSets(const Case& what, const Truth& truth, const gap::Result& result);
 
 /// Compares an answer with the truth. An effect that is outside the plant's own catalogue, or was taken out of it, is
 /// rightly left unnamed, or named as the effects that serve every plant have it; beside one of the catalogue it needs
