@@ -21,7 +21,7 @@ struct Moments {
   ParamMatrix covariance;
 };
 
-Moments WeightedMoments(const simd::Kernels& kernels, const WeightedDraws& draws, bool calibrated) noexcept {
+Moments WeightedMoments(const simd::Kernels& kernels, const WeightedDraws& draws, double mean_freedom) noexcept {
   const int dim = draws.dim;
   Moments m;
   m.mean = ParamVector::Zero(dim);
@@ -34,7 +34,7 @@ Moments WeightedMoments(const simd::Kernels& kernels, const WeightedDraws& draws
   for (int d = 0; d < dim; ++d) m.mean[d] = sums[static_cast<std::size_t>(2 + d)] / m.sum;
   // About the mean, in a second pass: the covariance of a posterior far from the origin would cancel otherwise.
   // Unbiased for weighted draws: a recursion that lost 1 / ESS of its variance in every pack would contract.
-  const double unbiased = calibrated ? 1.0 : 1.0 / std::fmax(1.0 - m.square / (m.sum * m.sum), 0.5);
+  const double unbiased = 1.0 / std::fmax(1.0 - mean_freedom * m.square / (m.sum * m.sum), 0.5);
   kernels.second_moments(dim, draws.u.data(), draws.weight, m.mean.data(), draws.size, sums.data());
   std::size_t t = 0;
   for (int i = 0; i < dim; ++i)
@@ -198,7 +198,7 @@ ParamMatrix CovarianceOf(const DensityBlock& block) noexcept {
 
 double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const FitOptions& options,
                 double* const* scratch, MarginalTable* tables, DensityBlock* block) noexcept {
-  const Moments moments = WeightedMoments(kernels, draws, options.calibrated);
+  const Moments moments = WeightedMoments(kernels, draws, options.mean_freedom);
   if (!(moments.sum > 0.0)) return 0.0;
   const double ess = moments.sum * moments.sum / moments.square;
   if (!(ess >= kMinimumEss) || !moments.mean.allFinite() || !moments.covariance.allFinite()) return ess;
@@ -238,8 +238,7 @@ double FitBlock(const simd::Kernels& kernels, const WeightedDraws& draws, const 
     const double* e = scratch[i];
     double square = 0.0;
     kernels.second_moments(1, &e, draws.weight, &first[ii], draws.size, &square);
-    const double mean = options.calibrated ? 0.0 : 1.0;
-    const double freedom = block->bent && i > 0 ? DensityBlock::kDegree + mean : mean;
+    const double freedom = options.mean_freedom + (block->bent && i > 0 ? DensityBlock::kDegree : 0);
     sd[ii] = std::sqrt(std::fmax(square / moments.sum / std::fmax(1.0 - freedom / ess, 0.5), 1e-12));
     const double per_node = MarginalTable::kNodesPerUnit / sd[ii];
     const double origin = kReach * MarginalTable::kNodesPerUnit - first[ii] * per_node;

@@ -171,7 +171,6 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
     group.u[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
 
   FitOptions options = kMemoryFit;
-  options.calibrated = unfinished_.calibrated;
   const double mass_first = unfinished_.mass_first;
   next->num_blocks = 0;
   for (int k = out->draws; k < first + RoundUpToTile(count); ++k) ws->group_weight[static_cast<std::size_t>(k)] = 0.0;
@@ -185,6 +184,7 @@ void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraw
     } else {
       for (int k = first; k < out->draws; ++k) group_weight[k] = out->weight[k] * (constant + slope * share[k]);
     }
+    options.mean_freedom = unfinished_.calibrated ? 1.0 - mass : 1.0;  // a part of the draws is calibrated in part
     const auto b = static_cast<std::size_t>(next->num_blocks);
     const auto fit = [&]() noexcept {
       return FitBlock(kernels_, group, options, ws->StraightRows().data(), next->tables[b].data(), &next->block[b]);

@@ -112,13 +112,7 @@ std::uint64_t OfWeightsAndMoments(const simd::Kernels& kernels) {
   checksum.AddAll(second);
   kernels.ratio(u0.data(), u1.data(), kCount, out.data());
   checksum.AddAll(out);
-  const simd::QuadraticControl control{.dim = 2,
-                                       .most = 0.5,
-                                       .constant = 0.3,
-                                       .centre = {0.1, -0.4},
-                                       .slope = {-0.7, 0.2},
-                                       .curvature = {{0.15}, {-0.3, 0.05}}};
-  checksum.Add(kernels.reweigh(control, u.data(), log_likelihood.data(), kCount, weight.data()));
+  checksum.Add(kernels.reweigh(test::kControl, u.data(), log_likelihood.data(), kCount, weight.data()));
   return checksum.sum();
 }
 

@@ -9,6 +9,14 @@ namespace armcmc::test {
 /// Extended precision for references.
 constexpr long double Wide(double x) { return static_cast<long double>(x); }
 
+/// A control of two coordinates in which every term counts.
+inline constexpr simd::QuadraticControl kControl{.dim = 2,
+                                                 .most = 0.5,
+                                                 .constant = 0.3,
+                                                 .centre = {0.1, -0.4},
+                                                 .slope = {-0.7, 0.2},
+                                                 .curvature = {{0.15}, {-0.3, 0.05}}};
+
 /// Kernels of every instruction set that was built and that this CPU runs.
 inline std::vector<const simd::Kernels*> RunnableKernels() {
   std::vector<const simd::Kernels*> sets{&simd::kPortableKernels};

@@ -47,16 +47,10 @@ TEST(RatioKernel, IsZeroWhereTheDivisorIsNotPositive) {
 TEST(ReweighKernel, MultipliesByTheQuadraticControlAndNeverBelowZero) {
   const std::vector<double> u0 = Normals(4), u1 = Normals(5), g = Normals(6), before = Normals(7);
   const double* const u[] = {u0.data(), u1.data()};
-  const simd::QuadraticControl control{.dim = 2,
-                                       .most = 0.5,
-                                       .constant = 0.3,
-                                       .centre = {0.1, -0.4},
-                                       .slope = {-0.7, 0.2},
-                                       .curvature = {{0.15}, {-0.3, 0.05}}};
   std::vector<double> fused;
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
     std::vector<double> weight = before;
-    const double sum = kernels->reweigh(control, u, g.data(), kCount, weight.data());
+    const double sum = kernels->reweigh(test::kControl, u, g.data(), kCount, weight.data());
     double expected_sum = 0.0;
     int none = 0;
     for (std::size_t k = 0; k < kCount; ++k) {

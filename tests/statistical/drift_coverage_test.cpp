@@ -86,8 +86,8 @@ TEST(DriftCoverage, IntervalsHoldParametersThatDrift) { Check(6, false); }
 TEST(DriftCoverage, IntervalsOfAPlantAtRestAreAsWithoutDrift) {
   // Spikes that the noise law does not have: in many packs something seems to have changed.
   const Truth at_rest = [](double) { return TruthAt(0.0); };
-  const Score with = ScoreOf(100, ForgettingSettings{}.drift_share, true, NoiseKind::kLaplace, at_rest);
-  const Score without = ScoreOf(100, 0.0, true, NoiseKind::kLaplace, at_rest);
+  const Score with = ScoreOf(50, ForgettingSettings{}.drift_share, true, NoiseKind::kLaplace, at_rest);
+  const Score without = ScoreOf(50, 0.0, true, NoiseKind::kLaplace, at_rest);
   for (std::size_t d = 0; d < 3; ++d) {
     EXPECT_GT(with.in95[d], without.in95[d] - 0.02) << d;
     EXPECT_GT(with.in50[d], without.in50[d] - 0.06) << d;

@@ -41,8 +41,8 @@ struct FitOptions {
   double tail_sd = 1.25;          ///< Its standard deviation.
   double inflation = 1.0;         ///< Of every standard deviation, for use as a proposal.
   bool shrink_to_normal = false;  ///< Marginals keep of their shape what is beyond sampling error.
-  bool calibrated = false;        ///< The weights are those of ReduceVariance(): a sum of squares about the mean has
-                                  ///< lost nothing to it.
+  double mean_freedom = 1.0;      ///< Degrees of freedom that sums of squares lose to the mean; 0 where control
+                                  ///< variates hold mean and covariance, see ReduceVariance().
 };
 
 /// Fits a block to weighted draws. The straightened coordinates get exactly the mean and standard deviation of the

@@ -201,8 +201,8 @@ class Checker {
   static std::string Name(const UnitState& state) { return state.unit ? state.unit->Text() : "an unknown unit"; }
 
   /// CommonUnit() of the two sides of a sum or comparison.
-  [[nodiscard]] UnitState CommonUnitOfSides(const SyntaxNode& at, const UnitState& a, const UnitState& b,
-                                            std::string_view what) const {
+  [[nodiscard]] UnitState UnitOfSides(const SyntaxNode& at, const UnitState& a, const UnitState& b,
+                                      std::string_view what) const {
     try {
       return CommonUnit(at.column, a, b, what);
     } catch (const Error& error) {
@@ -243,14 +243,13 @@ class Checker {
     const UnitState plain{Unit{}, false};
     switch (at.op) {
       case Op::kAdd:
-      case Op::kSubtract:
-        return CommonUnitOfSides(at, x, y, at.op == Op::kAdd ? "the sum is of " : "the difference is of ");
+      case Op::kSubtract: return UnitOfSides(at, x, y, at.op == Op::kAdd ? "the sum is of " : "the difference is of ");
       case Op::kMin:
       case Op::kMax: return CommonUnit(at.column, x, y, "the comparison is of ");
       case Op::kLess:
       case Op::kLessEqual:
       case Op::kEqual:
-      case Op::kNotEqual: (void)CommonUnitOfSides(at, x, y, "the comparison is of "); return plain;
+      case Op::kNotEqual: (void)UnitOfSides(at, x, y, "the comparison is of "); return plain;
       case Op::kClamp:
         return CommonUnit(at.column, CommonUnit(at.column, x, y, "a value and its bound"), a[2].unit,
                           "a value and its bound");

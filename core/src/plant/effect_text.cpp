@@ -28,9 +28,9 @@ std::size_t NumberLength(std::string_view text, std::size_t at) noexcept {
   return end - at;
 }
 
-/// Calls on_name for every name, on_rest for everything else.
+/// Calls on_name for every name, on_other for everything else.
 template <class OnName, class OnOther>
-void Walk(std::string_view text, const OnName& on_name, const OnOther& on_rest) {
+void Walk(std::string_view text, const OnName& on_name, const OnOther& on_other) {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t length = 1;
     if (IsLetter(text[at])) {
@@ -38,7 +38,7 @@ void Walk(std::string_view text, const OnName& on_name, const OnOther& on_rest) 
       on_name(text.substr(at, length));
     } else {
       if (IsDigit(text[at]) || text[at] == '.') length = std::max<std::size_t>(NumberLength(text, at), 1);
-      on_rest(text.substr(at, length));
+      on_other(text.substr(at, length));
     }
     at += length;
   }
