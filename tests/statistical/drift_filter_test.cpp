@@ -33,9 +33,9 @@ std::shared_ptr<const PlantProgram> Plant() {
   return test::Program(plant);
 }
 
-/// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, and when the parameter changed,
-/// (u, w) is Gaussian; of these histories, which grow in number with every pack, thousands are kept, the most probable
-/// ones.
+/// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, when what drifts turned, and when
+/// the parameter changed, (u, w) is Gaussian; of these histories, which grow in number with every pack, thousands are
+/// kept, the most probable ones.
 class Histories {
  public:
   explicit Histories(double share) : share_(share) {
@@ -47,6 +47,7 @@ class Histories {
   void Add(double persisted, double xx, double xy) {
     std::vector<History> next;
     const double stays = std::exp(-Drift::kSwitching * kDuration);
+    const double straight = std::exp(-Drift::kTurning * kDuration);
     if (histories_.empty()) {
       // What begins with the first pack moves from then on.
       for (int h = 0; h < Drift::kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
@@ -55,6 +56,12 @@ class Histories {
         std::vector<History> moved;
         History same = old;
         same.weight *= stays;
+        if (old.law > 0) {
+          History turned = Turn(same);
+          turned.weight *= 1.0 - straight;
+          same.weight *= straight;
+          moved.push_back(turned);
+        }
         moved.push_back(same);
         for (int h = 0; h < Drift::kHypotheses; ++h) {
           History begun = Begin(h, old);
@@ -133,9 +140,12 @@ class Histories {
   };
 
   [[nodiscard]] History Begin(int h, History from) const {
-    const Drift::Hypothesis law = Drift::Of(h, share_);
-    from.weight *= law.prior;
+    from.weight *= Drift::Of(h, share_).prior;
     from.law = h;
+    return Turn(from);
+  }
+  [[nodiscard]] History Turn(History from) const {
+    const Drift::Hypothesis law = Drift::Of(from.law, share_);
     from.w = from.uw = 0.0;
     from.ww = law.rate * law.rate;
     return from;

@@ -47,6 +47,7 @@ class Truth {
     if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
     if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s)) Begin();
     if (law_.rate == 0.0) return;
+    if (normal_->Uniform() > std::exp(-Drift::kTurning * elapsed_s)) Turn();
     // Small steps of the speed's own process, within bounds.
     constexpr int kSteps = 100;
     const double step = elapsed_s / kSteps;
@@ -67,6 +68,9 @@ class Truth {
     int h = 0;
     while (h + 1 < Drift::kHypotheses && left > Drift::Of(h, share).prior) left -= Drift::Of(h++, share).prior;
     law_ = Drift::Of(h, share);
+    Turn();
+  }
+  void Turn() {
     for (double& v : speed_) v = law_.rate * (*normal_)();
   }
 
