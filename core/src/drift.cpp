@@ -54,6 +54,7 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
       normal_table_(MarginalTable::Normal()),
       dim_(space.num_parameters),
       enabled_(share > 0.0) {
+  velocity_ = ParamVector::Zero(dim_);
   for (int h = 0; h < kHypotheses; ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share);
 }
 
@@ -236,64 +237,8 @@ Drift::Sampled Drift::SampledBlock(const ModeData& data, const PosteriorMemory& 
   return sampled;
 }
 
-bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
-  const LocalLikelihood& local = sampled.local;
-  const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
-  std::array<double, kFilters> log_weight{};
-  double top = -HUGE_VAL;
-  for (std::size_t i = 0; i < bank_.size(); ++i) {
-    if (!IsOf(part, i)) continue;
-    Filter& f = bank_[i];
-    f = predicted_[i];
-    if (!(f.weight > 0.0)) continue;
-    // P = C (1 + H C)^-1, and w is updated through its covariance with u.
-    ParamMatrix spread = Product(local.information, f.uu);
-    spread += identity;
-    const ParamMatrix t = Inverse(spread);
-    const ParamVector apart = f.u - sampled.mean;
-    const ParamVector pulled = Multiply(local.information, apart);
-    const ParamVector residual = local.gradient - pulled;
-    const ParamVector step = Multiply(t, residual);
-    const ParamVector move = Multiply(f.uu, step);
-    log_weight[i] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
-                    0.5 * residual.dot(move) - 0.5 * std::log(std::fmax(Determinant(spread), 1e-300));
-    if (!std::isfinite(log_weight[i])) return false;
-    top = std::fmax(top, log_weight[i]);
-    f.u += move;
-    f.w += Multiply(f.uw.transpose(), step);
-    f.ww -= Product(Product(f.uw.transpose(), Product(t, local.information)), f.uw);
-    f.uw = Product(t.transpose(), f.uw);
-    f.uu = Product(f.uu, t);
-    MakeSymmetric(&f.uu);
-    MakeSymmetric(&f.ww);
-    if (!f.u.allFinite() || !f.w.allFinite() || !f.uu.allFinite() || !f.uw.allFinite() || !f.ww.allFinite())
-      return false;
-  }
-  double sum = 0.0;
-  for (std::size_t i = 0; i < bank_.size(); ++i) {
-    if (!IsOf(part, i)) continue;
-    if (bank_[i].weight > 0.0) bank_[i].weight = std::exp(log_weight[i] - top);
-    sum += bank_[i].weight;
-  }
-  for (std::size_t i = 0; i < bank_.size(); ++i)
-    if (IsOf(part, i)) bank_[i].weight *= weight / sum;
-  return true;
-}
-
 bool Drift::Recentre(const Sampled& sampled) noexcept {
-  const LocalLikelihood& local = sampled.local;
-  // The posterior of the sampler's prior under the expanded likelihood: the bank itself, or a Gaussian with its
-  // moments.
-  const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
-  Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, sampled.part);
-  if (!as_the_bank) {
-    ParamMatrix spread = Product(local.information, now.covariance);
-    spread += ParamMatrix::Identity(dim_, dim_);
-    const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
-    now.covariance = Product(now.covariance, Inverse(spread));
-    MakeSymmetric(&now.covariance);
-    now.mean += Multiply(now.covariance, local.gradient - pulled);
-  }
+  const Moments now = AsSampled(sampled);
   ParamMatrix map;
   if (!MapBetween(now.covariance, sampled.covariance, &map)) return false;
   for (std::size_t i = 0; i < bank_.size(); ++i) {

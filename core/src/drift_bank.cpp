@@ -5,23 +5,31 @@
 
 namespace armcmc {
 
-Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
-  const Eigen::Index dim = bank.back().u.size();
+Drift::Moments Drift::MomentsOf(const Members& members) noexcept {
+  const Eigen::Index dim = members.back().mean.size();
   Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim), .covariance = ParamMatrix::Zero(dim, dim)};
-  for (std::size_t i = 0; i < bank.size(); ++i) {
-    if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
-    m.weight += bank[i].weight;
-    m.mean += bank[i].weight * bank[i].u;
+  for (const Moments& member : members) {
+    if (!(member.weight > 0.0)) continue;
+    m.weight += member.weight;
+    m.mean += member.weight * member.mean;
   }
   m.mean /= m.weight;
-  for (std::size_t f = 0; f < bank.size(); ++f) {
-    if (!IsOf(part, f) || !(bank[f].weight > 0.0)) continue;
-    const ParamVector apart = bank[f].u - m.mean;
-    const double share = bank[f].weight / m.weight;
+  for (const Moments& member : members) {
+    if (!(member.weight > 0.0)) continue;
+    const ParamVector apart = member.mean - m.mean;
+    const double share = member.weight / m.weight;
     for (Eigen::Index i = 0; i < dim; ++i)
-      for (Eigen::Index j = 0; j < dim; ++j) m.covariance(i, j) += share * (bank[f].uu(i, j) + apart[i] * apart[j]);
+      for (Eigen::Index j = 0; j < dim; ++j)
+        m.covariance(i, j) += share * (member.covariance(i, j) + apart[i] * apart[j]);
   }
   return m;
+}
+
+Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
+  Members members;
+  for (std::size_t i = 0; i < bank.size(); ++i)
+    members[i] = {.weight = IsOf(part, i) ? bank[i].weight : 0.0, .mean = bank[i].u, .covariance = bank[i].uu};
+  return MomentsOf(members);
 }
 
 void Drift::Merge(Filter* from, Filter* to) noexcept {

@@ -159,7 +159,8 @@ LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const 
   const int np = space.num_parameters;
   SetAround(space, u, &scratch->theta);
   PredictAround(kernels, model, data, space, scratch);
-  LocalLikelihood local{ParamVector::Zero(np), ParamMatrix::Zero(np, np)};
+  LocalLikelihood local{ParamVector::Zero(np), ParamMatrix::Zero(np, np), ParamVector::Zero(np),
+                        ParamMatrix::Zero(np, np), ParamMatrix::Zero(np, np)};
   const double scale = std::exp(log_noise_scale);
   const double information = noise.information() / (scale * scale);
   ParamVector slope(np);
@@ -168,16 +169,39 @@ LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const 
     const double w = data.weight[in];
     const double e = (data.target[in] - scratch->prediction.value[in][0] - noise.settings().mean) * w;
     const double score = noise.SquareWeight(e, scale) * e;
+    const double lag = data.TimeToEnd(n);
     for (int d = 0; d < np; ++d) slope[d] = w * Slope(*scratch, in, d);
     for (int i = 0; i < np; ++i) {
       local.gradient[i] += slope[i] * score;
-      for (int j = 0; j <= i; ++j) local.information(i, j) += information * slope[i] * slope[j];
+      local.lagged_gradient[i] += lag * slope[i] * score;
+      for (int j = 0; j <= i; ++j) {
+        const double of_sample = information * slope[i] * slope[j];
+        local.information(i, j) += of_sample;
+        local.lagged_information(i, j) += lag * of_sample;
+        local.twice_lagged_information(i, j) += lag * lag * of_sample;
+      }
     }
   }
-  for (int i = 0; i < np; ++i)
-    for (int j = 0; j < i; ++j) local.information(j, i) = local.information(i, j);
+  for (ParamMatrix* m : {&local.information, &local.lagged_information, &local.twice_lagged_information})
+    for (int i = 0; i < np; ++i)
+      for (int j = 0; j < i; ++j) (*m)(j, i) = (*m)(i, j);
   return local;
 }
+
+void DerivativeAlong(const simd::Kernels& kernels, int model, const ModeData& data, const ParameterSpace& space,
+                     const ParamVector& u, const ParamVector& direction, LaplaceScratch* scratch,
+                     double* slope) noexcept {
+  for (int d = 0; d < space.num_parameters; ++d) {
+    auto& row = scratch->theta.value[static_cast<std::size_t>(d)];
+    row.fill(space.Theta(d, u[d]));
+    row[1] = space.Theta(d, u[d] + kDifference * direction[d]);
+    row[2] = space.Theta(d, u[d] - kDifference * direction[d]);
+  }
+  kernels.predict_half(model, data, scratch->theta, &scratch->prediction);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(data.num_samples); ++n)
+    slope[n] = Slope(*scratch, n, 0);
+}
+
 
 double LaplaceFit(const simd::Kernels& kernels, int model, const ModeData& data, const NoiseModel& noise,
                   const ParameterSpace& space, const Gaussian& prior, const ParamVector& start, double tolerance,

@@ -146,21 +146,22 @@ int ModeSampler::DrawTarget(const Mismatch& mismatch, ModeDraws* out) const noex
   return std::clamp(target, SamplerSettings::kMinDraws, sampler_.max_draws);
 }
 
-Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std::uint64_t pack, std::uint64_t mode,
+Status ModeSampler::Run(const ModeData& measured, const PosteriorMemory& before, std::uint64_t pack, std::uint64_t mode,
                         Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* ws, ModeDraws* out) noexcept {
   const auto stream_of = [&](Purpose purpose) noexcept {
     return RandomStream(sampler_.seed, pack, mode * kNumPurposes + purpose);
   };
-  const PosteriorMemory& last = drift_.Carry(data, before);
+  const PosteriorMemory& last = drift_.Carry(measured, before);
   drifted_.any = &last != &before;
-  if (drifted_.any) drifted_ = {true, data.time_s, before.mean, last.mean, before.covariance, last.covariance};
+  if (drifted_.any) drifted_ = {true, measured.time_s, before.mean, last.mean, before.covariance, last.covariance};
   if (before.valid) transition_.Age(before, last);
   Mismatch mismatch;
   mismatch.zeta = HUGE_VAL;  // zeta^0: the first pack is a modification
   mismatch.threshold = forgetting_.threshold;
-  if (last.valid) mismatch = Compare(data, last, stream_of(kMismatchStream), ws);
+  if (last.valid) mismatch = Compare(measured, last, stream_of(kMismatchStream), ws);
   double lambda = 0.0;  // share of `previous` in the prior; the paper's lambda is mismatch.lambda
-  const PosteriorMemory& previous = transition_.Choose(data, last, &mismatch, &lambda, &ws->laplace);
+  const PosteriorMemory& previous = transition_.Choose(measured, last, &mismatch, &lambda, &ws->laplace);
+  const ModeData& data = drift_.MovedToEnd(measured, last, &ws->laplace);
   const bool use_previous = lambda > 0.0;
   const int wanted = DrawTarget(mismatch, out);
   int target = std::clamp(limit, SamplerSettings::kMinDraws, wanted);
@@ -262,7 +263,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   FindMode(data, !use_previous, ws, out);
   RunChain(stream_of(kAcceptStream), pilot, ws, out);
   unfinished_ = {
-      .data = &data, .previous = &previous, .lambda = lambda, .first = pilot, .mass_first = 0.0, .mass_new = 1.0};
+      .data = &measured, .previous = &previous, .lambda = lambda, .first = pilot, .mass_first = 0.0, .mass_new = 1.0};
   unfinished_.calibrated = calibrated;
   SplitMassByPrior(ws, out);
   out->known = informed;

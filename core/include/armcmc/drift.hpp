@@ -39,8 +39,9 @@ struct Kernels;
 ///            once, new members that the data refute would widen those that the data support
 ///   bounds   if the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean are divided
 ///            by c: after a long time without information a drifting parameter returns to P_0
-///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
-///            pi_h times the evidence of that, with every filter updated by the same a, H, m
+///   pack     u is that at the end of the pack, and within the pack moves at w: log L(u, w) is expanded about the
+///            posterior mean m and w = 0 (LocalLikelihood); pi_h times the evidence of that, with every filter updated
+///            by the same expansion
 ///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
 ///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
 ///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
@@ -114,7 +115,18 @@ class Drift {
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
 
+  /// After Carry(): the pack as the sampler sees it, for which the parameters of a pack are constant. Where drift alone
+  /// was carried on, what the parameters have still to move at their expected velocity w is added to the targets:
+  ///
+  ///   y_n + sum_d dF_n / du_d w_d (t_end - t_n)
+  ///
+  /// @return `data`, or a copy in this object, valid until the next call.
+  /// @rt No heap, no lock, no throw. One batch.
+  const ModeData& MovedToEnd(const ModeData& data, const PosteriorMemory& last,
+                             LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+
   /// After Carry(): what the pack taught.
+  /// @param data     The pack itself, not as the sampler saw it.
   /// @param next     Posterior after it.
   /// @param part     What its first block was fitted to.
   /// @param both     Rest and drift have a block each, with the weights that were sampled.
@@ -153,6 +165,8 @@ class Drift {
   [[nodiscard]] static bool IsOf(Part part, std::size_t filter) noexcept {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
+  using Members = std::array<Moments, kFilters>;
+  [[nodiscard]] static Moments MomentsOf(const Members& members) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
@@ -176,6 +190,8 @@ class Drift {
   /// Updates the filters of a part and makes `weight` the sum of theirs.
   /// @return false when some number is not finite.
   bool Update(const Sampled& sampled, Part part, double weight) noexcept ARMCMC_NONBLOCKING;
+  /// What the sampler's prior, a part of the bank, becomes by the expansion: with the velocity that the sampler knew.
+  [[nodiscard]] Moments AsSampled(const Sampled& sampled) const noexcept ARMCMC_NONBLOCKING;
   /// Moves and stretches the filters of the sampled part to where it was sampled.
   bool Recentre(const Sampled& sampled) noexcept ARMCMC_NONBLOCKING;
   /// Block `to` of what is carried on: a block of `last`, moved and stretched as from `from` to a part of the bank.
@@ -204,6 +220,8 @@ class Drift {
   bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;
   PosteriorMemory carried_;
+  ParamVector velocity_;  ///< That the sampler knew of.
+  ModeData moved_;        ///< The pack as it saw it.
 };
 
 }  // namespace armcmc

@@ -95,7 +95,7 @@ class ModeSampler {
   /// @param limit      Upper bound on the draws, to repeat a truncated run.
   /// @return kOk, kTruncated or kNonFinite.
   /// @rt No heap, no lock, no throw. O(max_draws samples).
-  Status Run(const ModeData& data, const PosteriorMemory& previous, std::uint64_t pack, std::uint64_t mode,
+  Status Run(const ModeData& measured, const PosteriorMemory& previous, std::uint64_t pack, std::uint64_t mode,
              Nanos deadline_ns, ClockRef clock, int limit, SamplerWorkspace* workspace,
              ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
 

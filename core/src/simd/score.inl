@@ -18,7 +18,8 @@ void ScoreTiles(int model, const NoiseModel& noise, const ModeData& data, const 
                                                    out + t * kTileLanes);
     return;
   }
-  if (!gaussian || (described ? settings.mean != 0.0 : sum_squares == nullptr)) {
+  const bool summed = described ? settings.mean == 0.0 && data.error_tape != nullptr : sum_squares != nullptr;
+  if (!gaussian || !summed) {
     for (std::size_t t = 0; t < kTiles; ++t) {
       Predict(model, data, theta[t], scratch);
       LogLikelihoodBy<ScoreSimd>(noise, data, *scratch, log_scale + t * kTileLanes, out + t * kTileLanes);
