@@ -37,7 +37,7 @@ TEST_F(LongCalibration, FalseModificationsOfFreshSeedsAreNearWhatWasAskedFor) {
   constexpr double kRate = 0.02;
   const Outcome o = Calibrate(Record(noise, 5, "120"), {"--false-modifications", "0.02"});
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("an error says something about the next"));
+  EXPECT_THAT(o.out, HasSubstr("successive errors are correlated"));
   int packs = 0, modifications = 0;
   for (const int seed : {21, 22, 23}) {
     const Decisions d = Replay(Record(noise, seed, "120"));
