@@ -32,7 +32,7 @@ class CalibrationRig : public ::testing::Test {
     return Plant(dir_ / "scenario.toml", seed, seconds);
   }
   std::string Plant(const std::string& scenario, int seed, const std::string& seconds) {
-    const std::string csv = dir_ / ("run" + std::to_string(seed) + ".csv");
+    std::string csv = dir_ / ("run" + std::to_string(seed) + ".csv");
     const Outcome o = RunProgram(Program("armcmc-plant"), {"--scenario", scenario, "--seed", std::to_string(seed),
                                                            "--duration", seconds, "--csv", csv});
     EXPECT_EQ(o.code, 0) << o.err;
