@@ -161,6 +161,48 @@ TEST(Report, ShowsTheEstimatorOnTheRecording) {
   for (const char* words : {"77.4 %", "94.7 %", "contain about 95 %"}) EXPECT_TRUE(Holds(page, words)) << words;
 }
 
+TEST(Report, TellsWhatTheLadderLeavesUnexplained) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  LadderRung& rung = result.ladder.emplace_back();
+  rung.effects = {"coulomb_friction"};
+  rung.parameters = {"Fc = 20.4 < 21 N"};
+  result.complete = true;
+  std::string page = ReportHtml(result);
+  EXPECT_TRUE(Holds(page, "Fc = 20.4 &lt; 21 N"));
+  EXPECT_TRUE(Holds(page, "No misfit remains"));
+  EXPECT_FALSE(Holds(page, "remains unexplained"));
+
+  result.complete = false;
+  result.remainder.share = 0.42;
+  result.remainder.where = {{"v", "in contact, v < 0", 0.61, 0.0, 0.0}, {"x", "x > 1", 0.13, 0.0, 0.0}};
+  result.remainder.sparse = {{"v |v|", -1.25, 0.3}, {"x^3", 2.5, 0.1}};
+  page = ReportHtml(result);
+  for (const char* words :
+       {"<b>42.0 %</b> of the squared error", "The largest part (61.0 %) is where: in contact, v &lt; 0.",
+        "− 1.25·v |v|", "+ 2.50·x^3", "does not identify its cause"})
+    EXPECT_TRUE(Holds(page, words)) << words;
+  EXPECT_FALSE(Holds(page, "No misfit remains"));
+  EXPECT_FALSE(Holds(page, "x &gt; 1"));
+}
+
+TEST(Report, ComparesWithPublishedResultsSegmentBySegment) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  result.gap.before.rmse = 0.0812, result.gap.after.rmse = 0.0203;
+  result.relative_before = 0.123, result.relative_after = 0.031;
+  EXPECT_FALSE(Holds(ReportHtml(result), "Published results on these data"));
+  result.published = {{"rms error of <another> model", 0.035, "a thesis"}};
+  std::string page = ReportHtml(result);
+  for (const char* words : {"rms error of &lt;another&gt; model</td><td class=\"num\">0.0350</td><td>a thesis",
+                            "rms error 0.0812 → 0.0203 N, relative error 12.3 % → 3.1 %"})
+    EXPECT_TRUE(Holds(page, words)) << words;
+  EXPECT_FALSE(Holds(page, "Held-out segments"));
+  result.gap.stretches = {{14.0, 17.0, 3000, 0.08, 0.021}};
+  page = ReportHtml(result);
+  EXPECT_TRUE(Holds(page,
+                    "<tr><td>14.00</td><td>17.00</td><td class=\"num\">3000</td><td class=\"num\">0.0800</td>"
+                    "<td class=\"num\">0.0210 N"));
+}
+
 TEST(Report, ComesOutOfAnEmptyResult) { EXPECT_TRUE(Holds(ReportHtml(Result{}), "</html>")); }
 
 TEST(Report, ComesOutOfAResultWithoutANumber) {

@@ -136,5 +136,61 @@ TEST(ResultJson, WritesValidTextWhateverTheNames) {
   EXPECT_EQ(out.at("where").at(0).at("feature"), "a<b>\n");
 }
 
+TEST(ResultJson, TellsHowParametersDriftAndWhetherTheyCouldBeRefitted) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  EXPECT_EQ(ToJson(result).at("drift"), json::object());
+  ParameterDrift& drift = result.drift.emplace_back();
+  drift.name = "M", drift.unit = "kg";
+  drift.before = {true, {"", {1.0, 3.0}, {90.0, 99.0}, {89.0, 98.0}, {91.0, 100.0}}, 94.0, 4.7, 1e-9, false};
+  EXPECT_EQ(ToJson(result).at("drift"),
+            (json{{"M",
+                   {{"unit", "kg"},
+                    {"before",
+                     {{"mean", 94.0},
+                      {"moves_by", 4.7},
+                      {"p_value", 1e-9},
+                      {"constant", false},
+                      {"stretches",
+                       {{{"t_s", 1.0}, {"value", 90.0}, {"low95", 89.0}, {"high95", 91.0}},
+                        {{"t_s", 3.0}, {"value", 99.0}, {"low95", 98.0}, {"high95", 100.0}}}}}},
+                    {"after", nullptr}}}}));
+}
+
+TEST(ResultJson, ScoresPredictionsOnePackAhead) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  EXPECT_TRUE(ToJson(result).at("one_step").is_null());
+  result.run.done = true;
+  result.run.pack_s = 0.1;
+  result.run.before = {1000, 6.98, 0.774, 4.58};
+  result.run.before_apart = {300, 7.5, 0.75, 4.6};
+  result.run.after = {1000, 2.27, 0.947, 2.54};
+  result.run.after_apart = {300, 2.5, 0.94, 2.6};
+  json out = ToJson(result).at("one_step");
+  EXPECT_EQ(out.at("unit"), "N");
+  EXPECT_EQ(out.at("ahead_s"), 0.1);
+  const json apart{{"samples", 300}, {"rmse", 7.5}, {"coverage95", 0.75}, {"half_width95", 4.6}};
+  EXPECT_EQ(
+      out.at("before"),
+      (json{{"samples", 1000}, {"rmse", 6.98}, {"coverage95", 0.774}, {"half_width95", 4.58}, {"kept_apart", apart}}));
+  EXPECT_TRUE(out.at("after").is_null()) << "nothing was named";
+  result.run.has_after = true;
+  out = ToJson(result).at("one_step");
+  EXPECT_EQ(out.at("after").at("rmse"), 2.27);
+  EXPECT_EQ(out.at("after").at("kept_apart").at("rmse"), 2.5);
+}
+
+TEST(ResultJson, ListsHeldOutSegmentsAndPublishedResults) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  result.gap.stretches = {{14.0, 17.0, 3000, 0.08, 0.021}};
+  result.published = {{"rms error of another model", 0.035, "a thesis"}};
+  const json out = ToJson(result);
+  EXPECT_EQ(
+      out.at("gap").at("stretches"),
+      json::array(
+          {{{"from_s", 14.0}, {"until_s", 17.0}, {"samples", 3000}, {"rmse_before", 0.08}, {"rmse_after", 0.021}}}));
+  EXPECT_EQ(out.at("published"),
+            json::array({{{"what", "rms error of another model"}, {"value", 0.035}, {"source", "a thesis"}}}));
+}
+
 }  // namespace
 }  // namespace armcmc::gap::result_json_test

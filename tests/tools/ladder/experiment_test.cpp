@@ -180,6 +180,29 @@ TEST(SeparatingMotion, SaysSoWhereNoMotionDecides) {
   EXPECT_TRUE(experiment.course.x.empty());
 }
 
+TEST(SeparatingMotion, SaysSoWhereNoOutcomeCanBePredicted) {
+  const Dataset data = OneWay();
+  const PlantDescription plant = test::AxisPlant();
+  Rung tie = TieOf({kInTime, kAlongTheWay}, data, plant);
+  // Far beyond what the axis was ever seen to need.
+  tie.contenders[0].trial.fit.theta[tie.base.fit.theta.size()] = 1e6;
+  const gap::Experiment experiment = SeparatingMotion(data, tie, plant);
+  EXPECT_THAT(experiment.words, HasSubstr("For no motion of the library within the range of the recording"));
+  EXPECT_EQ(experiment.scenario_text, "");
+}
+
+TEST(SeparatingMotion, TellsHowManyPairsItDecides) {
+  const Dataset data = OneWay();
+  const PlantDescription plant = test::AxisPlant();
+  const gap::Experiment experiment =
+      SeparatingMotion(data, TieOf({kInTime, kAlongTheWay, kAlongTheWay}, data, plant), plant);
+  EXPECT_THAT(experiment.words, HasSubstr("between cogging and cogging"));
+  EXPECT_THAT(experiment.words,
+              HasSubstr("so little that repeating it would hardly help; 2 of the 3 pairs would be decided."));
+  EXPECT_LT(experiment.nats, 1.0);
+  EXPECT_NE(experiment.scenario_text, "");
+}
+
 TEST(SeparatingMotion, ForeseesNothingWhereALawReadsWhatTheMotionMakes) {
   const Dataset data = OneWay();
   PlantDescription plant = test::AxisPlant();
