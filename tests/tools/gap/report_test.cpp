@@ -161,6 +161,32 @@ TEST(Report, ShowsTheEstimatorOnTheRecording) {
   for (const char* words : {"77.4 %", "94.7 %", "contain about 95 %"}) EXPECT_TRUE(Holds(page, words)) << words;
 }
 
+TEST(Report, ReadsTheIntervalsOfThePredictionsAndSaysWhatIsNotDetermined) {
+  Result result = test::ExampleResult(Verdict::kNamed);
+  ParameterDrift& drift = result.drift.emplace_back();
+  drift.name = "M";
+  drift.before.fitted = true;  // in no segment
+  result.run.done = true;
+  result.run.pack_s = 0.1;
+  result.run.before = {1000, 6.98, 0.774, 4.58};
+  std::string page = ReportHtml(result);
+  for (const char* words : {"contain fewer than 95 % of the samples",
+                            "<td class=\"soft\">not determined</td><td class=\"soft num\">–</td>"})
+    EXPECT_TRUE(Holds(page, words)) << words;
+  EXPECT_FALSE(Holds(page, "held-out rows</td>"));
+  // With the named effects it is their coverage that is read.
+  result.run.has_after = true;
+  result.run.after = {1000, 2.27, 0.999, 9.0};
+  result.run.before_apart = {300, 7.51, 0.75, 4.6};
+  result.run.after_apart = {300, 2.53, 0.94, 2.6};
+  page = ReportHtml(result);
+  for (const char* words : {"contain more than 95 % of the samples",
+                            "base model, held-out rows</td><td class=\"num\">300</td><td class=\"num\">7.51",
+                            "</b>, held-out rows</td><td class=\"num\">300</td><td class=\"num\">2.53"})
+    EXPECT_TRUE(Holds(page, words)) << words;
+  EXPECT_FALSE(Holds(page, "contain fewer than"));
+}
+
 TEST(Report, TellsWhatTheLadderLeavesUnexplained) {
   Result result = test::ExampleResult(Verdict::kNamed);
   LadderRung& rung = result.ladder.emplace_back();
