@@ -53,7 +53,8 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
       noise_(noise),
       normal_table_(MarginalTable::Normal()),
       dim_(space.num_parameters),
-      enabled_(share > 0.0) {
+      enabled_(share > 0.0),
+      lead_(ParamMatrix::Zero(dim_, dim_)) {
   for (int h = 0; h < kHypotheses; ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share);
 }
 
@@ -147,14 +148,16 @@ Drift::Part Drift::CarriedPart() const noexcept {
   return share_ < 1.0 - kNegligible ? Part::kWhole : Part::kDrift;
 }
 
-const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last) noexcept {
+const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last, LaplaceScratch* scratch) noexcept {
   split_ = mixed_ = false;
   share_ = rate_ = 0.0;
   if (!last.valid) started_ = false;
   if (!started_) return last;
   // If the plant's time restarts, the elapsed time is unknown: at least one pack.
   const double since = data.time_s - time_s_;
-  Predict(since > 0.0 ? since : data.duration_s);
+  elapsed_s_ = since > 0.0 ? since : data.duration_s;
+  Predict(elapsed_s_);
+  ToEffective(data, last, scratch);
   ExpectDrift();
   const Moments from{
       .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
@@ -324,12 +327,14 @@ void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, 
       const Sampled second = SampledBlock(data, next, 1, other, scratch);
       both_ = Update(first, part, next.weight[0]) && Update(second, other, next.weight[1]) && Recentre(first) &&
               Recentre(second);
-      if (both_) return;
+      if (both_) return FromEffective();
     } else if (Update(first, Part::kWhole, 1.0) && Recentre(first)) {
-      return;
+      return FromEffective();
     }
   }
+  if (known && renewed) Predict(elapsed_s_);  // what this pack tells of velocities includes the change
   Start(next, known);
+  if (known) FromEffective();
 }
 
 void Drift::Save(SnapshotWriter* out) const noexcept {

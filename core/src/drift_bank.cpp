@@ -150,11 +150,12 @@ void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<doub
   Predict(since);
   ExpectDrift();
   if (share_ < kNegligible) return;
+  const Moments then = MomentsOf(bank_, Part::kWhole);
   const Moments now = MomentsOf(predicted_, Part::kWhole);
   for (int d = 0; d < dim_; ++d) {
-    const double moved = now.mean[d] - last.mean[d];
+    const double moved = now.mean[d] - then.mean[d];
     (*ratio)[static_cast<std::size_t>(d)] =
-        std::sqrt(std::fmax((now.covariance(d, d) + moved * moved) / last.covariance(d, d), 1.0));
+        std::sqrt(std::fmax((now.covariance(d, d) + moved * moved) / then.covariance(d, d), 1.0));
   }
 }
 

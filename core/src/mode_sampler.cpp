@@ -151,7 +151,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const auto stream_of = [&](Purpose purpose) noexcept {
     return RandomStream(sampler_.seed, pack, mode * kNumPurposes + purpose);
   };
-  const PosteriorMemory& last = drift_.Carry(data, before);
+  const PosteriorMemory& last = drift_.Carry(data, before, &ws->laplace);
   drifted_.any = &last != &before;
   if (drifted_.any) drifted_ = {true, data.time_s, before.mean, last.mean, before.covariance, last.covariance};
   if (before.valid) transition_.Age(before, last);
@@ -265,6 +265,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
       .data = &data, .previous = &previous, .lambda = lambda, .first = pilot, .mass_first = 0.0, .mass_new = 1.0};
   unfinished_.calibrated = calibrated;
   SplitMassByPrior(ws, out);
+  FindEndOfPack(data, ws, out);
   out->known = informed;
   out->updated = true;
   // Each at its usual speed: a pack that was slow throughout does not affect the estimate for the next.

@@ -31,6 +31,10 @@ struct ModeDraws {
   /// In a mode about which this pack carries no information: how many times wider each parameter's posterior has
   /// become since it was last updated, at least 1 (Drift::Widening).
   std::array<double, kMaxParams> widening{};
+  /// The draws are of the effective parameters of the pack. Where these move, those at its end have the mean
+  /// mean + shift and the standard deviation ratio sd (Drift::EndOfPack).
+  bool moves = false;
+  std::array<double, kMaxParams> shift{}, ratio{};
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
   bool point_is_mode = false;               ///< mode_u is the point estimate after every decision (least squares).

@@ -41,12 +41,27 @@ struct Kernels;
 ///            once, new members that the data refute would widen those that the data support
 ///   bounds   if the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean are divided
 ///            by c: after a long time without information a drifting parameter returns to P_0
-///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
+///   motion   u is that at the end of the pack, and u - w s that s seconds before. For the sampler, the parameters of a
+///            pack are constant: it draws the effective ones, v = u - T w, of which the law with constant parameters
+///            gives, to first order, the likelihood of a pack in which they move (below)
+///   pack     log L(v) = a' (v - m) - (v - m)' H (v - m) / 2 about the posterior mean m, H the Fisher information;
 ///            pi_h times the evidence of that, with every filter updated by the same a, H, m
 ///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
 ///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
 ///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
 ///            information about it
+///
+/// Effective parameters. With the lagged sums of LocalLikelihood the log-likelihood in (v, w) is
+///
+///   a' (v - m) - (v - m)' H (v - m) / 2                                             the law with constant parameters
+///   + (T' a - b)' w - (v - m)' (H T - H_1) w - w' (T' H T - T' H_1 - H_1 T + H_2) w / 2
+///
+/// T = H^-1 H_1 makes the product of v and w vanish: the sums of the second line are what the pack tells of w whatever
+/// v is, and Carry() gives them to the filters. (A little of the prior's precision is added to H.) H_1 / H is the mean
+/// time from a sample to the end of the pack, and in directions that the pack hardly determines T w is many times that:
+/// what a constant law would find there is far from the parameters at any time of the pack. Without it the intervals of
+/// drifting parameters miss the truth. Posteriors that are stored, and the draws, are of effective parameters; the bank
+/// between packs and what is published (EndOfPack()) are of those at the end of the pack. What rests has v = u.
 ///
 /// A sampled posterior is stored as two densities, rest and drift, with each draw weighted by the probability that it
 /// came from that part; if one of them is improbable or has too few draws, a single density P is stored. Before the
@@ -107,15 +122,27 @@ class Drift {
                 std::array<double, kMaxParams>* ratio) noexcept ARMCMC_NONBLOCKING;
 
   /// What the posterior after the last pack has become by the time of this one.
-  /// @return `last`, or a memory of this object, valid until the next call.
-  /// @rt No heap, no lock, no throw. O(hypotheses dim^2 + dim^3).
-  const PosteriorMemory& Carry(const ModeData& data, const PosteriorMemory& last) noexcept ARMCMC_NONBLOCKING;
+  /// @return `last`, or a memory of this object, valid until the next call; of the effective parameters.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3), and a Laplace fit.
+  const PosteriorMemory& Carry(const ModeData& data, const PosteriorMemory& last,
+                               LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   /// Whether `memory` is one posterior at rest and drifting, and not two posteriors.
   [[nodiscard]] bool Splits(const PosteriorMemory& memory) const noexcept { return &memory == &carried_ && split_; }
   /// Of what is not split.
   [[nodiscard]] Part CarriedPart() const noexcept ARMCMC_NONBLOCKING;
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
+
+  /// After Carry(): from the posterior of the effective parameters to that at the end of the pack.
+  /// @param mean        Of the effective parameters.
+  /// @param p_drifted   Posterior probability that the parameters drift.
+  /// @param[out] shift  How far the mean moves, standardised coordinates.
+  /// @param[out] ratio  Factor of the standard deviation.
+  /// @return false where nothing moves, and the rest is not set.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
+  bool EndOfPack(const ModeData& data, const ParamVector& mean, double log_noise_scale, double p_drifted,
+                 LaplaceScratch* scratch, std::array<double, kMaxParams>* shift,
+                 std::array<double, kMaxParams>* ratio) noexcept ARMCMC_NONBLOCKING;
 
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
@@ -166,6 +193,15 @@ class Drift {
   /// u and w of one filter after a time without data.
   void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  /// `predicted_` from (u, w) to (v, w), with what the pack tells of w.
+  void ToEffective(const ModeData& data, const PosteriorMemory& last,
+                   LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// @param mode  m of the expansion. @param lead  T.
+  /// @return false, with nothing changed, where a filter would be no Gaussian.
+  bool MoveToEffective(const LocalLikelihood& local, const ParamVector& mode,
+                       const ParamMatrix& lead) noexcept ARMCMC_NONBLOCKING;
+  /// `bank_` from (v, w) to (u, w).
+  void FromEffective() noexcept ARMCMC_NONBLOCKING;
   /// Probability of drift in `predicted_`, and its expected rate.
   void ExpectDrift() noexcept ARMCMC_NONBLOCKING;
   void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
@@ -199,9 +235,12 @@ class Drift {
   bool enabled_;
   bool started_ = false;
   double time_s_ = 0.0;     ///< Of the pack that `bank_` has learnt from.
+  double elapsed_s_ = 0.0;  ///< From that one to the next.
   std::int64_t packs_ = 0;  ///< That it has learnt from.
   Bank bank_;               ///< After that pack.
   Bank predicted_;          ///< Before the next one.
+  Bank work_;               ///< Scratch.
+  ParamMatrix lead_;        ///< T of that pack, s.
   double share_ = 0.0, rate_ = 0.0;
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
   bool both_ = false;          ///< Its second block is the other part.
