@@ -148,7 +148,8 @@ Drift::Part Drift::CarriedPart() const noexcept {
   return share_ < 1.0 - kNegligible ? Part::kWhole : Part::kDrift;
 }
 
-const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last, LaplaceScratch* scratch) noexcept {
+const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last,
+                                    LaplaceScratch* scratch) noexcept {
   split_ = mixed_ = false;
   share_ = rate_ = 0.0;
   if (!last.valid) started_ = false;

@@ -1,4 +1,4 @@
-// The bank of filters between packs: generations, turns, newcomers, time.
+// The bank of filters between packs: generations, newcomers, time.
 #include <cmath>
 
 #include "armcmc/drift.hpp"
@@ -56,24 +56,6 @@ void Drift::MergeOlderGenerations() noexcept {
   }
 }
 
-void Drift::TurnVelocities(double share) noexcept {
-  for (std::size_t h = 1; h < kHypotheses; ++h) {
-    Filter turned{};
-    for (std::size_t i = h; i < kFilters; i += kHypotheses) {
-      Filter part = predicted_[i];
-      part.weight *= share;
-      predicted_[i].weight -= part.weight;
-      Merge(&part, &turned);
-    }
-    if (!(turned.weight > 0.0)) continue;
-    turned.w.setZero();
-    turned.uw.setZero();
-    turned.ww.setIdentity();
-    turned.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
-    Merge(&turned, &predicted_[h]);
-  }
-}
-
 void Drift::AddFreshFilters(double share) noexcept {
   const Moments all = MomentsOf(predicted_, Part::kWhole);
   for (Filter& f : predicted_) f.weight *= 1.0 - share;
@@ -123,7 +105,6 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
 void Drift::Predict(double elapsed_s) noexcept {
   predicted_ = bank_;
   MergeOlderGenerations();
-  TurnVelocities(1.0 - std::exp(-kTurning * elapsed_s));
   AddFreshFilters(1.0 - std::exp(-kSwitching * elapsed_s));
   for (std::size_t i = 0; i < predicted_.size(); ++i)
     if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)

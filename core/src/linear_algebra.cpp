@@ -35,8 +35,8 @@ double MultiplyByQuadratic(const JointVector& gradient, const JointMatrix& infor
   const JointVector residual = gradient - pulled;
   const JointVector step = factor.solve(residual);
   const JointVector move = covariance->lazyProduct(step);
-  const double log_integral = mean->dot(gradient) - 0.5 * mean->dot(pulled) + 0.5 * residual.dot(move) -
-                              0.5 * std::log(factor.determinant());
+  const double log_integral =
+      mean->dot(gradient) - 0.5 * mean->dot(pulled) + 0.5 * residual.dot(move) - 0.5 * std::log(factor.determinant());
   *mean += move;
   const JointMatrix inverse = factor.inverse();
   *covariance = JointMatrix(covariance->lazyProduct(inverse));

@@ -165,17 +165,16 @@ void ModeSampler::FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, Mode
   const int first = unfinished_.first;
   const int count = RoundUpToTile(out->draws - first);
   std::array<const double*, kMaxParams> rows{};
-  for (int d = 0; d < space_.dim; ++d)
-    rows[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
+  for (int d = 0; d < space_.dim; ++d) rows[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
   std::array<double, 2 + kMaxParams> sums{};
   kernels_.first_moments(space_.dim, rows.data(), out->weight + first, count, sums.data());
   ParamVector mean(space_.num_parameters);
   for (int d = 0; d < space_.num_parameters; ++d) mean[d] = sums[2 + static_cast<std::size_t>(d)] / sums[0];
   const double log_noise_scale =
-      space_.samples_noise_scale() ? space_.Theta(space_.dim - 1, sums[1 + static_cast<std::size_t>(space_.dim)] / sums[0])
-                                   : space_.log_noise_scale;
-  out->moves =
-      drift_.EndOfPack(data, mean, log_noise_scale, out->p_drifted, &ws->laplace, &out->shift, &out->ratio);
+      space_.samples_noise_scale()
+          ? space_.Theta(space_.dim - 1, sums[1 + static_cast<std::size_t>(space_.dim)] / sums[0])
+          : space_.log_noise_scale;
+  out->moves = drift_.EndOfPack(data, mean, log_noise_scale, out->p_drifted, &ws->laplace, &out->shift, &out->ratio);
 }
 
 void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {

@@ -39,7 +39,7 @@ struct Sums {
   double xx = 0.0, xy = 0.0, xx_lag = 0.0, xy_lag = 0.0, xx_lag_lag = 0.0;
 };
 
-/// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, when what drifts turned, and when
+/// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, and when
 /// the parameter changed, (u, w) is Gaussian; of these histories, which grow in number with every pack, thousands are
 /// kept, the most probable ones.
 class Histories {
@@ -52,7 +52,6 @@ class Histories {
   void Add(double persisted, const Sums& sums) {
     std::vector<History> next;
     const double stays = std::exp(-Drift::kSwitching * kDuration);
-    const double straight = std::exp(-Drift::kTurning * kDuration);
     if (histories_.empty()) {
       // What begins with the first pack moves from then on.
       for (int h = 0; h < Drift::kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
@@ -61,12 +60,6 @@ class Histories {
         std::vector<History> moved;
         History same = old;
         same.weight *= stays;
-        if (old.law > 0) {
-          History turned = Turn(same);
-          turned.weight *= 1.0 - straight;
-          same.weight *= straight;
-          moved.push_back(turned);
-        }
         moved.push_back(same);
         for (int h = 0; h < Drift::kHypotheses; ++h) {
           History begun = Begin(h, old);
@@ -142,8 +135,8 @@ class Histories {
     const double i_uu = kSd * kSd * s.xx * kPrecision;
     const double i_uw = -kSd * kSd * s.xx_lag * kPrecision;
     const double i_ww = kSd * kSd * s.xx_lag_lag * kPrecision;
-    const double at_prior = g_u * h->u + g_w * h->w -
-                            0.5 * (i_uu * h->u * h->u + 2.0 * i_uw * h->u * h->w + i_ww * h->w * h->w);
+    const double at_prior =
+        g_u * h->u + g_w * h->w - 0.5 * (i_uu * h->u * h->u + 2.0 * i_uw * h->u * h->w + i_ww * h->w * h->w);
     const double r_u = g_u - i_uu * h->u - i_uw * h->w;
     const double r_w = g_w - i_uw * h->u - i_ww * h->w;
     // C (1 + I C)^-1.

@@ -47,7 +47,6 @@ class Truth {
     if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
     if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s)) Begin();
     if (law_.rate == 0.0) return;
-    if (normal_->Uniform() > std::exp(-Drift::kTurning * elapsed_s)) Turn();
     // Small steps of the speed's own process, within bounds.
     constexpr int kSteps = 100;
     const double step = elapsed_s / kSteps;

@@ -28,12 +28,10 @@ struct Kernels;
 /// others (kDrifts) are random walks, with correlation times of some packs, and trends. Walks alone are not enough:
 /// they would learn a steady drift anew in every pack, lag behind it, and prefer the smallest steps along directions
 /// that the data do not determine, with intervals that miss the truth. Trends alone react late to changes of the
-/// velocity, and their intervals miss those. A correlation time in between, 1 s, suits neither case. What drifts can
-/// also turn: between two packs its velocity is drawn anew, ~ N(0, s_h^2), with probability 1 - e^{-kappa_t dt}.
+/// velocity, and their intervals miss those. A correlation time in between, 1 s, suits neither case.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
-///   turns    each hypothesis that drifts gets a new member from all of its own, with a velocity of its own
 ///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from the whole bank with a
 ///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
 ///   age      it takes several packs to tell a new member from the old ones. So each hypothesis has one filter per
@@ -84,17 +82,14 @@ class Drift {
     double persistence;  ///< tau, s.
     double share;        ///< Of the prior of drift.
   };
-  static constexpr std::array<Law, 9> kDrifts{{{0.03, 0.3, 0.05},
+  static constexpr std::array<Law, 7> kDrifts{{{0.03, 0.3, 0.05},
                                                {0.1, 0.3, 0.05},
-                                               {0.3, 0.3, 0.05},
-                                               {1.0, 0.3, 0.05},
-                                               {0.003, 30.0, 0.16},
-                                               {0.01, 30.0, 0.16},
-                                               {0.03, 30.0, 0.16},
-                                               {0.1, 30.0, 0.16},
-                                               {0.3, 30.0, 0.16}}};
+                                               {0.003, 30.0, 0.18},
+                                               {0.01, 30.0, 0.18},
+                                               {0.03, 30.0, 0.18},
+                                               {0.1, 30.0, 0.18},
+                                               {0.3, 30.0, 0.18}}};
   static constexpr double kSwitching = 0.01;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
-  static constexpr double kTurning = 0.04;     ///< kappa_t, 1/s: what drifts gets a new velocity, at the same rate.
   static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kHypotheses = 1 + static_cast<int>(kDrifts.size());
   static constexpr std::array<int, 3> kMergeAfter{5, 15, 45};  ///< Packs; of the latest first.
@@ -187,8 +182,6 @@ class Drift {
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
   void MergeOlderGenerations() noexcept ARMCMC_NONBLOCKING;
-  /// @param share  Of each hypothesis that drifts.
-  void TurnVelocities(double share) noexcept ARMCMC_NONBLOCKING;
   void AddFreshFilters(double share) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
   void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
