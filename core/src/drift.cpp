@@ -150,7 +150,7 @@ Drift::Part Drift::CarriedPart() const noexcept {
 
 const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last,
                                     LaplaceScratch* scratch) noexcept {
-  split_ = mixed_ = false;
+  split_ = mixed_ = moves_ = false;
   share_ = rate_ = 0.0;
   if (!last.valid) started_ = false;
   if (!started_) return last;
@@ -158,6 +158,10 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   const double since = data.time_s - time_s_;
   elapsed_s_ = since > 0.0 ? since : data.duration_s;
   Predict(elapsed_s_);
+  ExpectDrift();
+  const Moments expected = MomentsOf(predicted_, Part::kWhole);
+  expected_ = {expected.mean, expected.covariance};
+  moves_ = share_ >= kNegligible || fitted_ != Part::kRest || both_;
   ToEffective(data, last, scratch);
   ExpectDrift();
   const Moments from{

@@ -117,4 +117,25 @@ bool Drift::EndOfPack(const ModeData& data, const ParamVector& mean, double log_
   return updated;
 }
 
+bool Drift::EndOfPackAfterChange(const ParamMatrix& covariance, std::array<double, kMaxParams>* shift,
+                                 std::array<double, kMaxParams>* ratio) noexcept {
+  if (!started_ || !(lead_.cwiseAbs().maxCoeff() > 0.0)) return false;
+  Predict(elapsed_s_);
+  ExpectDrift();
+  if (share_ < kNegligible) return false;
+  work_ = predicted_;
+  for (Filter& f : work_) {
+    f.u = Multiply(lead_, f.w);
+    f.uu = Product(Product(lead_, f.ww), lead_.transpose());
+  }
+  const Moments moved = MomentsOf(work_, Part::kWhole);
+  for (int d = 0; d < dim_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    (*shift)[i] = moved.mean[d];
+    (*ratio)[i] = std::sqrt(1.0 + moved.covariance(d, d) / covariance(d, d));
+    if (!std::isfinite((*shift)[i]) || !std::isfinite((*ratio)[i])) return false;
+  }
+  return true;
+}
+
 }  // namespace armcmc

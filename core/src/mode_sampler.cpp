@@ -152,8 +152,10 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
     return RandomStream(sampler_.seed, pack, mode * kNumPurposes + purpose);
   };
   const PosteriorMemory& last = drift_.Carry(data, before, &ws->laplace);
-  drifted_.any = &last != &before;
-  if (drifted_.any) drifted_ = {true, data.time_s, before.mean, last.mean, before.covariance, last.covariance};
+  const Drift::Expected* expected = drift_.expected();
+  drifted_.any = expected != nullptr;
+  if (drifted_.any)
+    drifted_ = {true, data.time_s, before.mean, expected->mean, before.covariance, expected->covariance};
   if (before.valid) transition_.Age(before, last);
   Mismatch mismatch;
   mismatch.zeta = HUGE_VAL;  // zeta^0: the first pack is a modification

@@ -125,6 +125,13 @@ class Drift {
   [[nodiscard]] bool Splits(const PosteriorMemory& memory) const noexcept { return &memory == &carried_ && split_; }
   /// Of what is not split.
   [[nodiscard]] Part CarriedPart() const noexcept ARMCMC_NONBLOCKING;
+  /// Mean and covariance at the end of the pack of the last Carry(), as expected before it; null: as after the pack
+  /// before. Unlike what is carried on, they owe nothing to the pack.
+  struct Expected {
+    ParamVector mean;
+    ParamMatrix covariance;
+  };
+  [[nodiscard]] const Expected* expected() const noexcept { return moves_ ? &expected_ : nullptr; }
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
 
@@ -138,6 +145,12 @@ class Drift {
   bool EndOfPack(const ModeData& data, const ParamVector& mean, double log_noise_scale, double p_drifted,
                  LaplaceScratch* scratch, std::array<double, kMaxParams>* shift,
                  std::array<double, kMaxParams>* ratio) noexcept ARMCMC_NONBLOCKING;
+
+  /// The same where the parameters did not come from where they were: with the velocities that were expected before the
+  /// pack, which Learn() then starts again with, too.
+  /// @param covariance  Of the effective parameters.
+  bool EndOfPackAfterChange(const ParamMatrix& covariance, std::array<double, kMaxParams>* shift,
+                            std::array<double, kMaxParams>* ratio) noexcept ARMCMC_NONBLOCKING;
 
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
@@ -233,6 +246,8 @@ class Drift {
   Bank bank_;               ///< After that pack.
   Bank predicted_;          ///< Before the next one.
   Bank work_;               ///< Scratch.
+  Expected expected_;
+  bool moves_ = false;
   ParamMatrix lead_;        ///< T of that pack, s.
   double share_ = 0.0, rate_ = 0.0;
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
