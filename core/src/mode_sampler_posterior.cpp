@@ -164,8 +164,7 @@ void ModeSampler::FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, Mode
   const int count = RoundUpToTile(out->draws - first);
   const int dim = space_.num_parameters;
   std::array<const double*, kMaxParams> rows{};
-  for (int d = 0; d < space_.dim; ++d)
-    rows[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
+  for (int d = 0; d < space_.dim; ++d) rows[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
   const double* weight = out->weight + first;
   std::array<double, 2 + kMaxParams> sums{};
   kernels_.first_moments(space_.dim, rows.data(), weight, count, sums.data());

@@ -248,7 +248,7 @@ class Drift {
   Bank work_;               ///< Scratch.
   Expected expected_;
   bool moves_ = false;
-  ParamMatrix lead_;        ///< T of that pack, s.
+  ParamMatrix lead_;  ///< T of that pack, s.
   double share_ = 0.0, rate_ = 0.0;
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
   bool both_ = false;          ///< Its second block is the other part.
