@@ -14,7 +14,10 @@ namespace {
 
 constexpr double kMixedReach = 6.0;     // standard deviations
 constexpr double kMixedTail = 1e-3;     // of a normal law in a mixture
-constexpr std::int64_t kBothParts = 4;  // in a snapshot, added to the part of the first block
+// In a snapshot.
+constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBank = 2;
+constexpr int kFiltersOf010 = 40;
+constexpr std::int64_t kBothParts = 4;  // added to the part of the first block
 constexpr double kLeftOut = 1e-5;       // share below which a filter is left out of the mixture
 
 void MakeSymmetric(ParamMatrix* m) noexcept {
@@ -39,10 +42,14 @@ bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noex
 
 }  // namespace
 
-Drift::Hypothesis Drift::Of(int h, double share) noexcept {
+Drift::Hypothesis Drift::Of(int h, double share, int dim) noexcept {
   if (h == 0) return {.rate = 0.0, .persistence = 1.0, .prior = 1.0 - share};
-  const Law& law = kDrifts[static_cast<std::size_t>(h - 1)];
-  return {.rate = law.rate, .persistence = law.persistence, .prior = share * law.share};
+  const bool alone = h >= kFirstAlone;
+  const Law& law = alone ? kAlone : kTogether[static_cast<std::size_t>(h - 1)];
+  return {.rate = law.rate,
+          .persistence = law.persistence,
+          .prior = share / (NumHypotheses(dim) - 1),
+          .alone = alone ? h - kFirstAlone : -1};
 }
 
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
@@ -53,13 +60,15 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
       noise_(noise),
       normal_table_(MarginalTable::Normal()),
       dim_(space.num_parameters),
-      enabled_(share > 0.0) {
-  for (int h = 0; h < kHypotheses; ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share);
+      enabled_(share > 0.0),
+      lead_(ParamMatrix::Zero(dim_, dim_)) {
+  for (int h = 0; h < NumHypotheses(dim_); ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share, dim_);
 }
 
 void Drift::Forget() noexcept {
   started_ = split_ = mixed_ = both_ = false;
-  share_ = rate_ = 0.0;
+  share_ = 0.0;
+  rate_.fill(0.0);
 }
 
 void Drift::Mix(const Moments& part, int to) noexcept {
@@ -147,14 +156,22 @@ Drift::Part Drift::CarriedPart() const noexcept {
   return share_ < 1.0 - kNegligible ? Part::kWhole : Part::kDrift;
 }
 
-const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last) noexcept {
-  split_ = mixed_ = false;
-  share_ = rate_ = 0.0;
+const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last,
+                                    LaplaceScratch* scratch) noexcept {
+  split_ = mixed_ = moves_ = false;
+  share_ = 0.0;
+  rate_.fill(0.0);
   if (!last.valid) started_ = false;
   if (!started_) return last;
   // If the plant's time restarts, the elapsed time is unknown: at least one pack.
   const double since = data.time_s - time_s_;
-  Predict(since > 0.0 ? since : data.duration_s);
+  elapsed_s_ = since > 0.0 ? since : data.duration_s;
+  Predict(elapsed_s_);
+  ExpectDrift();
+  const Moments expected = MomentsOf(predicted_, Part::kWhole);
+  expected_ = {expected.mean, expected.covariance};
+  moves_ = share_ >= kNegligible || fitted_ != Part::kRest || both_;
+  ToEffective(data, last, scratch);
   ExpectDrift();
   const Moments from{
       .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
@@ -212,8 +229,7 @@ void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
       const Hypothesis& law = hypotheses_[HypothesisOf(i)];
       f.weight = i / kHypotheses + 1 == kGenerations ? law.prior : 0.0;
       f.w = ParamVector::Zero(dim_);
-      f.ww = ParamMatrix::Identity(dim_, dim_);
-      f.ww *= law.rate * law.rate;
+      f.ww = FirstVelocity(law);
     }
     f.u = next.mean.head(dim_);
     f.uu = next.covariance.topLeftCorner(dim_, dim_);
@@ -324,16 +340,18 @@ void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, 
       const Sampled second = SampledBlock(data, next, 1, other, scratch);
       both_ = Update(first, part, next.weight[0]) && Update(second, other, next.weight[1]) && Recentre(first) &&
               Recentre(second);
-      if (both_) return;
+      if (both_) return FromEffective();
     } else if (Update(first, Part::kWhole, 1.0) && Recentre(first)) {
-      return;
+      return FromEffective();
     }
   }
+  if (known && renewed) Predict(elapsed_s_);  // what this pack tells of velocities includes the change
   Start(next, known);
+  if (known) FromEffective();
 }
 
 void Drift::Save(SnapshotWriter* out) const noexcept {
-  out->PutFlag(started_);
+  out->Put(started_ ? kBank : kNoBank);
   if (!started_) return;
   out->Put(time_s_);
   out->Put(packs_);
@@ -341,7 +359,9 @@ void Drift::Save(SnapshotWriter* out) const noexcept {
   const auto put = [out](const auto& m) noexcept ARMCMC_NONBLOCKING {
     out->PutRow(m.data(), static_cast<std::size_t>(m.size()));
   };
-  for (const Filter& f : bank_) {
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    if (!Exists(i)) continue;
+    const Filter& f = bank_[i];
     out->Put(f.weight);
     put(f.u);
     put(f.w);
@@ -353,18 +373,26 @@ void Drift::Save(SnapshotWriter* out) const noexcept {
 
 void Drift::Restore(SnapshotReader* in) noexcept {
   Forget();
-  const bool started = in->Flag();
-  if (!started) return;
+  const std::uint8_t kind = in->Byte(kBank);
+  if (kind == kNoBank) return;
   time_s_ = in->Number();
   packs_ = in->Integer(0, std::numeric_limits<std::int64_t>::max());
   const std::int64_t fitted = in->Integer(0, static_cast<std::int64_t>(Part::kDrift) + kBothParts);
+  if (kind == kBankOf010) {
+    const int numbers = kFiltersOf010 * (1 + dim_ * (2 + 3 * dim_));
+    for (int k = 0; k < numbers; ++k) (void)in->Number();
+    return;
+  }
   both_ = fitted >= kBothParts;
   fitted_ = static_cast<Part>(both_ ? fitted - kBothParts : fitted);
   const auto take = [in, this](auto* m, Eigen::Index columns) noexcept ARMCMC_NONBLOCKING {
     m->resize(dim_, columns);
     in->Row(m->data(), static_cast<std::size_t>(m->size()));
   };
-  for (Filter& f : bank_) {
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    Filter& f = bank_[i];
+    f.weight = 0.0;
+    if (!Exists(i)) continue;
     f.weight = in->Number();
     take(&f.u, 1);
     take(&f.w, 1);

@@ -1,4 +1,4 @@
-// The bank of filters between packs: generations, turns, newcomers, time.
+// The bank of filters between packs: generations, newcomers, time.
 #include <cmath>
 
 #include "armcmc/drift.hpp"
@@ -6,7 +6,7 @@
 namespace armcmc {
 
 Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
-  const Eigen::Index dim = bank.back().u.size();
+  const Eigen::Index dim = bank.front().u.size();
   Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim), .covariance = ParamMatrix::Zero(dim, dim)};
   for (std::size_t i = 0; i < bank.size(); ++i) {
     if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
@@ -56,36 +56,23 @@ void Drift::MergeOlderGenerations() noexcept {
   }
 }
 
-void Drift::TurnVelocities(double share) noexcept {
-  for (std::size_t h = 1; h < kHypotheses; ++h) {
-    Filter turned{};
-    for (std::size_t i = h; i < kFilters; i += kHypotheses) {
-      Filter part = predicted_[i];
-      part.weight *= share;
-      predicted_[i].weight -= part.weight;
-      Merge(&part, &turned);
-    }
-    if (!(turned.weight > 0.0)) continue;
-    turned.w.setZero();
-    turned.uw.setZero();
-    turned.ww.setIdentity();
-    turned.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
-    Merge(&turned, &predicted_[h]);
-  }
+ParamMatrix Drift::FirstVelocity(const Hypothesis& law) const noexcept {
+  ParamMatrix covariance = ParamMatrix::Zero(dim_, dim_);
+  for (int d = 0; d < dim_; ++d) covariance(d, d) = law.Moves(d) ? law.rate * law.rate : 0.0;
+  return covariance;
 }
 
 void Drift::AddFreshFilters(double share) noexcept {
   const Moments all = MomentsOf(predicted_, Part::kWhole);
   for (Filter& f : predicted_) f.weight *= 1.0 - share;
   // Starts anywhere in the bank, with a rate from the law of the hypothesis.
-  for (std::size_t h = 0; h < kHypotheses; ++h) {
+  for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
     Filter fresh{.weight = share * hypotheses_[h].prior * all.weight,
                  .u = all.mean,
                  .w = ParamVector::Zero(dim_),
                  .uu = all.covariance,
                  .uw = ParamMatrix::Zero(dim_, dim_),
-                 .ww = ParamMatrix::Identity(dim_, dim_)};
-    fresh.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+                 .ww = FirstVelocity(hypotheses_[h])};
     Merge(&fresh, &predicted_[h]);
   }
 }
@@ -104,12 +91,12 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
   for (int i = 0; i < dim_; ++i)
     for (int j = 0; j <= i; ++j)
       f.uu(i, j) = f.uu(j, i) =
-          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j ? noise_u : 0.0);
+          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j && law.Moves(i) ? noise_u : 0.0);
   for (int i = 0; i < dim_; ++i)
-    for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j ? noise_uw : 0.0);
+    for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j && law.Moves(i) ? noise_uw : 0.0);
   f.w *= phi;
   f.ww *= phi * phi;
-  for (int i = 0; i < dim_; ++i) f.ww(i, i) += noise_w;
+  for (int i = 0; i < dim_; ++i) f.ww(i, i) += law.Moves(i) ? noise_w : 0.0;
   for (int i = 0; i < dim_; ++i) {
     const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
     const double shrink = std::sqrt(kept);
@@ -123,7 +110,6 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
 void Drift::Predict(double elapsed_s) noexcept {
   predicted_ = bank_;
   MergeOlderGenerations();
-  TurnVelocities(1.0 - std::exp(-kTurning * elapsed_s));
   AddFreshFilters(1.0 - std::exp(-kSwitching * elapsed_s));
   for (std::size_t i = 0; i < predicted_.size(); ++i)
     if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
@@ -133,14 +119,15 @@ void Drift::Predict(double elapsed_s) noexcept {
 void Drift::ExpectDrift() noexcept {
   double total = 0.0;
   double drifts = 0.0;
-  rate_ = 0.0;
+  rate_.fill(0.0);
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
     total += predicted_[i].weight;
     if (IsOf(Part::kDrift, i)) drifts += predicted_[i].weight;
-    rate_ += predicted_[i].weight * hypotheses_[HypothesisOf(i)].rate;
+    const Hypothesis& law = hypotheses_[HypothesisOf(i)];
+    for (int d = 0; d < dim_; ++d) rate_[static_cast<std::size_t>(d)] += law.Moves(d) ? predicted_[i].weight * law.rate : 0.0;
   }
   share_ = drifts / total;
-  rate_ /= total;
+  for (double& rate : rate_) rate /= total;
 }
 
 void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<double, kMaxParams>* ratio) noexcept {
@@ -150,11 +137,12 @@ void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<doub
   Predict(since);
   ExpectDrift();
   if (share_ < kNegligible) return;
+  const Moments then = MomentsOf(bank_, Part::kWhole);
   const Moments now = MomentsOf(predicted_, Part::kWhole);
   for (int d = 0; d < dim_; ++d) {
-    const double moved = now.mean[d] - last.mean[d];
+    const double moved = now.mean[d] - then.mean[d];
     (*ratio)[static_cast<std::size_t>(d)] =
-        std::sqrt(std::fmax((now.covariance(d, d) + moved * moved) / last.covariance(d, d), 1.0));
+        std::sqrt(std::fmax((now.covariance(d, d) + moved * moved) / then.covariance(d, d), 1.0));
   }
 }
 

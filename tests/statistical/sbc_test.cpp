@@ -47,7 +47,6 @@ class Truth {
     if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
     if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s)) Begin();
     if (law_.rate == 0.0) return;
-    if (normal_->Uniform() > std::exp(-Drift::kTurning * elapsed_s)) Turn();
     // Small steps of the speed's own process, within bounds.
     constexpr int kSteps = 100;
     const double step = elapsed_s / kSteps;
@@ -56,7 +55,8 @@ class Truth {
         const double kept = std::exp(-step / law_.persistence);
         theta_[d] += step * speed_[d] * space_.scale[d];
         theta_[d] = std::clamp(theta_[d], settings_.parameters[d].lower, settings_.parameters[d].upper);
-        speed_[d] = kept * speed_[d] + law_.rate * std::sqrt(1.0 - kept * kept) * (*normal_)();
+        if (law_.Moves(static_cast<Eigen::Index>(d)))
+          speed_[d] = kept * speed_[d] + law_.rate * std::sqrt(1.0 - kept * kept) * (*normal_)();
       }
   }
 
@@ -66,12 +66,14 @@ class Truth {
     const double share = settings_.forgetting.drift_share;
     double left = normal_->Uniform();
     int h = 0;
-    while (h + 1 < Drift::kHypotheses && left > Drift::Of(h, share).prior) left -= Drift::Of(h++, share).prior;
-    law_ = Drift::Of(h, share);
+    while (h + 1 < Drift::NumHypotheses(3) && left > Drift::Of(h, share, 3).prior)
+      left -= Drift::Of(h++, share, 3).prior;
+    law_ = Drift::Of(h, share, 3);
     Turn();
   }
   void Turn() {
-    for (double& v : speed_) v = law_.rate * (*normal_)();
+    for (std::size_t d = 0; d < 3; ++d)
+      speed_[d] = law_.Moves(static_cast<Eigen::Index>(d)) ? law_.rate * (*normal_)() : 0.0;
   }
 
   const EstimatorSettings& settings_;
