@@ -92,7 +92,7 @@ TEST(Meaning, UnitsHaveNoSlashWhichPlotJugglerTakesForAFolder) {
 }
 
 TEST(Columns, AnActuatorWithEffectsIsFittedToThePressureRate) {
-  const std::vector<MessageType> types = ReleasedTypes();
+  const std::vector<MessageType>& types = ReleasedTypes();
   ChannelScan channel;
   for (const MessageType& type : types)
     if (type.name == "estimate_t") channel.type = &type;
