@@ -28,13 +28,14 @@ setup_multicast() {
   return 1
 }
 
-# build PRESET [TARGET...]: configures and builds; shows the output only if it fails.
+# build PRESET [TARGET...]: configures, with `configure_options`, and builds; shows the output only if it fails.
+configure_options=()
 build() {
   local preset=$1 log code=0
   shift
   log=$(mktemp)
   say "building (preset $preset); the first build takes some minutes"
-  { cmake --preset "$preset" && cmake --build --preset "$preset" ${1:+--target "$@"}; } >"$log" 2>&1 || code=$?
+  { cmake --preset "$preset" "${configure_options[@]}" && cmake --build --preset "$preset" ${1:+--target "$@"}; } >"$log" 2>&1 || code=$?
   if [ "$code" -ne 0 ]; then
     grep -nE 'error|FAILED|CMake Error' "$log" | head -40 >&2
     tail -n 30 "$log" >&2

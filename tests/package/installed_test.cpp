@@ -47,6 +47,36 @@ void ExpectTheLoopOfThePageWorks(const fs::path& folder, const std::string& pref
   EXPECT_NEAR(last("k = "), 400.0, 10.0) << run.out;
 }
 
+/// The Python package, if this build makes it for Debian's Python: from the installed files alone, with the plants and
+/// the programs that belong to them.
+void ExpectThePythonPackageWorks(const fs::path& folder, const std::string& root) {
+  const std::string deb = folder / "python3-armcmc_*.deb";
+  if (Shell("ls " + deb).code != 0) return;
+  ASSERT_EQ(Shell("dpkg-deb -x " + deb + " " + root).code, 0);
+  const std::string depends = Shell("dpkg-deb -f " + deb + " Depends").out;
+  for (const char* package : {"armcmc (= ", "python3-numpy", "python3 (>= 3."})
+    EXPECT_NE(depends.find(package), std::string::npos) << package << " is missing in " << depends;
+  const std::string packages = root + "/usr/lib/python3/dist-packages";
+  const std::string suffix = "$(/usr/bin/python3 -c 'import sysconfig as s; print(s.get_config_var(\"EXT_SUFFIX\"))')";
+  if (Shell("test -e " + packages + "/armcmc/_armcmc" + suffix).code != 0) return;  // of another Python
+  std::ofstream(folder / "use.py") << "import armcmc, numpy as np, os\n"
+                                      "root = os.path.realpath(os.environ['ROOT'])\n"
+                                      "assert os.path.realpath(armcmc.__file__).startswith(root), armcmc.__file__\n"
+                                      "assert 'servo_axis' in armcmc.models(), armcmc.models()\n"
+                                      "t = 1e-3 * np.arange(3000)\n"
+                                      "q, v, a = np.sin(5 * t), 5 * np.cos(5 * t), -25 * np.sin(5 * t)\n"
+                                      "noise = np.random.default_rng(1).standard_normal(t.size)\n"
+                                      "F = 90 * a + 200 * v + 40 * np.sign(v) + noise\n"
+                                      "e = armcmc.Estimator('hunt_crossley', 'hunt_crossley')\n"
+                                      "e.step(np.column_stack([q, v])[:100], F[:100], 1e-3)\n"
+                                      "r = armcmc.gap('servo_axis', dict(t=t, q=q, v=v, a=a, F=F))\n"
+                                      "print(r['verdict'], r['effects'][0]['name'])\n";
+  const Outcome run = Shell("cd / && ROOT=" + root + " PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=" + packages +
+                            " /usr/bin/python3 " + (folder / "use.py").string());
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, "named coulomb_friction\n");
+}
+
 /// A source that includes every header that is installed under `prefix`.
 void WriteAllHeaders(const fs::path& prefix, const fs::path& source) {
   std::set<std::string> headers;
@@ -150,6 +180,7 @@ TEST(Installed, TheDebianPackageHoldsWhatAnOperatorNeeds) {
   EXPECT_EQ(completed("armcmc-model", "armcmc-model \"\"", 1), "--help --version check list add new\n");
   EXPECT_EQ(completed("armcmc-model", "armcmc-model new --f", 2), "--from\n");
   ExpectTheLoopOfThePageWorks(dir.path(), root + "/usr");
+  ExpectThePythonPackageWorks(dir.path(), root);
 }
 
 TEST(Installed, SystemdAcceptsTheService) {

@@ -9,11 +9,18 @@
 
 namespace armcmc::test {
 
-/// Cells of a line of a CSV file. Quotes are not understood.
+/// Cells of a line of a CSV file, without their quotes.
 [[nodiscard]] inline std::vector<std::string> CellsOf(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line + ",");
-  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back().push_back(c);
+  }
   return cells;
 }
 

@@ -92,7 +92,7 @@ TEST(Meaning, UnitsHaveNoSlashWhichPlotJugglerTakesForAFolder) {
 }
 
 TEST(Columns, AnActuatorWithEffectsIsFittedToThePressureRate) {
-  const std::vector<MessageType> types = ReleasedTypes();
+  const std::vector<MessageType>& types = ReleasedTypes();
   ChannelScan channel;
   for (const MessageType& type : types)
     if (type.name == "estimate_t") channel.type = &type;
@@ -126,7 +126,7 @@ TEST_F(CsvExport, EstimatesHaveTheNamesAndUnitsOfTheirParameters) {
   EXPECT_EQ(summary.tables[0].rows, 3);
   const Rows rows = Table("EST_ESTIMATE");
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(TextOf(request_.out / "EST_ESTIMATE.csv").substr(0, 6), "t [s],");
+  EXPECT_EQ(TextOf(request_.out / "EST_ESTIMATE.csv").substr(0, 8), "\"t [s]\",");
   EXPECT_EQ(rows[0].at("t [s]"), "0");
   EXPECT_NEAR(Number(rows[2].at("t [s]")), 2e-6, 1e-12) << "the log writer counts microseconds";
   EXPECT_EQ(Number(rows[2].at("ar_map.K [N m^-p]")), EstimateWithMismatch(3).ar_map[0]) << "to the bit";
@@ -138,6 +138,35 @@ TEST_F(CsvExport, EstimatesHaveTheNamesAndUnitsOfTheirParameters) {
   EXPECT_TRUE(rows[0].contains("y_pred [N]"));
   EXPECT_FALSE(rows[0].contains("ar_map.parameter3")) << "entries past n_params are left out";
   EXPECT_EQ(TextOf(request_.out / "EST_ESTIMATE.csv").find('/'), std::string::npos);
+}
+
+// DetectDelimiter in plotjuggler_plugins/DataLoadCSV/csv_parser.cpp, PlotJuggler 3.17: of the characters outside quotes
+// in the header, the most frequent separates; runs of spaces count once.
+TEST_F(CsvExport, PlotJugglerFindsTheSeparatorInTheHeader) {
+  {
+    LogWriter log(request_.log);
+    log.Write("EST_ESTIMATE", EstimateWithMismatch(1));
+    log.Write("PLANT_PACK", ContactPack(1));
+    posterior_t p{};
+    p.plant_kind = 1, p.n_params = 3, p.n_bins = 4, p.known = 1;
+    log.Write("EST_POSTERIOR", p);
+  }
+  for (const bool long_histograms : {false, true}) {
+    request_.long_histograms = long_histograms;
+    Export();
+    for (const char* channel : {"EST_ESTIMATE", "PLANT_PACK", "EST_POSTERIOR"}) {
+      const std::string text = TextOf(request_.out / (std::string(channel) + ".csv"));
+      std::map<char, int> outside;
+      bool quoted = false;
+      char before = '\0';
+      for (const char c : text.substr(0, text.find('\n'))) {
+        if (c == '"') quoted = !quoted;
+        if (!quoted && (c != ' ' || before != ' ')) ++outside[c];
+        before = quoted ? '"' : c;
+      }
+      for (const char other : {' ', ';', '\t'}) EXPECT_GT(outside[','], outside[other]) << channel << ": " << text;
+    }
+  }
 }
 
 TEST_F(CsvExport, SamplesOfAPackHaveARowAndATimeEach) {

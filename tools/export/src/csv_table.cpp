@@ -23,6 +23,15 @@ void AppendText(const std::string& text, std::string* row) {
   if (quoted) row->push_back('"');
 }
 
+/// Quoted where a name holds a space: PlotJuggler takes what stands more often outside quotes, commas or spaces, for
+/// the separator.
+void AppendHeader(const std::string& name, std::string* row) {
+  if (name.find(' ') == std::string::npos) return AppendText(name, row);
+  row->push_back('"');
+  for (const char c : name) row->append(c == '"' ? 2 : 1, c);
+  row->push_back('"');
+}
+
 /// The table of one channel while it is written.
 class Table final : public Sink {
  public:
@@ -34,11 +43,11 @@ class Table final : public Sink {
         file_(path_, std::ios::binary) {
     if (!file_) throw support::InputError(path_.string() + ": cannot be written");
     long_ = long_histograms && channel.type->Find("density") != nullptr;
-    row_ = "t [s]";
+    AppendHeader("t [s]", &row_);
     if (long_) {
       row_ += ",seq,mode,parameter,unit,bin,from,to,density";
     } else {
-      for (const Column& column : columns_) row_.append(",").append(column.header);
+      for (const Column& column : columns_) row_.push_back(','), AppendHeader(column.header, &row_);
     }
     EndRow();
     rows_ = 0;

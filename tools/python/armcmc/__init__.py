@@ -8,12 +8,19 @@ The same code as the programs armcmc-replay and armcmc-estimator: the same packs
 results. Not for real time, for which there is armcmc-estimator.
 """
 
-from . import _armcmc
+import os
+
+try:
+    from . import _armcmc
+except ImportError as _error:
+    from ._prefix import import_problem
+
+    raise ImportError(import_problem() or str(_error)) from _error
 from ._estimator import Estimate, Estimator, Record
 from ._gap import gap
 from ._prefix import PREFIX as _PREFIX
 
-_armcmc.use_shared_prefix(str(_PREFIX))
+_armcmc.use_shared_prefix(os.fsencode(_PREFIX))
 
 __version__ = _armcmc.version
 MAX_PACK_SAMPLES = _armcmc.max_pack_samples

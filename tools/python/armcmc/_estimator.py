@@ -1,8 +1,8 @@
+import operator
 import os
 
-import numpy as np
-
 from . import _armcmc, _toml
+from ._arrays import numbers, path_bytes, seconds
 
 
 class Record(dict):
@@ -12,37 +12,30 @@ class Record(dict):
         try:
             return self[name]
         except KeyError:
-            raise AttributeError(f"no {name!r} here; there are {', '.join(map(str, self))}") from None
+            raise AttributeError(f"no {name!r} here; there are {', '.join(map(str, self)) or 'none'}") from None
 
 
 class Estimate(Record):
     """The result of one step: see the table in the README. `estimate["K"]` is quantity K of the reported mode."""
 
     def __missing__(self, name):
-        return self["modes"][self["report_mode"]]["quantities"][name]
+        quantities = self["modes"][self["report_mode"]]["quantities"] if self.keys() >= {"modes", "report_mode"} else {}
+        if name not in quantities:
+            raise KeyError(f"no {name!r} here; there are {', '.join(map(str, [*quantities, *self])) or 'none'}")
+        return quantities[name]
+
+
+def _mode(mode):
+    try:
+        return max(-1, min(operator.index(mode), 2**31 - 1))
+    except TypeError:
+        raise ValueError(f"mode = {mode!r}: give the number of a mode, an integer from 0") from None
 
 
 def _records(value):
     if isinstance(value, dict):
         return Record((key, _records(item)) for key, item in value.items())
     return [_records(item) for item in value] if isinstance(value, list) else value
-
-
-def _numbers(name, value):
-    try:
-        array = np.asarray(value)
-        if np.iscomplexobj(array):
-            raise TypeError("complex numbers")
-        return np.ascontiguousarray(array, dtype=float) if array.ndim else array.astype(float)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is no array of real numbers: {error}") from None
-
-
-def _seconds(name, value):
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: give a number of seconds") from None
 
 
 class Estimator:
@@ -56,20 +49,23 @@ class Estimator:
     """
 
     def __init__(self, model, config=None, **overrides):
-        model = os.fspath(model)
-        config = None if config is None else os.fspath(config)
+        model = path_bytes("model", model)
+        config = None if config is None else path_bytes("config", config)
         if config is not None and not overrides:
             self._own = _armcmc.Estimator.from_file(model, config)
-            return
-        table, name = {"schema": 1}, "the keywords"
-        if config is not None:
-            path = _armcmc.config_path(config)
-            try:
-                table = _toml.read(path)
-            except (OSError, _toml.tomllib.TOMLDecodeError) as error:
-                raise ValueError(f"{path}: {error}") from None
-            name = f"{path} with the keywords"
-        self._own = _armcmc.Estimator.from_text(model, _toml.text(_toml.merged(table, overrides)), name)
+        else:
+            table, name = {"schema": 1}, b"the keywords"
+            if config is not None:
+                path = _armcmc.config_path(config)
+                table, name = _toml.read(path), path + b" with the keywords"
+            self._own = _armcmc.Estimator.from_text(model, _toml.text(_toml.merged(table, overrides)), name)
+        self._model = os.fsdecode(model)
+
+    def __repr__(self):
+        return f"<armcmc.Estimator of {self._model}: {', '.join(p.name for p in self.parameters)}>"
+
+    def __reduce__(self):
+        raise TypeError("an Estimator can be neither copied nor pickled: make another one from the same arguments")
 
     def step(self, u, y, dt, t_last=None):
         """One pack: draws, summary, and the prior of the next pack. Releases the interpreter lock while it computes.
@@ -82,8 +78,8 @@ class Estimator:
 
         Returns an Estimate. Raises ValueError if the pack is invalid, and leaves the estimator unchanged.
         """
-        own_t_last = None if t_last is None else _seconds("t_last", t_last)
-        return Estimate(_records(self._own.step(_numbers("u", u), _numbers("y", y), _seconds("dt", dt), own_t_last)))
+        own_t_last = None if t_last is None else seconds("t_last", t_last)
+        return Estimate(_records(self._own.step(numbers("u", u), numbers("y", y), seconds("dt", dt), own_t_last)))
 
     def draws(self, mode=0):
         """(samples, weights) of the newest step: (n, dim) in the units of the columns, and (n,) with sum 1.
@@ -91,11 +87,11 @@ class Estimator:
         The candidates with nonzero weight, each once; draw_names(mode) has the names of the columns.
         Raises ValueError if the step carried no information about that mode.
         """
-        return self._own.draws(mode)
+        return self._own.draws(_mode(mode))
 
     def draw_names(self, mode=0):
         """The names of the parameters, then "noise_std" if the scale of the noise is estimated."""
-        return self._own.draw_columns(mode)
+        return self._own.draw_columns(_mode(mode))
 
     def reset(self):
         """Discards everything learnt; the next pack is the first, and starts at time 0."""

@@ -2,6 +2,7 @@
 
 import json
 import numbers
+import os
 import tomllib
 from collections.abc import Mapping
 
@@ -22,8 +23,12 @@ def text(table):
 
 
 def read(path):
-    with open(path, "rb") as file:
-        return tomllib.load(file)
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        why = error.strerror if isinstance(error, OSError) else error
+        raise ValueError(f"{os.fsdecode(path)}: {why}") from None
 
 
 def _key(key):
@@ -38,7 +43,9 @@ def _string(value):
 
 
 def _value(key, value):
-    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+    if hasattr(value, "tolist"):  # numbers and arrays of numpy
+        value = value.tolist()
+    if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return _string(value)

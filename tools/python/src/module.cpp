@@ -111,9 +111,14 @@ py::list SignalList(const std::vector<Signal>& signals) {
 /// What is wrong with an input is a ValueError; words of a command line are not for Python.
 void Translate(std::exception_ptr error) {
   const auto say = [](const std::exception& e) {
-    const std::string text = e.what(), option = "--model ";
-    PyErr_SetString(PyExc_ValueError,
-                    text.starts_with(option) ? ("model " + text.substr(option.size())).c_str() : text.c_str());
+    std::string text = e.what();
+    const std::string option = "--model ";
+    if (text.starts_with(option)) text = "model " + text.substr(option.size());
+    // Names of files are any bytes.
+    PyObject* words = PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace");
+    if (words == nullptr) return;  // with the error set
+    PyErr_SetObject(PyExc_ValueError, words);
+    Py_DECREF(words);
   };
   try {
     if (error) std::rethrow_exception(std::move(error));
@@ -138,7 +143,8 @@ PYBIND11_MODULE(_armcmc, m) {
   m.attr("max_pack_samples") = kMaxPackSamples;
   m.def("use_shared_prefix", [](const std::string& prefix) { support::UseSharedPrefix(prefix); });
   m.def("plant_names", &support::PlantNames);
-  m.def("config_path", [](const std::string& name) { return support::FindSharedFile("config", name).string(); });
+  m.def("config_path",
+        [](const std::string& name) { return py::bytes(support::FindSharedFile("config", name).string()); });
   py::class_<PythonEstimator>(m, "Estimator")
       .def_static("from_file", &python::FromFile)
       .def_static("from_text", &python::FromText)

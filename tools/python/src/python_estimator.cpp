@@ -13,7 +13,7 @@ namespace armcmc::python {
 namespace {
 
 constexpr std::int64_t kRunId = 1;
-constexpr double kLongest = 1e9;  // s: what nanoseconds of 64 bits hold, with room
+constexpr double kLatest = 9e9;  // s: what nanoseconds of 64 bits hold; seconds since 1970 are 2e9
 
 /// Of effects, baselines and rates as the estimator samples them.
 Composition CompositionOf(EstimatorSettings settings) {
@@ -49,10 +49,10 @@ void PythonEstimator::Check(const Samples& s, double dt, double t_last) const {
   if (s.num_inputs != inputs)
     Refuse("u has " + std::to_string(s.num_inputs) + " columns, expected " + std::to_string(inputs) + ": " +
            List(Inputs()));
-  if (!std::isfinite(dt) || dt <= 0.0 || dt > kLongest)
+  if (!std::isfinite(dt) || dt <= 0.0 || dt > kLatest)
     Refuse("dt is the sample interval in seconds: give a number above 0");
-  if (!std::isnan(t_last) && std::fabs(t_last) > kLongest)
-    Refuse("t_last is the time of the last sample in seconds: give a finite number of at most 1e9");
+  if (!std::isnan(t_last) && std::fabs(t_last) > kLatest)
+    Refuse("t_last is the time of the last sample in seconds: give a finite number of at most 9e9");
   if (!std::isnan(t_last) && seq_ > 0 && t_last <= t_last_)
     Refuse("t_last = " + std::to_string(t_last) + " s is not after the pack before, which ended at " +
            std::to_string(t_last_) + " s: give packs in order, or call reset() to begin another run");
@@ -70,6 +70,7 @@ Estimate PythonEstimator::Step(const Samples& s, double dt, double t_last) {
   Check(s, dt, t_last);
   const double length = s.num_samples * dt;
   const double t = std::isnan(t_last) ? t_last_ + length : t_last;
+  if (t > kLatest) Refuse("the pack would end later than 9e9 s: call reset() to begin another run");
   // Of packs that are missing before this one, the numbers are left out.
   const double packs = seq_ > 0 ? std::round((t - t_last_) / length) : 1.0;
   const std::int64_t seq = seq_ + static_cast<std::int64_t>(std::clamp(packs, 1.0, 1e12));
