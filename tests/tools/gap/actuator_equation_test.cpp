@@ -130,6 +130,7 @@ TEST(DrivenMotion, RunsAbreastAreThoseOneByOneToTheBit) {
     if (form.slot != Slot::kForce) continue;
     const Vector at = Somewhere(form, Vector());
     std::vector<double> values;
+    values.reserve(form.coordinates.size());
     for (int c = 0; c < form.size(); ++c) values.push_back(form.coordinates[static_cast<std::size_t>(c)].Value(at[c]));
     runs.push_back(runs.size() > 2 ? runs.back() : std::vector<DrivenMotion::Force>());
     if (runs.back().size() > 1) runs.back().erase(runs.back().begin());
