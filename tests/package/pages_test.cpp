@@ -189,7 +189,7 @@ TEST(Pages, TheArchitectureNamesEveryPlaceOfTheFiveChanges) {
       {"A new section in the gap report", {"RunAlong", "AddRunAlong", "result.run", "result->run"}, 7},
   };
   const std::string page = TextOf(SourceDir() / ".github/ARCHITECTURE.md");
-  const std::regex is_source(R"((core|rt|plant_sim|tools|lcm_types)/.*\.(cpp|hpp|inl|java|lcm))");
+  const std::regex is_source(R"((core|rt|plant_sim|tools|lcm_types)/.*\.(cpp|hpp|inl|java|lcm)|tools/gap/.*\.toml)");
   std::vector<std::pair<std::string, std::string>> sources;
   for (const std::string& path : Tree())
     if (std::regex_match(path, is_source)) sources.emplace_back(path, TextOf(SourceDir() / path));

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "armcmc/gap/driven_motion.hpp"
 #include "armcmc/gap/hypothesis.hpp"
 #include "gap/plants/soft_actuator/actuator_signals.hpp"
-#include "gap/plants/soft_actuator/bend_simulation.hpp"
 #include "tools/gap/actuator_rig.hpp"
 
 namespace armcmc::gap::test::actuator_equation_test {
@@ -88,14 +88,14 @@ TEST(ActuatorSignals, SmoothThePressureWithoutRoundingTheCornersOfTheValves) {
   EXPECT_LT(worst, 50.0);
 }
 
-TEST(BendSimulation, IsExactForAConstantPressure) {
+TEST(DrivenMotion, IsExactForAConstantPressure) {
   // From rest: alpha = q1 p / q3 (1 + (s2 e^(s1 t) - s1 e^(s2 t)) / (s1 - s2)), s1, s2 the poles.
   const ActuatorConstants c = BuiltinSettings("soft_actuator_excited").constants;
   const double dt = 2e-3, p = 4e4;
   const Eigen::Index rows = 300;
   const Vector t = Vector::LinSpaced(rows, 0.0, dt * static_cast<double>(rows - 1));
   Vector angle(rows);
-  BendSimulation(c, dt).Run(t, Vector::Constant(rows, p), {}, {}, rows, &angle, nullptr);
+  DrivenMotion({c.q1, c.q2, c.q3}, dt).Run(t, Vector::Constant(rows, p), {}, {}, rows, &angle, nullptr);
   const double root = std::sqrt(0.25 * c.q2 * c.q2 - c.q3), s1 = -0.5 * c.q2 + root, variance = -0.5 * c.q2 - root;
   for (Eigen::Index i = 0; i < rows; ++i) {
     const double part = (variance * std::exp(s1 * t[i]) - s1 * std::exp(variance * t[i])) / (s1 - variance);
@@ -118,20 +118,21 @@ Vector Somewhere(const EffectForm& form, Vector theta) {
   return theta;
 }
 
-TEST(BendSimulation, RunsAbreastAreThoseOneByOneToTheBit) {
+TEST(DrivenMotion, RunsAbreastAreThoseOneByOneToTheBit) {
   const ActuatorConstants constants = BuiltinSettings("soft_actuator_excited").constants;
   const auto equation = ActuatorEquation(kBend);
   const Signals s = equation->Prepare(RecordPlant("soft_actuator_excited", {}, 6, 1.0), kWindow);
-  const BendSimulation simulation(constants, s.dt);
+  const DrivenMotion simulation({constants.q1, constants.q2, constants.q3}, s.dt);
   const Vector gate = Vector::Ones(s.rows());
-  std::vector<std::vector<BendSimulation::Force>> runs(1);  // one without any force
+  std::vector<std::vector<DrivenMotion::Force>> runs(1);  // one without any force
   const std::vector<EffectForm> catalogue = equation->Catalogue(s);
   for (const EffectForm& form : catalogue) {
     if (form.slot != Slot::kForce) continue;
     const Vector at = Somewhere(form, Vector());
     std::vector<double> values;
+    values.reserve(form.coordinates.size());
     for (int c = 0; c < form.size(); ++c) values.push_back(form.coordinates[static_cast<std::size_t>(c)].Value(at[c]));
-    runs.push_back(runs.size() > 2 ? runs.back() : std::vector<BendSimulation::Force>());
+    runs.push_back(runs.size() > 2 ? runs.back() : std::vector<DrivenMotion::Force>());
     if (runs.back().size() > 1) runs.back().erase(runs.back().begin());
     runs.back().push_back({&form, values, &gate});
   }

@@ -16,9 +16,9 @@ namespace {
 
 using Equations = std::vector<std::unique_ptr<Equation>>;
 
-Equations OfContact(const std::string&) {
+Equations OfContact(const std::string& model) {
   Equations equations;
-  equations.push_back(MakeContactEquation());
+  equations.push_back(MakeContactEquation(BuiltinSettings(model).model));
   return equations;
 }
 

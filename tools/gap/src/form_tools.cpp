@@ -14,16 +14,6 @@ Coordinate ShapeOf(const char* name, const char* unit, double unit_size, double 
   return {name, unit, low, high, 0.5 * (low + high), 1.0, unit_size, true};
 }
 
-Coordinate UpTo(Coordinate shape) {
-  shape.other_above = true;
-  return shape;
-}
-
-Coordinate DownTo(Coordinate shape) {
-  shape.other_below = true;
-  return shape;
-}
-
 void SetStarts(EffectForm* form, const std::vector<int>& counts) {
   std::vector<std::vector<double>> grid{std::vector<double>(static_cast<std::size_t>(form->num_amplitudes), 0.0)};
   for (std::size_t s = 0; s < counts.size(); ++s) {
@@ -37,17 +27,6 @@ void SetStarts(EffectForm* form, const std::vector<int>& counts) {
     grid = std::move(wider);
   }
   form->starts = std::move(grid);
-}
-
-double ShapeValue(const EffectForm& form, std::size_t shape_index, const double* shape) {
-  return form.coordinates[static_cast<std::size_t>(form.num_amplitudes) + shape_index].Value(shape[shape_index]);
-}
-
-EffectForm VariantOf(const EffectForm& base, const char* variant, const char* formula) {
-  EffectForm form = base;
-  form.variant = variant;
-  form.formula = formula;
-  return form;
 }
 
 EffectForm UnlistedForm(const char* what, const char* family, const char* formula, Slot slot) {

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace armcmc::gap {
 namespace {
@@ -63,6 +64,32 @@ int WidestWindow(const Vector& series, int widest) {
     if (removed <= kAllowed * noise + kNegligible * variance) return window;
   }
   return 1;
+}
+
+double LeftOfNoise(double noise_sd, int window) {
+  // The cubic of a window passes 9 / (4 window) of the variance.
+  return noise_sd * std::sqrt(2.25 / std::max(window, kOrder));
+}
+
+void AssignSide(const Vector& output, double noise_sd, Vector* position) {
+  constexpr double kSure = 3.0;  // standard deviations
+  const auto sure = [&](Eigen::Index i) { return std::abs((*position)[i]) > kSure * noise_sd; };
+  const Eigen::Index rows = position->size();
+  for (Eigen::Index first = 0; first < rows;) {
+    if (sure(first)) {
+      ++first;
+      continue;
+    }
+    Eigen::Index end = first + 1;
+    while (end < rows && !sure(end)) ++end;
+    const double before = first > 0 ? (*position)[first - 1] : 0.0, after = end < rows ? (*position)[end] : 0.0;
+    for (Eigen::Index i = first; i < end && before * after < 0.0; ++i) {
+      const bool as_before = std::abs(output[i] - output[first - 1]) < std::abs(output[i] - output[end]);
+      const double depth = std::max(std::abs((*position)[i]), std::numeric_limits<double>::min());
+      (*position)[i] = std::copysign(depth, as_before ? before : after);
+    }
+    first = end;
+  }
 }
 
 Vector Leaky(const Vector& series, double tau_samples, double start) {

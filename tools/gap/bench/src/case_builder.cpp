@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "plants/registry.hpp"
+#include "hidden.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -41,9 +41,9 @@ std::string ScenarioOfPlant(const std::string& name) {
 std::string GroupOf(double strength) { return "R " + Short(strength); }
 
 std::pair<std::string, std::string> DrawPair(std::mt19937_64* random) {
-  const std::size_t count = kCatalogue.size();
+  const std::size_t count = HiddenInContact().catalogue.size();
   const std::size_t first = (*random)() % count, second = (first + 1 + (*random)() % (count - 1)) % count;
-  return {kCatalogue[first], kCatalogue[second]};
+  return {HiddenInContact().catalogue[first], HiddenInContact().catalogue[second]};
 }
 
 std::string HiddenTable(const std::string& effect, double strength) {

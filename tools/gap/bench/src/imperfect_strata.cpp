@@ -5,7 +5,7 @@
 #include <random>
 
 #include "armcmc/gap_bench/scenario_text.hpp"
-#include "plants/registry.hpp"
+#include "hidden.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -23,9 +23,9 @@ std::string WithLawError(CaseBuilder* b, const std::string& scenario, double sha
 
 void LawErrors(CaseBuilder* b) {
   for (const double error : kErrors) {
-    const std::string scenario = WithLawError(b, kRich, error);
+    const std::string scenario = WithLawError(b, HiddenInContact().rich, error);
     for (const double strength : {3.0, 10.0})
-      for (const std::string& effect : kCatalogue)
+      for (const std::string& effect : HiddenInContact().catalogue)
         b->Cell(Like(Percent(error) + ", " + GroupOf(strength), scenario, effect, strength), effect);
   }
 }
@@ -33,10 +33,10 @@ void LawErrors(CaseBuilder* b) {
 /// The flow is what errs: its gains are estimated, so that it can be fitted as well as any law of nature.
 void ActuatorLawErrors(CaseBuilder* b) {
   for (const double error : kErrors) {
-    const std::string scenario = WithLawError(b, kExcited, error);
-    for (const std::string& effect : kActuator) {
+    const std::string scenario = WithLawError(b, HiddenInActuator().rich, error);
+    for (const std::string& effect : HiddenInActuator().catalogue) {
       Case like = Like(Percent(error) + ", " + GroupOf(3.0), scenario, effect, 3.0);
-      like.model = kExcited;
+      like.model = HiddenInActuator().rich;
       b->Cell(like, effect);
     }
   }
@@ -44,51 +44,55 @@ void ActuatorLawErrors(CaseBuilder* b) {
 
 void Unlisted(CaseBuilder* b) {
   for (const double strength : {3.0, 10.0})
-    for (const std::string& effect : kCatalogue)
-      b->Cell(Like(GroupOf(strength), kRich, "", strength), effect,
+    for (const std::string& effect : HiddenInContact().catalogue)
+      b->Cell(Like(GroupOf(strength), HiddenInContact().rich, "", strength), effect,
               [b, strength, &effect](Case* one, std::mt19937_64* random) {
-                const std::string& other = kOutside[(*random)() % kOutside.size()];
-                one->scenario = b->Write("unlisted_" + std::to_string(one->seed),
-                                         ScenarioOfPlant(kRich) + HiddenTable(effect, strength) + "seed = " +
-                                             std::to_string(one->seed) + "\n" + HiddenTable(other, strength / 3.0));
+                const std::string& other = HiddenInContact().outside[(*random)() % HiddenInContact().outside.size()];
+                one->scenario =
+                    b->Write("unlisted_" + std::to_string(one->seed),
+                             ScenarioOfPlant(HiddenInContact().rich) + HiddenTable(effect, strength) +
+                                 "seed = " + std::to_string(one->seed) + "\n" + HiddenTable(other, strength / 3.0));
               });
 }
 
 void Formulas(CaseBuilder* b) {
   for (const double strength : {3.0, 10.0, 30.0})
-    for (const std::string& effect : kVariants) b->Cell(Like(GroupOf(strength), kRich, effect, strength), effect);
+    for (const std::string& effect : HiddenInContact().variants)
+      b->Cell(Like(GroupOf(strength), HiddenInContact().rich, effect, strength), effect);
 }
 
 void Strokes(CaseBuilder* b) {
   for (const double strength : {3.0, 10.0})
-    for (const std::string& effect : kCatalogue)
+    for (const std::string& effect : HiddenInContact().catalogue)
       b->Cell(Like(GroupOf(strength), "contact_strokes", effect, strength), effect);
 }
 
 void StrongPairs(CaseBuilder* b) {
   for (int cell = 0; cell < kStrongPairCells; ++cell)
-    b->Cell(Like("R 10 + 10", kRich, "", 10.0), std::to_string(cell), [](Case* one, std::mt19937_64* random) {
-      const auto pair = DrawPair(random);
-      one->effect = pair.first + "," + pair.second;
-    });
+    b->Cell(Like("R 10 + 10", HiddenInContact().rich, "", 10.0), std::to_string(cell),
+            [](Case* one, std::mt19937_64* random) {
+              const auto pair = DrawPair(random);
+              one->effect = pair.first + "," + pair.second;
+            });
 }
 
 /// Nothing is hidden, and yet the formula is not the plant: it differs by less than a percent, or a constant that the
 /// tool takes for granted is another one.
 void NearNull(CaseBuilder* b) {
   for (const double error : {0.001, 0.003, 0.01})
-    for (const char* scenario : {kRich, "contact_sine", "contact_strokes"})
+    for (const std::string& scenario :
+         {HiddenInContact().rich, std::string("contact_sine"), std::string("contact_strokes")})
       b->Cell(Like("law, " + Percent(error), WithLawError(b, scenario, error), "none", 1.0), scenario);
-  for (const std::string& line : kTakenForGranted)
+  for (const std::string& line : HiddenInActuator().taken_for_granted)
     for (const double off : {0.001, 0.01}) {
       const std::size_t value = line.rfind(' ') + 1;
-      std::string text = ScenarioOfPlant(kExcited);
+      std::string text = ScenarioOfPlant(HiddenInActuator().rich);
       text.replace(text.find(line), line.size(),
                    line.substr(0, value) + support::ExactNumber(std::stod(line.substr(value)) * (1.0 + off)));
       const std::string key = line.substr(0, line.find(' '));
       Case like = Like("constants, " + Percent(off),
-                       b->Write(std::string(kExcited) + "_" + key + "_" + Short(off), text), "none", 1.0);
-      like.model = kExcited;
+                       b->Write(HiddenInActuator().rich + "_" + key + "_" + Short(off), text), "none", 1.0);
+      like.model = HiddenInActuator().rich;
       b->Cell(like, key);
     }
 }

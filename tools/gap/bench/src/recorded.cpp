@@ -11,16 +11,12 @@
 
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "armcmc/gap_bench/strata.hpp"
-#include "plants/registry.hpp"
+#include "recorded_source.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
 
-/// A cantilever far from the surface: the broad line of its resonance, red noise, and a disturbance of 179.3 Hz with
-/// its harmonics, which is periodic and may be named.
-const RecordedSource kNoise = {
-    "cantilever_noise", "afm_indentation_zebrafish.csv", "t_s", 1.0, {{"force_N", 1.0}}, 3.0};
-const std::vector<std::string> kOwn = {"periodic_disturbance"};
+const std::vector<std::string> kOwn = {"periodic_disturbance"};  // in the noise of the sensor
 
 constexpr double kInterval = 1e-3, kDuration = 20.0;  // s
 constexpr double kFree = 0.25;                        // share of the depth that a motion rises above the surface
@@ -110,13 +106,14 @@ std::string Scenario(const std::filesystem::path& motion, double start_s, const 
 void AddRecorded(const std::filesystem::path& recordings, const std::vector<std::string>& effects,
                  CaseBuilder* builder) {
   if (recordings.empty()) throw support::InputError("the stratum recorded needs --recordings, a folder");
-  Samples noise = Read(recordings, kNoise);
+  const RecordedSources sources = ReadRecordedSources();
+  Samples noise = Read(recordings, sources.noise);
   Detrend(&noise.value);
   for (std::size_t i = 0; i < noise.t.size(); ++i) noise.t[i] = static_cast<double>(i) * kInterval;
-  const std::filesystem::path noise_file = Write(builder->folder(), kNoise.name, "e", noise);
+  const std::filesystem::path noise_file = Write(builder->folder(), sources.noise.name, "e", noise);
   std::vector<std::string> hidden = {"none"};
   hidden.insert(hidden.end(), effects.begin(), effects.end());
-  for (const RecordedSource& source : Motions()) {
+  for (const RecordedSource& source : sources.motions) {
     Samples motion = Even(Read(recordings, source), kInterval);
     PressToDepth(&motion.value);
     const std::filesystem::path file = Write(builder->folder(), source.name, "x", motion);
@@ -128,9 +125,9 @@ void AddRecorded(const std::filesystem::path& recordings, const std::vector<std:
           like.group = kRealNoise;
           like.own = kOwn;
         }
-        builder->Cell(like, std::string(source.name) + "/" + effect, [&](Case* one, std::mt19937_64* random) {
+        builder->Cell(like, source.name + "/" + effect, [&](Case* one, std::mt19937_64* random) {
           const double start_s = spare * 1e-3 * static_cast<double>((*random)() % 1001);
-          one->scenario = builder->Write(std::string(source.name) + "_" + std::to_string(one->seed),
+          one->scenario = builder->Write(source.name + "_" + std::to_string(one->seed),
                                          Scenario(file, start_s, real_noise ? noise_file : std::filesystem::path()));
           if (real_noise) return;
           for (const Part part : {Part::kFirstHalf, Part::kSecondHalf}) {

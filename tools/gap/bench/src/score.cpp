@@ -8,7 +8,7 @@
 #include "armcmc/gap_bench/strata.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/effect_library.hpp"
-#include "plants/registry.hpp"
+#include "hidden.hpp"
 
 namespace armcmc::gap_bench {
 namespace {
@@ -37,15 +37,10 @@ std::string AsSealed(const Case& what, const Truth& truth, const std::string& sa
   };
   for (const TrueEffect& effect : truth.effects) {
     const bool lacked = effect.kind == "outside" || has(what.without, effect.name);
-    if (lacked && has(kServeEveryPlant, std::pair(effect.name, said))) return effect.name;
+    const auto names = HiddenInContact().also_called.find(effect.name);
+    if (lacked && names != HiddenInContact().also_called.end() && has(names->second, said)) return effect.name;
   }
   return said;
-}
-
-/// Whether an effect changes what an equation predicts.
-bool Changes(std::string_view effect, std::string_view equation) {
-  return std::any_of(kEquations.begin(), kEquations.end(),
-                     [&](const BenchEquation& one) { return one.name == equation && one.feels(effect); });
 }
 
 std::string Joined(const Names& names) {
@@ -163,7 +158,7 @@ std::optional<bool> EquationRight(const Truth& truth, const gap::Result& result)
   const auto listed = [](const TrueEffect& effect) { return Listed(effect.name) != nullptr; };
   if (std::none_of(truth.effects.begin(), truth.effects.end(), listed)) return std::nullopt;
   return std::any_of(truth.effects.begin(), truth.effects.end(),
-                     [&](const TrueEffect& effect) { return Changes(effect.name, result.equation); });
+                     [&](const TrueEffect& effect) { return WhatIsHidden().Changes(effect.name, result.equation); });
 }
 
 std::pair<std::string, double> TopLabel(const gap::Result& result) {

@@ -7,8 +7,8 @@
 
 #include "armcmc/gap_bench/scenario_text.hpp"
 #include "case_builder.hpp"
+#include "hidden.hpp"
 #include "imperfect_strata.hpp"
-#include "plants/registry.hpp"
 #include "recorded.hpp"
 
 namespace armcmc::gap_bench {
@@ -41,28 +41,31 @@ void Null(CaseBuilder* b) {
 
 void Each(CaseBuilder* b, const std::vector<std::string>& effects, const std::vector<double>& strengths) {
   for (const double strength : strengths)
-    for (const std::string& effect : effects) b->Cell(Like(GroupOf(strength), kRich, effect, strength), effect);
+    for (const std::string& effect : effects)
+      b->Cell(Like(GroupOf(strength), HiddenInContact().rich, effect, strength), effect);
 }
 
 void Pairs(CaseBuilder* b) {
   for (int cell = 0; cell < kPairCells; ++cell)
-    b->Cell(Like("R 1 + 1", kRich, "", 1.0), std::to_string(cell), [](Case* one, std::mt19937_64* random) {
-      const auto pair = DrawPair(random);
-      one->effect = pair.first + "," + pair.second;
-    });
+    b->Cell(Like("R 1 + 1", HiddenInContact().rich, "", 1.0), std::to_string(cell),
+            [](Case* one, std::mt19937_64* random) {
+              const auto pair = DrawPair(random);
+              one->effect = pair.first + "," + pair.second;
+            });
   for (int cell = 0; cell < kUnequalPairCells; ++cell)
-    b->Cell(Like("R 0.3 + 3", kRich, "", 1.0), std::to_string(cell), [b](Case* one, std::mt19937_64* random) {
-      const auto [weak, strong] = DrawPair(random);
-      // The first table seeds the draws of both.
-      const std::string first = HiddenTable(weak, 0.3) + "seed = " + std::to_string(one->seed) + "\n";
-      one->scenario =
-          b->Write("pair_" + std::to_string(one->seed), ScenarioOfPlant(kRich) + first + HiddenTable(strong, 3.0));
-    });
+    b->Cell(Like("R 0.3 + 3", HiddenInContact().rich, "", 1.0), std::to_string(cell),
+            [b](Case* one, std::mt19937_64* random) {
+              const auto [weak, strong] = DrawPair(random);
+              // The first table seeds the draws of both.
+              const std::string first = HiddenTable(weak, 0.3) + "seed = " + std::to_string(one->seed) + "\n";
+              one->scenario = b->Write("pair_" + std::to_string(one->seed),
+                                       ScenarioOfPlant(HiddenInContact().rich) + first + HiddenTable(strong, 3.0));
+            });
 }
 
 void Onset(CaseBuilder* b) {
-  for (const std::string& effect : kCatalogue)
-    b->Cell(Like("R 1", kRich, effect, 1.0), effect, [](Case* one, std::mt19937_64* random) {
+  for (const std::string& effect : HiddenInContact().catalogue)
+    b->Cell(Like("R 1", HiddenInContact().rich, effect, 1.0), effect, [](Case* one, std::mt19937_64* random) {
       // Inside the part of the recording that is diagnosed, with two seconds before and 1.5 s after it.
       one->gate = "from:" + Short(2.0 + 0.01 * static_cast<double>((*random)() % 350));
     });
@@ -71,13 +74,14 @@ void Onset(CaseBuilder* b) {
 void Modes(CaseBuilder* b) {
   for (const char* gate : {"contact", "free"})
     for (const std::string& effect : kActingInOneMode)
-      b->Cell(Like(gate, kRich, effect, 1.0), effect, [gate](Case* one, std::mt19937_64*) { one->gate = gate; });
+      b->Cell(Like(gate, HiddenInContact().rich, effect, 1.0), effect,
+              [gate](Case* one, std::mt19937_64*) { one->gate = gate; });
 }
 
 void Ablation(CaseBuilder* b) {
   for (const double strength : {0.3, 1.0, 3.0})
-    for (const std::string& effect : kCatalogue) {
-      Case like = Like(GroupOf(strength), kRich, effect, strength);
+    for (const std::string& effect : HiddenInContact().catalogue) {
+      Case like = Like(GroupOf(strength), HiddenInContact().rich, effect, strength);
       like.without = {effect.substr(0, effect.find(':'))};
       b->Cell(like, effect);
     }
@@ -85,26 +89,28 @@ void Ablation(CaseBuilder* b) {
 
 void Poor(CaseBuilder* b) {
   for (const char* scenario : {"contact_sine", "contact_slow_triangle"})
-    for (const std::string& effect : kCatalogue) b->Cell(Like(scenario, scenario, effect, 1.0), effect);
+    for (const std::string& effect : HiddenInContact().catalogue)
+      b->Cell(Like(scenario, scenario, effect, 1.0), effect);
 }
 
 /// The actuator, excited: nothing hidden, one effect of either equation, and what its catalogue lacks.
 void Actuator(CaseBuilder* b) {
   const auto like = [](const std::string& group, const std::string& effect, double strength) {
-    Case one = Like(group, kExcited, effect, strength);
-    one.model = kExcited;
+    Case one = Like(group, HiddenInActuator().rich, effect, strength);
+    one.model = HiddenInActuator().rich;
     return one;
   };
   for (int cell = 0; cell < kActuatorNullCells; ++cell) b->Cell(like("nothing", "none", 1.0), std::to_string(cell));
   for (const double strength : {0.3, 1.0, 3.0})
-    for (const std::string& effect : kActuator) b->Cell(like(GroupOf(strength), effect, strength), effect);
+    for (const std::string& effect : HiddenInActuator().catalogue)
+      b->Cell(like(GroupOf(strength), effect, strength), effect);
   for (const double strength : {1.0, 3.0})
-    for (const std::string& effect : kActuatorOutside)
+    for (const std::string& effect : HiddenInActuator().outside)
       b->Cell(like("outside, " + GroupOf(strength), effect, strength), effect);
 }
 
-void OneScenario(CaseBuilder* b, const char* scenario) {
-  for (const std::string& effect : kCatalogue) b->Cell(Like("R 1", scenario, effect, 1.0), effect);
+void OneScenario(CaseBuilder* b, const std::string& scenario) {
+  for (const std::string& effect : HiddenInContact().catalogue) b->Cell(Like("R 1", scenario, effect, 1.0), effect);
 }
 
 const std::vector<std::pair<std::string, Fill>>& Strata() {
@@ -112,7 +118,7 @@ const std::vector<std::pair<std::string, Fill>>& Strata() {
       {"null", Null},
       {"singles",
        [](CaseBuilder* b) {
-         Each(b, kCatalogue, {0.1, 0.3, 1.0, 3.0});
+         Each(b, HiddenInContact().catalogue, {0.1, 0.3, 1.0, 3.0});
        }},
       {"scale", [](CaseBuilder* b) { OneScenario(b, "contact_rich_mm"); }},
       {"pairs", Pairs},
@@ -120,16 +126,16 @@ const std::vector<std::pair<std::string, Fill>>& Strata() {
       {"modes", Modes},
       {"outside",
        [](CaseBuilder* b) {
-         Each(b, kOutside, {0.3, 1.0, 3.0});
+         Each(b, HiddenInContact().outside, {0.3, 1.0, 3.0});
        }},
       {"ablation", Ablation},
       {"variants",
        [](CaseBuilder* b) {
-         Each(b, kVariants, {0.3, 1.0, 3.0});
+         Each(b, HiddenInContact().variants, {0.3, 1.0, 3.0});
        }},
       {"poor", Poor},
       {"actuator", Actuator},
-      {"paper", [](CaseBuilder* b) { OneScenario(b, kPaper); }}};
+      {"paper", [](CaseBuilder* b) { OneScenario(b, HiddenInContact().paper); }}};
   return strata;
 }
 
@@ -155,7 +161,7 @@ std::vector<Case> CasesOf(const std::string& stratum, int logs_per_cell, std::ui
                           const std::filesystem::path& folder, const std::filesystem::path& recordings) {
   if (stratum == kRecorded) {
     CaseBuilder builder(stratum, logs_per_cell, seed, folder);
-    AddRecorded(recordings, kCatalogue, &builder);
+    AddRecorded(recordings, HiddenInContact().catalogue, &builder);
     return builder.Take();
   }
   for (const auto& strata : {Strata(), ImperfectStrata()})

@@ -3,15 +3,19 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "armcmc/gap/features.hpp"
+#include "armcmc/gap/form_file.hpp"
+#include "armcmc/gap/law_error.hpp"
+#include "armcmc/gap/sensor_forms.hpp"
 #include "armcmc/gap/smoothing.hpp"
+#include "armcmc/gap/statistics.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -22,49 +26,11 @@ constexpr Eigen::Index kMinContactRows = 400;  // ten samples a block
 constexpr int kAccelerationExtra = 26;         // samples by which the window of a derivative is wider
 constexpr double kPeakQuantile = 0.9995;
 
-double Rms(const Vector& series, const Vector& weight) {
-  return std::sqrt((series.array().square() * weight.array()).sum() / std::max(weight.sum(), 1.0));
-}
-
-double Quantile(const Vector& series, double q) {
-  std::vector<double> sorted(series.data(), series.data() + series.size());
-  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
-  return sorted[static_cast<std::size_t>(at)];
-}
-
-/// Standard deviation of the noise that smoothing leaves: the cubic of a window passes 9 / (4 window) of the variance.
-double LeftOfNoise(double noise_sd, int window) { return noise_sd * std::sqrt(2.25 / std::max(window, 3)); }
-
-/// Where noise hides on which side of the surface a sample lies, the force says it: it belongs to the side whose
-/// nearest sample it resembles. A force that jumps there (adhesion) would otherwise be wrong by the whole jump, and
-/// that one sample would outweigh thousands.
-void AssignContactSide(const Vector& force, double position_noise, Vector* position) {
-  constexpr double kSure = 3.0;  // standard deviations
-  const auto sure = [&](Eigen::Index i) { return std::abs((*position)[i]) > kSure * position_noise; };
-  const Eigen::Index rows = position->size();
-  for (Eigen::Index first = 0; first < rows;) {
-    if (sure(first)) {
-      ++first;
-      continue;
-    }
-    Eigen::Index end = first + 1;
-    while (end < rows && !sure(end)) ++end;
-    const double before = first > 0 ? (*position)[first - 1] : 0.0, after = end < rows ? (*position)[end] : 0.0;
-    for (Eigen::Index i = first; i < end && before * after < 0.0; ++i) {
-      const bool as_before = std::abs(force[i] - force[first - 1]) < std::abs(force[i] - force[end]);
-      const double depth = std::max(std::abs((*position)[i]), std::numeric_limits<double>::min());
-      (*position)[i] = std::copysign(depth, as_before ? before : after);
-    }
-    first = end;
-  }
-}
-
-bool Moves(const Vector& series) { return series.maxCoeff() - series.minCoeff() > 1e-9 * series.cwiseAbs().maxCoeff(); }
-
 class ContactEquation final : public Equation {
  public:
-  [[nodiscard]] std::string plant() const override { return "hunt_crossley"; }
+  explicit ContactEquation(std::string plant) : plant_(std::move(plant)) {}
+
+  [[nodiscard]] std::string plant() const override { return plant_; }
   std::string output_name() const override { return "force"; }
   std::string output_unit() const override { return "N"; }
   std::vector<std::string> columns() const override { return {"t", "x", "v", "f"}; }
@@ -81,10 +47,10 @@ class ContactEquation final : public Equation {
     s.law_seen = s.active.mean() >= kMinContactShare;
     const Vector all = Vector::Ones(s.rows());
     const Vector& weight = s.law_seen ? s.active : all;
-    s.scale[static_cast<std::size_t>(Role::kPosition)] = Rms(s.at(Role::kPosition), weight);
-    s.scale[static_cast<std::size_t>(Role::kVelocity)] = Rms(s.at(Role::kVelocity), all);
-    s.scale[static_cast<std::size_t>(Role::kAcceleration)] = Rms(s.at(Role::kAcceleration), all);
-    s.output_scale = Rms(s.output, weight);
+    s.scale[static_cast<std::size_t>(Role::kPosition)] = RootMeanSquare(s.at(Role::kPosition), weight);
+    s.scale[static_cast<std::size_t>(Role::kVelocity)] = RootMeanSquare(s.at(Role::kVelocity));
+    s.scale[static_cast<std::size_t>(Role::kAcceleration)] = RootMeanSquare(s.at(Role::kAcceleration));
+    s.output_scale = RootMeanSquare(s.output, weight);
     s.output_peak = Quantile(s.law_seen ? s.output : Vector(s.output.cwiseAbs()), kPeakQuantile);
     if (!Moves(recording.Column("x")) || !Moves(recording.Column("v")))
       throw std::invalid_argument(recording.source + ": x or v does not move: a law of both cannot be identified");
@@ -179,7 +145,15 @@ class ContactEquation final : public Equation {
     return {{"K", "N/m^p", stiffness, sd(0)}, {"B", "N s/m^(p+1)", damping, sd(1)}, {"p", "-", p, sd(2)}};
   }
 
-  std::vector<EffectForm> Catalogue(const Signals& s) const override { return ContactCatalogue(s); }
+  std::vector<EffectForm> Catalogue(const Signals& s) const override {
+    std::vector<EffectForm> forms = FormsFor("contact", s, {});
+    constexpr double kFast = 2.0;  // times the rms speed
+    if (s.law_seen)
+      forms.push_back(LawErrorForm({Role::kPosition, 0.0, s.at(Role::kPosition).maxCoeff()},
+                                   {Role::kVelocity, 0.0, kFast * s.scale_of(Role::kVelocity), true}));
+    forms.push_back(DeadZoneForm(s));
+    return forms;
+  }
 
   std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
 
@@ -230,11 +204,10 @@ class ContactEquation final : public Equation {
     s.duration = std::max(s.t[s.rows() - 1] - s.t[0], s.dt);
     const Vector& v = recording.Column("v");
     const Vector& x = recording.Column("x");
-    const Vector all = Vector::Ones(s.rows());
     s.at(Role::kPosition) = SavitzkyGolay(x, window, 0);
-    AssignContactSide(s.output, LeftOfNoise(Rms(x - s.at(Role::kPosition), all), window), &s.at(Role::kPosition));
+    AssignSide(s.output, LeftOfNoise(RootMeanSquare(x - s.at(Role::kPosition)), window), &s.at(Role::kPosition));
     s.at(Role::kVelocity) = SavitzkyGolay(v, window, 0);
-    s.velocity_noise = Rms(v - s.at(Role::kVelocity), all);
+    s.velocity_noise = RootMeanSquare(v - s.at(Role::kVelocity));
     s.smoothed_velocity_noise = LeftOfNoise(s.velocity_noise, window);
     const int wide = window < 5 ? window : window + kAccelerationExtra;
     s.at(Role::kAcceleration) = SavitzkyGolay(v, wide, 1) / s.dt;
@@ -242,6 +215,7 @@ class ContactEquation final : public Equation {
     return s;
   }
 
+  std::string plant_;
   mutable LastDepths depths_;
 };
 
@@ -290,6 +264,8 @@ std::vector<FeatureGroup> ContactEquation::Groups(const Signals& s, const Vector
 
 }  // namespace
 
-std::unique_ptr<Equation> MakeContactEquation() { return std::make_unique<ContactEquation>(); }
+std::unique_ptr<Equation> MakeContactEquation(const std::string& plant) {
+  return std::make_unique<ContactEquation>(plant);
+}
 
 }  // namespace armcmc::gap

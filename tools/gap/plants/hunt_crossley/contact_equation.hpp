@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "armcmc/gap/equation.hpp"
 
@@ -10,9 +11,6 @@ namespace armcmc::gap {
 ///
 /// Columns t, x, v, f. Coordinates: force k at the rms depth and damping b at the rms speed, both over the rms force,
 /// and p:  f = F (x / X)^p (k + b v / V),  so that K = F k / X^p and B = F b / (X^p V).
-[[nodiscard]] std::unique_ptr<Equation> MakeContactEquation();
-
-/// The effects of a contact, every formula scaled to the recording.
-[[nodiscard]] std::vector<EffectForm> ContactCatalogue(const Signals& signals);
+[[nodiscard]] std::unique_ptr<Equation> MakeContactEquation(const std::string& plant);
 
 }  // namespace armcmc::gap

@@ -30,12 +30,10 @@ namespace armcmc::gap {
 /// Columns t, u_c, u_d, p, pdot, alpha.
 [[nodiscard]] std::unique_ptr<Equation> MakeBendEquation(const std::string& model);
 
-[[nodiscard]] std::vector<EffectForm> FlowCatalogue(const Signals& signals, const ActuatorConstants& constants);
-[[nodiscard]] std::vector<EffectForm> BendCatalogue(const Signals& signals, const ActuatorConstants& constants);
-
 /// The motion of the plant's library that separates the candidates best, by rules; without candidates, the one that
 /// excites the flow law.
-[[nodiscard]] Experiment ActuatorExperiment(const Signals& signals, const ActuatorConstants& constants,
+[[nodiscard]] Experiment ActuatorExperiment(const std::string& plant, const Signals& signals,
+                                            const ActuatorConstants& constants,
                                             const std::vector<CandidatePtr>& candidates);
 
 }  // namespace armcmc::gap

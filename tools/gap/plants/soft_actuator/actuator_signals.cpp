@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "armcmc/gap/smoothing.hpp"
+#include "armcmc/gap/statistics.hpp"
 #include "armcmc/scalar_ops.hpp"
 #include "plants/soft_actuator/flow_law.hpp"
 
@@ -15,10 +16,6 @@ constexpr Eigen::Index kMinRows = 400;  // ten samples a block
 constexpr int kWiden = 8;               // what is smoothed has no corners
 
 }  // namespace
-
-double RootMeanSquare(const Vector& series, const Vector& weight) {
-  return std::sqrt((series.array().square() * weight.array()).sum() / std::max(weight.sum(), 1.0));
-}
 
 double ValveHead(double opening, double gauge_pressure, const ActuatorConstants& constants) {
   return FlowLaw<ScalarOps>::Head({opening, gauge_pressure, constants.p_supply - constants.p_atm, 0.0},
@@ -41,9 +38,8 @@ Signals ActuatorSignals(const Recording& recording, int window, const ActuatorCo
   Vector travelled = Vector::Zero(s.rows());
   for (Eigen::Index i = 1; i < s.rows(); ++i) travelled[i] = travelled[i - 1] + s.dt * rate[i - 1];
   s.at(Role::kPressure) = travelled + SavitzkyGolay(gauge - travelled, kWiden * window + 1, 0);
-  const Vector all = Vector::Ones(s.rows());
   for (const Role role : {Role::kPressure, Role::kOpening})
-    s.scale[static_cast<std::size_t>(role)] = std::max(RootMeanSquare(s.at(role), all), 1e-300);
+    s.scale[static_cast<std::size_t>(role)] = std::max(RootMeanSquare(s.at(role)), 1e-300);
   return s;
 }
 

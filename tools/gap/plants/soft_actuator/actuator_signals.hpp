@@ -13,9 +13,6 @@ namespace armcmc::gap {
 /// @param window  Samples of the smoother of the workflow; the wide one here is a multiple of it.
 [[nodiscard]] Signals ActuatorSignals(const Recording& recording, int window, const ActuatorConstants& constants);
 
-/// Root mean square of a series, over rows of weight one.
-[[nodiscard]] double RootMeanSquare(const Vector& series, const Vector& weight);
-
 /// sign(dp) sqrt|dp| of the valve that a signed opening opens; sqrt(Pa).
 [[nodiscard]] double ValveHead(double opening, double gauge_pressure, const ActuatorConstants& constants);
 

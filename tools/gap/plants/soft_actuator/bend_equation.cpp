@@ -5,11 +5,13 @@
 #include <stdexcept>
 
 #include "armcmc/gap/diagnose.hpp"
+#include "armcmc/gap/driven_motion.hpp"
 #include "armcmc/gap/features.hpp"
+#include "armcmc/gap/form_file.hpp"
 #include "armcmc/gap/smoothing.hpp"
+#include "armcmc/gap/statistics.hpp"
 #include "gap/plants/soft_actuator/actuator_equation.hpp"
 #include "gap/plants/soft_actuator/actuator_signals.hpp"
-#include "gap/plants/soft_actuator/bend_simulation.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -21,12 +23,14 @@ constexpr int kStartCoordinates = 2;
 constexpr int kWidenAngle = 4;        // the error of the angle has no corners
 constexpr double kNegligible = 1e-4;  // error over angle, below which it is rounding, not physics
 
+MotionConstants LinearPart(const ActuatorConstants& constants) { return {constants.q1, constants.q2, constants.q3}; }
+
 class BendEquation final : public Equation {
  public:
-  explicit BendEquation(const std::string& model) : constants_(BuiltinSettings(model).constants) {}
+  explicit BendEquation(const EstimatorSettings& model) : plant_(model.model), constants_(model.constants) {}
 
   std::string name() const override { return "bend equation"; }
-  [[nodiscard]] std::string plant() const override { return "soft_actuator"; }
+  [[nodiscard]] std::string plant() const override { return plant_; }
   std::string output_name() const override { return "angle"; }
   std::string output_unit() const override { return "rad"; }
   std::vector<std::string> columns() const override { return {"t", "u_c", "u_d", "p", "pdot", "alpha"}; }
@@ -35,9 +39,8 @@ class BendEquation final : public Equation {
 
   Signals Prepare(const Recording& recording, int window) const override {
     Signals s = WithMotion(recording, window);
-    const Vector all = Vector::Ones(s.rows());
     for (const Role role : {Role::kPosition, Role::kVelocity, Role::kAcceleration}) {
-      s.scale[static_cast<std::size_t>(role)] = RootMeanSquare(s.at(role), all);
+      s.scale[static_cast<std::size_t>(role)] = RootMeanSquare(s.at(role));
       if (!(s.scale_of(role) > 0.0)) throw std::invalid_argument(recording.source + ": alpha does not move");
     }
     s.output_scale = s.scale_of(Role::kPosition);
@@ -56,9 +59,9 @@ class BendEquation final : public Equation {
 
   Suitability Check(const Signals& s) const override {
     Vector angle(s.rows());
-    const BendSimulation simulation(constants_, s.dt);
+    const DrivenMotion simulation(LinearPart(constants_), s.dt);
     simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, nullptr);
-    const double error = RootMeanSquare(s.output - angle, Vector::Ones(s.rows()));
+    const double error = RootMeanSquare(s.output - angle);
     if (error > kNegligible * s.output_scale) return {};
     char text[200];
     std::snprintf(text, sizeof(text),
@@ -81,15 +84,15 @@ class BendEquation final : public Equation {
   }
 
   void Law(const Signals& s, const double* theta, const LawInput& input, Prediction* out) const override {
-    const BendSimulation simulation(constants_, s.dt);
+    const DrivenMotion simulation(LinearPart(constants_), s.dt);
     const Vector& gauge = s.at(Role::kPressure);
-    std::vector<BendSimulation::Force> forces;
+    std::vector<DrivenMotion::Force> forces;
     for (const LawInput::Force& force : input.forces) forces.push_back({force.form, Values(force), &force.gate});
-    BendSimulation::State start = StartOf(s, simulation);
+    DrivenMotion::State start = StartOf(s, simulation);
     start.angle += theta[0] * s.scale_of(Role::kPosition);
     start.rate += theta[1] * s.scale_of(Role::kVelocity);
     // One run as it is, then one for every slope.
-    std::vector<std::vector<BendSimulation::Force>> runs{forces};
+    std::vector<std::vector<DrivenMotion::Force>> runs{forces};
     std::vector<int> columns;
     for (std::size_t f = 0; f < forces.size(); ++f) {
       const EffectForm& form = *forces[f].form;
@@ -110,7 +113,7 @@ class BendEquation final : public Equation {
     const auto felt = std::min<Eigen::Index>(s.rows(), static_cast<Eigen::Index>(kForgotten_s / s.dt) + 2);
     for (int column = 0; column < kStartCoordinates; ++column) {
       if (!out->wanted.Has(column)) continue;
-      BendSimulation::State other = start;
+      DrivenMotion::State other = start;
       (column == 0 ? other.angle : other.rate) += kStep * s.scale_of(column == 0 ? Role::kPosition : Role::kVelocity);
       Vector moved = out->y;
       simulation.Run(s.t, gauge, other, forces, felt, &moved, nullptr);
@@ -128,7 +131,9 @@ class BendEquation final : public Equation {
             {"q3", "1/s^2", constants_.q3, 0.0}};
   }
 
-  std::vector<EffectForm> Catalogue(const Signals& s) const override { return BendCatalogue(s, constants_); }
+  std::vector<EffectForm> Catalogue(const Signals& s) const override {
+    return FormsFor("bending", s, {{"q1", constants_.q1}, {"q2", constants_.q2}, {"q3", constants_.q3}});
+  }
   std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
 
   std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
@@ -158,7 +163,7 @@ class BendEquation final : public Equation {
   }
 
   /// The state at the first row, by least squares over the time in which it is felt.
-  BendSimulation::State StartOf(const Signals& s, const BendSimulation& simulation) const {
+  DrivenMotion::State StartOf(const Signals& s, const DrivenMotion& simulation) const {
     const auto rows = std::min<Eigen::Index>(s.rows(), static_cast<Eigen::Index>(kSettling_s / s.dt) + 2);
     Vector from_rest(s.rows()), run(s.rows());
     simulation.Run(s.t, s.at(Role::kPressure), {}, {}, rows, &from_rest, nullptr);
@@ -187,7 +192,7 @@ class BendEquation final : public Equation {
     Signals s = ActuatorSignals(recording, window, constants_);
     s.output = recording.Column("alpha");
     // The simulation follows fast motion; its error, which is slow, is smoothed widely.
-    const BendSimulation simulation(constants_, s.dt);
+    const DrivenMotion simulation(LinearPart(constants_), s.dt);
     Vector angle(s.rows()), rate(s.rows());
     simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, &rate);
     const int wide = kWidenAngle * window + 1;
@@ -203,11 +208,12 @@ class BendEquation final : public Equation {
     return s;
   }
 
+  std::string plant_;
   ActuatorConstants constants_;
 };
 
 std::vector<FeatureGroup> BendEquation::Groups(const Signals& s, const Vector& predicted) const {
-  const BendSimulation simulation(constants_, s.dt);
+  const DrivenMotion simulation(LinearPart(constants_), s.dt);
   // What acts as an acceleration shows as its response.
   const auto felt = [&](Matrix columns) {
     for (Eigen::Index c = 0; c < columns.cols(); ++c)
@@ -246,11 +252,13 @@ std::vector<FeatureGroup> BendEquation::Groups(const Signals& s, const Vector& p
 }
 
 Experiment BendEquation::Separate(const Analysis& analysis, const std::vector<CandidatePtr>& candidates) const {
-  return ActuatorExperiment(analysis.signals, constants_, candidates);
+  return ActuatorExperiment(plant_, analysis.signals, constants_, candidates);
 }
 
 }  // namespace
 
-std::unique_ptr<Equation> MakeBendEquation(const std::string& model) { return std::make_unique<BendEquation>(model); }
+std::unique_ptr<Equation> MakeBendEquation(const std::string& model) {
+  return std::make_unique<BendEquation>(BuiltinSettings(model));
+}
 
 }  // namespace armcmc::gap

@@ -6,7 +6,9 @@
 
 #include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/features.hpp"
+#include "armcmc/gap/form_file.hpp"
 #include "armcmc/gap/smoothing.hpp"
+#include "armcmc/gap/statistics.hpp"
 #include "gap/plants/soft_actuator/actuator_equation.hpp"
 #include "gap/plants/soft_actuator/actuator_signals.hpp"
 
@@ -22,10 +24,10 @@ constexpr double kMinOpenShare = 0.02;  // of the samples
 
 class FlowEquation final : public Equation {
  public:
-  explicit FlowEquation(const std::string& model) : constants_(BuiltinSettings(model).constants) {}
+  explicit FlowEquation(const EstimatorSettings& model) : plant_(model.model), constants_(model.constants) {}
 
   std::string name() const override { return "flow law"; }
-  [[nodiscard]] std::string plant() const override { return "soft_actuator"; }
+  [[nodiscard]] std::string plant() const override { return plant_; }
   std::string output_name() const override { return "pressure rate"; }
   std::string output_unit() const override { return "Pa/s"; }
   std::vector<std::string> columns() const override { return {"t", "u_c", "u_d", "p", "pdot"}; }
@@ -34,7 +36,7 @@ class FlowEquation final : public Equation {
 
   Signals Prepare(const Recording& recording, int window) const override {
     Signals s = WithOutput(recording, window);
-    s.output_scale = RootMeanSquare(s.output, Vector::Ones(s.rows()));
+    s.output_scale = RootMeanSquare(s.output);
     s.output_peak = s.output.cwiseAbs().maxCoeff();
     if (!(s.output_scale > 0.0)) throw std::invalid_argument(recording.source + ": p does not move");
     return s;
@@ -148,7 +150,9 @@ class FlowEquation final : public Equation {
     return report;
   }
 
-  std::vector<EffectForm> Catalogue(const Signals& s) const override { return FlowCatalogue(s, constants_); }
+  std::vector<EffectForm> Catalogue(const Signals& s) const override {
+    return FormsFor("valve_flow", s, {{"p_supply", constants_.p_supply}, {"p_atm", constants_.p_atm}});
+  }
   std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;
 
   std::vector<PlotFeature> PlotFeatures(const Signals& s) const override {
@@ -193,6 +197,7 @@ class FlowEquation final : public Equation {
     return std::sqrt((1.0 + cosine) / std::max(1.0 - cosine, 1e-15));
   }
 
+  std::string plant_;
   ActuatorConstants constants_;
 };
 
@@ -238,11 +243,13 @@ std::vector<FeatureGroup> FlowEquation::Groups(const Signals& s, const Vector& p
 }
 
 Experiment FlowEquation::Separate(const Analysis& analysis, const std::vector<CandidatePtr>& candidates) const {
-  return ActuatorExperiment(analysis.signals, constants_, candidates);
+  return ActuatorExperiment(plant_, analysis.signals, constants_, candidates);
 }
 
 }  // namespace
 
-std::unique_ptr<Equation> MakeFlowEquation(const std::string& model) { return std::make_unique<FlowEquation>(model); }
+std::unique_ptr<Equation> MakeFlowEquation(const std::string& model) {
+  return std::make_unique<FlowEquation>(BuiltinSettings(model));
+}
 
 }  // namespace armcmc::gap

@@ -11,15 +11,8 @@ namespace armcmc::gap {
                                      double sd = 0.2, double upper = 3.0);
 /// A length, speed, time or opening: log-normal around the middle of its range, given in multiples of `unit_size`.
 [[nodiscard]] Coordinate ShapeOf(const char* name, const char* unit, double unit_size, double lower, double upper);
-/// The same shape, with an upper or a lower bound beyond which the effect would be a different one.
-[[nodiscard]] Coordinate UpTo(Coordinate shape);
-[[nodiscard]] Coordinate DownTo(Coordinate shape);
 /// Starts with amplitudes of zero, over a grid of all shapes: counts[i] values of the i-th shape.
 void SetStarts(EffectForm* form, const std::vector<int>& counts);
-/// Physical value of a form's shape.
-[[nodiscard]] double ShapeValue(const EffectForm& form, std::size_t shape_index, const double* shape);
-/// A variant formula of an effect; the caller sets functions and starts.
-[[nodiscard]] EffectForm VariantOf(const EffectForm& base, const char* variant, const char* formula);
 /// Unnamed physics that competes with the effects of the catalogue.
 [[nodiscard]] EffectForm UnlistedForm(const char* what, const char* family, const char* formula, Slot slot);
 

@@ -13,6 +13,15 @@ namespace armcmc::gap {
 /// from white noise with the level of the fourth differences. 1: every window would remove motion.
 [[nodiscard]] int WidestWindow(const Vector& series, int widest);
 
+/// Standard deviation of the white noise that SavitzkyGolay leaves of one of `noise_sd`.
+[[nodiscard]] double LeftOfNoise(double noise_sd, int window);
+
+/// Decides on which side of a surface at zero a sample lies where noise hides it: the output says it, since the sample
+/// belongs to the side whose nearest sample it resembles. An output that jumps there (adhesion) would otherwise be
+/// wrong by the whole jump, and that one sample would outweigh thousands.
+/// @param noise_sd  Of the position. @param position  Samples within three of these take the sign of their side.
+void AssignSide(const Vector& output, double noise_sd, Vector* position);
+
 /// Low pass of u(t) with time constant `tau_samples`, started at `start` times its first value.
 [[nodiscard]] Vector Leaky(const Vector& series, double tau_samples, double start = 1.0);
 

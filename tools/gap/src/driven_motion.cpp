@@ -1,4 +1,4 @@
-#include "gap/plants/soft_actuator/bend_simulation.hpp"
+#include "armcmc/gap/driven_motion.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -12,12 +12,12 @@ constexpr double kTiny = 1e-300;
 
 }  // namespace
 
-BendSimulation::BendSimulation(const ActuatorConstants& constants, double dt) : constants_(constants), dt_(dt) {
-  // (alpha, alpha', a, a' dt) with an acceleration a that is linear over the step.
+DrivenMotion::DrivenMotion(const MotionConstants& constants, double dt) : constants_(constants), dt_(dt) {
+  // (x, x', a, a' dt) with an acceleration a that is linear over the step.
   Eigen::Matrix4d generator = Eigen::Matrix4d::Zero();
   generator(0, 1) = dt;
-  generator(1, 0) = -constants.q3 * dt;
-  generator(1, 1) = -constants.q2 * dt;
+  generator(1, 0) = -constants.stiffness * dt;
+  generator(1, 1) = -constants.damping * dt;
   generator(1, 2) = dt;
   generator(2, 3) = 1.0;
   const Eigen::Matrix4d step = generator.exp();
@@ -27,7 +27,7 @@ BendSimulation::BendSimulation(const ActuatorConstants& constants, double dt) : 
 }
 
 /// One run on its way.
-struct BendSimulation::Lane {
+struct DrivenMotion::Lane {
   const std::vector<Force>* forces;
   State x;
   double* angle;
@@ -36,15 +36,16 @@ struct BendSimulation::Lane {
   double extra = 0.0, miss = 0.0, half_miss = 0.0;  ///< Of the step that is under way.
 };
 
-Motion BendSimulation::MotionOf(const Vector& t, const Vector& gauge, const State& state, Eigen::Index i) const {
-  const double drive = constants_.q1 * gauge[i];
-  return {t[i], dt_, state.angle, state.rate, drive, drive - constants_.q2 * state.rate - constants_.q3 * state.angle};
+Motion DrivenMotion::MotionOf(const Vector& t, const Vector& input, const State& state, Eigen::Index i) const {
+  const double drive = constants_.gain * input[i];
+  return {t[i],       dt_,   state.angle,
+          state.rate, drive, drive - constants_.damping * state.rate - constants_.stiffness * state.angle};
 }
 
-double BendSimulation::Added(const Lane& lane, const Vector& t, const Vector& gauge, const State& state,
-                             Eigen::Index i) const {
+double DrivenMotion::Added(const Lane& lane, const Vector& t, const Vector& input, const State& state,
+                           Eigen::Index i) const {
   double sum = 0.0;
-  const Motion motion = MotionOf(t, gauge, state, i);
+  const Motion motion = MotionOf(t, input, state, i);
   for (std::size_t f = 0; f < lane.forces->size(); ++f) {
     const Force& force = (*lane.forces)[f];
     const double gate = (*force.gate)[i];
@@ -53,12 +54,12 @@ double BendSimulation::Added(const Lane& lane, const Vector& t, const Vector& ga
   return sum;
 }
 
-BendSimulation::State BendSimulation::Moved(const State& x, double start, double end) const {
+DrivenMotion::State DrivenMotion::Moved(const State& x, double start, double end) const {
   return {step_[0] * x.angle + step_[1] * x.rate + first_[0] * start + second_[0] * end,
           step_[2] * x.angle + step_[3] * x.rate + first_[1] * start + second_[1] * end};
 }
 
-void BendSimulation::Advance(const Vector& t, const Vector& gauge, Eigen::Index rows, std::vector<Lane>* lanes) const {
+void DrivenMotion::Advance(const Vector& t, const Vector& input, Eigen::Index rows, std::vector<Lane>* lanes) const {
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Lane& lane : *lanes) {
       lane.angle[i] = lane.x.angle;
@@ -69,14 +70,14 @@ void BendSimulation::Advance(const Vector& t, const Vector& gauge, Eigen::Index 
       for (std::size_t f = 0; f < lane.forces->size(); ++f) {
         const Force& force = (*lane.forces)[f];
         if (force.form->remember)
-          force.form->remember(MotionOf(t, gauge, lane.x, i), force.values.data(), lane.memory[f].data());
+          force.form->remember(MotionOf(t, input, lane.x, i), force.values.data(), lane.memory[f].data());
       }
-    for (Lane& lane : *lanes) lane.extra = lane.forces->empty() ? 0.0 : Added(lane, t, gauge, lane.x, i);
-    const double now = constants_.q1 * gauge[i], next = constants_.q1 * gauge[i + 1];
+    for (Lane& lane : *lanes) lane.extra = lane.forces->empty() ? 0.0 : Added(lane, t, input, lane.x, i);
+    const double now = constants_.gain * input[i], next = constants_.gain * input[i + 1];
     // The force e at the end of the step solves e = added(moved(e)): one secant step, exact where it is linear. A stiff
     // one (dry friction that turns within a sample) would swing about without.
     const auto missed = [&](const Lane& lane, double e) {
-      return Added(lane, t, gauge, Moved(lane.x, now + lane.extra, next + e), i + 1) - e;
+      return Added(lane, t, input, Moved(lane.x, now + lane.extra, next + e), i + 1) - e;
     };
     for (Lane& lane : *lanes)
       if (!lane.forces->empty()) lane.miss = missed(lane, lane.extra);
@@ -93,33 +94,33 @@ void BendSimulation::Advance(const Vector& t, const Vector& gauge, Eigen::Index 
   }
 }
 
-void BendSimulation::Run(const Vector& t, const Vector& gauge, State x, const std::vector<Force>& forces,
-                         Eigen::Index rows, Vector* angle, Vector* rate) const {
+void DrivenMotion::Run(const Vector& t, const Vector& input, State x, const std::vector<Force>& forces,
+                       Eigen::Index rows, Vector* angle, Vector* rate) const {
   std::vector<Lane> lanes{
       {&forces, x, angle->data(), rate == nullptr ? nullptr : rate->data(), decltype(Lane::memory)(forces.size())}};
-  Advance(t, gauge, rows, &lanes);
+  Advance(t, input, rows, &lanes);
 }
 
-void BendSimulation::RunInterleaved(const Vector& t, const Vector& gauge, State start,
-                                    const std::vector<std::vector<Force>>& forces, Matrix* angles) const {
+void DrivenMotion::RunInterleaved(const Vector& t, const Vector& input, State start,
+                                  const std::vector<std::vector<Force>>& forces, Matrix* angles) const {
   angles->resize(t.size(), static_cast<Eigen::Index>(forces.size()));
   std::vector<Lane> lanes;
   for (std::size_t run = 0; run < forces.size(); ++run)
     lanes.push_back({&forces[run], start, angles->col(static_cast<Eigen::Index>(run)).data(), nullptr,
                      decltype(Lane::memory)(forces[run].size())});
-  Advance(t, gauge, t.size(), &lanes);
+  Advance(t, input, t.size(), &lanes);
 }
 
-Vector BendSimulation::Response(const Vector& acceleration) const {
+Vector DrivenMotion::Response(const Vector& acceleration) const {
   Vector angle(acceleration.size());
-  double alpha = 0.0, rate = 0.0;
+  double at = 0.0, rate = 0.0;
   for (Eigen::Index i = 0; i < acceleration.size(); ++i) {
-    angle[i] = alpha;
+    angle[i] = at;
     if (i + 1 == acceleration.size()) break;
     const double a = acceleration[i], b = acceleration[i + 1];
-    const double next = step_[0] * alpha + step_[1] * rate + first_[0] * a + second_[0] * b;
-    rate = step_[2] * alpha + step_[3] * rate + first_[1] * a + second_[1] * b;
-    alpha = next;
+    const double next = step_[0] * at + step_[1] * rate + first_[0] * a + second_[0] * b;
+    rate = step_[2] * at + step_[3] * rate + first_[1] * a + second_[1] * b;
+    at = next;
   }
   return angle;
 }
