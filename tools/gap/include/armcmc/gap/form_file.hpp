@@ -14,8 +14,7 @@ namespace armcmc::gap {
 ///   schema = 1
 ///   [[form]]
 ///   effect, family, text                words; `text`: the formula for people
-///   variant = "stribeck"                another formula of the physics of the form before it, and has from that what
-///   it
+///   variant = "stribeck"                another formula of the physics of the form before it, which gives it what it
 ///                                       leaves out: words, amplitudes with shapes and starts, groups and gates
 ///   listed = false                      it competes, and is never named
 ///   slot                                where it acts:
@@ -30,9 +29,8 @@ namespace armcmc::gap {
 ///   formula = "force*tanh(v/speed)"     in the language of plant files
 ///   [form.let] NAME = "expression"
 ///   [form.states] NAME = { start, rate }, or { start, next }: the value one sample later
-///   amplitudes = [{ name, unit, size, positive, sd, upper, lower, mean, event, stop }]   the formula is linear in
-///   them, except in
-///                                       the slots drive (it has none) and rate
+///   amplitudes = [{ name, unit, size, positive, sd, upper, lower, mean, event, stop }]
+///                                       linear in them, except in the slots drive (it has none) and rate
 ///   shapes = [{ name, unit, size, from, to, mean, sd, stop, .. }]    log-normal from `from` to `to`; else as above
 ///   starts = [6, 2]                     values of each shape from which fits start; or
 ///   start_at = [[0.003], ..]            all coordinates; or
