@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -133,7 +135,8 @@ TEST_F(CsvExport, EstimatesHaveTheNamesAndUnitsOfTheirParameters) {
   EXPECT_EQ(Number(rows[2].at("ar_map.B [N s m^-(p+1)]")), EstimateWithMismatch(3).ar_map[1]);
   EXPECT_EQ(Number(rows[2].at("ar_map.p")), EstimateWithMismatch(3).ar_map[2]);
   EXPECT_EQ(rows[1].at("draws_by_mode.contact"), "1000");
-  EXPECT_EQ(rows[0].at("zeta"), "inf");
+  EXPECT_EQ(rows[0].at("zeta"), "") << "infinite";
+  EXPECT_EQ(rows[1].at("zeta"), "0.5");
   EXPECT_EQ(rows[0].at("run_id"), "77");
   EXPECT_TRUE(rows[0].contains("y_pred [N]"));
   EXPECT_FALSE(rows[0].contains("ar_map.parameter3")) << "entries past n_params are left out";
@@ -167,6 +170,49 @@ TEST_F(CsvExport, PlotJugglerFindsTheSeparatorInTheHeader) {
       for (const char other : {' ', ';', '\t'}) EXPECT_GT(outside[','], outside[other]) << channel << ": " << text;
     }
   }
+}
+
+// DetectColumnType in plotjuggler_plugins/DataLoadCSV/timestamp_parsing.cpp: the first cell that is not empty decides.
+// It is a number of digits and a point; some versions take an exponent, and every version "inf" and "nan", for text.
+// Digits alone within 1.4e9 to 2e9 are a time in seconds, of which the decimals below are cut off.
+TEST_F(CsvExport, PlotJugglerTakesEveryColumnOfNumbersForNumbers) {
+  const double first[] = {1e-300, -2.5e-7, 1.5e9, 3e22};
+  {
+    LogWriter log(request_.log);
+    for (int k = 1; k <= 3; ++k) {
+      estimate_t e = EstimateWithMismatch(k);
+      e.lambda = std::nan("");
+      for (std::size_t i = 0; i < 3; ++i) e.sd[i] = first[i] * k;
+      e.y_pred = first[3];
+      if (k == 1) e.y_lo = -std::numeric_limits<double>::infinity();
+      log.Write("EST_ESTIMATE", e);
+    }
+  }
+  Export();
+  const Rows rows = Table("EST_ESTIMATE");
+  ASSERT_EQ(rows.size(), 3u);
+  for (const auto& entry : rows[0]) {
+    const std::string& name = entry.first;
+    const auto numbered =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return !row.at(name).empty(); });
+    if (numbered == rows.end()) continue;
+    const std::string cell = numbered->at(name);
+    EXPECT_THAT(cell, ::testing::MatchesRegex("-?[0-9]+(\\.[0-9]+)?")) << name;
+    if (cell.find('.') == std::string::npos && !name.ends_with("utime") && !name.ends_with("[us]")) {
+      EXPECT_LT(cell.size(), 10u) << name;
+    }
+    for (const auto& row : rows) {
+      const std::string& text = row.at(name);
+      EXPECT_TRUE(text.empty() || std::isfinite(Number(text))) << name << ": " << text;
+    }
+  }
+  EXPECT_EQ(rows[0].at("sd.p"), "1500000000.0");
+  EXPECT_EQ(rows[1].at("sd.p"), "3e+09") << "the rest is short";
+  EXPECT_EQ(Number(rows[0].at("sd.K [N m^-p]")), first[0]) << "to the bit";
+  EXPECT_EQ(Number(rows[0].at("sd.B [N s m^-(p+1)]")), first[1]);
+  EXPECT_EQ(Number(rows[0].at("y_pred [N]")), first[3]);
+  EXPECT_EQ(rows[0].at("y_lo [N]"), "");
+  for (const auto& row : rows) EXPECT_EQ(row.at("lambda"), "");
 }
 
 TEST_F(CsvExport, SamplesOfAPackHaveARowAndATimeEach) {
@@ -344,7 +390,7 @@ TEST_F(CsvExport, ALogOfTheFirstReleasedTypesStaysReadable) {
   EXPECT_EQ(truth[2].at("f_true [N]"), "3.25");
   EXPECT_EQ(estimates[0].at("ar_map.p"), "2.25");
   EXPECT_EQ(estimates[0].at("draws"), "14979");
-  EXPECT_EQ(estimates[0].at("zeta"), "inf");
+  EXPECT_EQ(estimates[0].at("zeta"), "") << "infinite";
   EXPECT_EQ(posteriors[0].at("density.p.2"), "1");
   EXPECT_EQ(statuses[0].at("rejected_type"), "7");
   EXPECT_EQ(statuses[0].at("gap_where"), "v < 0");

@@ -39,7 +39,8 @@ void Declare(CLI::App* app, Arguments* a) {
       ->capture_default_str();
   app->footer(
       "Converts a log to tables for PlotJuggler and pandas. The first column is the time in seconds since the first\n"
-      "event of the log; headers include units: \"ar_map.K [N m^-p]\". Each sample of a pack has its own row.\n\n"
+      "event of the log; headers include units: \"ar_map.K [N m^-p]\". Each sample of a pack has its own row.\n"
+      "A number that is not finite, such as the zeta of the first pack, is an empty cell.\n\n"
       "With --format mcap the rows are JSON messages in one MCAP file, with a topic for each channel and the units in\n"
       "the schemas. JSON cannot represent infinity or NaN: such values become null.\n\n"
       "Examples:\n"

@@ -1,9 +1,14 @@
 #include "csv_table.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "armcmc/log_export/columns.hpp"
@@ -32,6 +37,16 @@ void AppendHeader(const std::string& name, std::string* row) {
   row->push_back('"');
 }
 
+/// The first number of a column, by which PlotJuggler decides whether the column holds numbers: some versions of it
+/// take an exponent for text, and all take ten digits without a point for a time since 1970.
+void AppendFirstNumber(double value, std::string* row) {
+  std::array<char, 400> text{};  // the smallest double has 324 decimals
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr;
+  const std::string_view digits(text.data(), static_cast<std::size_t>(end - text.data()));
+  row->append(digits);
+  if (digits.size() >= 10 && digits.find('.') == std::string_view::npos) row->append(".0");
+}
+
 /// The table of one channel while it is written.
 class Table final : public Sink {
  public:
@@ -51,6 +66,7 @@ class Table final : public Sink {
     }
     EndRow();
     rows_ = 0;
+    has_number_.resize(columns_.size(), false);
   }
 
   void Write(Bytes data, const MessageType& type, const EventTime& time) override {
@@ -66,18 +82,30 @@ class Table final : public Sink {
  private:
   void WriteRow(Bytes data, double t, std::size_t sample) {
     AppendNumber(t, &row_);
-    for (const Column& column : columns_) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const Column& column = columns_[i];
       row_.push_back(',');
       const std::size_t index = column.index + sample * column.sample_stride;
       if (column.text) {
         AppendText(TextAt(data, *column.field, index), &row_);
       } else if (IsReal(*column.field)) {
-        AppendNumber(NumberAt(data, *column.field, index), &row_);
+        AppendReal(NumberAt(data, *column.field, index), i);
       } else {
         AppendNumber(IntegerAt(data, *column.field, index), &row_);
       }
     }
     EndRow();
+  }
+
+  /// Empty where it is not finite: a viewer leaves the point out, pandas reads NaN. "inf" or "nan" as the first cell
+  /// makes PlotJuggler take the whole column for text.
+  void AppendReal(double value, std::size_t column) {
+    if (!std::isfinite(value)) return;
+    if (!has_number_[column]) {
+      has_number_[column] = true;
+      return AppendFirstNumber(value, &row_);
+    }
+    AppendNumber(value, &row_);
   }
 
   void WriteHistograms(Bytes data, const MessageType& type, double t) {
@@ -116,6 +144,7 @@ class Table final : public Sink {
 
   const PlantScan& plant_;
   std::vector<Column> columns_;
+  std::vector<bool> has_number_;  // by column: a row before has one
   Rows rows_of_;
   std::filesystem::path path_;
   std::ofstream file_;
