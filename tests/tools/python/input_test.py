@@ -74,6 +74,16 @@ class Objects(InScratch):
                 copied(e)
         self.assertIn("line.toml: a, b>", repr(e))
 
+    def test_an_object_without_an_estimator_is_not_made(self):
+        own = type(armcmc.Estimator("servo_axis")._own)
+        derived = type("Derived", (own,), {})
+        for make in (own, derived, lambda: own.__new__(own), lambda: own.__new__(derived), lambda: object.__new__(own),
+                     lambda: own.__mro__[1].__new__(own)):
+            with self.assertRaises(TypeError):
+                make().reset()
+        with self.assertRaisesRegex(TypeError, "armcmc.Estimator"):
+            own.__new__(own)
+
     def test_an_estimate_is_copied_and_outlives_its_estimator(self):
         e = self.line()
         estimate = e.step(U, Y, DT)

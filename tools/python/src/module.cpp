@@ -108,6 +108,13 @@ py::list SignalList(const std::vector<Signal>& signals) {
   return out;
 }
 
+/// tp_new of Estimator: an object made without from_file() or from_text() would hold no estimator, and pybind11 would
+/// give its methods memory that nothing was constructed in. Those two do not come through here.
+PyObject* RefuseNew(PyTypeObject* /*type*/, PyObject* /*arguments*/, PyObject* /*keywords*/) {
+  PyErr_SetString(PyExc_TypeError, "an estimator is made by armcmc.Estimator(model), not by __new__()");
+  return nullptr;
+}
+
 /// What is wrong with an input is a ValueError; words of a command line are not for Python.
 void Translate(std::exception_ptr error) {
   const auto say = [](const std::exception& e) {
@@ -145,7 +152,8 @@ PYBIND11_MODULE(_armcmc, m) {
   m.def("plant_names", &support::PlantNames);
   m.def("config_path",
         [](const std::string& name) { return py::bytes(support::FindSharedFile("config", name).string()); });
-  py::class_<PythonEstimator>(m, "Estimator")
+  const py::custom_type_setup no_new([](PyHeapTypeObject* type) { type->ht_type.tp_new = python::RefuseNew; });
+  py::class_<PythonEstimator>(m, "Estimator", no_new)
       .def_static("from_file", &python::FromFile)
       .def_static("from_text", &python::FromText)
       .def("step", &python::Step)
