@@ -108,7 +108,8 @@ std::vector<std::byte> EncodeSnapshot(const Snapshot& snapshot) {
 std::string DecodeSnapshot(std::span<const std::byte> bytes, std::uint64_t identity, Snapshot* snapshot) {
   Header header{};
   if (bytes.size() < sizeof kMagic || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) {
-    return bytes.empty() ? "is empty" : "is not a snapshot of an estimator";
+    if (bytes.empty()) return "is empty";
+    return MayBeSnapshot(bytes) ? "is damaged: its first bytes are wrong" : "is not a snapshot of an estimator";
   }
   if (bytes.size() < sizeof header + sizeof(std::uint64_t)) return "is truncated";
   std::memcpy(&header, bytes.data(), sizeof header);
@@ -135,6 +136,16 @@ std::string DecodeSnapshot(std::span<const std::byte> bytes, std::uint64_t ident
   snapshot->adjusted.assign(adjusted.begin(), adjusted.end());
   snapshot->executed.assign(executed.begin(), executed.end());
   return "";
+}
+
+bool MayBeSnapshot(std::span<const std::byte> bytes) {
+  const auto first = bytes.first(std::min(bytes.size(), sizeof kMagic));
+  std::size_t right = 0, zero = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    right += first[i] == static_cast<std::byte>(kMagic[i]) ? 1U : 0U;
+    zero += first[i] == std::byte{0} ? 1U : 0U;
+  }
+  return 2 * right >= first.size() || zero == first.size();
 }
 
 std::string ReplaceFile(const std::string& path, std::span<const std::byte> bytes) {

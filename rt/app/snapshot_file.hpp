@@ -36,6 +36,11 @@ inline constexpr std::uint32_t kSnapshotVersion = 3;
 /// @return empty when it can be used, else why not, in words that end a sentence: "is truncated".
 [[nodiscard]] std::string DecodeSnapshot(std::span<const std::byte> bytes, std::uint64_t identity, Snapshot* snapshot);
 
+/// Whether a file that DecodeSnapshot() refuses may have been a snapshot, and not another file that was named by
+/// mistake: half of its first 8 bytes are those of a snapshot, or all of them are zero, as in a block that the disk
+/// lost.
+[[nodiscard]] bool MayBeSnapshot(std::span<const std::byte> bytes);
+
 /// Replaces a file as a whole: whoever reads it, also after a power failure, finds the old content or the new one.
 /// @return empty, or why it failed.
 [[nodiscard]] std::string ReplaceFile(const std::string& path, std::span<const std::byte> bytes);

@@ -1,11 +1,16 @@
 #include "snapshot_saver.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
 #include "armcmc/rt/clock.hpp"
+#include "armcmc/support/program.hpp"
 
 namespace armcmc::app {
 namespace {
@@ -13,10 +18,9 @@ namespace {
 constexpr auto kWritePause = std::chrono::milliseconds(50);
 constexpr auto kInterval = std::chrono::seconds(1);
 
-/// Moves a file that will not be used out of the way of the new one. @return what to say of it.
+/// Moves a snapshot that will not be used out of the way of the new one. @return what to say of it.
 std::string SetAside(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return "it is not a regular file";
   std::string aside = path + ".refused";
   for (int n = 2; std::filesystem::exists(aside, error); ++n) aside = path + ".refused" + std::to_string(n);
   std::filesystem::rename(path, aside, error);
@@ -111,8 +115,15 @@ Snapshot LoadSnapshot(const std::string& path, std::uint64_t identity, std::int6
     say("no snapshot " + path + " yet: starting afresh");
     return nothing;
   }
+  const auto leave_alone = [&path](const std::string& why) {
+    return support::InputError("--resume " + path + ": " + why + "; it is left as it is: name another file");
+  };
+  if (!std::filesystem::is_regular_file(path)) throw leave_alone("not a regular file");
+  // The snapshots of this program may be read by everyone.
+  if (::access(path.c_str(), R_OK) != 0 && errno == EACCES) throw leave_alone(std::strerror(EACCES));
   std::vector<std::byte> bytes;
   std::string reason = ReadFile(path, &bytes);
+  if (!MayBeSnapshot(bytes)) throw leave_alone("not a snapshot of an estimator");
   if (!reason.empty()) {
     reason = "cannot be read: " + reason;
   } else {

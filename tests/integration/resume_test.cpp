@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -71,10 +72,9 @@ TEST_F(Resume, AfterKill9TheEstimatorGoesOnFromWhatItHadLearnt) {
 }
 
 TEST_F(Resume, ADamagedSnapshotAndOneOfAnotherModelAreRefusedAndTheRunGoesOn) {
-  std::ofstream(File()) << "not a snapshot";
+  std::ofstream(File()) << "ARMCMCSN and no more";
   auto first = StartEstimator({"--resume", File()});
-  EXPECT_TRUE(first->WaitForErr("is refused, it is not a snapshot of an estimator; starting afresh", 5s))
-      << first->err();
+  EXPECT_TRUE(first->WaitForErr("is refused, it is truncated; starting afresh", 5s)) << first->err();
   ASSERT_EQ(Play("0.8"), 8u) << first->err();
   first->Signal(SIGINT);
   EXPECT_EQ(first->Wait(10s).code, 0) << first->err();
@@ -85,6 +85,20 @@ TEST_F(Resume, ADamagedSnapshotAndOneOfAnotherModelAreRefusedAndTheRunGoesOn) {
   EXPECT_TRUE(other.running());
   other.Signal(SIGINT);
   EXPECT_EQ(other.Wait(10s).code, 0) << other.err();
+}
+
+TEST_F(Resume, AnotherFileIsLeftAloneAndTheRunDoesNotBegin) {
+  const std::string table = "t,x,y\n0,1,2\n";
+  std::ofstream(File()) << table;
+  const Outcome o = RunProgram(Program("armcmc-estimator"), {"--lcm-url", bus_->url(), "--resume", File()});
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("--resume " + File() + ": not a snapshot of an estimator; it is left as it is"),
+            std::string::npos)
+      << o.err;
+  std::stringstream kept;
+  kept << std::ifstream(File()).rdbuf();
+  EXPECT_EQ(kept.str(), table);
+  EXPECT_FALSE(std::filesystem::exists(File() + ".refused"));
 }
 
 TEST_F(Resume, ADiskThatRefusesIsPublishedAndCountedAndNothingElseHappens) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "armcmc/rt/step_engine.hpp"
 #include "armcmc/rt/warm_up.hpp"
 #include "armcmc/snapshot.hpp"
+#include "armcmc/support/program.hpp"
 #include "full_disk.hpp"
 #include "snapshot_saver.hpp"
 #include "support/paths.hpp"
@@ -53,6 +55,9 @@ TEST(SnapshotFile, RefusesWhatItDoesNotKnowAndSaysWhy) {
   const auto good = EncodeSnapshot(Example());
   EXPECT_EQ(Refusal({}), "is empty");
   EXPECT_EQ(Refusal(Bytes(2000, 7)), "is not a snapshot of an estimator");
+  auto damaged = good;
+  std::fill_n(damaged.begin(), 4, std::byte{0xa5});
+  EXPECT_EQ(Refusal(damaged), "is damaged: its first bytes are wrong");
   auto foreign = good;
   foreign[8] = std::byte{99};
   EXPECT_EQ(Refusal(foreign), "has version 99 of a newer program, expected 3");
@@ -198,7 +203,7 @@ TEST_F(SnapshotSaverTest, SaysInOneLineWhatBecomesOfTheFile) {
   ASSERT_EQ(ReplaceFile(Path(), EncodeSnapshot(Example())), "");
   EXPECT_EQ(Load().seq, 17);
   EXPECT_EQ(Load(false).seq, 0);
-  ASSERT_EQ(ReplaceFile(Path(), Bytes(100, 3)), "");
+  ASSERT_EQ(ReplaceFile(Path(), Bytes(100, 0)), "");
   EXPECT_EQ(Load().seq, 0);
   const std::string file = Path();
   ASSERT_EQ(said_.size(), 4U);
@@ -208,15 +213,38 @@ TEST_F(SnapshotSaverTest, SaysInOneLineWhatBecomesOfTheFile) {
                           " is refused, it is damaged: its content is invalid; starting afresh, it is kept as " + file +
                           ".refused");
   EXPECT_EQ(said_[3], "the snapshot " + file +
-                          " is refused, it is not a snapshot of an estimator; starting afresh, it is kept as " + file +
-                          ".refused2");
+                          " is refused, it is damaged: its first bytes are wrong; starting afresh, it is kept as " +
+                          file + ".refused2");
 }
 
-TEST_F(SnapshotSaverTest, AFolderIsNoSnapshotAndStaysWhereItIs) {
+TEST_F(SnapshotSaverTest, WhatIsNoSnapshotStaysWhereItIs) {
+  const std::string table = "t,x,y\n0,1,2\n";
+  const auto words = std::as_bytes(std::span(table));
+  ASSERT_EQ(ReplaceFile(Path(), words), "");
+  EXPECT_THROW((void)Load(), support::InputError);
+  std::vector<std::byte> kept;
+  EXPECT_EQ(ReadFile(Path(), &kept), "");
+  EXPECT_TRUE(std::equal(kept.begin(), kept.end(), words.begin(), words.end()));
+  std::filesystem::remove(Path());
   std::filesystem::create_directory(Path());
-  EXPECT_EQ(Load().seq, 0);
+  EXPECT_THROW((void)Load(), support::InputError);
   EXPECT_TRUE(std::filesystem::is_directory(Path()));
-  EXPECT_NE(said_.back().find("is refused"), std::string::npos) << said_.back();
+  EXPECT_FALSE(std::filesystem::exists(Path() + ".refused"));
+  EXPECT_TRUE(said_.empty());
+}
+
+TEST_F(SnapshotSaverTest, ADamagedSnapshotIsNotTakenForAnotherFile) {
+  const std::vector<std::byte> good = EncodeSnapshot(Example());
+  for (std::size_t size = 0; size < 20; ++size) EXPECT_TRUE(MayBeSnapshot(std::span(good).first(size))) << size;
+  std::vector<std::byte> damaged = good;
+  for (std::size_t i = 0; i < 4; ++i) damaged[2 * i] = std::byte{0xa5};
+  EXPECT_TRUE(MayBeSnapshot(damaged));
+  std::fill_n(damaged.begin(), 48, std::byte{0});
+  EXPECT_TRUE(MayBeSnapshot(damaged)) << "a block that is lost";
+  for (const char* other : {"t,x,y\n", "armcmcsn", "ARM", "a", "schema = 1\n", "\xed\xa1\xda\x01"}) {
+    const std::string text = other;
+    EXPECT_EQ(MayBeSnapshot(std::as_bytes(std::span(text))), text == "ARM") << text;
+  }
 }
 
 TEST_F(SnapshotSaverTest, ARefusedFileIsSetAsideAndNeverReplaced) {
@@ -227,13 +255,13 @@ TEST_F(SnapshotSaverTest, ARefusedFileIsSetAsideAndNeverReplaced) {
   Learn(1, 1);
   saver->Save();
   EXPECT_EQ(saver->written(), 1);
-  ASSERT_EQ(ReplaceFile(Path(), Bytes(100, 3)), "");
+  ASSERT_EQ(ReplaceFile(Path(), Bytes(100, 0)), "");
   EXPECT_EQ(Load().seq, 0);
   std::vector<std::byte> kept;
   EXPECT_EQ(ReadFile(Path() + ".refused", &kept), "");
   EXPECT_EQ(kept, content);
   EXPECT_EQ(ReadFile(Path() + ".refused2", &kept), "");
-  EXPECT_EQ(kept, Bytes(100, 3));
+  EXPECT_EQ(kept, Bytes(100, 0));
 }
 
 /// The engine of the pipeline: what its warm-up learns reaches nobody, and ends where it was resumed.
