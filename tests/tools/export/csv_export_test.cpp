@@ -179,6 +179,7 @@ TEST_F(CsvExport, PlotJugglerTakesEveryColumnOfNumbersForNumbers) {
   const double first[] = {1e-300, -2.5e-7, 1.5e9, 3e22};
   {
     LogWriter log(request_.log);
+    log.Write("EST_STATUS", estimator_status_t{});  // the estimates begin 1 us later
     for (int k = 1; k <= 3; ++k) {
       estimate_t e = EstimateWithMismatch(k);
       e.lambda = std::nan("");

@@ -66,7 +66,7 @@ class Table final : public Sink {
     }
     EndRow();
     rows_ = 0;
-    has_number_.resize(columns_.size(), false);
+    has_number_.resize(columns_.size() + 1, false);
   }
 
   void Write(Bytes data, const MessageType& type, const EventTime& time) override {
@@ -81,7 +81,7 @@ class Table final : public Sink {
 
  private:
   void WriteRow(Bytes data, double t, std::size_t sample) {
-    AppendNumber(t, &row_);
+    AppendReal(t, columns_.size());
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const Column& column = columns_[i];
       row_.push_back(',');
@@ -144,7 +144,7 @@ class Table final : public Sink {
 
   const PlantScan& plant_;
   std::vector<Column> columns_;
-  std::vector<bool> has_number_;  // by column: a row before has one
+  std::vector<bool> has_number_;  // by column, the time last: a row before has one
   Rows rows_of_;
   std::filesystem::path path_;
   std::ofstream file_;
