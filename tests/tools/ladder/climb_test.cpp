@@ -86,6 +86,16 @@ TEST(Climb, AFormulaThatMakesAnEarlierOneNeedlessReplacesIt) {
   EXPECT_THAT(NamesOf(ladder.rungs[1]), IsEmpty());
 }
 
+TEST(Climb, AFormulaThatAnotherOneOfItsEffectDoesNotMakeNeedlessStays) {
+  const Ladder ladder = ClimbWith(
+      {"coulomb_friction"},
+      test::AxisData([](const AxisSample& s) { return 15.0 * Sign(s.v) + 40.0 * std::tanh(s.v / 0.05); }));
+  ASSERT_GE(ladder.rungs.size(), 2U);
+  for (const std::size_t r : {0U, 1U}) EXPECT_THAT(NamesOf(ladder.rungs[r]), ElementsAre("coulomb_friction")) << r;
+  EXPECT_NE(ladder.rungs[0].leader().candidate.form().name, ladder.rungs[1].leader().candidate.form().name);
+  EXPECT_TRUE(ladder.complete);
+}
+
 TEST(BetterBase, IsFoundFromWhereAnEffectHasItsParameters) {
   const Dataset data = test::MotorData([](double, double) { return 1.0; });
   const auto plant = std::make_shared<const Plant>(test::MotorPlant());
