@@ -42,7 +42,7 @@ class GapLog {
   /// @param columns Names of the inputs, in the order of a pack, then of the output.
   /// @param packs   Filled by the collect stage; emptied here.
   /// @param alarm   Number of the pack at which the alarm rose, 0 while there is none.
-  /// @param say     Told in words what was written or went wrong; called from the thread of Poll().
+  /// @param say     Receives a line about what was written or went wrong; called from the thread of Poll().
   GapLog(const GapLogSettings& settings, std::vector<std::string> columns, rt::RecordRing* packs,
          const std::atomic<std::int64_t>* alarm, Say say);
   ~GapLog() { Stop(); }

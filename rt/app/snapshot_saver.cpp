@@ -76,15 +76,15 @@ void SnapshotSaver::Save() {
   if (reason.empty()) {
     fresh_ = false;
     written_.fetch_add(1, std::memory_order_relaxed);
-    if (told_) say_("the snapshot " + path_ + " can be written again");
-    told_ = false;
+    if (reported_) say_("the snapshot " + path_ + " can be written again");
+    reported_ = false;
     return;
   }
   failed_.fetch_add(1, std::memory_order_relaxed);
   on_failure_();
-  if (!told_)
+  if (!reported_)
     say_("the snapshot " + path_ + " cannot be written: " + reason + "; continuing without it, and trying again");
-  told_ = true;
+  reported_ = true;
 }
 
 void SnapshotSaver::Start() {

@@ -51,7 +51,7 @@ class SnapshotSaver {
   Say say_;
   OnFailure on_failure_;
   bool fresh_ = false;  // something was taken that is not in the file
-  bool told_ = false;
+  bool reported_ = false;
   std::atomic<std::int64_t> written_{0}, failed_{0};
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -28,7 +28,7 @@ struct MarginalSummary {
   std::array<double, kHistogramBins> density{};  ///< Integrates to 1 over [lo, hi].
 };
 
-/// The estimate of one mode.
+/// The estimate of one mode. zeta: in noise scales; log_evidence: nats; noise_std: unit of the regression target.
 struct ModeEstimate {
   bool known = false;    ///< The data are informative: the posterior has become narrower than the prior.
   bool updated = false;  ///< By this pack.

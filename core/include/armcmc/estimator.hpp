@@ -27,11 +27,11 @@ struct ReportedQuantity {
   std::string_view unit;
 };
 
-/// Adaptive recursive MCMC: the adjust and execute computations of the three-stage loop.
-///
-/// Adjust() and Execute() may run at the same time on two threads as long as they work on different
-/// AdjustResults: Adjust() alone changes the posterior memory, Execute() alone the predictor state.
-/// No clock, thread or I/O inside; memory is fixed after construction.
+/// Adaptive recursive MCMC, P(theta | D^1..D^t) ~ L(D^t | theta) prior_t(theta): adjust and execute of the three-stage
+/// loop. Source: P. Agand, M. Chen, H. D. Taghirad, Online probabilistic model identification using adaptive recursive
+/// MCMC, IJCNN 2023; core/README.md lists the differences. Adjust() and Execute() may run at the same time on two
+/// threads if they work on different AdjustResults: Adjust() alone changes the posterior memory, Execute() alone the
+/// predictor state. No clock, thread or I/O inside; memory is fixed after construction.
 class Estimator {
  public:
   /// @throws std::invalid_argument from settings.Validate(). Allocates all memory that it will ever use.

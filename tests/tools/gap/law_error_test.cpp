@@ -1,4 +1,4 @@
-// A law that is not quite its formula: the flexible correction that is fitted beside an effect, and which effects are
+// An error in the formula of the law: the flexible correction that is fitted beside an effect, and which effects are
 // named nevertheless.
 
 #include <gtest/gtest.h>

@@ -41,13 +41,13 @@ struct Compared {
     ladder = test::ClimbWith({"hysteresis", "presliding_friction"}, test::AxisData(rounder));
     rung = ladder.rungs[0];
     for (Contender& c : rung.contenders) {
-      c.earned = c.larger_part = false;
+      c.has_evidence = c.larger_part = false;
       c.ruled_out = false;
       Contender*& best = c.candidate.entry->name == "hysteresis" ? hysteresis : presliding;
       if (best == nullptr) best = &c;
     }
     for (Contender* c : {hysteresis, presliding}) {
-      c->earned = c->larger_part = true;
+      c->has_evidence = c->larger_part = true;
       c->gain_share = 1.0;
       c->win_share = 0.0;
     }

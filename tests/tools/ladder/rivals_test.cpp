@@ -23,7 +23,7 @@ using ::testing::IsEmpty;
 const std::vector<std::string> kOfMotor{"drag", "coulomb_friction", "input_saturation", "sensor_saturation"};
 
 TEST(Climb, WhatActsLikeANameAndIsSmallBesideItIsAnErrorOfItsFormula) {
-  // Rounder than the catalogue's hysteresis, which a play would mend.
+  // Rounder than the catalogue's hysteresis, which a play would compensate.
   double z = 0.0;
   const auto rounder = [&z](const AxisSample& s) {
     constexpr int kSteps = 20;

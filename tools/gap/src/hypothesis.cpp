@@ -134,10 +134,10 @@ void Sense(const Signals& signals, const Placed& term, Prediction* out) {
   }
   const Prediction before = *out;
   term.form->sense(signals, term.theta, term.first, out);
-  const Vector shut = 1.0 - term.gate.array();
-  out->y = term.gate.cwiseProduct(out->y) + shut.cwiseProduct(before.y);
+  const Vector closed = 1.0 - term.gate.array();
+  out->y = term.gate.cwiseProduct(out->y) + closed.cwiseProduct(before.y);
   out->jacobian = term.gate.asDiagonal() * out->jacobian;
-  out->jacobian += shut.asDiagonal() * before.jacobian;
+  out->jacobian += closed.asDiagonal() * before.jacobian;
 }
 
 /// The law that no effect reaches into.

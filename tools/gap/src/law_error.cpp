@@ -57,7 +57,7 @@ class BumpsOfBoth {
 }  // namespace
 
 EffectForm LawErrorForm(const LawVariable& a, const LawVariable& b) {
-  EffectForm form = UnlistedForm("a law that is not quite its formula", "law error",
+  EffectForm form = UnlistedForm("an error in the formula of the law", "law error",
                                  "law (1 + a smooth function of what it depends on)", Slot::kParameter);
   form.regular = true;
   form.num_amplitudes = kPlaces * kPlaces;

@@ -267,12 +267,12 @@ Finding Search::Run(bool pairs) const {
     two.insert(two.end(), corrected.begin(), corrected.end());
     SortByScore(&two);
     for (const CandidatePtr& pair : Near(two, gap)) {
-      const auto earned = [&](const CandidatePtr& single) {
+      const auto has_evidence = [&](const CandidatePtr& single) {
         return !Holds(pair->fit, single->fit.hypothesis.terms.back().form->effect) || Better(pair->fit, single->fit);
       };
-      // The correction is not claimed: only the effect has to earn its name.
+      // The correction is not claimed: only the effect needs the evidence for a name.
       const bool all_earned = pair->correction ? Better(pair->fit, pair->correction->without)
-                                               : std::all_of(listed.begin(), listed.end(), earned);
+                                               : std::all_of(listed.begin(), listed.end(), has_evidence);
       if (all_earned && (Adequate(pair, gap) || StandsOut(pair, corrected))) good.push_back(pair);
     }
     DropUncertain(&good);

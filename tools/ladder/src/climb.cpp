@@ -131,7 +131,7 @@ void NameAndConfirm(NamingContext* checks, Rung* rung, std::vector<std::string>*
                   apart.before, apart.after);
     notes->push_back(leader.candidate.entry->name + text);
     gained = std::max(gained, 1.0 - leader.alone.folds);
-    leader.earned = rung->open = false;
+    leader.has_evidence = rung->open = false;
     rung->named.clear();
     contradicted = true;
   }

@@ -294,9 +294,11 @@ class ResultWriter {
     const std::string percent = Number(std::round(1000.0 * result_.gap.closed_fraction) / 10.0);
     const std::string in = request_.equation.empty() ? "" : " in the " + request_.equation;
     if (result_.ladder.empty())
-      return complete_
-                 ? "Nothing is missing as far as these data show: the model explains them down to the noise."
-                 : "Something is missing" + in + ", and no effect that fits this plant earns a name." + ActsAsIf();
+      return complete_ ? "Nothing is missing as far as these data show: the model explains them down to the noise."
+                       : "Something is missing" + in +
+                             ", and no effect of the catalogue that this plant can have explains it well enough to be "
+                             "named." +
+                             ActsAsIf();
     std::vector<std::string> rungs;
     for (const Rung& rung : ladder_.rungs) {
       if (rung.named.empty()) continue;

@@ -54,7 +54,7 @@ bool OpenTie::Extend(const Dataset& data, const View& view, const DataScales& sc
       Bootstrap(&alone);
       Judge(view, floor, families, 1.0, &alone);
       with = std::move(alone.contenders.front());
-      if (!with.earned || !with.larger_part) return false;
+      if (!with.has_evidence || !with.larger_part) return false;
     }
     Contender whole = with;
     whole.candidate = branch.effect;

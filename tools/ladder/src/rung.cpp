@@ -178,8 +178,8 @@ void Judge(const View& view, double floor, const std::set<std::string>& families
       return std::count_if(bent.begin(), bent.end(), [&](double ratio) { return ratio < limit; });
     };
     const bool survives = below(kWithFlexible) >= 2 || (below(kFarWithFlexible) >= 1 && below(1.0) == 3);
-    c.earned = gains && elsewhere && survives && !IsNotResonant(c) && IsDetermined(view, c) &&
-               !WorseThanConstant(view, c.trial);
+    c.has_evidence = gains && elsewhere && survives && !IsNotResonant(c) && IsDetermined(view, c) &&
+                     !WorseThanConstant(view, c.trial);
   }
 }
 
@@ -193,7 +193,7 @@ void RuleOut(const View& view, std::size_t which, Rung* rung) {
 void Name(const View& view, double floor, bool open, Rung* rung) {
   std::vector<Contender>& all = rung->contenders;
   const auto may = [open](const Contender& c) {
-    return c.earned && !c.ruled_out && !c.ruled_out_with && (open || c.larger_part);
+    return c.has_evidence && !c.ruled_out && !c.ruled_out_with && (open || c.larger_part);
   };
   double best = 0.0;
   for (const Contender& c : all)

@@ -13,7 +13,7 @@ namespace armcmc::ladder {
 /// @param floor  Standard deviation of the noise. If only noise remains on the subset but not on all rows, all rows are
 ///   used.
 /// @param above_tie  If the rung is above a tie, the families named before: an effect of another one has to remove the
-///   larger part there, and what comes nowhere near is not refitted. Null: a smaller part may earn a name.
+///   larger part there, and what comes nowhere near is not refitted. Null: a smaller part may be named.
 /// @param notes      Receives the reason if an effect could not be tried.
 void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, const View& view, double floor,
             const std::set<std::string>* above_tie, Rung* rung, std::vector<std::string>* notes);

@@ -54,7 +54,7 @@ void DropSuperseded(const Dataset& data, Ladder* ladder) {
   const std::string& name = formula.candidate.entry->name;
   ladder->notes.push_back(name + " is named once: with its second formula the first is not needed");
   there->trial = std::move(alone);
-  there->refined = there->earned = true;
+  there->refined = there->has_evidence = true;
   there->closed = std::clamp(1.0 - std::pow(there->trial.fit.error_sd / before.base.fit.error_sd, 2), 0.0, 1.0);
   there->alone = Compare(before.view, *there, before.base, false);
   there->with_flexible = Compare(before.view, *there, before.base, true);

@@ -166,7 +166,8 @@ std::vector<std::size_t> NamedOrEquivalent(const Ladder& ladder) {
   }
   for (std::size_t i = 0; i < rung.contenders.size() && of_sensor; ++i) {
     const Contender& c = rung.contenders[i];
-    if (!c.trial.judged || !c.earned || c.ruled_out || c.ruled_out_with || (slot(c) != "input" && slot(c) != "output"))
+    if (!c.trial.judged || !c.has_evidence || c.ruled_out || c.ruled_out_with ||
+        (slot(c) != "input" && slot(c) != "output"))
       continue;
     if (c.alone.folds > kAlike * rung.leader().alone.folds) continue;
     if (c.candidate.form().parameters.size() > rung.leader().candidate.form().parameters.size()) continue;

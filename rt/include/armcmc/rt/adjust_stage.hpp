@@ -64,7 +64,7 @@ class AdjustStage {
   /// @param settings  Deadline, budget and reserve.
   /// @param engine    Runs Adjust() and Remember().
   /// @param ring      Packs from collect. @param results  Slots for execute.
-  /// @param monitor   Told of packs that are dropped.
+  /// @param monitor   Notified of packs that are dropped.
   /// @param counters, events  Written by this stage only in its own group.
   AdjustStage(const RtSettings& settings, StepEngine* engine, PackRing* ring, ResultHandOver* results,
               DeadlineMonitor* monitor, Counters* counters, EventLog* events) noexcept;

@@ -30,17 +30,17 @@ std::optional<std::string> FamilyOf(const std::string& name) {
   return entry == entries.end() ? std::nullopt : std::optional(entry->family);
 }
 
-/// What is said of an effect that the plant's own catalogue lacks, by the name in the sealed file.
-std::string AsSealed(const Case& what, const Truth& truth, const std::string& said) {
+/// The name given to an effect that the plant's own catalogue lacks, by the name in the sealed file.
+std::string AsSealed(const Case& what, const Truth& truth, const std::string& answer) {
   const auto has = [](const auto& list, const auto& one) {
     return std::find(list.begin(), list.end(), one) != list.end();
   };
   for (const TrueEffect& effect : truth.effects) {
     const bool lacked = effect.kind == "outside" || has(what.without, effect.name);
     const auto names = HiddenInContact().also_called.find(effect.name);
-    if (lacked && names != HiddenInContact().also_called.end() && has(names->second, said)) return effect.name;
+    if (lacked && names != HiddenInContact().also_called.end() && has(names->second, answer)) return effect.name;
   }
-  return said;
+  return answer;
 }
 
 std::string Joined(const Names& names) {
@@ -61,20 +61,20 @@ Truth NameableTruth(const Truth& truth) {
   return named;
 }
 
-/// What is said of the effects that are to be named, each once: what the recording holds by itself is left out, and
-/// what is rightly said of the others.
-Names Judged(const Case& what, const Truth& truth, Names said) {
+/// The names given to the effects that are to be named, each once: what the recording holds by itself is left out, and
+/// what is rightly named of the others.
+Names Judged(const Case& what, const Truth& truth, Names answer) {
   const Names all = NamesOf(truth), names = NamesOf(NameableTruth(truth));
   const auto holds = [](const Names& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
-  for (std::string& name : said) name = AsSealed(what, truth, name);
-  std::erase_if(said, [&](const std::string& name) {
+  for (std::string& name : answer) name = AsSealed(what, truth, name);
+  std::erase_if(answer, [&](const std::string& name) {
     return !holds(names, name) && (holds(what.own, name) || holds(all, name));
   });
-  std::sort(said.begin(), said.end());
-  said.erase(std::unique(said.begin(), said.end()), said.end());
-  return said;
+  std::sort(answer.begin(), answer.end());
+  answer.erase(std::unique(answer.begin(), answer.end()), answer.end());
+  return answer;
 }
 
 /// Whether the plant's own catalogue has the right name.
@@ -185,19 +185,19 @@ bool LabelRight(const Case& what, const Truth& all, const std::string& label) {
   if (label == "none") return false;
   if (label == "unnamed") return !Nameable(what, truth);
   const Names names = NamesOf(truth);
-  Names said;
+  Names answer;
   for (std::size_t at = 0; at <= label.size();) {
     const std::size_t end = std::min(label.find(" + ", at), label.size());
-    said.push_back(label.substr(at, end - at));
+    answer.push_back(label.substr(at, end - at));
     at = end + 3;
   }
-  said = Judged(what, all, std::move(said));
-  if (said == names) return true;
+  answer = Judged(what, all, std::move(answer));
+  if (answer == names) return true;
   const bool own_formula =
       !Imperfect(what.stratum) && std::all_of(truth.effects.begin(), truth.effects.end(),
                                               [](const TrueEffect& effect) { return effect.kind == "catalogue"; });
   if (Nameable(what, truth) && own_formula) return false;
-  return FamiliesOf(said) == FamiliesOf(names);
+  return FamiliesOf(answer) == FamiliesOf(names);
 }
 
 std::pair<double, double> OnsetInterval(const std::vector<double>& contribution, double dt, double onset_s,

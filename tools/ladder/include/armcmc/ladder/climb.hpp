@@ -25,16 +25,16 @@ struct Comparison {
 /// Another effect that was tried on a rung, and its gain on left-out data.
 struct Contender {
   Candidate candidate;
-  Trial trial;               ///< Fitted to all training rows if promising, otherwise to the subset of SubsetForFits().
-  bool refined = false;      ///< Fitted to all training rows.
-  double closed = 0.0;       ///< Share of the base model's squared error that the fit removes, [0, 1].
-  Comparison alone;          ///< Relative to the base model, if trial.judged.
-  Comparison with_flexible;  ///< The same with the flexible function added to both.
-  double gain_share = 0.0;   ///< Share of bootstrap samples of segments in which it gains at least a tenth.
-  double win_share = 0.0;    ///< Share in which its family has the smallest error.
-  bool larger_part = false;  ///< It removes more than half of the unexplained error.
-  bool earned = false;       ///< Rule 1 of Climb(): enough evidence for a name.
-  bool ruled_out = false;    ///< Rule 4: a rival outside the catalogue explains more.
+  Trial trial;                ///< Fitted to all training rows if promising, otherwise to the subset of SubsetForFits().
+  bool refined = false;       ///< Fitted to all training rows.
+  double closed = 0.0;        ///< Share of the base model's squared error that the fit removes, [0, 1].
+  Comparison alone;           ///< Relative to the base model, if trial.judged.
+  Comparison with_flexible;   ///< The same with the flexible function added to both.
+  double gain_share = 0.0;    ///< Share of bootstrap samples of segments in which it gains at least a tenth.
+  double win_share = 0.0;     ///< Share in which its family has the smallest error.
+  bool larger_part = false;   ///< It removes more than half of the unexplained error.
+  bool has_evidence = false;  ///< Rule 1 of Climb(): enough evidence for a name.
+  bool ruled_out = false;     ///< Rule 4: a rival outside the catalogue explains more.
   bool ruled_out_with = false;  ///< It is the same, with more parameters, as one that is ruled out.
 };
 

@@ -53,7 +53,7 @@ struct Truth {
   std::vector<double> noise_sd;  ///< Of each output (OutputsOf the model), in its unit.
 };
 
-/// What the tool said, its curves left out.
+/// The answer of the tool, its curves left out.
 struct Answer {
   gap::Result result;
   double cpu_s = 0.0;  ///< Processor time of the diagnosis and its proof, without that of the ladder's second thread.
@@ -92,7 +92,7 @@ struct Outcome {
   bool label_right = false;
   std::optional<double> onset_error_s;  ///< Beyond the times at which the data cannot tell the onset apart.
   std::optional<double> onset_off_s;    ///< From the true onset itself, at which the effect need not leave a trace.
-  std::optional<bool> when_right;       ///< Contact-only and free-only effects: said so.
+  std::optional<bool> when_right;       ///< Contact-only and free-only effects: so named.
   /// Of a plant with several equations, where a gap was found: it was found in one that the effect changes.
   std::optional<bool> equation_right;
   /// Of effects that were not found: rms of what they add to the output in the diagnosed part of the recording, over

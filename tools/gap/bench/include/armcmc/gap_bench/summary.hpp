@@ -50,7 +50,7 @@ struct ConfidentLabels {
   int n = 0, right = 0;
 };
 
-/// Where effects that begin during a recording were said to begin, of those that were found. Errors count beyond the
+/// Named beginnings of effects that begin during a recording, of those that were found. Errors count beyond the
 /// times at which the data cannot tell the onset apart, see OnsetInterval.
 struct Onsets {
   int n = 0;                                       ///< Found.
