@@ -21,7 +21,7 @@ std::vector<gap::ParameterDrift> Drift(const std::function<double(const AxisSamp
   return ladder::DriftOver(data, tuned, trial, nullptr, trial);
 }
 
-const gap::Steadiness& Of(const std::vector<gap::ParameterDrift>& drift, const std::string& name) {
+const gap::Constancy& Of(const std::vector<gap::ParameterDrift>& drift, const std::string& name) {
   for (const gap::ParameterDrift& one : drift)
     if (one.name == name) return one.before;
   throw std::out_of_range(name);
@@ -38,7 +38,7 @@ TEST(Drift, ParametersOfAPlantThatStaysAreConstant) {
 
 TEST(Drift, AMassThatGrowsIsSeenToMove) {
   const auto drift = Drift([](const AxisSample& s) { return s.t * s.a; });  // 100 kg to 120 kg in 20 s
-  const gap::Steadiness& mass = Of(drift, "M");
+  const gap::Constancy& mass = Of(drift, "M");
   EXPECT_FALSE(mass.constant);
   EXPECT_NEAR(mass.moves_by, 20.0 / std::sqrt(12.0), 1.0) << "standard deviation of an even growth";
   ASSERT_EQ(mass.course.x.size(), 10u);
@@ -52,12 +52,12 @@ TEST(Drift, AMassThatGrowsIsSeenToMove) {
 }
 
 TEST(Drift, MovementIsWhatTheBandsDoNotExplain) {
-  gap::Steadiness steady, moving;
-  ladder::JudgeSteadiness({1.0, 1.1, 0.9, 1.0}, {0.1, 0.1, 0.1, 0.1}, &steady);
+  gap::Constancy steady, moving;
+  ladder::JudgeConstancy({1.0, 1.1, 0.9, 1.0}, {0.1, 0.1, 0.1, 0.1}, &steady);
   EXPECT_TRUE(steady.constant);
   EXPECT_EQ(steady.moves_by, 0.0);
   EXPECT_NEAR(steady.mean, 1.0, 1e-12);
-  ladder::JudgeSteadiness({1.0, 2.0, 1.0, 2.0}, {0.1, 0.1, 0.1, 0.1}, &moving);
+  ladder::JudgeConstancy({1.0, 2.0, 1.0, 2.0}, {0.1, 0.1, 0.1, 0.1}, &moving);
   EXPECT_FALSE(moving.constant);
   // Chi-square 100 on 3 degrees of freedom: sqrt((100 / 3 - 1) 0.01).
   EXPECT_NEAR(moving.moves_by, 0.5686, 1e-3);

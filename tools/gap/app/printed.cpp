@@ -69,7 +69,7 @@ std::string LadderText(const Result& result) {
     std::snprintf(line, sizeof(line), "%-44s %12s %9s %12s\n", "held-out segment", "before", "after", "samples");
     out << line;
   }
-  for (const StretchFit& s : result.gap.stretches) {
+  for (const SegmentFit& s : result.gap.stretches) {
     char when[48];
     std::snprintf(when, sizeof(when), "%.4g to %.4g s", s.from_s, s.until_s);
     std::snprintf(line, sizeof(line), "%-44s %12.4g %9.4g %12lld\n", when, s.rmse_before, s.rmse_after,

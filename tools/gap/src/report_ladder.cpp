@@ -57,7 +57,7 @@ void AddStretches(const Result& result, std::ostream& out) {
   if (result.gap.stretches.empty()) return;
   out << "<h3>Held-out segments</h3>\n<div class=\"scroll\"><table>\n<tr><th>from, s</th><th>until, "
          "s</th><th class=\"num\">samples</th><th class=\"num\">error before</th><th class=\"num\">after</th></tr>\n";
-  for (const StretchFit& s : result.gap.stretches)
+  for (const SegmentFit& s : result.gap.stretches)
     out << "<tr><td>" << NumberText(s.from_s, 4) << "</td><td>" << NumberText(s.until_s, 4) << "</td><td class=\"num\">"
         << s.samples << "</td><td class=\"num\">" << NumberText(s.rmse_before, 3) << "</td><td class=\"num\">"
         << NumberText(s.rmse_after, 3) << ' ' << EscapeHtml(result.gap.unit) << "</td></tr>\n";

@@ -69,7 +69,7 @@ void AddOneStep(const Result& result, plots::Page* page) {
       "samples should lie within it.");
 }
 
-std::string SteadinessCell(const Steadiness& s, const std::string& unit) {
+std::string ConstancyCell(const Constancy& s, const std::string& unit) {
   if (!s.known())
     return s.fitted ? "<td></td><td class=\"soft\">not determined</td>" : "<td class=\"soft num\">–</td><td></td>";
   std::string cell = "<td class=\"num\">" + WithUnit(s.mean, 4, unit) + "</td><td>";
@@ -90,8 +90,8 @@ void AddDrift(const Result& result, plots::Page* page) {
   if (has_after) out << "<th class=\"num\">with the named effects</th><th></th>";
   out << "</tr>\n";
   for (const ParameterDrift& p : result.drift) {
-    out << "<tr><td class=\"mono\">" << EscapeHtml(p.name) << "</td>" << SteadinessCell(p.before, p.unit);
-    if (has_after) out << SteadinessCell(p.after, p.unit);
+    out << "<tr><td class=\"mono\">" << EscapeHtml(p.name) << "</td>" << ConstancyCell(p.before, p.unit);
+    if (has_after) out << ConstancyCell(p.after, p.unit);
     out << "</tr>\n";
   }
   out << "</table></div>\n<div class=\"grid\">\n";

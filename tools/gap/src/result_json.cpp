@@ -89,7 +89,7 @@ json GapJson(const GapSummary& gap) {
     modes[plots::ValidUtf8(m.mode)] = {
         {"samples", m.samples}, {"rmse_before", Number(m.rmse_before)}, {"rmse_after", Number(m.rmse_after)}};
   json stretches = json::array();
-  for (const StretchFit& s : gap.stretches)
+  for (const SegmentFit& s : gap.stretches)
     stretches.push_back({{"from_s", Number(s.from_s)},
                          {"until_s", Number(s.until_s)},
                          {"samples", s.samples},
@@ -145,7 +145,7 @@ json BudgetJson(const Budget& b) {
           {"meets_deadline", b.measured ? json(b.meets_deadline) : json()}};
 }
 
-json SteadinessJson(const Steadiness& s) {
+json ConstancyJson(const Constancy& s) {
   if (!s.known()) return {};
   json stretches = json::array();
   for (std::size_t k = 0; k < s.course.x.size(); ++k)
@@ -164,7 +164,7 @@ json DriftJson(const std::vector<ParameterDrift>& drift) {
   json out = json::object();
   for (const ParameterDrift& p : drift)
     out[plots::ValidUtf8(p.name)] = {
-        {"unit", Text(p.unit)}, {"before", SteadinessJson(p.before)}, {"after", SteadinessJson(p.after)}};
+        {"unit", Text(p.unit)}, {"before", ConstancyJson(p.before)}, {"after", ConstancyJson(p.after)}};
   return out;
 }
 

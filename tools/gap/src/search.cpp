@@ -139,6 +139,7 @@ Search::Candidates Search::ExtendGated(const CandidatePtr& parent, const Candida
   std::sort(gates.begin(), gates.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   if (gates.size() > kMaxGated) gates.resize(kMaxGated);
   std::vector<Term> terms;
+  terms.reserve(gates.size());
   for (const GateCandidate& gate : gates) terms.push_back(gate.term);
   Candidates gated = AddEach(parent, terms);
   if (parent == base_) ShareOnset(min_active, &gated);

@@ -60,7 +60,7 @@ double ChiSquareTail(double value, double degrees) {
 /// Values of all parameters of a plant on the segments.
 struct Followed {
   std::vector<ParameterDescription> parameters;
-  std::vector<gap::Steadiness> steadiness;
+  std::vector<gap::Constancy> steadiness;
 };
 
 /// @param fit  Fit of the plant with all parameters free.
@@ -105,9 +105,9 @@ Followed Follow(const Dataset& data, const std::vector<Stretch>& stretches, cons
     }
   }
   for (std::size_t d = 0; d < out.parameters.size(); ++d) {
-    gap::Steadiness& one = out.steadiness[d];
+    gap::Constancy& one = out.steadiness[d];
     one.fitted = true;
-    JudgeSteadiness(value[d], sd[d], &one);
+    JudgeConstancy(value[d], sd[d], &one);
     if (out.parameters[d].prior != "lognormal") continue;
     one.mean = std::exp(one.mean);
     one.moves_by *= one.mean;
@@ -117,7 +117,7 @@ Followed Follow(const Dataset& data, const std::vector<Stretch>& stretches, cons
 
 }  // namespace
 
-void JudgeSteadiness(const std::vector<double>& value, const std::vector<double>& sd, gap::Steadiness* out) {
+void JudgeConstancy(const std::vector<double>& value, const std::vector<double>& sd, gap::Constancy* out) {
   constexpr double kRare = 0.01;
   double weights = 0.0, sum = 0.0, chi = 0.0;
   for (std::size_t k = 0; k < value.size(); ++k) {

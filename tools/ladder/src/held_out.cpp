@@ -110,10 +110,10 @@ std::vector<Index> HeldOutRows(const Dataset& data, const WholeRun& run) {
   return rows;
 }
 
-std::vector<gap::StretchFit> StretchesOf(const Dataset& data, const std::vector<Index>& rows, const WholeRun& before,
+std::vector<gap::SegmentFit> StretchesOf(const Dataset& data, const std::vector<Index>& rows, const WholeRun& before,
                                          const WholeRun& after) {
   constexpr std::size_t kMost = 20;
-  std::vector<gap::StretchFit> stretches;
+  std::vector<gap::SegmentFit> stretches;
   if (before.error.size() == 0 || after.error.size() == 0) return stretches;
   const auto kept_apart = [&data](Index n) { return data.held_out[static_cast<std::size_t>(n)] != 0; };
   for (std::size_t from = 0, to = 0; from < rows.size(); from = to) {

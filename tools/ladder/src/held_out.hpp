@@ -26,7 +26,7 @@ struct WholeRun {
 [[nodiscard]] std::vector<Eigen::Index> HeldOutRows(const Dataset& data, const WholeRun& run);
 
 /// Errors on each contiguous held-out segment; empty if there is only one, or more than 20.
-[[nodiscard]] std::vector<gap::StretchFit> StretchesOf(const Dataset& data, const std::vector<Eigen::Index>& rows,
+[[nodiscard]] std::vector<gap::SegmentFit> StretchesOf(const Dataset& data, const std::vector<Eigen::Index>& rows,
                                                        const WholeRun& before, const WholeRun& after);
 
 /// Sets the 95 % interval of the closed fraction on `rows`, by a bootstrap over blocks of time.

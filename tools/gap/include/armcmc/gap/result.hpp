@@ -91,7 +91,7 @@ struct ModeFit {
 };
 
 /// Fit of one held-out segment, if there are several.
-struct StretchFit {
+struct SegmentFit {
   double from_s = 0.0, until_s = 0.0;
   long long samples = 0;
   double rmse_before = 0.0, rmse_after = 0.0;
@@ -105,7 +105,7 @@ struct GapSummary {
   double closed_fraction = 0.0;                ///< (mse before - mse after) / (mse before - floor^2).
   double closed_low = 0.0, closed_high = 0.0;  ///< 95 % interval, bootstrap over blocks.
   std::vector<ModeFit> modes;
-  std::vector<StretchFit> stretches;  ///< Empty if there is only one, or too many to list.
+  std::vector<SegmentFit> stretches;  ///< Empty if there is only one, or too many to list.
   std::string control_effects;        ///< Negative control: the second-ranked effects, added instead.
   double control_closed_fraction = 0.0;
   double gap_ratio = 0.0;  ///< Rms misfit of the refitted base model, relative to the noise.

@@ -8,7 +8,7 @@
 namespace armcmc::gap {
 
 /// One parameter over a recording: refitted to each of several segments.
-struct Steadiness {
+struct Constancy {
   bool fitted = false;  ///< The model has such a parameter.
   Curve course;       ///< Against the middle of the segment, s, with 95 % bands. Empty: not determined in any segment.
   double mean = 0.0;  ///< Mean of the segments, weighted by their information.
@@ -21,7 +21,7 @@ struct Steadiness {
 
 struct ParameterDrift {
   std::string name, unit;
-  Steadiness before, after;
+  Constancy before, after;
 };
 
 /// Quality of predictions made one pack ahead.

@@ -24,6 +24,6 @@ namespace armcmc::ladder {
 
 /// Mean, band, movement and verdict of a parameter from its values on the segments.
 /// @param value, sd  [segment] Value and standard deviation, in the coordinates in which the parameter is sampled.
-void JudgeSteadiness(const std::vector<double>& value, const std::vector<double>& sd, gap::Steadiness* out);
+void JudgeConstancy(const std::vector<double>& value, const std::vector<double>& sd, gap::Constancy* out);
 
 }  // namespace armcmc::ladder
