@@ -228,6 +228,7 @@ void Estimator::Execute(const AdjustResult& result, Estimate* e) noexcept {
     last.num_samples = draws.num_samples;
     if (draws.updated) {
       Summarise(s.info, s.settings.constants, s.samplers[i]->space(), draws, s.summary.get(), &last);
+      if (draws.moves) MoveToEnd(s.info, s.settings.constants, s.samplers[i]->space(), draws, &last);
     } else {
       // Hold: the posterior is kept, apart from the effect of time (below); the numbers that describe one step are not.
       last.decision = Decision::kHold;

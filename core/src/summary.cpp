@@ -50,7 +50,7 @@ std::array<double, kMaxReported> Slopes(const ModelInfo& info, const PlantConsta
   return slope;
 }
 
-/// Expected rates of the reported quantities if every standardised coordinate moves at the rate of the draws.
+/// Expected rates of the reported quantities if every standardised coordinate moves at its rate.
 void DriftRates(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
                 const ModeDraws& draws, std::array<double, kMaxReported>* rate) noexcept {
   rate->fill(0.0);
@@ -59,7 +59,8 @@ void DriftRates(const ModelInfo& info, const PlantConstants& constants, const Pa
     theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.mode_u[static_cast<std::size_t>(d)]);
   for (int d = 0; d < space.num_parameters; ++d) {
     const std::array<double, kMaxReported> slope = Slopes(info, constants, space, theta, d);
-    for (std::size_t r = 0; r < kMaxReported; ++r) (*rate)[r] = std::hypot((*rate)[r], draws.drift_rate * slope[r]);
+    const double speed = draws.drift_rate[static_cast<std::size_t>(d)];
+    for (std::size_t r = 0; r < kMaxReported; ++r) (*rate)[r] = std::hypot((*rate)[r], speed * slope[r]);
   }
 }
 
@@ -167,6 +168,48 @@ void Widen(const ModelInfo& info, const PlantConstants& constants, const Paramet
     const double centre = m.q50;
     for (double* value : {&m.q025, &m.q25, &m.q75, &m.q975, &m.histogram_lo, &m.histogram_hi})
       *value = std::clamp(centre + by * (*value - centre), least, most);
+    m.sd *= by;
+    m.is_sd *= by;
+    for (double& density : m.density) density /= by;
+  }
+}
+
+void MoveToEnd(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+               const ModeDraws& draws, ModeEstimate* estimate) noexcept {
+  std::array<double, kMaxParams> theta{};
+  for (int d = 0; d < space.num_parameters; ++d)
+    theta[static_cast<std::size_t>(d)] =
+        info.Sampled(d, estimate->marginal[static_cast<std::size_t>(info.ReportedOf(d))].ar_ap);
+  std::array<double, kMaxReported> shift{};
+  std::array<double, kMaxReported> added{};
+  for (int d = 0; d < space.num_parameters; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const auto own = static_cast<std::size_t>(info.ReportedOf(d));
+    const std::array<double, kMaxReported> slope = Slopes(info, constants, space, theta, d);
+    if (!(std::fabs(slope[own]) > 0.0)) continue;
+    const double sd = estimate->marginal[own].sd / std::fabs(slope[own]);
+    const double variance = sd * sd * (draws.ratio[i] * draws.ratio[i] - 1.0);
+    for (std::size_t r = 0; r < kMaxReported; ++r) {
+      shift[r] += slope[r] * draws.shift[i];
+      added[r] += slope[r] * slope[r] * variance;
+    }
+  }
+  constexpr double kLeastVariance = 0.01;  // of what it was
+  for (int r = 0; r < info.num_reported; ++r) {
+    const auto ir = static_cast<std::size_t>(r);
+    MarginalSummary& m = estimate->marginal[ir];
+    const double by = std::sqrt(std::fmax(1.0 + added[ir] / (m.sd * m.sd), kLeastVariance));
+    if (!std::isfinite(by) || !std::isfinite(shift[ir])) continue;
+    double least = -HUGE_VAL;
+    double most = HUGE_VAL;
+    if (info.IsReportedAsSampled(r)) {
+      least = space.Theta(r, space.lower[ir]);
+      most = space.Theta(r, space.upper[ir]);
+    }
+    const double centre = m.q50;
+    for (double* value : {&m.q025, &m.q25, &m.q50, &m.q75, &m.q975, &m.histogram_lo, &m.histogram_hi})
+      *value = std::clamp(centre + shift[ir] + by * (*value - centre), least, most);
+    for (double* value : {&m.ar_ap, &m.ar_map, &m.chain_mean}) *value = std::clamp(*value + shift[ir], least, most);
     m.sd *= by;
     m.is_sd *= by;
     for (double& density : m.density) density /= by;

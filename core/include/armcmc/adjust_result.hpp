@@ -27,10 +27,14 @@ struct ModeDraws {
          p_changed = 0.0;  ///< Chain; Kish's effective sample size; nats; probability.
   double p_drifted =
       0.0;  ///< Posterior probability that the parameters drift; 1 - p_changed - p_drifted: they are constant.
-  double drift_rate = 0.0;  ///< Expected before the pack, prior standard deviations per s.
+  std::array<double, kMaxParams> drift_rate{};  ///< Of each, expected before the pack, prior standard deviations per s.
   /// In a mode about which this pack carries no information: how many times wider each parameter's posterior has
   /// become since it was last updated, at least 1 (Drift::Widening).
   std::array<double, kMaxParams> widening{};
+  /// The draws are of the effective parameters of the pack. Where these move, those at its end have the mean
+  /// mean + shift and the standard deviation ratio sd (Drift::EndOfPack).
+  bool moves = false;
+  std::array<double, kMaxParams> shift{}, ratio{};
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
   bool point_is_mode = false;               ///< mode_u is the point estimate after every decision (least squares).

@@ -47,6 +47,13 @@ inline constexpr int kQuantileBins = 4096;
 void Widen(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
            const std::array<double, kMaxParams>& ratio, ModeEstimate* estimate) noexcept ARMCMC_NONBLOCKING;
 
+/// Moves the published marginals from the effective parameters of a pack to those at its end: point estimates by the
+/// shift, standard deviation, quantiles and histogram about the median by the ratio as well, within the bounds.
+/// @pre draws.moves.
+/// @rt No heap, no lock, no throw. O(dim reported).
+void MoveToEnd(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
+               const ModeDraws& draws, ModeEstimate* estimate) noexcept ARMCMC_NONBLOCKING;
+
 /// Effective sample size of the chain after burn-in by non-overlapping batch means, the smallest over the coordinates.
 [[nodiscard]] double ChainEss(const ModeDraws& draws) noexcept ARMCMC_NONBLOCKING;
 

@@ -87,9 +87,9 @@ TEST(Climb, AFormulaThatMakesAnEarlierOneNeedlessReplacesIt) {
 }
 
 TEST(Climb, AFormulaThatAnotherOneOfItsEffectDoesNotMakeNeedlessStays) {
-  const Ladder ladder = ClimbWith(
-      {"coulomb_friction"},
-      test::AxisData([](const AxisSample& s) { return 15.0 * Sign(s.v) + 40.0 * std::tanh(s.v / 0.05); }));
+  const Ladder ladder =
+      ClimbWith({"coulomb_friction"},
+                test::AxisData([](const AxisSample& s) { return 15.0 * Sign(s.v) + 40.0 * std::tanh(s.v / 0.05); }));
   ASSERT_GE(ladder.rungs.size(), 2U);
   for (const std::size_t r : {0U, 1U}) EXPECT_THAT(NamesOf(ladder.rungs[r]), ElementsAre("coulomb_friction")) << r;
   EXPECT_NE(ladder.rungs[0].leader().candidate.form().name, ladder.rungs[1].leader().candidate.form().name);

@@ -1,0 +1,142 @@
+// Parameters that move within a pack, for a sampler that takes the parameters of a pack for constant.
+#include <array>
+#include <cmath>
+
+#include "armcmc/drift.hpp"
+#include "armcmc/linear_algebra.hpp"
+
+namespace armcmc {
+namespace {
+
+/// Of the prior's precision in the inverse of H: H alone may have directions that the pack does not determine.
+constexpr double kLeastPrecision = 1e-4;
+
+}  // namespace
+
+void Drift::ToEffective(const ModeData& data, const PosteriorMemory& last, LaplaceScratch* scratch) noexcept {
+  lead_ = ParamMatrix::Zero(dim_, dim_);
+  const Moments drift = MomentsOf(predicted_, Part::kDrift);
+  const ParamMatrix precision = Inverse(drift.covariance);
+  if (!(drift.weight > 0.0) || !precision.allFinite()) return;
+  // About the mode of what drifts: errors that the parameters can explain would pass for a motion.
+  Gaussian prior{last.mean, ParamMatrix::Zero(space_.dim, space_.dim)};
+  prior.mean.head(dim_) = drift.mean;
+  prior.precision.topLeftCorner(dim_, dim_) = precision;
+  for (int d = dim_; d < space_.dim; ++d) prior.precision(d, d) = 1.0 / last.covariance(d, d);
+  Gaussian fit;
+  LaplaceFit(kernels_, model_, data, noise_, space_, prior, last.mean, kModeTolerance, scratch, &fit);
+  const ParamVector mode = fit.mean.head(dim_);
+  const LocalLikelihood local =
+      ExpandLikelihood(kernels_, model_, data, noise_, space_, mode, last.log_noise_scale, scratch);
+  ParamMatrix regular = precision;
+  regular *= kLeastPrecision;
+  regular += local.information;
+  const ParamMatrix lead = Product(Inverse(regular), local.lagged_information);
+  if (lead.allFinite() && MoveToEffective(local, mode, lead)) lead_ = lead;
+}
+
+bool Drift::MoveToEffective(const LocalLikelihood& local, const ParamVector& mode, const ParamMatrix& lead) noexcept {
+  const Eigen::Index n = dim_;
+  const ParamMatrix pulled = Product(local.information, lead);
+  const ParamMatrix lagged = Product(lead.transpose(), local.lagged_information);
+  JointVector gradient(2 * n);
+  gradient.head(n).setZero();
+  gradient.tail(n) = Multiply(lead.transpose(), local.gradient) - local.lagged_gradient;
+  JointMatrix information(2 * n, 2 * n);
+  information.topLeftCorner(n, n).setZero();
+  information.topRightCorner(n, n) = pulled - local.lagged_information;
+  information.bottomLeftCorner(n, n) = information.topRightCorner(n, n).transpose();
+  information.bottomRightCorner(n, n) =
+      Product(lead.transpose(), pulled) - lagged - lagged.transpose() + local.twice_lagged_information;
+  std::array<double, kFilters> log_evidence{};
+  double top = 0.0;
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    const Filter& f = predicted_[i];
+    if (IsOf(Part::kRest, i) || !(f.weight > 0.0)) continue;
+    const ParamMatrix moved = Product(lead, f.ww);
+    const ParamMatrix with_u = Product(lead, f.uw.transpose());
+    JointVector state(2 * n);
+    state.head(n) = f.u - mode - Multiply(lead, f.w);
+    state.tail(n) = f.w;
+    JointMatrix spread(2 * n, 2 * n);
+    spread.topLeftCorner(n, n) = f.uu - with_u - with_u.transpose() + Product(moved, lead.transpose());
+    spread.topRightCorner(n, n) = f.uw - moved;
+    spread.bottomLeftCorner(n, n) = spread.topRightCorner(n, n).transpose();
+    spread.bottomRightCorner(n, n) = f.ww;
+    log_evidence[i] = MultiplyByQuadratic(gradient, information, &state, &spread);
+    work_[i] = {.weight = f.weight,
+                .u = mode + state.head(n),
+                .w = state.tail(n),
+                .uu = spread.topLeftCorner(n, n),
+                .uw = spread.topRightCorner(n, n),
+                .ww = spread.bottomRightCorner(n, n)};
+    if (!std::isfinite(log_evidence[i]) || !state.allFinite() || !IsPositiveDefinite(work_[i].uu)) return false;
+    top = std::fmax(top, log_evidence[i]);
+  }
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    if (!(predicted_[i].weight > 0.0)) continue;
+    if (IsOf(Part::kDrift, i)) predicted_[i] = work_[i];
+    predicted_[i].weight *= std::exp(log_evidence[i] - top);
+  }
+  return true;
+}
+
+void Drift::FromEffective() noexcept {
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    Filter& f = bank_[i];
+    if (IsOf(Part::kRest, i) || !(f.weight > 0.0)) continue;
+    const ParamMatrix moved = Product(lead_, f.ww);
+    const ParamMatrix with_u = Product(lead_, f.uw.transpose());
+    f.u += Multiply(lead_, f.w);
+    f.uu += with_u + with_u.transpose() + Product(moved, lead_.transpose());
+    f.uw += moved;
+  }
+}
+
+bool Drift::EndOfPack(const ModeData& data, const ParamVector& mean, double log_noise_scale, double p_drifted,
+                      LaplaceScratch* scratch, std::array<double, kMaxParams>* shift,
+                      std::array<double, kMaxParams>* ratio) noexcept {
+  if (!started_ || share_ < kNegligible || !(lead_.cwiseAbs().maxCoeff() > 0.0)) return false;
+  const Sampled sampled{
+      .part = Part::kWhole,
+      .mean = mean,
+      .covariance = {},
+      .local = ExpandLikelihood(kernels_, model_, data, noise_, space_, mean, log_noise_scale, scratch)};
+  work_ = bank_;
+  const bool updated = Update(sampled, Part::kRest, 1.0 - p_drifted) && Update(sampled, Part::kDrift, p_drifted);
+  const Moments effective = WholeByExpansion(sampled, p_drifted);
+  FromEffective();
+  const Moments end = MomentsOf(bank_, Part::kWhole);
+  bank_ = work_;
+  for (int d = 0; d < dim_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    (*shift)[i] = end.mean[d] - effective.mean[d];
+    (*ratio)[i] = std::sqrt(end.covariance(d, d) / effective.covariance(d, d));
+    if (!std::isfinite((*shift)[i]) || !std::isfinite((*ratio)[i])) return false;
+  }
+  return updated;
+}
+
+bool Drift::EndOfPackAfterChange(const ParamMatrix& covariance, std::array<double, kMaxParams>* shift,
+                                 std::array<double, kMaxParams>* ratio) noexcept {
+  if (!started_ || !(lead_.cwiseAbs().maxCoeff() > 0.0)) return false;
+  Predict(elapsed_s_);
+  ExpectDrift();
+  if (share_ < kNegligible) return false;
+  work_ = predicted_;
+  for (Filter& f : work_) {
+    if (!(f.weight > 0.0)) continue;
+    f.u = Multiply(lead_, f.w);
+    f.uu = Product(Product(lead_, f.ww), lead_.transpose());
+  }
+  const Moments moved = MomentsOf(work_, Part::kWhole);
+  for (int d = 0; d < dim_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    (*shift)[i] = moved.mean[d];
+    (*ratio)[i] = std::sqrt(1.0 + moved.covariance(d, d) / covariance(d, d));
+    if (!std::isfinite((*shift)[i]) || !std::isfinite((*ratio)[i])) return false;
+  }
+  return true;
+}
+
+}  // namespace armcmc
