@@ -54,7 +54,7 @@ void EstimateCsv::Text(std::string_view text) {
 
 void EstimateCsv::Number(double value) {
   std::array<char, 32> text{};
-  if (std::isfinite(value)) std::snprintf(text.data(), text.size(), "%.17g", value);
+  if (!std::isnan(value)) std::snprintf(text.data(), text.size(), "%.17g", value);
   Text(text.data());
 }
 

@@ -15,8 +15,8 @@ namespace armcmc::replay {
 /// NAME_q75, NAME_q975, NAME_chain_mean; lambda .. y_rmse of the mode that is reported; p_drifted, the probability
 /// that its parameters drift, and for each quantity NAME_drift_per_s, the expected rate; for plants with several modes
 /// also NAME_MODE and NAME_MODE_sd and draws_MODE for each mode. A pack without information about a parameter
-/// repeats what is known; what is not known is an empty field, as is a figure of a step that was not made, and one that
-/// is not finite, such as the zeta of the first pack: viewers would take a column that begins with "inf" for text.
+/// repeats what is known; what is not known is an empty field, as is a figure of a step that was not made. The zeta of
+/// the first pack is inf.
 class EstimateCsv {
  public:
   /// Writes the header. @param estimator  Gives the names; must outlive this. @param out  Must outlive this.
