@@ -166,8 +166,12 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   const Moments expected = MomentsOf(predicted_, Part::kWhole);
   expected_ = {expected.mean, expected.covariance};
   moves_ = share_ >= kNegligible || fitted_ != Part::kRest || both_;
-  ToEffective(data, last, scratch);
-  ExpectDrift();
+  if (moves_) {
+    ToEffective(data, last, scratch);
+    ExpectDrift();
+  } else {
+    StandStill();  // without a part in the prior of this pack: the fit would cost more than it tells
+  }
   const Moments from{
       .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
   carried_.valid = true;

@@ -13,8 +13,13 @@ constexpr double kLeastPrecision = 1e-4;
 
 }  // namespace
 
-void Drift::ToEffective(const ModeData& data, const PosteriorMemory& last, LaplaceScratch* scratch) noexcept {
+void Drift::StandStill() noexcept {
   lead_ = ParamMatrix::Zero(dim_, dim_);
+  leads_ = false;
+}
+
+void Drift::ToEffective(const ModeData& data, const PosteriorMemory& last, LaplaceScratch* scratch) noexcept {
+  StandStill();
   const Moments drift = MomentsOf(predicted_, Part::kDrift);
   const ParamMatrix precision = Inverse(drift.covariance);
   if (!(drift.weight > 0.0) || !precision.allFinite()) return;
@@ -32,7 +37,8 @@ void Drift::ToEffective(const ModeData& data, const PosteriorMemory& last, Lapla
   regular *= kLeastPrecision;
   regular += local.information;
   const ParamMatrix lead = Product(Inverse(regular), local.lagged_information);
-  if (lead.allFinite() && MoveToEffective(local, mode, lead)) lead_ = lead;
+  leads_ = lead.allFinite() && MoveToEffective(local, mode, lead);
+  if (leads_) lead_ = lead;
 }
 
 bool Drift::MoveToEffective(const LocalLikelihood& local, const ParamVector& mode, const ParamMatrix& lead) noexcept {
@@ -96,7 +102,7 @@ void Drift::FromEffective() noexcept {
 bool Drift::EndOfPack(const ModeData& data, const ParamVector& mean, double log_noise_scale, double p_drifted,
                       LaplaceScratch* scratch, std::array<double, kMaxParams>* shift,
                       std::array<double, kMaxParams>* ratio) noexcept {
-  if (!started_ || share_ < kNegligible || !(lead_.cwiseAbs().maxCoeff() > 0.0)) return false;
+  if (!started_ || share_ < kNegligible || !leads_) return false;
   const Sampled sampled{
       .part = Part::kWhole,
       .mean = mean,
@@ -119,7 +125,7 @@ bool Drift::EndOfPack(const ModeData& data, const ParamVector& mean, double log_
 
 bool Drift::EndOfPackAfterChange(const ParamMatrix& covariance, std::array<double, kMaxParams>* shift,
                                  std::array<double, kMaxParams>* ratio) noexcept {
-  if (!started_ || !(lead_.cwiseAbs().maxCoeff() > 0.0)) return false;
+  if (!started_ || !leads_) return false;
   Predict(elapsed_s_);
   ExpectDrift();
   if (share_ < kNegligible) return false;

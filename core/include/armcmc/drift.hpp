@@ -95,7 +95,7 @@ class Drift {
   static constexpr std::array<Law, 6> kTogether{
       {{0.1, 30.0}, {0.3, 30.0}, {0.003, 200.0}, {0.01, 200.0}, {0.03, 200.0}, {0.1, 200.0}}};
   static constexpr Law kAlone{0.03, 200.0};
-  static constexpr double kSwitching = 0.03;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
+  static constexpr double kSwitching = 0.03;    ///< kappa, 1/s: a drift begins, ends, or becomes another.
   static constexpr double kNegligible = 0.01;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kFirstAlone = 1 + static_cast<int>(kTogether.size());
   static constexpr int kHypotheses = kFirstAlone + kMaxParams;  ///< At most.
@@ -224,6 +224,8 @@ class Drift {
   /// u and w of one filter after a time without data.
   void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  /// v = u.
+  void StandStill() noexcept ARMCMC_NONBLOCKING;
   /// `predicted_` from (u, w) to (v, w), with what the pack tells of w.
   void ToEffective(const ModeData& data, const PosteriorMemory& last,
                    LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
@@ -276,7 +278,8 @@ class Drift {
   Bank work_;               ///< Scratch.
   Expected expected_;
   bool moves_ = false;
-  ParamMatrix lead_;  ///< T of that pack, s.
+  ParamMatrix lead_;    ///< T of that pack, s.
+  bool leads_ = false;  ///< It is not zero.
   double share_ = 0.0;
   std::array<double, kMaxParams> rate_{};
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
