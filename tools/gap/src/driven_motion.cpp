@@ -1,12 +1,18 @@
 #include "armcmc/gap/driven_motion.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <memory>
 #include <unsupported/Eigen/MatrixFunctions>
+
+#include "armcmc/support/wider_lanes.hpp"
 
 namespace armcmc::gap {
 namespace {
+
+using identify::kLanes;
+using identify::Lanes;
 
 constexpr double kTiny = 1e-300;
 
@@ -26,89 +32,142 @@ DrivenMotion::DrivenMotion(const MotionConstants& constants, double dt) : consta
   first_ = {step(0, 2) - second_[0], step(1, 2) - second_[1]};
 }
 
-/// One run on its way.
-struct DrivenMotion::Lane {
-  const std::vector<Force>* forces;
-  State x;
-  double* angle;
-  double* rate;  ///< May be null.
-  std::vector<std::array<double, kForceMemory>> memory;
-  double extra = 0.0, miss = 0.0, half_miss = 0.0;  ///< Of the step that is under way.
+/// Runs side by side on their way.
+class DrivenMotion::Step {
+ public:
+  /// @param runs  Some from the first; the lanes after them are those of the last.
+  Step(const DrivenMotion& motion, const std::vector<Force>& forces, const Run* runs, std::size_t count)
+      : motion_(motion) {
+    const auto run = [&](std::size_t lane) -> const Run& { return runs[std::min(lane, count - 1)]; };
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      now_.at(FormSignal::kPosition)[l] = run(l).angle;
+      now_.at(FormSignal::kVelocity)[l] = run(l).rate;
+    }
+    for (std::size_t f = 0; f < forces.size(); ++f) {
+      std::vector<Lanes> values(forces[f].form->coordinates.size());
+      for (std::size_t c = 0; c < values.size(); ++c)
+        for (std::size_t l = 0; l < kLanes; ++l) values[c][l] = run(l).values[f][c];
+      acting_.push_back({forces[f].form->force(values, motion.dt_), forces[f].gate});
+    }
+  }
+
+  [[nodiscard]] const Motions& now() const { return now_; }
+
+  /// From row i to the next, of inputs u and times t.
+  void Take(const Vector& t, const Vector& u, Eigen::Index i) {
+    const double start = motion_.constants_.gain * u[i], end = motion_.constants_.gain * u[i + 1];
+    const Ends ends{start, end};
+    Lanes added{}, first, half, second, last{};
+    if (!acting_.empty()) {
+      SetTime(motion_.constants_, t[i], start, &now_);
+      for (const Acting& acting : acting_) acting.force->Move(&now_);
+      Added(i, &now_, &added);
+      // The force e at the end of the step solves e = added(moved(e)): one secant step, exact where it is linear. A
+      // stiff one (dry friction that turns within a sample) would swing about without.
+      MoveTo(motion_, now_, ends, added, added, &next_);
+      SetTime(motion_.constants_, t[i + 1], end, &next_);
+      Added(i + 1, &next_, &first);
+      TryHalfway(motion_, now_, ends, added, first, &half, &next_);
+      Added(i + 1, &next_, &second);
+      Solve(added, first, half, second, &last);
+    }
+    MoveTo(motion_, now_, ends, added, last, &now_);
+  }
+
+ private:
+  struct Acting {
+    std::unique_ptr<MotionForce> force;
+    const Vector* gate;
+  };
+  struct Ends {
+    double start, end;  ///< Acceleration by the input.
+  };
+
+  ARMCMC_INSIDE static void SetBase(const MotionConstants& c, Motions* m) {
+    const Lanes &angle = m->at(FormSignal::kPosition), &rate = m->at(FormSignal::kVelocity);
+    const Lanes& drive = m->at(FormSignal::kDrive);
+    Lanes& base = m->at(FormSignal::kBase);
+    ARMCMC_OVER_LANES
+    for (std::size_t l = 0; l < kLanes; ++l) base[l] = drive[l] - c.damping * rate[l] - c.stiffness * angle[l];
+  }
+
+  ARMCMC_FOR_WIDER_LANES
+  static void SetTime(const MotionConstants& c, double t, double drive, Motions* motions) {
+    motions->at(FormSignal::kTime).fill(t);
+    motions->at(FormSignal::kDrive).fill(drive);
+    SetBase(c, motions);
+  }
+
+  void Added(Eigen::Index i, Motions* motions, Lanes* sum) {
+    sum->fill(0.0);
+    for (const Acting& acting : acting_) {
+      const double gate = (*acting.gate)[i];
+      if (gate == 0.0) continue;
+      Lanes acceleration;
+      acting.force->At(motions, &acceleration);
+      for (std::size_t l = 0; l < kLanes; ++l) (*sum)[l] += gate * acceleration[l];
+    }
+  }
+
+  /// Where `from` comes to by inputs and forces that are linear over the step.
+  ARMCMC_INSIDE static void Moved(const DrivenMotion& motion, const Motions& from, const Ends& ends,
+                                  const Lanes& start_force, const Lanes& end_force, Motions* to) {
+    const std::array<double, 4> s = motion.step_;
+    const std::array<double, 2> first = motion.first_, second = motion.second_;
+    const Lanes &angle = from.at(FormSignal::kPosition), &rate = from.at(FormSignal::kVelocity);
+    Lanes &to_angle = to->at(FormSignal::kPosition), &to_rate = to->at(FormSignal::kVelocity);
+    ARMCMC_OVER_LANES
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double a = ends.start + start_force[l], b = ends.end + end_force[l], x = angle[l], v = rate[l];
+      to_angle[l] = s[0] * x + s[1] * v + first[0] * a + second[0] * b;
+      to_rate[l] = s[2] * x + s[3] * v + first[1] * a + second[1] * b;
+    }
+  }
+
+  ARMCMC_FOR_WIDER_LANES
+  static void MoveTo(const DrivenMotion& motion, const Motions& from, const Ends& ends, const Lanes& start_force,
+                     const Lanes& end_force, Motions* to) {
+    Moved(motion, from, ends, start_force, end_force, to);
+  }
+
+  /// To half of the force that `first` adds to the one tried.
+  ARMCMC_FOR_WIDER_LANES
+  static void TryHalfway(const DrivenMotion& motion, const Motions& from, const Ends& ends, const Lanes& tried,
+                         const Lanes& first, Lanes* half, Motions* to) {
+    for (std::size_t l = 0; l < kLanes; ++l) (*half)[l] = tried[l] + 0.5 * (first[l] - tried[l]);
+    Moved(motion, from, ends, tried, *half, to);
+    SetBase(motion.constants_, to);
+  }
+
+  /// @param first, second  What is added at the ends that `tried` and `half` lead to.
+  ARMCMC_FOR_WIDER_LANES
+  static void Solve(const Lanes& tried, const Lanes& first, const Lanes& half, const Lanes& second, Lanes* end) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double half_miss = second[l] - half[l], bend = half_miss - (first[l] - tried[l]);
+      const double solved = half[l] - half_miss * (half[l] - tried[l]) / bend;
+      (*end)[l] = std::fabs(bend) > kTiny ? solved : half[l] + half_miss;
+    }
+  }
+
+  const DrivenMotion& motion_;
+  Motions now_, next_;
+  std::vector<Acting> acting_;
 };
 
-Motion DrivenMotion::MotionOf(const Vector& t, const Vector& input, const State& state, Eigen::Index i) const {
-  const double drive = constants_.gain * input[i];
-  return {t[i],       dt_,   state.angle,
-          state.rate, drive, drive - constants_.damping * state.rate - constants_.stiffness * state.angle};
-}
-
-double DrivenMotion::Added(const Lane& lane, const Vector& t, const Vector& input, const State& state,
-                           Eigen::Index i) const {
-  double sum = 0.0;
-  const Motion motion = MotionOf(t, input, state, i);
-  for (std::size_t f = 0; f < lane.forces->size(); ++f) {
-    const Force& force = (*lane.forces)[f];
-    const double gate = (*force.gate)[i];
-    if (gate != 0.0) sum += gate * force.form->force(motion, force.values.data(), lane.memory[f].data());
-  }
-  return sum;
-}
-
-DrivenMotion::State DrivenMotion::Moved(const State& x, double start, double end) const {
-  return {step_[0] * x.angle + step_[1] * x.rate + first_[0] * start + second_[0] * end,
-          step_[2] * x.angle + step_[3] * x.rate + first_[1] * start + second_[1] * end};
-}
-
-void DrivenMotion::Advance(const Vector& t, const Vector& input, Eigen::Index rows, std::vector<Lane>* lanes) const {
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    for (Lane& lane : *lanes) {
-      lane.angle[i] = lane.x.angle;
-      if (lane.rate != nullptr) lane.rate[i] = lane.x.rate;
-    }
-    if (i + 1 == rows) break;
-    for (Lane& lane : *lanes)
-      for (std::size_t f = 0; f < lane.forces->size(); ++f) {
-        const Force& force = (*lane.forces)[f];
-        if (force.form->remember)
-          force.form->remember(MotionOf(t, input, lane.x, i), force.values.data(), lane.memory[f].data());
-      }
-    for (Lane& lane : *lanes) lane.extra = lane.forces->empty() ? 0.0 : Added(lane, t, input, lane.x, i);
-    const double now = constants_.gain * input[i], next = constants_.gain * input[i + 1];
-    // The force e at the end of the step solves e = added(moved(e)): one secant step, exact where it is linear. A stiff
-    // one (dry friction that turns within a sample) would swing about without.
-    const auto missed = [&](const Lane& lane, double e) {
-      return Added(lane, t, input, Moved(lane.x, now + lane.extra, next + e), i + 1) - e;
-    };
-    for (Lane& lane : *lanes)
-      if (!lane.forces->empty()) lane.miss = missed(lane, lane.extra);
-    for (Lane& lane : *lanes)
-      if (!lane.forces->empty()) lane.half_miss = missed(lane, lane.extra + 0.5 * lane.miss);
-    for (Lane& lane : *lanes) {
-      double end = 0.0;
-      if (!lane.forces->empty()) {
-        const double half = lane.extra + 0.5 * lane.miss, bend = lane.half_miss - lane.miss;
-        end = std::abs(bend) > kTiny ? half - lane.half_miss * (half - lane.extra) / bend : half + lane.half_miss;
-      }
-      lane.x = Moved(lane.x, now + lane.extra, next + end);
+Matrix DrivenMotion::Runs(const Vector& t, const Vector& input, const std::vector<Force>& forces,
+                          const std::vector<Run>& runs, Eigen::Index rows, Vector* rate) const {
+  Matrix angles(rows, static_cast<Eigen::Index>(runs.size()));
+  if (rate != nullptr) rate->resize(rows);
+  for (std::size_t first = 0; first < runs.size(); first += kLanes) {
+    const std::size_t count = std::min(kLanes, runs.size() - first);
+    Step step(*this, forces, &runs[first], count);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      if (i > 0) step.Take(t, input, i - 1);
+      for (std::size_t l = 0; l < count; ++l) angles(i, static_cast<Eigen::Index>(first + l)) = step.now().at(FormSignal::kPosition)[l];
+      if (rate != nullptr && first == 0) (*rate)[i] = step.now().at(FormSignal::kVelocity)[0];
     }
   }
-}
-
-void DrivenMotion::Run(const Vector& t, const Vector& input, State x, const std::vector<Force>& forces,
-                       Eigen::Index rows, Vector* angle, Vector* rate) const {
-  std::vector<Lane> lanes{
-      {&forces, x, angle->data(), rate == nullptr ? nullptr : rate->data(), decltype(Lane::memory)(forces.size())}};
-  Advance(t, input, rows, &lanes);
-}
-
-void DrivenMotion::RunInterleaved(const Vector& t, const Vector& input, State start,
-                                  const std::vector<std::vector<Force>>& forces, Matrix* angles) const {
-  angles->resize(t.size(), static_cast<Eigen::Index>(forces.size()));
-  std::vector<Lane> lanes;
-  for (std::size_t run = 0; run < forces.size(); ++run)
-    lanes.push_back({&forces[run], start, angles->col(static_cast<Eigen::Index>(run)).data(), nullptr,
-                     decltype(Lane::memory)(forces[run].size())});
-  Advance(t, input, t.size(), &lanes);
+  return angles;
 }
 
 Vector DrivenMotion::Response(const Vector& acceleration) const {

@@ -353,7 +353,6 @@ std::vector<std::pair<double, Vector>> Fitter::Starts(const Fitted& parent, cons
       squares = (parent.whitened_residual - project(step).col(0)).squaredNorm();
     }
     Clamp(coordinates, &theta);
-    if (form.linear && form.slot == Slot::kForce) ShrinkUntilFinite(hypothesis, first, form.num_amplitudes, &theta);
     starts.emplace_back(squares, theta);
   }
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -367,10 +366,13 @@ double Fitter::LeastDecrease(const Fitted& parent, const Term& term) const {
 Fitted Fitter::Add(const Fitted& parent, const Term& term) const {
   Hypothesis hypothesis = parent.hypothesis;
   hypothesis.terms.push_back(term);
-  const std::vector<std::pair<double, Vector>> starts = Starts(parent, term);
-  const std::size_t tries = starts.size() > 1 ? std::min(kRefinedStarts, starts.size()) : 1;
+  std::vector<std::pair<double, Vector>> starts = Starts(parent, term);
+  starts.resize(std::min(kRefinedStarts, starts.size()));
+  if (term.form->linear && term.form->slot == Slot::kForce)
+    for (auto& [squares, theta] : starts)
+      ShrinkUntilFinite(hypothesis, parent.theta.size(), term.form->num_amplitudes, &theta);
   Fitted best = Fit(hypothesis, starts.front().second);
-  for (std::size_t i = 1; i < tries; ++i) {
+  for (std::size_t i = 1; i < starts.size(); ++i) {
     Descent other = Descend(hypothesis, starts[i].second, kMaxSteps, nullptr, &best);
     if (!other.hopeless && other.residual.squaredNorm() < best.squares) best = Finish(hypothesis, std::move(other));
   }

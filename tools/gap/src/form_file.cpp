@@ -26,11 +26,8 @@ namespace {
 using support::StrictTable;
 
 constexpr double kHuge = 1e300;
-constexpr std::size_t kMostCoordinates = 12;
+constexpr auto kMostCoordinates = static_cast<std::size_t>(kMostFormCoordinates);
 constexpr int kMostStarts = 100;
-
-/// Values of all coordinates and, after them, the origin.
-using Values = std::array<double, kMostCoordinates + 1>;
 
 /// What sizes are measured in.
 class Scales {
@@ -108,9 +105,11 @@ Slot SlotOf(const std::string& slot) {
   return slot == "rate" ? Slot::kForce : Slot::kAdditive;
 }
 
+/// Values of all coordinates and, after them, the origin.
 /// @param shape  Coordinates after the first `amplitudes`, whose values no column needs.
-Values ValuesOf(const std::vector<Coordinate>& coordinates, int amplitudes, const double* shape, const Signals& in) {
-  Values values{};
+std::vector<double> ValuesOf(const std::vector<Coordinate>& coordinates, int amplitudes, const double* shape,
+                             const Signals& in) {
+  std::vector<double> values(coordinates.size() + 1);
   const auto first = static_cast<std::size_t>(amplitudes);
   for (std::size_t c = first; c < coordinates.size(); ++c) values[c] = coordinates[c].Value(shape[c - first]);
   values[coordinates.size()] = in.origin;
@@ -119,10 +118,7 @@ Values ValuesOf(const std::vector<Coordinate>& coordinates, int amplitudes, cons
 
 void SetFunctions(FormFormula* formula, const std::string& of, EffectForm* form) {
   if (form->slot == Slot::kForce) {
-    const auto program = formula->Whole();
-    form->force = [program](const Motion& m, const double* v, const double* z) { return program->At(m, v, z); };
-    if (program->has_states())
-      form->remember = [program](const Motion& m, const double* v, double* z) { program->Remember(m, v, z); };
+    form->force = [program = formula->Force()](const auto& values, double dt) { return program->Begin(values, dt); };
     return;
   }
   const std::vector<Coordinate> all = form->coordinates;
@@ -131,7 +127,7 @@ void SetFunctions(FormFormula* formula, const std::string& of, EffectForm* form)
     formula->TakeOff("u");
     const auto program = formula->Whole();
     form->features = [program, all](const Signals& in, const double* shape) -> Matrix {
-      return program->Over(in, nullptr, ValuesOf(all, 0, shape, in).data())[0];
+      return program->Over(in, nullptr, ValuesOf(all, 0, shape, in));
     };
     return;
   }
@@ -140,15 +136,15 @@ void SetFunctions(FormFormula* formula, const std::string& of, EffectForm* form)
   if (form->slot == Slot::kMemory) {
     form->filter = [columns, all, amplitudes](const Signals& in, const Vector& series, int a, const double* shape) {
       const auto k = static_cast<std::size_t>(a);
-      return Vector(all[k].unit_size * columns[k]->Over(in, &series, ValuesOf(all, amplitudes, shape, in).data())[0]);
+      return Vector(all[k].unit_size * columns[k]->Over(in, &series, ValuesOf(all, amplitudes, shape, in)));
     };
     return;
   }
   form->features = [columns, all, amplitudes](const Signals& in, const double* shape) {
-    const Values values = ValuesOf(all, amplitudes, shape, in);
+    const std::vector<double> values = ValuesOf(all, amplitudes, shape, in);
     Matrix out(in.rows(), amplitudes);
     for (std::size_t a = 0; a < columns.size(); ++a)
-      out.col(static_cast<Eigen::Index>(a)) = all[a].unit_size * columns[a]->Over(in, nullptr, values.data())[0];
+      out.col(static_cast<Eigen::Index>(a)) = all[a].unit_size * columns[a]->Over(in, nullptr, values);
     return out;
   };
 }
@@ -211,7 +207,6 @@ EffectForm VariantOf(const EffectForm& form, const std::string& variant) {
   other.formula.clear();
   other.features = nullptr;
   other.force = nullptr;
-  other.remember = nullptr;
   other.filter = nullptr;
   other.sense = nullptr;
   return other;

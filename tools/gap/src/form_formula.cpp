@@ -45,22 +45,21 @@ const armcmc::EffectForm& CatalogueForm(const support::StrictTable& table, const
 
 FormFormula::FormFormula(support::StrictTable* table, const std::vector<Coordinate>& coordinates,
                          const Signals& signals, const std::map<std::string, double>& constants)
-    : table_(table), num_coordinates_(coordinates.size()) {
+    : table_(table) {
   const bool simulated = table->Text("slot", "") == "rate";
-  Add("t", SymbolKind::kTime, 0, &scope_);
   Add("dt", SymbolKind::kInterval, 0, &scope_);
   // A recording has its own; a motion is that of one recording.
   if (simulated)
     Add("origin", SymbolKind::kConstant, 0, &scope_, signals.origin);
   else
-    Add("origin", SymbolKind::kParameter, static_cast<int>(coordinates.size()), &scope_);
-  for (std::size_t i = 0; i < kNumFormSignals; ++i)
-    Add(kFormSignals[i], SymbolKind::kSignal, static_cast<int>(i), &scope_);
+    Add("origin", SymbolKind::kParameter, kFirstValue + static_cast<int>(coordinates.size()), &scope_);
+  for (int i = 0; i < kNumFormSignals; ++i)
+    Add(kFormSignals[static_cast<std::size_t>(i)], SymbolKind::kSignal, i, &scope_);
   for (const auto& [name, value] : constants) Add(name, SymbolKind::kConstant, 0, &scope_, value);
   for (std::size_t c = 0; c < coordinates.size(); ++c) {
     if (scope_.Find(coordinates[c].name) != nullptr)
       throw table->Error("shapes", "\"" + coordinates[c].name + "\" is a name already");
-    Add(coordinates[c].name, SymbolKind::kParameter, static_cast<int>(c), &scope_);
+    Add(coordinates[c].name, SymbolKind::kParameter, kFirstValue + static_cast<int>(c), &scope_);
   }
   if (table->Has("takes"))
     Adopt(CatalogueForm(*table, table->RequiredText("takes"), CatalogueSlot(table->RequiredText("slot"))));
@@ -81,7 +80,8 @@ int FormFormula::Lower(const std::string& key, const std::string& text, const Sc
 void FormFormula::ReadOwn() {
   support::StrictTable lets = table_->Table("let"), states = table_->Table("states");
   const std::vector<std::string> names = states.Keys();
-  for (std::size_t k = 0; k < names.size(); ++k) Add(names[k], SymbolKind::kState, static_cast<int>(k), &scope_);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    Add(names[k], SymbolKind::kState, kFirstState + static_cast<int>(k), &scope_);
   for (const std::string& name : lets.Keys()) {
     const int node = Lower("let", lets.RequiredText(name), scope_);
     Add(name, SymbolKind::kLet, static_cast<int>(lets_.size()), &scope_);
@@ -103,7 +103,7 @@ void FormFormula::ReadOwn() {
 void FormFormula::Adopt(const armcmc::EffectForm& form) {
   support::StrictTable with = table_->Table("with");
   Scope theirs;
-  Add("t", SymbolKind::kTime, 0, &theirs);
+  Add("t", SymbolKind::kSignal, static_cast<int>(FormSignal::kTime), &theirs);
   const auto define = [&](const std::string& name, const std::string& by_default) {
     const int node = Lower("with", with.Has(name) ? with.RequiredText(name) : by_default, scope_);
     Add(name, SymbolKind::kLet, static_cast<int>(lets_.size()), &theirs);
@@ -119,7 +119,7 @@ void FormFormula::Adopt(const armcmc::EffectForm& form) {
   }
   for (const EffectParameter& parameter : form.parameters) define(parameter.name, parameter.name);
   for (std::size_t k = 0; k < form.states.size(); ++k)
-    Add(form.states[k].name, SymbolKind::kState, static_cast<int>(k), &theirs);
+    Add(form.states[k].name, SymbolKind::kState, kFirstState + static_cast<int>(k), &theirs);
   for (const LetDescription& let : form.lets) {
     const int node = Lower("takes", let.text, theirs);
     Add(let.name, SymbolKind::kLet, static_cast<int>(lets_.size()), &theirs);
@@ -130,29 +130,30 @@ void FormFormula::Adopt(const armcmc::EffectForm& form) {
   formula_ = Lower("takes", form.terms.front().formula, theirs);
 }
 
-std::shared_ptr<const FormProgram> FormFormula::Program(int node) {
+template <class Kind>
+std::shared_ptr<const Kind> FormFormula::Program(int node) {
   try {
-    return std::make_shared<const FormProgram>(&graph_, states_, std::vector<int>{node});
+    return std::make_shared<const Kind>(&graph_, states_, node);
   } catch (const std::invalid_argument& error) {
     throw table_->Error("slot", error.what());
   }
 }
 
+template std::shared_ptr<const FormProgram> FormFormula::Program(int node);
+template std::shared_ptr<const ForceProgram> FormFormula::Program(int node);
+
 std::vector<std::shared_ptr<const FormProgram>> FormFormula::Columns(int num_amplitudes) {
   std::vector<std::shared_ptr<const FormProgram>> columns;
   for (int a = 0; a < num_amplitudes; ++a) {
-    const int column = graph_.Differentiate(formula_, graph_.Symbol(SymbolKind::kParameter, a));
+    const int column = graph_.Differentiate(formula_, graph_.Symbol(SymbolKind::kParameter, kFirstValue + a));
     for (int other = 0; other < num_amplitudes && column >= 0; ++other)
-      if (graph_.DependsOn(column, graph_.Symbol(SymbolKind::kParameter, other)))
+      if (graph_.DependsOn(column, graph_.Symbol(SymbolKind::kParameter, kFirstValue + other)))
         throw table_->Error("amplitudes", "the formula is not linear in them");
     if (column < 0) throw table_->Error("amplitudes", "the formula has no derivative by them");
-    columns.push_back(Program(column));
-    if (!columns.back()->is_linear()) throw table_->Error("slot", "a state's rate is not linear in it");
+    columns.push_back(Program<FormProgram>(column));
   }
   return columns;
 }
-
-std::shared_ptr<const FormProgram> FormFormula::Whole() { return Program(formula_); }
 
 void FormFormula::TakeFrom(const std::string& name) {
   formula_ = graph_.Make(Op::kSubtract, graph_.Symbol(SymbolKind::kSignal, scope_.Find(name)->index), formula_);

@@ -22,7 +22,9 @@ class FormFormula {
   /// @param num_amplitudes  In which it must be linear: its derivatives.
   [[nodiscard]] std::vector<std::shared_ptr<const FormProgram>> Columns(int num_amplitudes);
   /// The formula as it is.
-  [[nodiscard]] std::shared_ptr<const FormProgram> Whole();
+  [[nodiscard]] std::shared_ptr<const FormProgram> Whole() { return Program<FormProgram>(formula_); }
+  /// The same in a simulated motion.
+  [[nodiscard]] std::shared_ptr<const ForceProgram> Force() { return Program<ForceProgram>(formula_); }
   /// The input `name` less the formula, and the formula less it.
   void TakeFrom(const std::string& name);
   void TakeOff(const std::string& name);
@@ -31,10 +33,10 @@ class FormFormula {
   int Lower(const std::string& key, const std::string& text, const expression::Scope& scope);
   void ReadOwn();
   void Adopt(const armcmc::EffectForm& form);
-  std::shared_ptr<const FormProgram> Program(int node);
+  template <class Kind>
+  std::shared_ptr<const Kind> Program(int node);
 
   support::StrictTable* table_;
-  std::size_t num_coordinates_;
   expression::Graph graph_;
   expression::Scope scope_;
   std::vector<int> lets_;

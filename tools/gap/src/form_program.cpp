@@ -1,8 +1,8 @@
 #include "form_program.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "armcmc/gap/features.hpp"
@@ -14,20 +14,30 @@ using expression::SymbolKind;
 
 constexpr double kFlat = 1e-9;  // slope times sample interval, below which a rate counts as constant
 
-FormCode::Sample SampleOf(const Motion& motion, const double* values, const double* memory) {
-  // By FormSignal, then t and dt.
-  return {
-      {motion.angle, motion.rate, 0, 0, 0, 0, 0, 0, motion.drive, motion.base, motion.t, motion.dt}, values, memory};
+int StateSymbol(expression::Graph* graph, std::size_t k) {
+  return graph->Symbol(SymbolKind::kState, kFirstState + static_cast<int>(k));
 }
 
-/// What code reads at row i of a recording.
-void ReadRow(const Signals& signals, const Vector* law, Eigen::Index i, FormCode::Sample* sample) {
-  for (std::size_t r = 0; r < kNumRoles; ++r)
-    if (signals.input[r].size() > 0) sample->signal[r] = signals.input[r][i];
-  sample->signal[static_cast<std::size_t>(FormSignal::kActive)] = signals.active[i];
-  if (law != nullptr) sample->signal[static_cast<std::size_t>(FormSignal::kLaw)] = (*law)[i];
-  sample->signal[kNumFormSignals] = signals.t[i];
-  sample->signal[kNumFormSignals + 1] = signals.dt;
+int MoveOf(const FormState& state) { return state.rate < 0 ? state.next : state.rate; }
+
+/// Which states an output needs, itself or by others.
+std::vector<bool> NeededBy(int output, const std::vector<FormState>& states, expression::Graph* graph) {
+  if (states.size() > static_cast<std::size_t>(kMostFormStates)) throw std::invalid_argument("more than 8 states");
+  std::vector<bool> needed(states.size());
+  for (std::size_t k = states.size(); k-- > 0;) {
+    const int z = StateSymbol(graph, k);
+    needed[k] = graph->DependsOn(output, z);
+    for (std::size_t later = k + 1; later < states.size(); ++later)
+      needed[k] = needed[k] || (needed[later] && graph->DependsOn(MoveOf(states[later]), z));
+  }
+  return needed;
+}
+
+/// d rate / dz.
+int SlopeOf(int rate, int z, expression::Graph* graph) {
+  const int slope = graph->Differentiate(rate, z);
+  if (slope < 0) throw std::invalid_argument("the rate of a state has no derivative");
+  return slope;
 }
 
 /// z' = slope z + rest with both held over a sample.
@@ -48,6 +58,31 @@ Vector Linear(const Vector& slope, const Vector& rest, double start, double dt) 
   return z;
 }
 
+/// Node of (exp(x) - 1) / x, exact near zero.
+int MeanGrowth(int x, expression::Graph* graph) {
+  using expression::Op;
+  constexpr double kNear = 1e-2;  // (exp(x) - 1) / x has lost two of its sixteen digits there,
+  constexpr int kTerms = 6;       // and the series is short by 1e-16
+  const int one = graph->Number(1.0);
+  int series = one;
+  for (int n = kTerms; n >= 2; --n)
+    series = graph->Make(Op::kAdd, one,
+                         graph->Make(Op::kMultiply, graph->Make(Op::kMultiply, x, graph->Number(1.0 / n)), series));
+  const int grown = graph->Make(Op::kSubtract, graph->Make(Op::kExp, x), one);
+  return graph->Make(Op::kIf, graph->Make(Op::kLess, graph->Make(Op::kAbs, x), graph->Number(kNear)), series,
+                     graph->Make(Op::kDivide, grown, x));
+}
+
+/// Node of a state one sample later.
+int NextOf(const FormState& state, int z, expression::Graph* graph) {
+  using expression::Op;
+  if (state.rate < 0) return state.next;
+  const int dt = graph->Symbol(SymbolKind::kInterval, 0);
+  const int share = graph->Make(Op::kMultiply, SlopeOf(state.rate, z, graph), dt);
+  const int moved = graph->Make(Op::kMultiply, graph->Make(Op::kMultiply, state.rate, dt), MeanGrowth(share, graph));
+  return graph->Make(Op::kAdd, z, moved);
+}
+
 }  // namespace
 
 Vector FormProgram::Retreat::Of(const Signals& s) {
@@ -61,95 +96,115 @@ Vector FormProgram::Retreat::Of(const Signals& s) {
   return last_;
 }
 
-FormProgram::FormProgram(expression::Graph* graph, const std::vector<FormState>& states,
-                         const std::vector<int>& outputs)
-    : states_(states.size()), outputs_(*graph, outputs) {
-  if (states.size() > kMostStates) throw std::invalid_argument("more than 8 states");
-  const auto symbol = [&](std::size_t k) { return graph->Symbol(SymbolKind::kState, static_cast<int>(k)); };
-  const int retreating = graph->Symbol(SymbolKind::kSignal, static_cast<int>(FormSignal::kRetreating));
-  for (std::size_t k = states.size(); k-- > 0;) {
-    const int z = symbol(k);
+FormProgram::FormProgram(expression::Graph* graph, const std::vector<FormState>& states, int output)
+    : states_(states.size()), output_(graph, {output}) {
+  const std::vector<bool> needed = NeededBy(output, states, graph);
+  for (std::size_t k = 0; k < states.size(); ++k) {
     State& state = states_[k];
-    state.needed = std::any_of(outputs.begin(), outputs.end(), [&](int n) { return graph->DependsOn(n, z); });
-    for (std::size_t later = k + 1; later < states.size(); ++later)
-      state.needed =
-          state.needed || (states_[later].needed &&
-                           graph->DependsOn(states[later].rate < 0 ? states[later].next : states[later].rate, z));
-    state.start = FormCode(*graph, {states[k].start});
-    if (graph->DependsOn(states[k].rate < 0 ? states[k].next : states[k].rate, retreating) ||
-        graph->DependsOn(states[k].start, retreating))
-      throw std::invalid_argument("a state cannot read \"retreating\"");
+    state.needed = needed[k];
+    if (!state.needed) continue;
+    state.start = RowProgram(graph, {states[k].start});
     state.jumps = states[k].rate < 0;
     if (state.jumps) {
-      state.rate = FormCode(*graph, {states[k].next});
+      if (graph->at(states[k].next).memory) throw std::invalid_argument("a state that jumps has no other memory");
+      state.move = RowProgram(graph, {states[k].next});
       continue;
     }
-    const int slope = graph->Differentiate(states[k].rate, z);
-    if (slope < 0) throw std::invalid_argument("the rate of a state has no derivative");
-    state.linear = !graph->DependsOn(slope, z);
-    state.rate = FormCode(*graph, {states[k].rate, slope});
-    state.rest = FormCode(*graph, {slope, graph->Substitute(states[k].rate, {{z, graph->Number(0.0)}})});
+    const int z = StateSymbol(graph, k), slope = SlopeOf(states[k].rate, z, graph);
+    if (graph->DependsOn(slope, z)) throw std::invalid_argument("a state's rate is not linear in it");
+    state.move = RowProgram(graph, {slope, graph->Substitute(states[k].rate, {{z, graph->Number(0.0)}})});
   }
-  reads_retreat_ = outputs_.Reads(FormSignal::kRetreating);
 }
 
-bool FormProgram::has_states() const {
-  return std::any_of(states_.begin(), states_.end(), [](const State& state) { return state.needed; });
-}
-
-bool FormProgram::is_linear() const {
-  return std::all_of(states_.begin(), states_.end(), [](const State& s) { return !s.needed || s.linear; });
-}
-
-std::vector<Vector> FormProgram::Over(const Signals& signals, const Vector* law, const double* values) const {
-  const Vector retreating = reads_retreat_ ? retreat_->Of(signals) : Vector();
-  std::vector<Vector> states(states_.size());
-  const FormCode::Recording recording{signals, &retreating, law, values, states};
+Vector FormProgram::Over(const Signals& s, const Vector* law, const std::vector<double>& values) const {
+  RowInputs inputs;
+  inputs.rows = s.rows();
+  inputs.dt = s.dt;
+  std::copy(values.begin(), values.end(), inputs.value.begin());
+  const auto input = [&](FormSignal signal) -> const double*& { return inputs.series[static_cast<std::size_t>(signal)]; };
+  for (std::size_t r = 0; r < kNumRoles; ++r) inputs.series[r] = s.input[r].data();
+  input(FormSignal::kActive) = s.active.data();
+  input(FormSignal::kTime) = s.t.data();
+  if (law != nullptr) input(FormSignal::kLaw) = law->data();
+  constexpr int kRetreating = static_cast<int>(FormSignal::kRetreating);
+  const auto retreats = [](const State& state) { return state.start.Reads(kRetreating) || state.move.Reads(kRetreating); };
+  Vector retreating;
+  if (output_.Reads(kRetreating) || std::any_of(states_.begin(), states_.end(), retreats)) {
+    retreating = retreat_->Of(s);
+    input(FormSignal::kRetreating) = retreating.data();
+  }
+  std::vector<Vector> series(states_.size());
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const State& state = states_[k];
     if (!state.needed) continue;
-    std::array<double, kMostStates> now{};
-    for (std::size_t earlier = 0; earlier < k; ++earlier)
-      if (states_[earlier].needed) now[earlier] = states[earlier][0];
-    FormCode::Sample sample{{}, values, now.data()};
-    ReadRow(signals, law, 0, &sample);
-    double start = 0.0;
-    state.start.AtSample(sample, &start);
-    if (!state.jumps) {
-      const std::vector<Vector> rate = state.rest.OverRecording(recording);
-      states[k] = Linear(rate[0], rate[1], start, signals.dt);
-      continue;
+    const double start = state.start.AtFirst(inputs);
+    if (state.jumps) {
+      series[k] = state.move.Recursion(inputs, static_cast<int>(k), start);
+    } else {
+      const std::vector<Vector> rate = state.move.Over(inputs);
+      series[k] = Linear(rate[0], rate[1], start, s.dt);
     }
-    Vector z(signals.rows());
-    z[0] = now[k] = start;
-    for (Eigen::Index i = 1; i < z.size(); ++i) {
-      ReadRow(signals, law, i, &sample);
-      for (std::size_t earlier = 0; earlier < k; ++earlier)
-        if (states_[earlier].needed) now[earlier] = states[earlier][i];
-      state.rate.AtSample(sample, &now[k]);
-      z[i] = now[k];
-    }
-    states[k] = z;
+    inputs.series[static_cast<std::size_t>(kFirstState) + k] = series[k].data();
   }
-  return outputs_.OverRecording(recording);
+  return output_.Over(inputs)[0];
 }
 
-double FormProgram::At(const Motion& motion, const double* values, const double* memory) const {
-  double force = 0.0;
-  outputs_.AtSample(SampleOf(motion, values, memory), &force);
-  return force;
+ForceProgram::ForceProgram(expression::Graph* graph, const std::vector<FormState>& states, int output) {
+  const std::vector<bool> needed = NeededBy(output, states, graph);
+  num_states_ = static_cast<std::size_t>(std::find(needed.rbegin(), needed.rend(), true).base() - needed.begin());
+  std::vector<int> next;
+  std::map<int, int> moved;  // a state sees those before it as they are one sample later
+  for (std::size_t k = 0; k < num_states_; ++k) {
+    const int z = StateSymbol(graph, k);
+    next.push_back(graph->Substitute(NextOf(states[k], z, graph), moved));
+    moved[z] = next.back();
+  }
+  for (std::size_t n = 0; n < next.size() + 1; ++n)
+    if (const int node = n < next.size() ? next[n] : output; graph->at(node).memory)
+      throw std::invalid_argument("functions with memory are not available here: use a state");
+  using identify::Varies;
+  std::vector<Varies> varies(static_cast<std::size_t>(kNumFormInputs), Varies::kByLane);
+  std::fill_n(varies.begin(), kFirstPast, Varies::kByBoth);
+  for (const FormSignal same : {FormSignal::kTime, FormSignal::kDrive})
+    varies[static_cast<std::size_t>(same)] = Varies::kBySample;
+  force_ = identify::LaneProgram(*graph, {output}, varies);
+  moves_ = identify::LaneProgram(*graph, next, varies);
 }
 
-void FormProgram::Remember(const Motion& motion, const double* values, double* memory) const {
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    std::array<double, 2> rate{};
-    states_[k].rate.AtSample(SampleOf(motion, values, memory), rate.data());
-    const double share = rate[1] * motion.dt;
-    if (states_[k].jumps)
-      memory[k] = rate[0];
-    else
-      memory[k] += std::abs(share) < kFlat ? rate[0] * motion.dt : rate[0] * std::expm1(share) / rate[1];
+class ForceProgram::Run final : public MotionForce {
+ public:
+  Run(const ForceProgram& program, const std::vector<identify::Lanes>& values, double dt) : program_(&program) {
+    std::vector<identify::Lanes> inputs(static_cast<std::size_t>(kNumFormInputs));
+    std::copy(values.begin(), values.end(), inputs.begin() + kFirstValue);
+    force_ = program.force_.Begin(inputs.data(), dt);
+    moves_ = program.moves_.Begin(inputs.data(), dt);
   }
+
+  void Move(Motions* motions) override {
+    if (program_->num_states_ == 0) return;
+    Recall(motions);
+    program_->moves_.Evaluate(1, motions->input.data(), 1, &kNoTime, &moves_, states_.data());
+  }
+
+  void At(Motions* motions, identify::Lanes* acceleration) override {
+    Recall(motions);
+    program_->force_.Evaluate(1, motions->input.data(), 1, &kNoTime, &force_, acceleration);
+  }
+
+ private:
+  static constexpr double kNoTime = 0.0;
+
+  void Recall(Motions* motions) const {
+    std::copy_n(states_.begin(), program_->num_states_, motions->input.begin() + kFirstState);
+  }
+
+  const ForceProgram* program_;
+  std::array<identify::Lanes, kMostFormStates> states_{};
+  identify::LaneRun force_, moves_;
+};
+
+std::unique_ptr<MotionForce> ForceProgram::Begin(const std::vector<identify::Lanes>& values, double dt) const {
+  return std::make_unique<Run>(*this, values, dt);
 }
 
 }  // namespace armcmc::gap

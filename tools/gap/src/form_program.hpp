@@ -4,47 +4,30 @@
 #include <mutex>
 #include <vector>
 
-#include "form_code.hpp"
+#include "armcmc/gap/effect_form.hpp"
+#include "row_program.hpp"
 
 namespace armcmc::gap {
 
-/// A state of a form, as nodes of a graph.
-struct FormState {
-  int start = -1;  ///< Before the first sample; read there.
-  int rate = -1;   ///< Its derivative; -1: `next` is given,
-  int next = -1;   ///< the value one sample later.
-};
-
-/// Expressions of a form together with the states that they read.
+/// An expression of a form over a recording, together with the states that it reads.
 ///
-/// A state with a rate moves from one sample to the next as z' = rate with all else held: exact where the rate is
-/// linear in it. Over a recording the rate must be.
+/// A state with a rate moves from one sample to the next as z' = rate with all else held, which is exact: the rate must
+/// be linear in it.
 class FormProgram {
  public:
-  static constexpr std::size_t kMostStates = 8;
+  /// States may read those before them. Those that the output does not need are left out.
+  /// @throws std::invalid_argument where a function is not available or a rate is not linear.
+  FormProgram(expression::Graph* graph, const std::vector<FormState>& states, int output);
 
-  /// States may read those before them. Those that no output needs are left out.
-  /// @throws std::invalid_argument where code is not available or a rate has no derivative.
-  FormProgram(expression::Graph* graph, const std::vector<FormState>& states, const std::vector<int>& outputs);
-
-  /// The outputs over a recording. @param law  What a filter acts on; else null.
-  [[nodiscard]] std::vector<Vector> Over(const Signals& signals, const Vector* law, const double* values) const;
-  /// The first output in a simulated motion.
-  [[nodiscard]] double At(const Motion& motion, const double* values, const double* memory) const;
-  /// Moves the states by one sample.
-  void Remember(const Motion& motion, const double* values, double* memory) const;
-
-  [[nodiscard]] int num_states() const { return static_cast<int>(states_.size()); }
-  [[nodiscard]] bool has_states() const;
-  /// Whether every rate is linear in its state, as Over() needs.
-  [[nodiscard]] bool is_linear() const;
+  /// @param law     What a filter acts on; else null.
+  /// @param values  Of the coordinates and, after them, the origin.
+  [[nodiscard]] Vector Over(const Signals& signals, const Vector* law, const std::vector<double>& values) const;
 
  private:
   struct State {
-    bool needed = false, linear = true, jumps = false;
-    FormCode start;
-    FormCode rate;  ///< Outputs: the rate and its slope by the state. Of a state that jumps: its next value.
-    FormCode rest;  ///< Outputs: the slope, and the rate at zero.
+    bool needed = false, jumps = false;
+    RowProgram start;
+    RowProgram move;  ///< Outputs: slope of the rate, and rate at zero. Of a state that jumps: its next value.
   };
   /// Kept from one call to the next: it depends on no coordinate. Threads may share it.
   class Retreat {
@@ -58,9 +41,27 @@ class FormProgram {
   };
 
   std::vector<State> states_;
-  FormCode outputs_;
-  bool reads_retreat_ = false;
+  RowProgram output_;
   std::shared_ptr<Retreat> retreat_ = std::make_shared<Retreat>();
+};
+
+/// An expression of a form as an acceleration in simulated motions, together with the states that it reads.
+///
+/// A state with a rate moves from one sample to the next by z' = rate + slope (z - z0), with all else held; it begins
+/// at zero.
+class ForceProgram {
+ public:
+  /// @throws std::invalid_argument where a function is not available or a rate has no derivative.
+  ForceProgram(expression::Graph* graph, const std::vector<FormState>& states, int output);
+
+  /// @param values  [coordinate] Those of each motion.
+  [[nodiscard]] std::unique_ptr<MotionForce> Begin(const std::vector<identify::Lanes>& values, double dt) const;
+
+ private:
+  class Run;
+
+  identify::LaneProgram force_, moves_;
+  std::size_t num_states_;
 };
 
 }  // namespace armcmc::gap

@@ -58,9 +58,8 @@ class BendEquation final : public Equation {
   bool online() const override { return false; }
 
   Suitability Check(const Signals& s) const override {
-    Vector angle(s.rows());
     const DrivenMotion simulation(LinearPart(constants_), s.dt);
-    simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, nullptr);
+    const Vector angle = simulation.Runs(s.t, s.at(Role::kPressure), {}, {StartOf(s, simulation)}, s.rows());
     const double error = RootMeanSquare(s.output - angle);
     if (error > kNegligible * s.output_scale) return {};
     char text[200];
@@ -85,40 +84,37 @@ class BendEquation final : public Equation {
 
   void Law(const Signals& s, const double* theta, const LawInput& input, Prediction* out) const override {
     const DrivenMotion simulation(LinearPart(constants_), s.dt);
-    const Vector& gauge = s.at(Role::kPressure);
     std::vector<DrivenMotion::Force> forces;
-    for (const LawInput::Force& force : input.forces) forces.push_back({force.form, Values(force), &force.gate});
-    DrivenMotion::State start = StartOf(s, simulation);
-    start.angle += theta[0] * s.scale_of(Role::kPosition);
-    start.rate += theta[1] * s.scale_of(Role::kVelocity);
     // One run as it is, then one for every slope.
-    std::vector<std::vector<DrivenMotion::Force>> runs{forces};
+    std::vector<DrivenMotion::Run> runs{StartOf(s, simulation)};
+    runs[0].angle += theta[0] * s.scale_of(Role::kPosition);
+    runs[0].rate += theta[1] * s.scale_of(Role::kVelocity);
+    for (const LawInput::Force& force : input.forces) {
+      forces.push_back({force.form, &force.gate});
+      runs[0].values.push_back(Values(force));
+    }
     std::vector<int> columns;
+    const auto add = [&](int column) -> DrivenMotion::Run& {
+      columns.push_back(column);
+      runs.push_back(runs[0]);
+      return runs.back();
+    };
+    if (out->wanted.Has(0)) add(0).angle += kStep * s.scale_of(Role::kPosition);
+    if (out->wanted.Has(1)) add(1).rate += kStep * s.scale_of(Role::kVelocity);
     for (std::size_t f = 0; f < forces.size(); ++f) {
       const EffectForm& form = *forces[f].form;
-      for (std::size_t c = 0; c < form.coordinates.size(); ++c) {
-        const int column = input.forces[f].first + static_cast<int>(c);
-        if (!out->wanted.Has(column)) continue;
-        columns.push_back(column);
-        runs.push_back(forces);
-        runs.back()[f].values[c] = form.coordinates[c].Value(input.forces[f].coordinates[c] + kStep);
-      }
+      for (std::size_t c = 0; c < form.coordinates.size(); ++c)
+        if (const int column = input.forces[f].first + static_cast<int>(c); out->wanted.Has(column))
+          add(column).values[f][c] = form.coordinates[c].Value(input.forces[f].coordinates[c] + kStep);
     }
-    Matrix angles;
-    simulation.RunInterleaved(s.t, gauge, start, runs, &angles);
+    const Matrix angles = simulation.Runs(s.t, s.at(Role::kPressure), forces, runs, s.rows());
     out->y = angles.col(0);
     out->elastic = Vector::Zero(s.rows());
     for (std::size_t i = 0; i < columns.size(); ++i)
       out->jacobian.col(columns[i]) = (angles.col(static_cast<Eigen::Index>(i) + 1) - out->y) / kStep;
     const auto felt = std::min<Eigen::Index>(s.rows(), static_cast<Eigen::Index>(kForgotten_s / s.dt) + 2);
-    for (int column = 0; column < kStartCoordinates; ++column) {
-      if (!out->wanted.Has(column)) continue;
-      DrivenMotion::State other = start;
-      (column == 0 ? other.angle : other.rate) += kStep * s.scale_of(column == 0 ? Role::kPosition : Role::kVelocity);
-      Vector moved = out->y;
-      simulation.Run(s.t, gauge, other, forces, felt, &moved, nullptr);
-      out->jacobian.col(column) = (moved - out->y) / kStep;
-    }
+    for (int column = 0; column < kStartCoordinates; ++column)
+      if (out->wanted.Has(column)) out->jacobian.col(column).tail(s.rows() - felt).setZero();
   }
 
   std::vector<ParameterEstimate> Report(const Signals& s, const Vector& theta,
@@ -163,18 +159,13 @@ class BendEquation final : public Equation {
   }
 
   /// The state at the first row, by least squares over the time in which it is felt.
-  DrivenMotion::State StartOf(const Signals& s, const DrivenMotion& simulation) const {
+  DrivenMotion::Run StartOf(const Signals& s, const DrivenMotion& simulation) const {
     const auto rows = std::min<Eigen::Index>(s.rows(), static_cast<Eigen::Index>(kSettling_s / s.dt) + 2);
-    Vector from_rest(s.rows()), run(s.rows());
-    simulation.Run(s.t, s.at(Role::kPressure), {}, {}, rows, &from_rest, nullptr);
-    Matrix columns(rows, 2);
-    for (int c = 0; c < 2; ++c) {
-      simulation.Run(s.t, s.at(Role::kPressure), {c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0}, {}, rows, &run, nullptr);
-      columns.col(c) = run.head(rows) - from_rest.head(rows);
-    }
-    const Vector error = s.output.head(rows) - from_rest.head(rows);
-    const Vector state = columns.colPivHouseholderQr().solve(error);
-    return {state[0], state[1]};
+    const Matrix runs =
+        simulation.Runs(s.t, s.at(Role::kPressure), {}, {{0.0, 0.0, {}}, {1.0, 0.0, {}}, {0.0, 1.0, {}}}, rows);
+    const Matrix columns = runs.rightCols(2).colwise() - runs.col(0);
+    const Vector state = columns.colPivHouseholderQr().solve(s.output.head(rows) - runs.col(0));
+    return {state[0], state[1], {}};
   }
 
   /// How much of a smoothed error is put into the motion. It holds noise of the very samples that the flexible model
@@ -193,8 +184,8 @@ class BendEquation final : public Equation {
     s.output = recording.Column("alpha");
     // The simulation follows fast motion; its error, which is slow, is smoothed widely.
     const DrivenMotion simulation(LinearPart(constants_), s.dt);
-    Vector angle(s.rows()), rate(s.rows());
-    simulation.Run(s.t, s.at(Role::kPressure), StartOf(s, simulation), {}, s.rows(), &angle, &rate);
+    Vector rate;
+    const Vector angle = simulation.Runs(s.t, s.at(Role::kPressure), {}, {StartOf(s, simulation)}, s.rows(), &rate);
     const int wide = kWidenAngle * window + 1;
     const Vector error = s.output - angle;
     const Vector slow = SavitzkyGolay(error, wide, 0);

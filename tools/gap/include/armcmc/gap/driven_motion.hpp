@@ -23,37 +23,29 @@ class DrivenMotion {
  public:
   DrivenMotion(const MotionConstants& constants, double dt);
 
-  struct State {
-    double angle = 0.0, rate = 0.0;  ///< x and x'.
-  };
-  /// A force with the values of its coordinates.
+  /// An effect that acts, at the rows of its gate.
   struct Force {
     const EffectForm* form = nullptr;
-    std::vector<double> values;
     const Vector* gate = nullptr;
   };
+  struct Run {
+    double angle = 0.0, rate = 0.0;           ///< x and x' at the first sample.
+    std::vector<std::vector<double>> values;  ///< [force][coordinate]
+  };
 
+  /// x of every run: [row][run]. They go through the samples side by side: a step waits for what came before, and the
+  /// work of one serves many.
   /// @param input  u at every sample.
-  /// @param rows   Rows to run; the rest of `angle` is left alone.
-  /// @param rate   May be null.
-  void Run(const Vector& t, const Vector& input, State start, const std::vector<Force>& forces, Eigen::Index rows,
-           Vector* angle, Vector* rate) const;
-
-  /// Runs that differ in their forces only, from the same start; column by run. They go through the samples together: a
-  /// step of one waits for its tanh, and meanwhile the others' are at work.
-  void RunInterleaved(const Vector& t, const Vector& input, State start, const std::vector<std::vector<Force>>& forces,
-                      Matrix* angles) const;
+  /// @param rows   To run, from the first.
+  /// @param rate   x' of the first run, if not null.
+  [[nodiscard]] Matrix Runs(const Vector& t, const Vector& input, const std::vector<Force>& forces,
+                            const std::vector<Run>& runs, Eigen::Index rows, Vector* rate = nullptr) const;
 
   /// What an acceleration of each row adds to the angle, from rest.
   [[nodiscard]] Vector Response(const Vector& acceleration) const;
 
  private:
-  struct Lane;
-  void Advance(const Vector& t, const Vector& input, Eigen::Index rows, std::vector<Lane>* lanes) const;
-  [[nodiscard]] Motion MotionOf(const Vector& t, const Vector& input, const State& state, Eigen::Index i) const;
-  [[nodiscard]] double Added(const Lane& lane, const Vector& t, const Vector& input, const State& state,
-                             Eigen::Index i) const;
-  [[nodiscard]] State Moved(const State& x, double start, double end) const;
+  class Step;
 
   MotionConstants constants_;
   double dt_;

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "armcmc/gap/coordinate.hpp"
+#include "armcmc/gap/form_input.hpp"
 #include "armcmc/gap/prediction.hpp"
 #include "armcmc/gap/signals.hpp"
 #include "armcmc/gap/types.hpp"
+#include "armcmc/identify/lane_program.hpp"
 
 namespace armcmc::gap {
 
@@ -25,15 +29,28 @@ enum class Slot : std::uint8_t {
   kStatics,    ///< then a map of each output.
 };
 
-/// State of a simulated joint at one sample.
-struct Motion {
-  double t = 0.0, dt = 0.0;  ///< s
-  double angle = 0.0;        ///< rad
-  double rate = 0.0;         ///< rad/s
-  double drive = 0.0;        ///< Acceleration by the pressure, rad/s^2.
-  double base = 0.0;         ///< Acceleration of the law without effects, rad/s^2.
+/// Simulated motions at one sample, side by side: what a form may read of them, the rest zero.
+struct Motions {
+  /// By FormSignal: angle, rad; rate, rad/s; drive and base, rad/s^2; time, s. Then room for the states of a form.
+  std::array<identify::Lanes, static_cast<std::size_t>(kFirstPast)> input{};
+
+  [[nodiscard]] identify::Lanes& at(FormSignal signal) { return input[static_cast<std::size_t>(signal)]; }
+  [[nodiscard]] const identify::Lanes& at(FormSignal signal) const { return input[static_cast<std::size_t>(signal)]; }
 };
-inline constexpr int kForceMemory = 2;
+
+/// An effect in simulated motions on their way.
+class MotionForce {
+ public:
+  MotionForce() = default;
+  MotionForce(const MotionForce&) = delete;
+  MotionForce& operator=(const MotionForce&) = delete;
+  virtual ~MotionForce() = default;
+
+  /// Moves what it remembers by one sample; called once a sample, before At().
+  virtual void Move(Motions* motions) = 0;
+  /// The acceleration in a state.
+  virtual void At(Motions* motions, identify::Lanes* acceleration) = 0;
+};
 
 /// One formula of one effect of the catalogue, scaled to a recording.
 ///
@@ -64,10 +81,8 @@ struct EffectForm {
   /// kAdditive, kInputMap, kParameter, kDrive: the columns that the amplitudes multiply, [row][amplitude], from the
   /// shapes. Without amplitudes: the single column that is added.
   std::function<Matrix(const Signals&, const double* shape)> features;
-  /// kForce: acceleration in a state, from the values of all coordinates.
-  std::function<double(const Motion&, const double* values, const double* memory)> force;
-  /// kForce: updates the memory, once per sample and before `force` is evaluated; may be null.
-  std::function<void(const Motion&, const double* values, double* memory)> remember;
+  /// kForce: itself in motions that begin, from the values of all coordinates, [coordinate], and the sample interval, s.
+  std::function<std::unique_ptr<MotionForce>(const std::vector<identify::Lanes>& values, double dt)> force;
   /// kMemory: filters a series by the shapes; one filter per amplitude.
   std::function<Vector(const Signals&, const Vector& series, int amplitude, const double* shape)> filter;
   /// kDelay, kLag, kStatics: acts on a prediction; own columns from `first` on.
