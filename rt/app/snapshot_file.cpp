@@ -145,7 +145,11 @@ bool MayBeSnapshot(std::span<const std::byte> bytes) {
     right += first[i] == static_cast<std::byte>(kMagic[i]) ? 1U : 0U;
     zero += first[i] == std::byte{0} ? 1U : 0U;
   }
-  return 2 * right >= first.size() || zero == first.size();
+  if (2 * right >= first.size() || zero == first.size()) return true;
+  std::uint32_t version = 0;
+  if (bytes.size() < sizeof kMagic + sizeof version) return false;
+  std::memcpy(&version, bytes.data() + sizeof kMagic, sizeof version);
+  return version >= 1 && version <= kSnapshotVersion;
 }
 
 std::string ReplaceFile(const std::string& path, std::span<const std::byte> bytes) {

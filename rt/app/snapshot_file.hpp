@@ -38,7 +38,7 @@ inline constexpr std::uint32_t kSnapshotVersion = 3;
 
 /// Whether a file that DecodeSnapshot() refuses may have been a snapshot, and not another file that was named by
 /// mistake: half of its first 8 bytes are those of a snapshot, or all of them are zero, as in a block that the disk
-/// lost.
+/// lost, or they are damaged and the version after them is one that there has been.
 [[nodiscard]] bool MayBeSnapshot(std::span<const std::byte> bytes);
 
 /// Replaces a file as a whole: whoever reads it, also after a power failure, finds the old content or the new one.

@@ -62,8 +62,7 @@ class SnapshotSaver {
 /// @param use  Takes the content over; false: it is damaged all the same.
 /// @return what was read; without parts when there is nothing to go on from.
 /// @throws support::InputError when the file is something else (MayBeSnapshot()), is no regular file, or may not be
-/// read:
-///         it stays as it is, and so nothing can be saved under this name.
+///         read: it stays as it is, and so nothing can be saved under this name.
 [[nodiscard]] Snapshot LoadSnapshot(const std::string& path, std::uint64_t identity, std::int64_t now_utime,
                                     const std::function<bool(const Snapshot&)>& use, const SnapshotSaver::Say& say);
 

@@ -238,9 +238,12 @@ TEST_F(SnapshotSaverTest, ADamagedSnapshotIsNotTakenForAnotherFile) {
   for (std::size_t size = 0; size < 20; ++size) EXPECT_TRUE(MayBeSnapshot(std::span(good).first(size))) << size;
   std::vector<std::byte> damaged = good;
   for (std::size_t i = 0; i < 4; ++i) damaged[2 * i] = std::byte{0xa5};
-  EXPECT_TRUE(MayBeSnapshot(damaged));
+  EXPECT_TRUE(MayBeSnapshot(std::span(damaged).first(8)));
   std::fill_n(damaged.begin(), 48, std::byte{0});
   EXPECT_TRUE(MayBeSnapshot(damaged)) << "a block that is lost";
+  damaged = good;
+  std::fill_n(damaged.begin(), 8, std::byte{0xa5});
+  EXPECT_TRUE(MayBeSnapshot(damaged)) << "nothing but the first bytes";
   for (const char* other : {"t,x,y\n", "armcmcsn", "ARM", "a", "schema = 1\n", "\xed\xa1\xda\x01"}) {
     const std::string text = other;
     EXPECT_EQ(MayBeSnapshot(std::as_bytes(std::span(text))), text == "ARM") << text;

@@ -60,7 +60,7 @@ double ChiSquareTail(double value, double degrees) {
 /// Values of all parameters of a plant on the segments.
 struct Followed {
   std::vector<ParameterDescription> parameters;
-  std::vector<gap::Constancy> steadiness;
+  std::vector<gap::Constancy> constancy;
 };
 
 /// @param fit  Fit of the plant with all parameters free.
@@ -77,7 +77,7 @@ Followed Follow(const Dataset& data, const std::vector<Stretch>& stretches, cons
     const auto count = static_cast<std::size_t>(trial.model->num_parameters());
     if (out.parameters.empty()) {
       out.parameters = trial.model->parameters();
-      out.steadiness.resize(count);
+      out.constancy.resize(count);
       value.resize(count);
       sd.resize(count);
     }
@@ -97,7 +97,7 @@ Followed Follow(const Dataset& data, const std::vector<Stretch>& stretches, cons
       if (width[i] > kTold * trial.model->Spread()[i]) continue;
       value[d].push_back(at);
       sd[d].push_back(width[i]);
-      gap::Curve& course = out.steadiness[d].course;
+      gap::Curve& course = out.constancy[d].course;
       course.x.push_back(middle);
       course.y.push_back(trial.model->Shown(i, at));
       course.low.push_back(trial.model->Shown(i, std::max(at - reach, trial.model->Lower()[i])));
@@ -105,7 +105,7 @@ Followed Follow(const Dataset& data, const std::vector<Stretch>& stretches, cons
     }
   }
   for (std::size_t d = 0; d < out.parameters.size(); ++d) {
-    gap::Constancy& one = out.steadiness[d];
+    gap::Constancy& one = out.constancy[d];
     one.fitted = true;
     JudgeConstancy(value[d], sd[d], &one);
     if (out.parameters[d].prior != "lognormal") continue;
@@ -151,11 +151,11 @@ std::vector<gap::ParameterDrift> DriftOver(const Dataset& data, const TunedPlant
   };
   Followed first = Follow(data, stretches, before.loose, base);
   for (std::size_t d = 0; d < first.parameters.size(); ++d)
-    entry(first.parameters[d]).before = std::move(first.steadiness[d]);
+    entry(first.parameters[d]).before = std::move(first.constancy[d]);
   if (after == nullptr) return drift;
   Followed second = Follow(data, stretches, after->loose, final_trial);
   for (std::size_t d = 0; d < second.parameters.size(); ++d)
-    entry(second.parameters[d]).after = std::move(second.steadiness[d]);
+    entry(second.parameters[d]).after = std::move(second.constancy[d]);
   return drift;
 }
 

@@ -80,7 +80,7 @@ void TryAll(const std::shared_ptr<const Plant>& plant, const Dataset& data, cons
     for (const Contender& c : all) best = std::max(best, c.closed);
     return best;
   };
-  // What gains less than half of is needed for a name is not worth a fit to all rows.
+  // What gains less than half of what a name needs is not worth a fit to all rows.
   const double beyond_noise = 1.0 - std::min(1.0, NoiseIn(view, rung->base, floor) / MeanSquare(rung->base));
   const auto worth_fitting = [&](const Contender& c, double share) {
     const bool larger_part = above_tie != nullptr && !above_tie->contains(c.candidate.entry->family);
