@@ -6,16 +6,14 @@
 
 #include "armcmc/density_fit.hpp"
 #include "armcmc/linear_algebra.hpp"
-#include "armcmc/snapshot.hpp"
 #include "simd/kernels.hpp"
 
 namespace armcmc {
 namespace {
 
-constexpr double kMixedReach = 6.0;     // standard deviations
-constexpr double kMixedTail = 1e-3;     // of a normal law in a mixture
-constexpr std::int64_t kBothParts = 4;  // in a snapshot, added to the part of the first block
-constexpr double kLeftOut = 1e-5;       // share below which a filter is left out of the mixture
+constexpr double kMixedReach = 6.0;  // standard deviations
+constexpr double kMixedTail = 1e-3;  // of a normal law in a mixture
+constexpr double kLeftOut = 1e-5;    // share below which a filter is left out of the mixture
 
 void MakeSymmetric(ParamMatrix* m) noexcept {
   for (Eigen::Index i = 0; i < m->rows(); ++i)
@@ -39,10 +37,14 @@ bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noex
 
 }  // namespace
 
-Drift::Hypothesis Drift::Of(int h, double share) noexcept {
+Drift::Hypothesis Drift::Of(int h, double share, int dim) noexcept {
   if (h == 0) return {.rate = 0.0, .persistence = 1.0, .prior = 1.0 - share};
-  const Law& law = kDrifts[static_cast<std::size_t>(h - 1)];
-  return {.rate = law.rate, .persistence = law.persistence, .prior = share * law.share};
+  const bool alone = h >= kFirstAlone;
+  const Law& law = alone ? kAlone : kTogether[static_cast<std::size_t>(h - 1)];
+  return {.rate = law.rate,
+          .persistence = law.persistence,
+          .prior = share / (NumHypotheses(dim) - 1),
+          .alone = alone ? h - kFirstAlone : -1};
 }
 
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
@@ -53,13 +55,15 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
       noise_(noise),
       normal_table_(MarginalTable::Normal()),
       dim_(space.num_parameters),
-      enabled_(share > 0.0) {
-  for (int h = 0; h < kHypotheses; ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share);
+      enabled_(share > 0.0),
+      lead_(ParamMatrix::Zero(dim_, dim_)) {
+  for (int h = 0; h < NumHypotheses(dim_); ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share, dim_);
 }
 
 void Drift::Forget() noexcept {
   started_ = split_ = mixed_ = both_ = false;
-  share_ = rate_ = 0.0;
+  share_ = 0.0;
+  rate_.fill(0.0);
 }
 
 void Drift::Mix(const Moments& part, int to) noexcept {
@@ -147,15 +151,27 @@ Drift::Part Drift::CarriedPart() const noexcept {
   return share_ < 1.0 - kNegligible ? Part::kWhole : Part::kDrift;
 }
 
-const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last) noexcept {
-  split_ = mixed_ = false;
-  share_ = rate_ = 0.0;
+const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory& last,
+                                    LaplaceScratch* scratch) noexcept {
+  split_ = mixed_ = moves_ = false;
+  share_ = 0.0;
+  rate_.fill(0.0);
   if (!last.valid) started_ = false;
   if (!started_) return last;
   // If the plant's time restarts, the elapsed time is unknown: at least one pack.
   const double since = data.time_s - time_s_;
-  Predict(since > 0.0 ? since : data.duration_s);
+  elapsed_s_ = since > 0.0 ? since : data.duration_s;
+  Predict(elapsed_s_);
   ExpectDrift();
+  const Moments expected = MomentsOf(predicted_, Part::kWhole);
+  expected_ = {expected.mean, expected.covariance};
+  moves_ = share_ >= kNegligible || fitted_ != Part::kRest || both_;
+  if (moves_) {
+    ToEffective(data, last, scratch);
+    ExpectDrift();
+  } else {
+    StandStill();  // without a part in the prior of this pack: the fit would cost more than it tells
+  }
   const Moments from{
       .weight = 1.0, .mean = last.mean.head(dim_), .covariance = last.covariance.topLeftCorner(dim_, dim_)};
   carried_.valid = true;
@@ -210,10 +226,9 @@ void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
       f = predicted_[i];
     } else {
       const Hypothesis& law = hypotheses_[HypothesisOf(i)];
-      f.weight = i / kHypotheses + 1 == kGenerations ? law.prior : 0.0;
+      f.weight = i / kHypotheses + 1 == kSlots ? law.prior : 0.0;
       f.w = ParamVector::Zero(dim_);
-      f.ww = ParamMatrix::Identity(dim_, dim_);
-      f.ww *= law.rate * law.rate;
+      f.ww = FirstVelocity(law);
     }
     f.u = next.mean.head(dim_);
     f.uu = next.covariance.topLeftCorner(dim_, dim_);
@@ -280,20 +295,24 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
   return true;
 }
 
-bool Drift::Recentre(const Sampled& sampled) noexcept {
+Drift::Moments Drift::ByExpansion(const Sampled& sampled) const noexcept {
+  // Of two posteriors, without and with a change, the memory has the moments of the bank, too.
+  const bool as_the_bank =
+      sampled.part == Part::kDrift ? mixed_ : (split_ || separate_) && sampled.part == Part::kWhole;
+  if (as_the_bank) return MomentsOf(bank_, sampled.part);
   const LocalLikelihood& local = sampled.local;
-  // The posterior of the sampler's prior under the expanded likelihood: the bank itself, or a Gaussian with its
-  // moments.
-  const bool as_the_bank = sampled.part == Part::kDrift ? mixed_ : split_ && sampled.part == Part::kWhole;
-  Moments now = MomentsOf(as_the_bank ? bank_ : predicted_, sampled.part);
-  if (!as_the_bank) {
-    ParamMatrix spread = Product(local.information, now.covariance);
-    spread += ParamMatrix::Identity(dim_, dim_);
-    const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
-    now.covariance = Product(now.covariance, Inverse(spread));
-    MakeSymmetric(&now.covariance);
-    now.mean += Multiply(now.covariance, local.gradient - pulled);
-  }
+  Moments now = MomentsOf(predicted_, sampled.part);
+  ParamMatrix spread = Product(local.information, now.covariance);
+  spread += ParamMatrix::Identity(dim_, dim_);
+  const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
+  now.covariance = Product(now.covariance, Inverse(spread));
+  MakeSymmetric(&now.covariance);
+  now.mean += Multiply(now.covariance, local.gradient - pulled);
+  return now;
+}
+
+bool Drift::Recentre(const Sampled& sampled) noexcept {
+  const Moments now = ByExpansion(sampled);
   ParamMatrix map;
   if (!MapBetween(now.covariance, sampled.covariance, &map)) return false;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
@@ -313,9 +332,9 @@ void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, 
   time_s_ = data.time_s;
   fitted_ = part;
   both_ = false;
+  separate_ = next.num_blocks == 2 && !both;
   const bool known = started_;
   started_ = true;
-  packs_ = known ? packs_ + 1 : 0;
   if (known && !renewed) {
     const Sampled first = SampledBlock(data, next, 0, part, scratch);
     if (both) {
@@ -324,56 +343,14 @@ void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, 
       const Sampled second = SampledBlock(data, next, 1, other, scratch);
       both_ = Update(first, part, next.weight[0]) && Update(second, other, next.weight[1]) && Recentre(first) &&
               Recentre(second);
-      if (both_) return;
+      if (both_) return FromEffective();
     } else if (Update(first, Part::kWhole, 1.0) && Recentre(first)) {
-      return;
+      return FromEffective();
     }
   }
+  if (known && renewed) Predict(elapsed_s_);  // what this pack tells of velocities includes the change
   Start(next, known);
-}
-
-void Drift::Save(SnapshotWriter* out) const noexcept {
-  out->PutFlag(started_);
-  if (!started_) return;
-  out->Put(time_s_);
-  out->Put(packs_);
-  out->Put(static_cast<std::int64_t>(fitted_) + (both_ ? kBothParts : 0));
-  const auto put = [out](const auto& m) noexcept ARMCMC_NONBLOCKING {
-    out->PutRow(m.data(), static_cast<std::size_t>(m.size()));
-  };
-  for (const Filter& f : bank_) {
-    out->Put(f.weight);
-    put(f.u);
-    put(f.w);
-    put(f.uu);
-    put(f.uw);
-    put(f.ww);
-  }
-}
-
-void Drift::Restore(SnapshotReader* in) noexcept {
-  Forget();
-  const bool started = in->Flag();
-  if (!started) return;
-  time_s_ = in->Number();
-  packs_ = in->Integer(0, std::numeric_limits<std::int64_t>::max());
-  const std::int64_t fitted = in->Integer(0, static_cast<std::int64_t>(Part::kDrift) + kBothParts);
-  both_ = fitted >= kBothParts;
-  fitted_ = static_cast<Part>(both_ ? fitted - kBothParts : fitted);
-  const auto take = [in, this](auto* m, Eigen::Index columns) noexcept ARMCMC_NONBLOCKING {
-    m->resize(dim_, columns);
-    in->Row(m->data(), static_cast<std::size_t>(m->size()));
-  };
-  for (Filter& f : bank_) {
-    f.weight = in->Number();
-    take(&f.u, 1);
-    take(&f.w, 1);
-    take(&f.uu, dim_);
-    take(&f.uw, dim_);
-    take(&f.ww, dim_);
-    in->Require(f.weight == 0.0 || (f.weight > 0.0 && in->good() && IsPositiveDefinite(f.uu)));
-  }
-  started_ = enabled_ && in->good();
+  if (known) FromEffective();
 }
 
 }  // namespace armcmc

@@ -1,12 +1,15 @@
-// The bank of filters between packs: generations, turns, newcomers, time.
+// The bank of filters between packs: generations, newcomers, time.
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "armcmc/drift.hpp"
+#include "armcmc/linear_algebra.hpp"
 
 namespace armcmc {
 
 Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
-  const Eigen::Index dim = bank.back().u.size();
+  const Eigen::Index dim = bank.front().u.size();
   Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim), .covariance = ParamMatrix::Zero(dim, dim)};
   for (std::size_t i = 0; i < bank.size(); ++i) {
     if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
@@ -47,47 +50,90 @@ void Drift::Merge(Filter* from, Filter* to) noexcept {
   from->weight = 0.0;
 }
 
-void Drift::MergeOlderGenerations() noexcept {
-  // From the oldest on, so that none moves by two generations.
-  for (std::size_t g = kMergeAfter.size(); g-- > 0;) {
-    if (packs_ % kMergeAfter[g] != 0) continue;
-    for (std::size_t h = 0; h < kHypotheses; ++h)
-      Merge(&predicted_[g * kHypotheses + h], &predicted_[(g + 1) * kHypotheses + h]);
+double Drift::LogVolume(const Hypothesis& law, const Filter& f) const noexcept {
+  std::array<Eigen::Index, kMaxParams> moving{};
+  Eigen::Index count = 0;
+  for (Eigen::Index d = 0; d < dim_; ++d)
+    if (law.rate > 0.0 && law.Moves(d)) moving[static_cast<std::size_t>(count++)] = d;
+  JointMatrix joint(dim_ + count, dim_ + count);
+  joint.topLeftCorner(dim_, dim_) = f.uu;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index row = moving[static_cast<std::size_t>(i)];
+    for (Eigen::Index d = 0; d < dim_; ++d) joint(dim_ + i, d) = f.uw(d, row);
+    for (Eigen::Index j = 0; j <= i; ++j) joint(dim_ + i, dim_ + j) = f.ww(row, moving[static_cast<std::size_t>(j)]);
+  }
+  return 0.5 * LogDeterminant(joint);
+}
+
+void Drift::MakeRoom() noexcept {
+  for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
+    const auto slot = [this, h](std::size_t k) noexcept ARMCMC_NONBLOCKING -> Filter& {
+      return predicted_[k * kHypotheses + h];
+    };
+    std::size_t free = 0;
+    while (free < kSlots && slot(free).weight > 0.0) ++free;
+    if (free == kSlots) {
+      std::array<double, kSlots> volume{};
+      for (std::size_t k = 0; k < kSlots; ++k) volume[k] = slot(k).weight * LogVolume(hypotheses_[h], slot(k));
+      double least = HUGE_VAL;
+      free = 0;
+      for (std::size_t k = 0; k + 1 < kSlots; ++k) {
+        Filter later = slot(k);
+        Filter both = slot(k + 1);
+        Merge(&later, &both);
+        const double lost = both.weight * LogVolume(hypotheses_[h], both) - volume[k] - volume[k + 1];
+        if (!(lost < least)) continue;
+        least = lost;
+        free = k;
+      }
+      Merge(&slot(free), &slot(free + 1));
+    }
+    for (std::size_t k = free; k > 0; --k) slot(k) = slot(k - 1);
+    slot(0).weight = 0.0;
   }
 }
 
-void Drift::TurnVelocities(double share) noexcept {
-  for (std::size_t h = 1; h < kHypotheses; ++h) {
-    Filter turned{};
-    for (std::size_t i = h; i < kFilters; i += kHypotheses) {
-      Filter part = predicted_[i];
-      part.weight *= share;
-      predicted_[i].weight -= part.weight;
-      Merge(&part, &turned);
-    }
-    if (!(turned.weight > 0.0)) continue;
-    turned.w.setZero();
-    turned.uw.setZero();
-    turned.ww.setIdentity();
-    turned.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
+ParamMatrix Drift::FirstVelocity(const Hypothesis& law) const noexcept {
+  ParamMatrix covariance = ParamMatrix::Zero(dim_, dim_);
+  for (int d = 0; d < dim_; ++d) covariance(d, d) = law.Moves(d) ? law.rate * law.rate : 0.0;
+  return covariance;
+}
+
+Drift::Filter Drift::Newcomer(const Moments& part, double weight, const Hypothesis& law) const noexcept {
+  return {.weight = weight * part.weight,
+          .u = part.mean,
+          .w = ParamVector::Zero(dim_),
+          .uu = part.covariance,
+          .uw = ParamMatrix::Zero(dim_, dim_),
+          .ww = FirstVelocity(law)};
+}
+
+void Drift::AddNewcomers(double elapsed_s) noexcept {
+  const double switched = -std::expm1(-kSwitching * elapsed_s);
+  const double from_rest = switched * (1.0 - hypotheses_[0].prior);
+  const Moments rest = MomentsOf(predicted_, Part::kRest);
+  const Moments drift = MomentsOf(predicted_, Part::kDrift);
+  for (std::size_t i = 0; i < predicted_.size(); ++i)
+    predicted_[i].weight *= 1.0 - (IsOf(Part::kRest, i) ? from_rest : switched);
+  for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
+    const Hypothesis& law = hypotheses_[h];
+    // What rests and goes on resting has not begun anew.
+    if (h > 0 && rest.weight > 0.0) predicted_[h] = Newcomer(rest, switched * law.prior, law);
+    if (!(drift.weight > 0.0)) continue;
+    Filter turned = Newcomer(drift, switched * law.prior, law);
     Merge(&turned, &predicted_[h]);
   }
 }
 
-void Drift::AddFreshFilters(double share) noexcept {
-  const Moments all = MomentsOf(predicted_, Part::kWhole);
-  for (Filter& f : predicted_) f.weight *= 1.0 - share;
-  // Starts anywhere in the bank, with a rate from the law of the hypothesis.
-  for (std::size_t h = 0; h < kHypotheses; ++h) {
-    Filter fresh{.weight = share * hypotheses_[h].prior * all.weight,
-                 .u = all.mean,
-                 .w = ParamVector::Zero(dim_),
-                 .uu = all.covariance,
-                 .uw = ParamMatrix::Zero(dim_, dim_),
-                 .ww = ParamMatrix::Identity(dim_, dim_)};
-    fresh.ww *= hypotheses_[h].rate * hypotheses_[h].rate;
-    Merge(&fresh, &predicted_[h]);
-  }
+void Drift::TurnDrifts(double elapsed_s) noexcept {
+  const double switched = -std::expm1(-kSwitching * elapsed_s);
+  const Moments drift = MomentsOf(predicted_, Part::kDrift);
+  if (!(drift.weight > 0.0)) return;
+  for (std::size_t i = 0; i < predicted_.size(); ++i)
+    if (IsOf(Part::kDrift, i)) predicted_[i].weight *= 1.0 - switched;
+  const double any = 1.0 - hypotheses_[0].prior;
+  for (std::size_t h = 1; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h)
+    predicted_[h] = Newcomer(drift, switched * hypotheses_[h].prior / any, hypotheses_[h]);
 }
 
 void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
@@ -104,12 +150,13 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
   for (int i = 0; i < dim_; ++i)
     for (int j = 0; j <= i; ++j)
       f.uu(i, j) = f.uu(j, i) =
-          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j ? noise_u : 0.0);
+          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j && law.Moves(i) ? noise_u : 0.0);
   for (int i = 0; i < dim_; ++i)
-    for (int j = 0; j < dim_; ++j) f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j ? noise_uw : 0.0);
+    for (int j = 0; j < dim_; ++j)
+      f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j && law.Moves(i) ? noise_uw : 0.0);
   f.w *= phi;
   f.ww *= phi * phi;
-  for (int i = 0; i < dim_; ++i) f.ww(i, i) += noise_w;
+  for (int i = 0; i < dim_; ++i) f.ww(i, i) += law.Moves(i) ? noise_w : 0.0;
   for (int i = 0; i < dim_; ++i) {
     const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
     const double shrink = std::sqrt(kept);
@@ -122,25 +169,34 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
 
 void Drift::Predict(double elapsed_s) noexcept {
   predicted_ = bank_;
-  MergeOlderGenerations();
-  TurnVelocities(1.0 - std::exp(-kTurning * elapsed_s));
-  AddFreshFilters(1.0 - std::exp(-kSwitching * elapsed_s));
-  for (std::size_t i = 0; i < predicted_.size(); ++i)
-    if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
-      Propagate(hypotheses_[HypothesisOf(i)], elapsed_s, &predicted_[i]);
+  const double changes = std::fmin(std::ceil(kSwitching * elapsed_s), kMostSteps);
+  const int steps = std::max(static_cast<int>(changes), 1);
+  for (int step = 0; step < steps; ++step) {
+    MakeRoom();
+    if (step == 0) {
+      AddNewcomers(elapsed_s);
+    } else {
+      TurnDrifts(elapsed_s / steps);
+    }
+    for (std::size_t i = 0; i < predicted_.size(); ++i)
+      if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
+        Propagate(hypotheses_[HypothesisOf(i)], elapsed_s / steps, &predicted_[i]);
+  }
 }
 
 void Drift::ExpectDrift() noexcept {
   double total = 0.0;
   double drifts = 0.0;
-  rate_ = 0.0;
+  rate_.fill(0.0);
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
     total += predicted_[i].weight;
     if (IsOf(Part::kDrift, i)) drifts += predicted_[i].weight;
-    rate_ += predicted_[i].weight * hypotheses_[HypothesisOf(i)].rate;
+    const Hypothesis& law = hypotheses_[HypothesisOf(i)];
+    for (int d = 0; d < dim_; ++d)
+      rate_[static_cast<std::size_t>(d)] += law.Moves(d) ? predicted_[i].weight * law.rate : 0.0;
   }
   share_ = drifts / total;
-  rate_ /= total;
+  for (double& rate : rate_) rate /= total;
 }
 
 void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<double, kMaxParams>* ratio) noexcept {
@@ -150,11 +206,12 @@ void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<doub
   Predict(since);
   ExpectDrift();
   if (share_ < kNegligible) return;
+  const Moments then = MomentsOf(bank_, Part::kWhole);
   const Moments now = MomentsOf(predicted_, Part::kWhole);
   for (int d = 0; d < dim_; ++d) {
-    const double moved = now.mean[d] - last.mean[d];
+    const double moved = now.mean[d] - then.mean[d];
     (*ratio)[static_cast<std::size_t>(d)] =
-        std::sqrt(std::fmax((now.covariance(d, d) + moved * moved) / last.covariance(d, d), 1.0));
+        std::sqrt(std::fmax((now.covariance(d, d) + moved * moved) / then.covariance(d, d), 1.0));
   }
 }
 

@@ -104,6 +104,8 @@ void Estimator::Impl::PrepareMode(const DataPack& pack, const EffectPack& effect
   data->pack_share = static_cast<double>(data->num_samples) / pack.num_samples;
   data->time_s = pack.t_last_s;
   data->duration_s = pack.num_samples * pack.dt;
+  data->interval_s = pack.dt;
+  data->pack_samples = pack.num_samples;
   const double rho = settings.forgetting.rho;
   data->weighted = rho > 0.0;
   // Weights by the distance from the end of the pack, within the samples of the mode.

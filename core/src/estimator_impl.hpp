@@ -83,7 +83,8 @@ struct Estimator::Impl {
   OutputTrajectory trajectory;  ///< For a described plant whose prediction differs from the output of its laws.
   std::shared_ptr<SummaryWorkspace> summary;
   ModeData execute_data;
-  std::array<ThetaTile, kMaxModes> band_theta;  ///< Thinned chain of the last update of each mode.
+  /// Thinned chain of the last update of each mode: the effective parameters of that pack, which predict it.
+  std::array<ThetaTile, kMaxModes> band_theta;
   PredictionTile band_prediction;
   ThetaTile shown_theta;
   std::array<ModeEstimate, kMaxModes> last_estimates;

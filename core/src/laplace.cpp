@@ -159,7 +159,8 @@ LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const 
   const int np = space.num_parameters;
   SetAround(space, u, &scratch->theta);
   PredictAround(kernels, model, data, space, scratch);
-  LocalLikelihood local{ParamVector::Zero(np), ParamMatrix::Zero(np, np)};
+  LocalLikelihood local{ParamVector::Zero(np), ParamMatrix::Zero(np, np), ParamVector::Zero(np),
+                        ParamMatrix::Zero(np, np), ParamMatrix::Zero(np, np)};
   const double scale = std::exp(log_noise_scale);
   const double information = noise.information() / (scale * scale);
   ParamVector slope(np);
@@ -168,14 +169,22 @@ LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const 
     const double w = data.weight[in];
     const double e = (data.target[in] - scratch->prediction.value[in][0] - noise.settings().mean) * w;
     const double score = noise.SquareWeight(e, scale) * e;
+    const double lag = data.TimeToEnd(n);
     for (int d = 0; d < np; ++d) slope[d] = w * Slope(*scratch, in, d);
     for (int i = 0; i < np; ++i) {
       local.gradient[i] += slope[i] * score;
-      for (int j = 0; j <= i; ++j) local.information(i, j) += information * slope[i] * slope[j];
+      local.lagged_gradient[i] += lag * slope[i] * score;
+      for (int j = 0; j <= i; ++j) {
+        const double of_sample = information * slope[i] * slope[j];
+        local.information(i, j) += of_sample;
+        local.lagged_information(i, j) += lag * of_sample;
+        local.twice_lagged_information(i, j) += lag * lag * of_sample;
+      }
     }
   }
-  for (int i = 0; i < np; ++i)
-    for (int j = 0; j < i; ++j) local.information(j, i) = local.information(i, j);
+  for (ParamMatrix* m : {&local.information, &local.lagged_information, &local.twice_lagged_information})
+    for (int i = 0; i < np; ++i)
+      for (int j = 0; j < i; ++j) (*m)(j, i) = (*m)(i, j);
   return local;
 }
 

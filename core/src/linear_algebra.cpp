@@ -1,7 +1,9 @@
 #include "armcmc/linear_algebra.hpp"
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <cmath>
 
 namespace armcmc {
 
@@ -22,6 +24,33 @@ bool CholeskyFactor(const ParamMatrix& a, ParamMatrix* l) noexcept ARMCMC_NONBLO
   const Eigen::LLT<ParamMatrix> factor = a.llt();
   *l = factor.matrixL();
   return factor.info() == Eigen::Success && l->allFinite();
+}
+
+double MultiplyByQuadratic(const JointVector& gradient, const JointMatrix& information, JointVector* mean,
+                           JointMatrix* covariance) noexcept ARMCMC_NONBLOCKING {
+  // C <- C (1 + H C)^-1, which needs no inverse of C: a velocity may be known exactly.
+  JointMatrix spread = information.lazyProduct(*covariance);
+  spread.diagonal().array() += 1.0;
+  const Eigen::PartialPivLU<JointMatrix> factor(spread);
+  const JointVector pulled = information.lazyProduct(*mean);
+  const JointVector residual = gradient - pulled;
+  const JointVector step = factor.solve(residual);
+  const JointVector move = covariance->lazyProduct(step);
+  const double log_integral =
+      mean->dot(gradient) - 0.5 * mean->dot(pulled) + 0.5 * residual.dot(move) - 0.5 * std::log(factor.determinant());
+  *mean += move;
+  const JointMatrix inverse = factor.inverse();
+  *covariance = JointMatrix(covariance->lazyProduct(inverse));
+  *covariance = JointMatrix(0.5 * (*covariance + covariance->transpose()));
+  return log_integral;
+}
+
+double LogDeterminant(const JointMatrix& a) noexcept ARMCMC_NONBLOCKING {
+  const Eigen::LLT<JointMatrix> factor(a);
+  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
+  double log = 0.0;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) log += 2.0 * std::log(factor.matrixLLT()(i, i));
+  return log;
 }
 
 SymmetricFactor::SymmetricFactor(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING : factor_(a) {}

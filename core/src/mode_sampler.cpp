@@ -151,9 +151,11 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   const auto stream_of = [&](Purpose purpose) noexcept {
     return RandomStream(sampler_.seed, pack, mode * kNumPurposes + purpose);
   };
-  const PosteriorMemory& last = drift_.Carry(data, before);
-  drifted_.any = &last != &before;
-  if (drifted_.any) drifted_ = {true, data.time_s, before.mean, last.mean, before.covariance, last.covariance};
+  const PosteriorMemory& last = drift_.Carry(data, before, &ws->laplace);
+  const Drift::Expected* expected = drift_.expected();
+  drifted_.any = expected != nullptr;
+  if (drifted_.any)
+    drifted_ = {true, data.time_s, before.mean, expected->mean, before.covariance, expected->covariance};
   if (before.valid) transition_.Age(before, last);
   Mismatch mismatch;
   mismatch.zeta = HUGE_VAL;  // zeta^0: the first pack is a modification
@@ -265,6 +267,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
       .data = &data, .previous = &previous, .lambda = lambda, .first = pilot, .mass_first = 0.0, .mass_new = 1.0};
   unfinished_.calibrated = calibrated;
   SplitMassByPrior(ws, out);
+  FindEndOfPack(data, ws, out);
   out->known = informed;
   out->updated = true;
   // Each at its usual speed: a pack that was slow throughout does not affect the estimate for the next.
@@ -285,8 +288,10 @@ void ModeSampler::Remember(ClockRef clock, SamplerWorkspace* ws, PosteriorMemory
   }
   next->log_noise_scale = log_scale;
   transition_.Accept(*next, out->decision);
+  // The more probable posterior may be one that was the less probable one, or new.
+  const bool another = !unfinished_.split && unfinished_.lambda > 0.0 && unfinished_.mass_first < 0.5;
   drift_.Learn(*unfinished_.data, *next, unfinished_.part, unfinished_.split && next->num_blocks == 2,
-               out->p_changed > 0.5, &ws->laplace);
+               out->p_changed > 0.5 || another, &ws->laplace);
   if (!out->known) out->known = next->informed;  // if it is already, another thread may be reading the result
   remember_time_.Add(clock.Now() - start, out->draws);
 }

@@ -159,6 +159,33 @@ void ModeSampler::SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcep
   out->drift_rate = drift_.rate();
 }
 
+void ModeSampler::FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) noexcept {
+  const int first = unfinished_.first;
+  const int count = RoundUpToTile(out->draws - first);
+  const int dim = space_.num_parameters;
+  std::array<const double*, kMaxParams> rows{};
+  for (int d = 0; d < space_.dim; ++d) rows[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
+  const double* weight = out->weight + first;
+  std::array<double, 2 + kMaxParams> sums{};
+  kernels_.first_moments(space_.dim, rows.data(), weight, count, sums.data());
+  ParamVector mean(dim);
+  for (int d = 0; d < dim; ++d) mean[d] = sums[2 + static_cast<std::size_t>(d)] / sums[0];
+  if (out->decision == Decision::kModification) {
+    std::array<double, kMaxParams*(kMaxParams + 1) / 2> second{};
+    kernels_.second_moments(dim, rows.data(), weight, mean.data(), count, second.data());
+    ParamMatrix covariance(dim, dim);
+    for (int i = 0, k = 0; i < dim; ++i)
+      for (int j = 0; j <= i; ++j, ++k)
+        covariance(i, j) = covariance(j, i) = second[static_cast<std::size_t>(k)] / sums[0];
+    out->moves = drift_.FindEndAfterChange(mean, covariance, &out->end);
+    return;
+  }
+  double log_noise_scale = space_.log_noise_scale;
+  if (space_.samples_noise_scale())
+    log_noise_scale = space_.Theta(dim, sums[2 + static_cast<std::size_t>(dim)] / sums[0]);
+  out->moves = drift_.FindEnd(data, mean, log_noise_scale, out->p_drifted, &ws->laplace, &out->end);
+}
+
 void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {
   const bool use_previous = unfinished_.lambda > 0.0;
   const int first = unfinished_.first;

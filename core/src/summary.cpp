@@ -9,13 +9,24 @@
 namespace armcmc {
 namespace {
 
+/// Coordinate d of every candidate, at the end of the pack.
+void MoveAll(const simd::Kernels& kernels, const ModeDraws& draws, std::size_t d, double* u) noexcept {
+  const int whole = draws.draws / 8 * 8;  // the kernels take whole vectors
+  kernels.move_to_end(draws.end[d], draws.u[d], whole, u);
+  for (int k = whole; k < draws.draws; ++k) u[k] = draws.end[d](draws.u[d][k]);
+}
+
 /// Reported quantity r of every candidate; 0 for a candidate without weight: outside its bounds the quantity may be
 /// NaN, which a weight of 0 would not remove from a sum.
-void Reported(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
-              const ModeDraws& draws, int r, double* value) noexcept {
+void Reported(const simd::Kernels& kernels, const ModelInfo& info, const PlantConstants& constants,
+              const ParameterSpace& space, const ModeDraws& draws, int r, double* value) noexcept {
   const auto ir = static_cast<std::size_t>(r);
   if (info.IsReportedAsSampled(r)) {
     const double* u = draws.u[ir];
+    if (draws.moves) {
+      MoveAll(kernels, draws, ir, value);
+      u = value;
+    }
     for (int k = 0; k < draws.draws; ++k) value[k] = space.Theta(r, u[k]);
     return;
   }
@@ -23,7 +34,7 @@ void Reported(const ModelInfo& info, const PlantConstants& constants, const Para
     std::array<double, kMaxParams> theta{};
     std::array<double, kMaxReported> reported{};
     for (int d = 0; d < space.num_parameters; ++d)
-      theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
+      theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.AtEnd(d, k));
     if (info.described != nullptr) {
       const bool counts = draws.weight[k] > 0.0 || draws.visits[k] != 0;
       value[k] = counts ? info.described->Report(r, theta.data()) : 0.0;
@@ -50,7 +61,7 @@ std::array<double, kMaxReported> Slopes(const ModelInfo& info, const PlantConsta
   return slope;
 }
 
-/// Expected rates of the reported quantities if every standardised coordinate moves at the rate of the draws.
+/// Expected rates of the reported quantities if every standardised coordinate moves at its rate.
 void DriftRates(const ModelInfo& info, const PlantConstants& constants, const ParameterSpace& space,
                 const ModeDraws& draws, std::array<double, kMaxReported>* rate) noexcept {
   rate->fill(0.0);
@@ -59,7 +70,8 @@ void DriftRates(const ModelInfo& info, const PlantConstants& constants, const Pa
     theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.mode_u[static_cast<std::size_t>(d)]);
   for (int d = 0; d < space.num_parameters; ++d) {
     const std::array<double, kMaxReported> slope = Slopes(info, constants, space, theta, d);
-    for (std::size_t r = 0; r < kMaxReported; ++r) (*rate)[r] = std::hypot((*rate)[r], draws.drift_rate * slope[r]);
+    const double speed = draws.drift_rate[static_cast<std::size_t>(d)];
+    for (std::size_t r = 0; r < kMaxReported; ++r) (*rate)[r] = std::hypot((*rate)[r], speed * slope[r]);
   }
 }
 
@@ -227,7 +239,7 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
   const double total = draws.draws - draws.burn_in;
   std::array<double, kMaxParams> mode_theta{};
   for (int d = 0; d < space.num_parameters; ++d)
-    mode_theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.mode_u[static_cast<std::size_t>(d)]);
+    mode_theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.AtEnd(d, draws.mode_u[static_cast<std::size_t>(d)]));
   std::array<double, kMaxReported> mode{};
   static_assert(kMaxReported == kMaxParams);
   info.Report(mode_theta.data(), constants, mode.data());
@@ -243,7 +255,7 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
   double* visited_value = workspace->visited_value.data();
   for (int r = 0; r < info.num_reported; ++r) {
     MarginalSummary& m = estimate->marginal[static_cast<std::size_t>(r)];
-    Reported(info, constants, space, draws, r, value);
+    Reported(workspace->kernels, info, constants, space, draws, r, value);
     for (int j = 0; j < visited; ++j) visited_value[j] = value[workspace->visited[static_cast<std::size_t>(j)]];
     const MeanAndSd weighted = Moments(workspace->kernels, value, draws.weight, draws.draws, 1.0);
     m.ar_ap = weighted.mean;

@@ -113,7 +113,7 @@ std::string DecodeSnapshot(std::span<const std::byte> bytes, std::uint64_t ident
   }
   if (bytes.size() < sizeof header + sizeof(std::uint64_t)) return "is truncated";
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.version != kSnapshotVersion) {
+  if (header.version < kOldestSnapshotVersion || header.version > kSnapshotVersion) {
     return "has version " + std::to_string(header.version) +
            (header.version > kSnapshotVersion ? " of a newer program" : "") + ", expected " +
            std::to_string(kSnapshotVersion);

@@ -11,7 +11,7 @@ namespace armcmc::app {
 /// What an estimator has learnt, as it stands on the disk:
 ///
 ///   "ARMCMCSN"  8 bytes
-///   version     u32, kSnapshotVersion
+///   version     u32, kOldestSnapshotVersion .. kSnapshotVersion
 ///   identity    u64, armcmc::SnapshotIdentity() of the settings
 ///   seq         i64, pack after which the posterior was saved
 ///   utime       i64, us, CLOCK_REALTIME when it was saved
@@ -28,7 +28,9 @@ struct Snapshot {
   std::vector<std::byte> adjusted, executed;
 };
 
-inline constexpr std::uint32_t kSnapshotVersion = 3;
+inline constexpr std::uint32_t kSnapshotVersion = 4;
+/// Also read. Of a snapshot of version 3 the drift of the parameters is left out, and estimated anew.
+inline constexpr std::uint32_t kOldestSnapshotVersion = 3;
 
 [[nodiscard]] std::vector<std::byte> EncodeSnapshot(const Snapshot& snapshot);
 

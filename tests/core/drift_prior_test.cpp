@@ -34,6 +34,8 @@ class Bank {
     drift.Learn(data, posterior, Drift::Part::kRest, false, true, scratch_.get());
   }
 
+  const PosteriorMemory& Carry() { return drift.Carry(data, posterior, scratch_.get()); }
+
  private:
   EstimatorSettings settings_;
   ParameterSpace space_;
@@ -50,7 +52,7 @@ class Bank {
 TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
   Bank bank(0.3);
   bank.data.time_s = 2.0;
-  const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+  const PosteriorMemory& carried = bank.Carry();
   ASSERT_TRUE(bank.drift.Splits(carried));
   ASSERT_EQ(carried.num_blocks, 2);
   EXPECT_EQ(bank.drift.drifting_block(), 1);
@@ -58,10 +60,10 @@ TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
   EXPECT_NEAR(bank.drift.share(), 0.3, 1e-12);
   // Rest is as it was; drift as wide as the mean over its hypotheses of an integrated Ornstein-Uhlenbeck process.
   double grown = 0.0;
-  for (int h = 1; h < Drift::kHypotheses; ++h) {
-    const Drift::Hypothesis law = Drift::Of(h, 1.0);
+  for (int h = 1; h < Drift::NumHypotheses(3); ++h) {
+    const Drift::Hypothesis law = Drift::Of(h, 1.0, 3);
     const double t = law.persistence;
-    grown += law.prior * 2.0 * law.rate * law.rate * t * (2.0 - t * (1.0 - std::exp(-2.0 / t)));
+    if (law.Moves(0)) grown += law.prior * 2.0 * law.rate * law.rate * t * (2.0 - t * (1.0 - std::exp(-2.0 / t)));
   }
   const ParamMatrix rest = CovarianceOf(carried.block[0]), drift = CovarianceOf(carried.block[1]);
   for (int i = 0; i < 3; ++i)
@@ -75,7 +77,7 @@ TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
 TEST(DriftPrior, DensitiesAreThoseOfTheirDraws) {
   Bank bank(0.3);
   bank.data.time_s = 1.0;
-  const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+  const PosteriorMemory& carried = bank.Carry();
   ASSERT_EQ(carried.num_blocks, 2);
   test::Normal random(3);
   // E[g(u) / p(u)] = 1 of draws from p, for any density g inside it.
@@ -100,17 +102,17 @@ TEST(DriftPrior, DensitiesAreThoseOfTheirDraws) {
 TEST(DriftPrior, IsThePosteriorItselfWhereDriftIsImprobable) {
   Bank bank(0.5 * Drift::kNegligible);
   bank.data.time_s = 0.1;
-  EXPECT_EQ(&bank.drift.Carry(bank.data, bank.posterior), &bank.posterior);
+  EXPECT_EQ(&bank.Carry(), &bank.posterior);
   Bank never(0.0);
   never.data.time_s = 1e6;
-  EXPECT_EQ(&never.drift.Carry(never.data, never.posterior), &never.posterior);
+  EXPECT_EQ(&never.Carry(), &never.posterior);
 }
 
 TEST(DriftPrior, NeverGetsWiderThanTheInitialOne) {
   for (const double hours : {0.01, 1.0, 1e6}) {
     Bank bank(0.9);
     bank.data.time_s = 3600.0 * hours;
-    const PosteriorMemory& carried = bank.drift.Carry(bank.data, bank.posterior);
+    const PosteriorMemory& carried = bank.Carry();
     ASSERT_TRUE(bank.drift.Splits(carried));
     const ParamMatrix c = CovarianceOf(carried.block[static_cast<std::size_t>(bank.drift.drifting_block())]);
     for (int d = 0; d < 3; ++d) {

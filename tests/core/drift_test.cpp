@@ -91,6 +91,21 @@ TEST(Drift, IsFollowedAndItsRateLearnt) {
   EXPECT_LT(with, 0.5 * without);
 }
 
+TEST(Drift, OfOneParameterIsNotTakenForADriftOfAll) {
+  Contact contact({.k = kDrift.k, .b = 0.0, .p = 0.0});
+  const EstimatorSettings settings = Quick();
+  Rig rig(settings);
+  for (std::int64_t seq = 1; seq <= 120; ++seq) rig.Step(contact.Pack(seq));
+  const ModeEstimate& e = rig.estimate().modes[0];
+  EXPECT_GT(e.p_drifted, 0.98);
+  const auto rate = [&](std::size_t d) { return e.drift_rate[d] / settings.parameters[d].sd; };
+  EXPECT_LT(rate(1), 0.2 * rate(0));
+  EXPECT_LT(rate(2), 0.2 * rate(0));
+  const test::ContactTruth truth = contact.At(contact.End(120));
+  EXPECT_NEAR(e.marginal[0].ar_ap, truth.k, 3.0 * e.marginal[0].sd);
+  EXPECT_NEAR(e.marginal[1].ar_ap, truth.b, 3.0 * e.marginal[1].sd);
+}
+
 TEST(Drift, ThatStopsIsUnlearnt) {
   Contact contact(kDrift);
   contact.to_s = 4.0;
@@ -236,7 +251,7 @@ TEST(Drift, ARestartGoesOnToTheBitAndAnOlderSnapshotIsTaken) {
   executed.resize(whole.estimator.SaveExecuted(executed));
   ASSERT_TRUE(resumed.estimator.Restore(adjusted, executed));
   constexpr std::size_t kFilter = 1 + 2 * 3 + 3 * 9;  // numbers of three parameters
-  constexpr std::size_t kDriftBytes = 1 + (3 + Drift::kFilters * kFilter) * sizeof(double);
+  constexpr std::size_t kDriftBytes = 1 + (2 + Drift::kSlots * Drift::NumHypotheses(3) * kFilter) * sizeof(double);
   ASSERT_TRUE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes), executed));
   EXPECT_FALSE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes + 1), executed));
   ASSERT_TRUE(older.estimator.Restore(std::span(adjusted).first(adjusted.size() - kDriftBytes), executed));

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "armcmc/end_of_pack.hpp"
 #include "armcmc/rng.hpp"
 #include "core/kernel_sets.hpp"
 
@@ -41,6 +42,25 @@ TEST(RatioKernel, IsZeroWhereTheDivisorIsNotPositive) {
     std::vector<double> out(kCount);
     kernels->ratio(a.data(), b.data(), kCount, out.data());
     for (std::size_t k = 0; k < kCount; ++k) ASSERT_EQ(out[k], b[k] > 0.0 ? a[k] / b[k] : 0.0) << kernels->name << k;
+  }
+}
+
+TEST(MoveToEndKernel, IsThatOfOneDraw) {
+  std::vector<double> v = Normals(8);
+  v[7] = 9.0;
+  v[8] = -9.0;
+  EndOfPack::Quantiles effective{}, at_end{};
+  for (std::size_t k = 0; k < effective.size(); ++k) {
+    effective[k] = static_cast<double>(k) - 3.0;
+    at_end[k] = 0.3 + 0.1 * effective[k] + 0.02 * std::pow(effective[k], 3);
+  }
+  const EndOfPack end(effective, at_end, 0.01, -1.5, 1.7);
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    std::vector<double> u(kCount);
+    kernels->move_to_end(end, v.data(), kCount, u.data());
+    for (std::size_t k = 0; k < kCount; ++k) ASSERT_EQ(u[k], end(v[k])) << kernels->name << k;
+    EXPECT_EQ(u[7], 1.7) << kernels->name;
+    EXPECT_EQ(u[8], -1.5) << kernels->name;
   }
 }
 

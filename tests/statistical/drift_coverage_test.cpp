@@ -83,6 +83,22 @@ void Check(int seeds, bool impulsive) {
 
 TEST(DriftCoverage, IntervalsHoldParametersThatDrift) { Check(6, false); }
 
+TEST(DriftCoverage, IntervalsOfWhatRestsBesideADriftAreNotTooWide) {
+  const Truth k_alone = [](double t) {
+    test::ContactTruth truth = TruthAt(0.0);
+    truth.k = TruthAt(t).k;
+    return truth;
+  };
+  const Score score = ScoreOf(48, ForgettingSettings{}.drift_share, false, NoiseKind::kGaussian, k_alone);
+  for (const std::size_t d : {1U, 2U}) {
+    ::testing::Test::RecordProperty("in95_" + std::to_string(d), std::to_string(score.in95[d]));
+    ::testing::Test::RecordProperty("in50_" + std::to_string(d), std::to_string(score.in50[d]));
+    EXPECT_GT(score.in95[d], 0.90) << d;
+    EXPECT_GT(score.in50[d], 0.33) << d;
+    EXPECT_LT(score.in50[d], 0.65) << d;
+  }
+}
+
 TEST(DriftCoverage, IntervalsOfAPlantAtRestAreAsWithoutDrift) {
   // Spikes that the noise law does not have: in many packs something seems to have changed.
   const Truth at_rest = [](double) { return TruthAt(0.0); };

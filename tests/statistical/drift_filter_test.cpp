@@ -20,6 +20,7 @@ constexpr double kMean = 2.0, kSd = 1.0;  // of the prior of the parameter
 constexpr double kNoise = 0.3;
 constexpr double kDuration = 0.1;  // of a pack, s
 constexpr int kPacks = 160;
+constexpr int kHypotheses = Drift::NumHypotheses(1);
 
 /// y = a x.
 std::shared_ptr<const PlantProgram> Plant() {
@@ -33,37 +34,35 @@ std::shared_ptr<const PlantProgram> Plant() {
   return test::Program(plant);
 }
 
-/// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, when what drifts turned, and when
+/// What a pack says of a parameter that is a at its end and moves towards it at a constant speed: sums over the samples
+/// of x^2 and x y, times powers of the time to the end of the pack.
+struct Sums {
+  double xx = 0.0, xy = 0.0, xx_lag = 0.0, xy_lag = 0.0, xx_lag_lag = 0.0;
+};
+
+/// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, and when
 /// the parameter changed, (u, w) is Gaussian; of these histories, which grow in number with every pack, thousands are
-/// kept, the most probable ones.
+/// kept, the most probable ones, and the others of each law as one.
 class Histories {
  public:
   explicit Histories(double share) : share_(share) {
-    for (int h = 0; h < Drift::kHypotheses; ++h) noise_[static_cast<std::size_t>(h)] = Noise(Drift::Of(h, share));
+    for (int h = 0; h < kHypotheses; ++h) noise_[static_cast<std::size_t>(h)] = Noise(Drift::Of(h, share, 1));
   }
 
   /// @param persisted  Share of what did not change in the prior of the pack. 0: a modification.
-  /// @param xx, xy     Sums over the pack.
-  void Add(double persisted, double xx, double xy) {
+  void Add(double persisted, const Sums& sums) {
     std::vector<History> next;
     const double stays = std::exp(-Drift::kSwitching * kDuration);
-    const double straight = std::exp(-Drift::kTurning * kDuration);
     if (histories_.empty()) {
       // What begins with the first pack moves from then on.
-      for (int h = 0; h < Drift::kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
+      for (int h = 0; h < kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
     } else {
       for (const History& old : histories_) {
         std::vector<History> moved;
         History same = old;
         same.weight *= stays;
-        if (old.law > 0) {
-          History turned = Turn(same);
-          turned.weight *= 1.0 - straight;
-          same.weight *= straight;
-          moved.push_back(turned);
-        }
         moved.push_back(same);
-        for (int h = 0; h < Drift::kHypotheses; ++h) {
+        for (int h = 0; h < kHypotheses; ++h) {
           History begun = Begin(h, old);
           begun.weight *= 1.0 - stays;
           moved.push_back(begun);
@@ -83,26 +82,19 @@ class Histories {
     double top = -HUGE_VAL;
     std::vector<double> log_weight;
     for (History& h : next) {
-      // y = a x + e, a = kMean + kSd u: information and pull in u.
-      const double information = kSd * kSd * xx / (kNoise * kNoise);
-      const double pull = kSd * (xy - kMean * xx) / (kNoise * kNoise);
-      const double gain = 1.0 / (1.0 + h.uu * information);
-      const double residual = pull - information * h.u;
-      log_weight.push_back(std::log(h.weight) + 0.5 * std::log(gain) + pull * h.u - 0.5 * information * h.u * h.u +
-                           0.5 * gain * h.uu * residual * residual);
+      log_weight.push_back(std::log(h.weight) + Update(sums, &h));
       top = std::fmax(top, log_weight.back());
-      h.w += h.uw * gain * residual;
-      h.u += h.uu * gain * residual;
-      h.ww -= h.uw * h.uw * gain * information;
-      h.uw *= gain;
-      h.uu *= gain;
     }
     double sum = 0.0;
     for (std::size_t i = 0; i < next.size(); ++i) sum += next[i].weight = std::exp(log_weight[i] - top);
     for (History& h : next) h.weight /= sum;
     std::sort(next.begin(), next.end(), [](const History& a, const History& b) { return a.weight > b.weight; });
     constexpr std::size_t kMost = 4000;
-    if (next.size() > kMost) next.resize(kMost);
+    if (next.size() > kMost) {
+      const std::vector<History> rest(next.begin() + static_cast<std::ptrdiff_t>(kMost), next.end());
+      next.resize(kMost);
+      for (int h = 0; h < kHypotheses; ++h) Lump(rest, h, &next);
+    }
     histories_ = std::move(next);
   }
 
@@ -139,13 +131,68 @@ class Histories {
     double u, w, uu, uw, ww;
   };
 
+  /// y = (kMean + kSd (u - lag w)) x + e. @return Log evidence.
+  static double Update(const Sums& s, History* h) {
+    constexpr double kPrecision = 1.0 / (kNoise * kNoise);
+    // Gradient at u = w = 0, and the information: of u, of w, and of both.
+    const double g_u = kSd * (s.xy - kMean * s.xx) * kPrecision;
+    const double g_w = -kSd * (s.xy_lag - kMean * s.xx_lag) * kPrecision;
+    const double i_uu = kSd * kSd * s.xx * kPrecision;
+    const double i_uw = -kSd * kSd * s.xx_lag * kPrecision;
+    const double i_ww = kSd * kSd * s.xx_lag_lag * kPrecision;
+    const double at_prior =
+        g_u * h->u + g_w * h->w - 0.5 * (i_uu * h->u * h->u + 2.0 * i_uw * h->u * h->w + i_ww * h->w * h->w);
+    const double r_u = g_u - i_uu * h->u - i_uw * h->w;
+    const double r_w = g_w - i_uw * h->u - i_ww * h->w;
+    // C (1 + I C)^-1.
+    const double a = 1.0 + i_uu * h->uu + i_uw * h->uw;
+    const double b = i_uu * h->uw + i_uw * h->ww;
+    const double c = i_uw * h->uu + i_ww * h->uw;
+    const double d = 1.0 + i_uw * h->uw + i_ww * h->ww;
+    const double determinant = a * d - b * c;
+    const double uu = (h->uu * d - h->uw * c) / determinant;
+    const double uw = (h->uw * a - h->uu * b) / determinant;
+    const double ww = (h->ww * a - h->uw * b) / determinant;
+    h->uu = uu;
+    h->uw = uw;
+    h->ww = ww;
+    const double move_u = uu * r_u + uw * r_w;
+    const double move_w = uw * r_u + ww * r_w;
+    h->u += move_u;
+    h->w += move_w;
+    return at_prior + 0.5 * (r_u * move_u + r_w * move_w) - 0.5 * std::log(determinant);
+  }
+
+  /// One history with the moments of all those of one law.
+  static void Lump(const std::vector<History>& all, int law, std::vector<History>* to) {
+    History sum{};
+    sum.law = law;
+    for (const History& h : all) {
+      if (h.law != law) continue;
+      sum.weight += h.weight;
+      sum.u += h.weight * h.u;
+      sum.w += h.weight * h.w;
+    }
+    if (!(sum.weight > 0.0)) return;
+    sum.u /= sum.weight;
+    sum.w /= sum.weight;
+    for (const History& h : all) {
+      if (h.law != law) continue;
+      const double share = h.weight / sum.weight, u = h.u - sum.u, w = h.w - sum.w;
+      sum.uu += share * (h.uu + u * u);
+      sum.uw += share * (h.uw + u * w);
+      sum.ww += share * (h.ww + w * w);
+    }
+    to->push_back(sum);
+  }
+
   [[nodiscard]] History Begin(int h, History from) const {
-    from.weight *= Drift::Of(h, share_).prior;
+    from.weight *= Drift::Of(h, share_, 1).prior;
     from.law = h;
     return Turn(from);
   }
   [[nodiscard]] History Turn(History from) const {
-    const Drift::Hypothesis law = Drift::Of(from.law, share_);
+    const Drift::Hypothesis law = Drift::Of(from.law, share_, 1);
     from.w = from.uw = 0.0;
     from.ww = law.rate * law.rate;
     return from;
@@ -153,7 +200,7 @@ class Histories {
   [[nodiscard]] History Pass(History h) const {
     if (h.law == 0) return h;
     const Noise& noise = noise_[static_cast<std::size_t>(h.law)];
-    const double t = Drift::Of(h.law, share_).persistence;
+    const double t = Drift::Of(h.law, share_, 1).persistence;
     const double phi = std::exp(-kDuration / t), b = t * (1.0 - phi);
     h.uu += 2.0 * b * h.uw + b * b * h.ww + noise.uu;
     h.u += b * h.w;
@@ -180,7 +227,7 @@ class Histories {
     }
   };
 
-  std::array<Noise, Drift::kHypotheses> noise_;
+  std::array<Noise, kHypotheses> noise_;
   double share_;
   std::vector<History> histories_;
 };
@@ -197,20 +244,28 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
   double mean = 0.0, sd = 0.0, share = 0.0, worst_mean = 0.0, worst_sd = 0.0;
   int modifications = 0;
   for (std::int64_t seq = 1; seq <= kPacks; ++seq) {
-    double xx = 0.0, xy = 0.0;
     const DataPack pack = test::DescribedPack(*plant, seq, [&](double t) {
       // At rest, then a drift, which goes on through a jump, and stops.
       const double a = 1.2 + 0.15 * (std::clamp(t, 4.0, 12.0) - 4.0) - (t > 9.0 ? 2.0 : 0.0);
       test::PlantSample s;
       s.u[0] = 0.5 + 0.4 * std::sin(9.0 * t);
       s.y = a * s.u[0] + kNoise * normal();
-      xx += s.u[0] * s.u[0];
-      xy += s.u[0] * s.y;
       return s;
     });
+    Sums sums;
+    for (int n = 0; n < pack.num_samples; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      const double x = pack.u[i][0];
+      const double lag = seq == 1 ? 0.0 : (pack.num_samples - 1 - n) * pack.dt;  // nothing drifts before the first pack
+      sums.xx += x * x;
+      sums.xy += x * pack.y[i];
+      sums.xx_lag += lag * x * x;
+      sums.xy_lag += lag * x * pack.y[i];
+      sums.xx_lag_lag += lag * lag * x * x;
+    }
     const ModeEstimate& e = rig.Step(pack).modes[0];
     modifications += e.decision == Decision::kModification ? 1 : 0;
-    exact.Add(e.decision == Decision::kModification ? 0.0 : e.lambda, xx, xy);
+    exact.Add(e.decision == Decision::kModification ? 0.0 : e.lambda, sums);
     const double off = (e.marginal[0].ar_ap - exact.Mean()) / exact.Sd();
     const double wider = e.marginal[0].is_sd / exact.Sd() - 1.0;
     mean += off * off / kPacks;

@@ -15,7 +15,6 @@
 namespace armcmc::sbc_test {
 namespace {
 
-using test::MakeContactPack;
 using test::Motion;
 using test::Normal;
 
@@ -43,21 +42,21 @@ class Truth {
   }
   [[nodiscard]] const std::array<double, 3>& theta() const { return theta_; }
 
-  void Pass(double elapsed_s) {
+  /// Between two packs: what changes, begins or ends.
+  void Switch(double elapsed_s) {
     if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
     if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s)) Begin();
+  }
+  /// From one sample to the next: a small step of the speed's own process, within bounds.
+  void Step(double elapsed_s) {
     if (law_.rate == 0.0) return;
-    if (normal_->Uniform() > std::exp(-Drift::kTurning * elapsed_s)) Turn();
-    // Small steps of the speed's own process, within bounds.
-    constexpr int kSteps = 100;
-    const double step = elapsed_s / kSteps;
-    for (int k = 0; k < kSteps; ++k)
-      for (std::size_t d = 0; d < 3; ++d) {
-        const double kept = std::exp(-step / law_.persistence);
-        theta_[d] += step * speed_[d] * space_.scale[d];
-        theta_[d] = std::clamp(theta_[d], settings_.parameters[d].lower, settings_.parameters[d].upper);
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double kept = std::exp(-elapsed_s / law_.persistence);
+      theta_[d] += elapsed_s * speed_[d] * space_.scale[d];
+      theta_[d] = std::clamp(theta_[d], settings_.parameters[d].lower, settings_.parameters[d].upper);
+      if (law_.Moves(static_cast<Eigen::Index>(d)))
         speed_[d] = kept * speed_[d] + law_.rate * std::sqrt(1.0 - kept * kept) * (*normal_)();
-      }
+    }
   }
 
  private:
@@ -66,12 +65,14 @@ class Truth {
     const double share = settings_.forgetting.drift_share;
     double left = normal_->Uniform();
     int h = 0;
-    while (h + 1 < Drift::kHypotheses && left > Drift::Of(h, share).prior) left -= Drift::Of(h++, share).prior;
-    law_ = Drift::Of(h, share);
+    while (h + 1 < Drift::NumHypotheses(3) && left > Drift::Of(h, share, 3).prior)
+      left -= Drift::Of(h++, share, 3).prior;
+    law_ = Drift::Of(h, share, 3);
     Turn();
   }
   void Turn() {
-    for (double& v : speed_) v = law_.rate * (*normal_)();
+    for (std::size_t d = 0; d < 3; ++d)
+      speed_[d] = law_.Moves(static_cast<Eigen::Index>(d)) ? law_.rate * (*normal_)() : 0.0;
   }
 
   const EstimatorSettings& settings_;
@@ -84,7 +85,7 @@ class Truth {
 using Histogram = std::array<std::array<int, kBins>, 3>;
 
 /// Rank histograms of simulation-based calibration (Talts et al. 2018) over `simulations` sequences of `packs` packs.
-/// @param moves  The prior that parameters move by from pack to pack; null: they stay.
+/// @param moves  The prior that parameters move by, from sample to sample after the first pack; null: they stay.
 Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs, std::uint64_t seed,
                          const EstimatorSettings* moves = nullptr) {
   Histogram histogram{};
@@ -105,13 +106,17 @@ Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs,
     const Motion motion{0.6 + 0.6 * normal.Uniform(), 0.1 + 0.4 * normal.Uniform(), 1.0 + 6.0 * normal.Uniform(),
                         6.28 * normal.Uniform()};
     for (int k = 1; k <= packs; ++k) {  // pack numbers select the random numbers: every pack has its own
-      if (truth && k > 1) {
-        truth->Pass(test::kPackSamples * test::kSampleInterval);
-        theta = truth->theta();
-      }
-      estimator.Adjust(
-          MakeContactPack(sim * packs + k, motion, {theta[0], theta[1], theta[2]}, settings.noise[0].std, &normal), 0,
-          {}, result.get());
+      const bool drifts = truth && k > 1;
+      if (drifts) truth->Switch(test::kPackSamples * test::kSampleInterval);
+      const DataPack pack = test::FillContactPack(
+          sim * packs + k, [&](double t) { return motion.At(t); },
+          [&](double, const test::Place& at) {
+            if (drifts) truth->Step(test::kSampleInterval);
+            if (truth) theta = truth->theta();
+            return test::ContactTruth{theta[0], theta[1], theta[2]}.Force(at.x, at.v) +
+                   settings.noise[0].std * normal();
+          });
+      estimator.Adjust(pack, 0, {}, result.get());
     }
     const ModeDraws& draws = result->modes[0];
     const int first = draws.burn_in;
@@ -119,7 +124,8 @@ Histogram RankHistograms(EstimatorSettings settings, int simulations, int packs,
       int rank = 0;
       for (int i = 0; i < kRanks; ++i) {
         const int at = first + static_cast<int>((static_cast<long>(draws.draws - first) * i) / kRanks);
-        if (space.Theta(static_cast<int>(d), draws.u[d][draws.chain[at]]) < theta[d]) ++rank;
+        const int dim = static_cast<int>(d);
+        if (space.Theta(dim, draws.AtEnd(dim, draws.chain[at])) < theta[d]) ++rank;
       }
       ++histogram[d][static_cast<std::size_t>(rank * kBins / (kRanks + 1))];
     }

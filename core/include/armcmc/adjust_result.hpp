@@ -7,6 +7,7 @@
 
 #include "armcmc/data_pack.hpp"
 #include "armcmc/effects/effect_pack.hpp"
+#include "armcmc/end_of_pack.hpp"
 #include "armcmc/estimate.hpp"
 #include "armcmc/types.hpp"
 
@@ -27,10 +28,14 @@ struct ModeDraws {
          p_changed = 0.0;  ///< Chain; Kish's effective sample size; nats; probability.
   double p_drifted =
       0.0;  ///< Posterior probability that the parameters drift; 1 - p_changed - p_drifted: they are constant.
-  double drift_rate = 0.0;  ///< Expected before the pack, prior standard deviations per s.
+  std::array<double, kMaxParams> drift_rate{};  ///< Of each, expected before the pack, prior standard deviations per s.
   /// In a mode about which this pack carries no information: how many times wider each parameter's posterior has
   /// become since it was last updated, at least 1 (Drift::Widening).
   std::array<double, kMaxParams> widening{};
+  /// The draws `u` are of the effective parameters of the pack, and `mode_u` is their mode: where these move, those at
+  /// its end are AtEnd() (Drift).
+  bool moves = false;
+  std::array<EndOfPack, kMaxParams> end{};
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
   bool point_is_mode = false;               ///< mode_u is the point estimate after every decision (least squares).
@@ -40,6 +45,15 @@ struct ModeDraws {
   double* weight = nullptr;             ///< Importance weights, sum 1.
   std::int32_t* visits = nullptr;       ///< Iterations after burn_in that the chain spent at a candidate.
   std::int32_t* chain = nullptr;        ///< Candidate at each iteration of the chain.
+
+  /// Coordinate d of draw k at the end of the pack. @rt O(1).
+  [[nodiscard]] double AtEnd(int d, int k) const noexcept ARMCMC_NONBLOCKING {
+    return AtEnd(d, u[static_cast<std::size_t>(d)][k]);
+  }
+  /// The same of any effective coordinate.
+  [[nodiscard]] double AtEnd(int d, double effective) const noexcept ARMCMC_NONBLOCKING {
+    return moves ? end[static_cast<std::size_t>(d)](effective) : effective;
+  }
 };
 
 /// One result slot. Filled by Estimator::Adjust, read by Estimator::Execute; memory is fixed at construction.

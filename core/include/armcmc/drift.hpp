@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 
+#include "armcmc/end_of_pack.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
 #include "armcmc/nonblocking.hpp"
+#include "armcmc/normal_mixture.hpp"
 #include "armcmc/parameter_space.hpp"
 #include "armcmc/posterior_memory.hpp"
 
@@ -24,29 +26,54 @@ struct Kernels;
 ///
 ///   du/dt = w,   dw = -w / tau_h dt + s_h sqrt(2 / tau_h) dW,   w ~ N(0, s_h^2) in the long run
 ///
-/// s_h is the rate, in prior standard deviations per second, the same for all parameters. h = 0 is "rest", s = 0. The
-/// others (kDrifts) are random walks, with correlation times of some packs, and trends. Walks alone are not enough:
-/// they would learn a steady drift anew in every pack, lag behind it, and prefer the smallest steps along directions
-/// that the data do not determine, with intervals that miss the truth. Trends alone react late to changes of the
-/// velocity, and their intervals miss those. A correlation time in between, 1 s, suits neither case. What drifts can
-/// also turn: between two packs its velocity is drawn anew, ~ N(0, s_h^2), with probability 1 - e^{-kappa_t dt}.
+/// s_h is the rate, in prior standard deviations per second. h = 0 is "rest", s = 0. Under kTogether every parameter
+/// moves at the rate of the hypothesis; correlation times are short, for velocities that change, or long, for steady
+/// trends, whose intervals would otherwise be too wide. Under the others, one for each parameter of several, this
+/// parameter alone moves (kAlone): otherwise a drift of one would make the intervals of all of them wide. All of these
+/// are equally probable.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
-///   turns    each hypothesis that drifts gets a new member from all of its own, with a velocity of its own
-///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from the whole bank with a
-///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi))
-///   age      it takes several packs to tell a new member from the old ones. So each hypothesis has one filter per
-///            generation, merged into the next older one every kMergeAfter packs by matching moments. If merged at
-///            once, new members that the data refute would widen those that the data support
+///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from rest and from drift with a
+///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi)).
+///            A time in which several changes are expected (kappa dt > 1) passes in up to kMostSteps steps, between
+///            which one drift becomes another; what has drifted in it counts as drift
+///   merging  it takes several packs to tell a new member from the old ones, and if merged at once, members that the
+///            data refute would widen those that the data support. So each hypothesis has kSlots filters in the order
+///            in which they began. The two neighbours whose merging by moments loses least become one: by Runnalls'
+///            bound of the Kullback-Leibler divergence, (p + q) log|C| - p log|C_p| - q log|C_q| over 2 (Kullback-
+///            Leibler approach to Gaussian mixture reduction, IEEE Trans. Aerosp. Electron. Syst. 43, 2007)
 ///   bounds   if the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean are divided
 ///            by c: after a long time without information a drifting parameter returns to P_0
-///   pack     log L(u) = a' (u - m) - (u - m)' H (u - m) / 2 about the posterior mean m, H the Fisher information;
+///   motion   u is that at the end of the pack, and u - w s that s seconds before. For the sampler, the parameters of a
+///            pack are constant: it draws the effective ones, v = u - T w, of which the law with constant parameters
+///            gives, to first order, the likelihood of a pack in which they move (below)
+///   pack     log L(v) = a' (v - m) - (v - m)' H (v - m) / 2 about the posterior mean m, H the Fisher information;
 ///            pi_h times the evidence of that, with every filter updated by the same a, H, m
 ///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
 ///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
 ///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
 ///            information about it
+///
+/// Effective parameters. With the lagged sums of LocalLikelihood the log-likelihood in (v, w) is
+///
+///   a' (v - m) - (v - m)' H (v - m) / 2                                             the law with constant parameters
+///   + (T' a - b)' w - (v - m)' (H T - H_1) w - w' (T' H T - T' H_1 - H_1 T + H_2) w / 2
+///
+/// T = H^-1 H_1 makes the product of v and w vanish: the sums of the second line are what the pack tells of w whatever
+/// v is, and Carry() gives them to the filters. (A little of the prior's precision is added to H.) H_1 / H is the mean
+/// time from a sample to the end of the pack, and in directions that the pack hardly determines T w is many times that:
+/// what a constant law would find there is far from the parameters at any time of the pack. Without it the intervals of
+/// drifting parameters miss the truth. Posteriors that are stored, and the draws, are of effective parameters; the bank
+/// between packs and what is published (EndOfPack) are of those at the end of the pack. What rests has v = u.
+///
+/// Published are the draws, moved (EndOfPack) from the distribution that the expansion makes of the prior that was
+/// sampled to that of the bank at the end of the pack; for a linear law the bank itself. The bank knows more than this
+/// prior, in which rest and the drifts of several parameters are a Gaussian each: where one of several drifts alone,
+/// the others have a narrow distribution with wide tails.
+///
+/// While the memory is two posteriors, without and with a change, the bank is that of the more probable one. It starts
+/// again, with the rates that it knows, whenever the other one becomes that.
 ///
 /// A sampled posterior is stored as two densities, rest and drift, with each draw weighted by the probability that it
 /// came from that part; if one of them is improbable or has too few draws, a single density P is stored. Before the
@@ -67,33 +94,31 @@ class Drift {
   struct Law {
     double rate;         ///< s, prior standard deviations per s.
     double persistence;  ///< tau, s.
-    double share;        ///< Of the prior of drift.
   };
-  static constexpr std::array<Law, 9> kDrifts{{{0.03, 0.3, 0.05},
-                                               {0.1, 0.3, 0.05},
-                                               {0.3, 0.3, 0.05},
-                                               {1.0, 0.3, 0.05},
-                                               {0.003, 30.0, 0.16},
-                                               {0.01, 30.0, 0.16},
-                                               {0.03, 30.0, 0.16},
-                                               {0.1, 30.0, 0.16},
-                                               {0.3, 30.0, 0.16}}};
-  static constexpr double kSwitching = 0.01;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
-  static constexpr double kTurning = 0.04;     ///< kappa_t, 1/s: what drifts gets a new velocity, at the same rate.
-  static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
-  static constexpr int kHypotheses = 1 + static_cast<int>(kDrifts.size());
-  static constexpr std::array<int, 3> kMergeAfter{5, 15, 45};  ///< Packs; of the latest first.
-  static constexpr int kGenerations = 1 + static_cast<int>(kMergeAfter.size());
-  static constexpr int kFilters = kGenerations * kHypotheses;
+  static constexpr std::array<Law, 6> kTogether{
+      {{0.1, 30.0}, {0.3, 30.0}, {0.003, 200.0}, {0.01, 200.0}, {0.03, 200.0}, {0.1, 200.0}}};
+  static constexpr Law kAlone{0.03, 200.0};
+  static constexpr double kSwitching = 0.03;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
+  static constexpr double kNegligible = 0.01;  ///< Probability below which a part is left out of the prior of a pack.
+  static constexpr int kFirstAlone = 1 + static_cast<int>(kTogether.size());
+  static constexpr int kHypotheses = kFirstAlone + kMaxParams;  ///< At most.
+  static constexpr int kSlots = 6;                              ///< Filters of a hypothesis.
+  static constexpr int kFilters = kSlots * kHypotheses;
+  static constexpr int kMostSteps = 8;  ///< Of a time without data.
 
   /// Of what the bank holds.
   enum class Part : std::uint8_t { kWhole, kRest, kDrift };
 
+  /// Under which a plant with some number of parameters can be.
+  [[nodiscard]] static constexpr int NumHypotheses(int dim) noexcept { return kFirstAlone + (dim > 1 ? dim : 0); }
+
   struct Hypothesis {
-    double rate = 0.0, persistence = 1.0, prior = 1.0;
+    double rate = 0.0, persistence = 1.0, prior = 0.0;
+    int alone = -1;  ///< The parameter that moves; -1: all of them.
+    [[nodiscard]] bool Moves(Eigen::Index d) const noexcept { return alone < 0 || alone == d; }
   };
-  /// Hypothesis h where drift has the probability `share`.
-  [[nodiscard]] static Hypothesis Of(int h, double share) noexcept ARMCMC_NONBLOCKING;
+  /// Hypothesis h < NumHypotheses(dim) where drift has the probability `share`.
+  [[nodiscard]] static Hypothesis Of(int h, double share, int dim) noexcept ARMCMC_NONBLOCKING;
 
   /// @param share  Prior probability that the plant drifts, in [0, 1). 0: it rests, and Carry() changes nothing.
   Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise, double share);
@@ -107,15 +132,38 @@ class Drift {
                 std::array<double, kMaxParams>* ratio) noexcept ARMCMC_NONBLOCKING;
 
   /// What the posterior after the last pack has become by the time of this one.
-  /// @return `last`, or a memory of this object, valid until the next call.
-  /// @rt No heap, no lock, no throw. O(hypotheses dim^2 + dim^3).
-  const PosteriorMemory& Carry(const ModeData& data, const PosteriorMemory& last) noexcept ARMCMC_NONBLOCKING;
+  /// @return `last`, or a memory of this object, valid until the next call; of the effective parameters.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3), and a Laplace fit.
+  const PosteriorMemory& Carry(const ModeData& data, const PosteriorMemory& last,
+                               LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   /// Whether `memory` is one posterior at rest and drifting, and not two posteriors.
   [[nodiscard]] bool Splits(const PosteriorMemory& memory) const noexcept { return &memory == &carried_ && split_; }
   /// Of what is not split.
   [[nodiscard]] Part CarriedPart() const noexcept ARMCMC_NONBLOCKING;
+  /// Mean and covariance at the end of the pack of the last Carry(), as expected before it; null: as after the pack
+  /// before. Unlike what is carried on, they owe nothing to the pack.
+  struct Expected {
+    ParamVector mean;
+    ParamMatrix covariance;
+  };
+  [[nodiscard]] const Expected* expected() const noexcept { return moves_ ? &expected_ : nullptr; }
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
+
+  /// After Carry(): from the effective parameters of the pack to those at its end.
+  /// @param mean       Of the effective parameters.
+  /// @param p_drifted  Posterior probability that the parameters drift.
+  /// @param[out] end   Of each parameter.
+  /// @return false where nothing moves, and the rest is not set.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
+  bool FindEnd(const ModeData& data, const ParamVector& mean, double log_noise_scale, double p_drifted,
+               LaplaceScratch* scratch, std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING;
+
+  /// The same where the parameters did not come from where they were: with the velocities that were expected before the
+  /// pack, which Learn() then starts again with, too.
+  /// @param covariance  Of the effective parameters.
+  bool FindEndAfterChange(const ParamVector& mean, const ParamMatrix& covariance,
+                          std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING;
 
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
@@ -127,13 +175,13 @@ class Drift {
   void Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
              LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
 
-  /// As of the last Carry(): probability of drift before the pack, and the expected rate, prior standard deviations per
-  /// second.
+  /// As of the last Carry(): probability of drift before the pack, and the expected rate of each parameter, prior
+  /// standard deviations per second.
   [[nodiscard]] double share() const noexcept { return share_; }
-  [[nodiscard]] double rate() const noexcept { return rate_; }
+  [[nodiscard]] const std::array<double, kMaxParams>& rate() const noexcept { return rate_; }
 
   void Forget() noexcept ARMCMC_NONBLOCKING;
-  /// For Restore(), which is bit-identical.
+  /// For Restore(), which is bit-identical; a bank of version 0.1.0, of other hypotheses, is passed over.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
@@ -144,7 +192,7 @@ class Drift {
     ParamVector u, w;
     ParamMatrix uu, uw, ww;
   };
-  /// Generation by generation, the latest first: in each a filter of every hypothesis.
+  /// Slot by slot, in each a filter of every hypothesis; of one hypothesis the one that began last is the first.
   using Bank = std::array<Filter, kFilters>;
   struct Moments {
     double weight = 0.0;
@@ -156,17 +204,39 @@ class Drift {
   [[nodiscard]] static bool IsOf(Part part, std::size_t filter) noexcept {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
+  [[nodiscard]] bool Exists(std::size_t filter) const noexcept {
+    return HypothesisOf(filter) < static_cast<std::size_t>(NumHypotheses(dim_));
+  }
   [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
-  void MergeOlderGenerations() noexcept ARMCMC_NONBLOCKING;
-  /// @param share  Of each hypothesis that drifts.
-  void TurnVelocities(double share) noexcept ARMCMC_NONBLOCKING;
-  void AddFreshFilters(double share) noexcept ARMCMC_NONBLOCKING;
+  /// Half the log of the determinant of the covariance of u and of the velocities that the hypothesis has.
+  [[nodiscard]] double LogVolume(const Hypothesis& law, const Filter& filter) const noexcept ARMCMC_NONBLOCKING;
+  /// Empties the first slot of each hypothesis.
+  void MakeRoom() noexcept ARMCMC_NONBLOCKING;
+  /// Covariance of the velocity that a hypothesis begins with.
+  [[nodiscard]] ParamMatrix FirstVelocity(const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Filter Newcomer(const Moments& part, double weight,
+                                const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
+  /// What begins, ends or becomes another drift within a time, in the first slots.
+  void AddNewcomers(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  /// What drifts and becomes another drift.
+  void TurnDrifts(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
   void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
-  /// Probability of drift in `predicted_`, and its expected rate.
+  /// v = u.
+  void StandStill() noexcept ARMCMC_NONBLOCKING;
+  /// `predicted_` from (u, w) to (v, w), with what the pack tells of w.
+  void ToEffective(const ModeData& data, const PosteriorMemory& last,
+                   LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// @param mode  m of the expansion. @param lead  T.
+  /// @return false, with nothing changed, where a filter would be no Gaussian.
+  bool MoveToEffective(const LocalLikelihood& local, const ParamVector& mode,
+                       const ParamMatrix& lead) noexcept ARMCMC_NONBLOCKING;
+  /// `bank_` from (v, w) to (u, w).
+  void FromEffective() noexcept ARMCMC_NONBLOCKING;
+  /// Probability of drift in `predicted_`, and its expected rates.
   void ExpectDrift() noexcept ARMCMC_NONBLOCKING;
   void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
   /// A sampled density of a part of the bank.
@@ -181,6 +251,11 @@ class Drift {
   /// Updates the filters of a part and makes `weight` the sum of theirs.
   /// @return false when some number is not finite.
   bool Update(const Sampled& sampled, Part part, double weight) noexcept ARMCMC_NONBLOCKING;
+  /// Of a part, what the expanded likelihood makes of the prior that was sampled: a Gaussian, or the bank itself.
+  [[nodiscard]] Moments ByExpansion(const Sampled& sampled) const noexcept ARMCMC_NONBLOCKING;
+  using Mixture = NormalMixture<kFilters>;
+  /// Marginal d of the filters of a part.
+  static void AddFilters(const Bank& bank, Part part, int d, Mixture* to) noexcept ARMCMC_NONBLOCKING;
   /// Moves and stretches the filters of the sampled part to where it was sampled.
   bool Recentre(const Sampled& sampled) noexcept ARMCMC_NONBLOCKING;
   /// Block `to` of what is carried on: a block of `last`, moved and stretched as from `from` to a part of the bank.
@@ -199,12 +274,19 @@ class Drift {
   bool enabled_;
   bool started_ = false;
   double time_s_ = 0.0;     ///< Of the pack that `bank_` has learnt from.
-  std::int64_t packs_ = 0;  ///< That it has learnt from.
+  double elapsed_s_ = 0.0;  ///< From that one to the next.
   Bank bank_;               ///< After that pack.
   Bank predicted_;          ///< Before the next one.
-  double share_ = 0.0, rate_ = 0.0;
+  Bank work_;               ///< Scratch.
+  Expected expected_;
+  bool moves_ = false;
+  ParamMatrix lead_;    ///< T of that pack, s.
+  bool leads_ = false;  ///< It is not zero.
+  double share_ = 0.0;
+  std::array<double, kMaxParams> rate_{};
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
   bool both_ = false;          ///< Its second block is the other part.
+  bool separate_ = false;      ///< Its blocks are two posteriors, without and with a change.
   bool split_ = false;
   bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;

@@ -26,10 +26,18 @@ struct LaplaceScratch {
 
 /// The log-likelihood of a pack about u, as far as the parameters go (the noise scale stays where it is):
 ///
-///   log L(v) = log L(u) + gradient' (v - u) - (v - u)' information (v - u) / 2
+///   log L(v) = log L(u) + a' (v - u) - (v - u)' H (v - u) / 2
+///
+/// and where the parameters are v at the end of the pack and have moved towards it at a velocity w,
+///
+///   log L(v, w) = log L(v) - b' w + (v - u)' H_1 w - w' H_2 w / 2
 struct LocalLikelihood {
-  ParamVector gradient;     ///< [num_parameters]
-  ParamMatrix information;  ///< Fisher's, which unlike the curvature does not depend on the noise of the pack.
+  ParamVector gradient;     ///< a [num_parameters]
+  ParamMatrix information;  ///< H, Fisher's, which unlike the curvature does not depend on the noise of the pack.
+  // The same sums with the time in s from each sample to the end of the pack as a factor, and with its square.
+  ParamVector lagged_gradient;           ///< b
+  ParamMatrix lagged_information;        ///< H_1
+  ParamMatrix twice_lagged_information;  ///< H_2
 };
 /// @param u  [num_parameters] @rt No heap, no lock, no throw. One batch.
 [[nodiscard]] LocalLikelihood ExpandLikelihood(const simd::Kernels& kernels, int model, const ModeData& data,

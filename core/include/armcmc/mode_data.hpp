@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "armcmc/nonblocking.hpp"
 #include "armcmc/types.hpp"
 
 namespace armcmc {
@@ -27,6 +28,8 @@ struct alignas(64) ModeData {
   double pack_share = 1.0;                       ///< num_samples over the samples of the whole pack, in (0, 1].
   double time_s = 0.0;                           ///< Plant time of the last sample of the whole pack.
   double duration_s = 0.0;                       ///< Duration of the whole pack, s.
+  double interval_s = 0.0;                       ///< Between two samples of the whole pack.
+  int pack_samples = 0;                          ///< Of the whole pack.
   std::array<double, kMaxPackSamples> target{};  ///< What the model predicts, unit of the regression target.
   std::array<double, kMaxPackSamples> weight{};  ///< exp(-rho (N_s - n)), in (0, 1].
   std::array<std::array<double, kMaxPackSamples>, kMaxFeatures> feature{};  ///< Meaning fixed by the model.
@@ -45,7 +48,12 @@ struct alignas(64) ModeData {
   const StateRun* states = nullptr;  ///< Trajectories over the pack; null: the plant has no states.
   const StartFit* start_fit =
       nullptr;  ///< Removes from the errors what an uncertain start can explain; null: the start is certain.
-  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Index in the pack; for `compiled` and `tape`.
+  std::array<std::int16_t, kMaxPackSamples> sample{};  ///< Index in the pack.
+
+  /// From sample n to the end of the pack, s.
+  [[nodiscard]] double TimeToEnd(int n) const noexcept ARMCMC_NONBLOCKING {
+    return interval_s * (pack_samples - 1 - sample[static_cast<std::size_t>(n)]);
+  }
 };
 
 /// Predictions of kTileLanes candidates: value[n][lane].

@@ -232,6 +232,8 @@ class ModeSampler {
                 ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
   void SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+  /// Where the draws are of effective parameters: what those at the end of the pack are (ModeDraws::moves).
+  void FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   /// Gives a block of the parameters the noise scale of the draws [first, first + count): a t law with a standard
   /// deviation of log s of at least kNoiseMemory, so that a level six standard deviations away is not considered

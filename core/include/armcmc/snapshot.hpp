@@ -88,13 +88,15 @@ class SnapshotReader {
     Require(value >= least && value <= most);
     return good_ ? value : least;
   }
-  /// Next bool; any byte but 0 and 1 is an error. @return false on error. @rt As Integer().
-  [[nodiscard]] bool Flag() noexcept ARMCMC_NONBLOCKING {
+  /// Next byte. @param most  Largest allowed. @return 0 if it is larger or missing. @rt As Integer().
+  [[nodiscard]] std::uint8_t Byte(std::uint8_t most) noexcept ARMCMC_NONBLOCKING {
     std::uint8_t value = 0;
     Take(&value, 1);
-    Require(value <= 1);
-    return good_ && value == 1;
+    Require(value <= most);
+    return good_ ? value : std::uint8_t{0};
   }
+  /// Next bool; any byte but 0 and 1 is an error. @return false on error. @rt As Integer().
+  [[nodiscard]] bool Flag() noexcept ARMCMC_NONBLOCKING { return Byte(1) == 1; }
   /// Next `count` doubles, all of which must be finite. On error all are set to 0.
   /// @param values  Receives them.
   /// @param count   Number of doubles, as it was written.

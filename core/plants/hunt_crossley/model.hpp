@@ -54,6 +54,7 @@ struct HuntCrossley {
       data->feature[0][im] = x > 0.0 ? std::fmax(std::log2(x), kLog2OfZero) : kLog2OfZero;
       data->feature[1][im] = pack.u[in][1];
       data->target[im] = pack.y[in];
+      data->sample[im] = static_cast<std::int16_t>(n);
     }
     data->num_samples = m;
   }

@@ -67,6 +67,7 @@ struct SoftActuator {
       const auto& u = pack.u[static_cast<std::size_t>(n)];
       const auto im = static_cast<std::size_t>(m++);
       data->target[im] = u[static_cast<std::size_t>(mode)] * Head(u[2], mode, constants);
+      data->sample[im] = static_cast<std::int16_t>(n);
       data->feature[0][im] = u[3];
       data->feature[1][im] = u[3] * (u[2] - constants.p_atm);
     }

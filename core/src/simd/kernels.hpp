@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "armcmc/density_block.hpp"
+#include "armcmc/end_of_pack.hpp"
 #include "armcmc/expression/operation.hpp"
 #include "armcmc/mode_data.hpp"
 #include "armcmc/noise_model.hpp"
@@ -169,6 +170,9 @@ struct Kernels {
 
   /// out[k] = a[k] / b[k]; 0 where b[k] is not positive. count a multiple of 8.
   void (*ratio)(const double* a, const double* b, int count, double* out) noexcept ARMCMC_NONBLOCKING;
+
+  /// u[k] = end(v[k]), to the last bit. count a multiple of 8.
+  void (*move_to_end)(const EndOfPack& end, const double* v, int count, double* u) noexcept ARMCMC_NONBLOCKING;
 
   /// Number of k with choice[k] < limit, and of those with inside[k] > 0 too. count a multiple of 8.
   struct Chosen {

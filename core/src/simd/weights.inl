@@ -80,6 +80,26 @@ void Ratio(const double* a, const double* b, int count, double* out) noexcept AR
   }
 }
 
+void MoveToEnd(const EndOfPack& end, const double* v, int count, double* u) noexcept ARMCMC_NONBLOCKING {
+  const EndOfPack::Line& line = end.line();
+  V knot[EndOfPack::kBends];
+  V bend[EndOfPack::kBends];
+  for (std::size_t j = 0; j < EndOfPack::kBends; ++j) {
+    knot[j] = Simd::Set(line.at[j]);
+    bend[j] = Simd::Set(line.bend[j]);
+  }
+  const V constant = Simd::Set(line.constant);
+  const V slope = Simd::Set(line.slope);
+  const V lower = Simd::Set(line.lower);
+  const V upper = Simd::Set(line.upper);
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    const V at = Simd::Load(v + k);
+    V sum = constant + slope * at;
+    for (std::size_t j = 0; j < EndOfPack::kBends; ++j) sum += bend[j] * Simd::Max(at, knot[j]);
+    Simd::Store(u + k, Simd::Min(Simd::Max(sum, lower), upper));
+  }
+}
+
 double Reweigh(const QuadraticControl& control, const double* const* u, const double* g, int count,
                double* weight) noexcept ARMCMC_NONBLOCKING {
   Sums<1> sum;

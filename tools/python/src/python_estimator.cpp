@@ -132,8 +132,7 @@ DrawTable PythonEstimator::Draws(int mode) {
   for (int k = 0; k < draws.draws; ++k) {
     if (!(draws.weight[k] > 0.0)) continue;
     std::array<double, kMaxParams> theta{};
-    for (int d = 0; d < space.dim; ++d)
-      theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.u[static_cast<std::size_t>(d)][k]);
+    for (int d = 0; d < space.dim; ++d) theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.AtEnd(d, k));
     std::array<double, kMaxReported> reported{};
     info.Report(theta.data(), settings().constants, reported.data());
     for (int d = 0; d < info.num_parameters; ++d)

@@ -18,7 +18,7 @@ void Intervals(const ModeDraws& draws, const ParameterSpace& space, std::size_t 
   double total = 0.0;
   for (int k = 0; k < draws.draws; ++k) {
     if (draws.visits[k] == 0) continue;
-    values.emplace_back(space.Theta(static_cast<int>(d), draws.u[d][k]), draws.visits[k]);
+    values.emplace_back(space.Theta(static_cast<int>(d), draws.AtEnd(static_cast<int>(d), k)), draws.visits[k]);
     total += draws.visits[k];
   }
   std::sort(values.begin(), values.end());
