@@ -70,10 +70,11 @@ bool AdjustStage::Step(int waiting) noexcept {
   const Nanos end_ns = MonotonicNow();
   info.times.end_ns[IndexOf(Stage::kAdjust)] = end_ns;
   info.times.withheld_before_ns[IndexOf(Stage::kAdjust)] = cpu_time_.withheld_before_ns();
-  info.times.withheld_ns[IndexOf(Stage::kAdjust)] = cpu_time_.End(end_ns);
+  const Nanos withheld_ns = cpu_time_.End(end_ns);
+  info.times.withheld_ns[IndexOf(Stage::kAdjust)] = withheld_ns;
   monitor_->RecordAdjusted(&info.times);
   ring_->Pop();
-  typical_.Add(end_ns - start_ns);
+  typical_.Add(end_ns - start_ns - withheld_ns);
   NoteStatus(info);
   handed_over_ = info.times;
   if (results_->latest.Publish()) {

@@ -52,7 +52,8 @@ TEST(StolenCpu, WhatIsTakenInShortSlicesIsNotOurOwn) {
   test::Peer peer(bus.url());
   const Nanos end_ns = MonotonicNow() + 2 * kNanosPerSecond;
   std::thread thief([&] { TakeInSlices(adjust.cpu, end_ns); });
-  Nanos due_ns = MonotonicNow();
+  // The first pack comes when the thief is at work: nothing is known yet of how long a step takes.
+  Nanos due_ns = MonotonicNow() + 5 * kNanosPerMilli;
   for (std::int64_t seq = 1; due_ns < end_ns; ++seq, due_ns += settings.period_ns) {
     SleepUntil(due_ns);
     peer.Publish("PLANT_PACK", test::Encode(test::ValidPack(seq)));
@@ -63,8 +64,9 @@ TEST(StolenCpu, WhatIsTakenInShortSlicesIsNotOurOwn) {
   const std::int64_t of_machine = pipeline.lane().monitor().misses(MissCause::kMachine);
   const std::int64_t own = pipeline.lane().monitor().misses(MissCause::kOwn);
   EXPECT_GE(of_machine, 4) << own << " own";
-  // Without the CPU time of the stages more than half of them are taken for our own.
-  EXPECT_LE(10 * own, of_machine);
+  // Without the CPU time of the stages more than half of them are taken for our own; two, if what was taken from the
+  // first step counts as the time that a step usually needs.
+  EXPECT_LE(20 * own, of_machine);
 }
 
 }  // namespace

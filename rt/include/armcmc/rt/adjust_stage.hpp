@@ -102,7 +102,7 @@ class AdjustStage {
   DeadlineMonitor* monitor_;
   Counters* counters_;
   EventLog* events_;
-  RecentMinimum typical_;
+  RecentMinimum typical_;  // ns that a step needs, without what the machine withheld
   CpuTimeMeter cpu_time_;
   StepTimes handed_over_;  // of the newest result
 };
