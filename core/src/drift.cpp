@@ -38,13 +38,22 @@ bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noex
 }  // namespace
 
 Drift::Hypothesis Drift::Of(int h, double share, int dim) noexcept {
-  if (h == 0) return {.rate = 0.0, .persistence = 1.0, .prior = 1.0 - share};
-  const bool alone = h >= kFirstAlone;
-  const Law& law = alone ? kAlone : kTogether[static_cast<std::size_t>(h - 1)];
-  return {.rate = law.rate,
-          .persistence = law.persistence,
-          .prior = share / (NumHypotheses(dim) - 1),
-          .alone = alone ? h - kFirstAlone : -1};
+  const int num_drifts = NumHypotheses(dim) - 1;
+  const auto rate_of = [](int i) noexcept {
+    return i == 0 ? 0.0 : i < kFirstAlone ? kTogether[static_cast<std::size_t>(i - 1)].rate : kAlone.rate;
+  };
+  const auto ending_of = [&](int i) noexcept { return std::fmax(kSwitching, rate_of(i)); };
+  double lasting = 0.0;
+  for (int i = 1; i <= num_drifts; ++i) lasting += 1.0 / ending_of(i);
+  const auto prior_of = [&](int i) noexcept { return i == 0 ? 1.0 - share : share / (lasting * ending_of(i)); };
+  double ended = 0.0;
+  for (int i = 0; i <= num_drifts; ++i) ended += ending_of(i) * prior_of(i);
+  Hypothesis law{.rate = rate_of(h), .prior = prior_of(h), .ending = ending_of(h)};
+  law.entry = law.ending * law.prior / ended;
+  if (h > 0)
+    law.persistence = h < kFirstAlone ? kTogether[static_cast<std::size_t>(h - 1)].persistence : kAlone.persistence;
+  if (h >= kFirstAlone) law.alone = h - kFirstAlone;
+  return law;
 }
 
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,

@@ -108,32 +108,42 @@ Drift::Filter Drift::Newcomer(const Moments& part, double weight, const Hypothes
           .ww = FirstVelocity(law)};
 }
 
-void Drift::AddNewcomers(double elapsed_s) noexcept {
-  const double switched = -std::expm1(-kSwitching * elapsed_s);
-  const double from_rest = switched * (1.0 - hypotheses_[0].prior);
-  const Moments rest = MomentsOf(predicted_, Part::kRest);
-  const Moments drift = MomentsOf(predicted_, Part::kDrift);
+double Drift::Hypothesis::Ends(double elapsed_s) const noexcept { return -std::expm1(-ending * elapsed_s); }
+
+Drift::Moments Drift::EndDrifts(double elapsed_s) noexcept {
+  std::array<double, kFilters> weight{};
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    weight[i] = predicted_[i].weight;
+    if (weight[i] > 0.0) predicted_[i].weight *= hypotheses_[HypothesisOf(i)].Ends(elapsed_s);
+  }
+  const Moments ended = MomentsOf(predicted_, Part::kDrift);
   for (std::size_t i = 0; i < predicted_.size(); ++i)
-    predicted_[i].weight *= 1.0 - (IsOf(Part::kRest, i) ? from_rest : switched);
+    predicted_[i].weight = IsOf(Part::kRest, i) ? weight[i] : weight[i] - predicted_[i].weight;
+  return ended;
+}
+
+void Drift::AddNewcomers(double elapsed_s) noexcept {
+  const double begins = hypotheses_[0].Ends(elapsed_s);
+  const Moments rest = MomentsOf(predicted_, Part::kRest);
+  const Moments ended = EndDrifts(elapsed_s);
+  // What rests and goes on resting has not begun anew.
+  for (std::size_t i = 0; i < predicted_.size(); ++i)
+    if (IsOf(Part::kRest, i)) predicted_[i].weight *= 1.0 - begins * (1.0 - hypotheses_[0].entry);
   for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
     const Hypothesis& law = hypotheses_[h];
-    // What rests and goes on resting has not begun anew.
-    if (h > 0 && rest.weight > 0.0) predicted_[h] = Newcomer(rest, switched * law.prior, law);
-    if (!(drift.weight > 0.0)) continue;
-    Filter turned = Newcomer(drift, switched * law.prior, law);
+    if (h > 0 && rest.weight > 0.0) predicted_[h] = Newcomer(rest, begins * law.entry, law);
+    if (!(ended.weight > 0.0)) continue;
+    Filter turned = Newcomer(ended, law.entry, law);
     Merge(&turned, &predicted_[h]);
   }
 }
 
 void Drift::TurnDrifts(double elapsed_s) noexcept {
-  const double switched = -std::expm1(-kSwitching * elapsed_s);
-  const Moments drift = MomentsOf(predicted_, Part::kDrift);
-  if (!(drift.weight > 0.0)) return;
-  for (std::size_t i = 0; i < predicted_.size(); ++i)
-    if (IsOf(Part::kDrift, i)) predicted_[i].weight *= 1.0 - switched;
-  const double any = 1.0 - hypotheses_[0].prior;
+  const Moments ended = EndDrifts(elapsed_s);
+  if (!(ended.weight > 0.0)) return;
+  const double any = 1.0 - hypotheses_[0].entry;
   for (std::size_t h = 1; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h)
-    predicted_[h] = Newcomer(drift, switched * hypotheses_[h].prior / any, hypotheses_[h]);
+    predicted_[h] = Newcomer(ended, hypotheses_[h].entry / any, hypotheses_[h]);
 }
 
 void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {

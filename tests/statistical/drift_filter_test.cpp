@@ -52,19 +52,20 @@ class Histories {
   /// @param persisted  Share of what did not change in the prior of the pack. 0: a modification.
   void Add(double persisted, const Sums& sums) {
     std::vector<History> next;
-    const double stays = std::exp(-Drift::kSwitching * kDuration);
     if (histories_.empty()) {
       // What begins with the first pack moves from then on.
-      for (int h = 0; h < kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
+      for (int h = 0; h < kHypotheses; ++h)
+        next.push_back(Begin(h, {Drift::Of(h, share_, 1).prior, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
     } else {
       for (const History& old : histories_) {
         std::vector<History> moved;
+        const double stays = std::exp(-Drift::Of(old.law, share_, 1).ending * kDuration);
         History same = old;
         same.weight *= stays;
         moved.push_back(same);
         for (int h = 0; h < kHypotheses; ++h) {
           History begun = Begin(h, old);
-          begun.weight *= 1.0 - stays;
+          begun.weight *= (1.0 - stays) * Drift::Of(h, share_, 1).entry;
           moved.push_back(begun);
         }
         for (const History& m : moved) {
@@ -187,7 +188,6 @@ class Histories {
   }
 
   [[nodiscard]] History Begin(int h, History from) const {
-    from.weight *= Drift::Of(h, share_, 1).prior;
     from.law = h;
     return Turn(from);
   }

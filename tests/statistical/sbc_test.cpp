@@ -38,14 +38,14 @@ class Truth {
   Truth(const EstimatorSettings& settings, const ParameterSpace& space, Normal* normal)
       : settings_(settings), space_(space), normal_(normal) {
     Draw();
-    Begin();
+    Begin(&Drift::Hypothesis::prior);
   }
   [[nodiscard]] const std::array<double, 3>& theta() const { return theta_; }
 
   /// Between two packs: what changes, begins or ends.
   void Switch(double elapsed_s) {
     if (normal_->Uniform() > settings_.forgetting.lambda_max) Draw();
-    if (normal_->Uniform() > std::exp(-Drift::kSwitching * elapsed_s)) Begin();
+    if (normal_->Uniform() > std::exp(-law_.ending * elapsed_s)) Begin(&Drift::Hypothesis::entry);
   }
   /// From one sample to the next: a small step of the speed's own process, within bounds.
   void Step(double elapsed_s) {
@@ -61,12 +61,13 @@ class Truth {
 
  private:
   void Draw() { theta_ = DrawTruth(settings_, normal_); }
-  void Begin() {
+  /// @param probability  Of each hypothesis.
+  void Begin(double Drift::Hypothesis::*probability) {
     const double share = settings_.forgetting.drift_share;
     double left = normal_->Uniform();
     int h = 0;
-    while (h + 1 < Drift::NumHypotheses(3) && left > Drift::Of(h, share, 3).prior)
-      left -= Drift::Of(h++, share, 3).prior;
+    while (h + 1 < Drift::NumHypotheses(3) && left > Drift::Of(h, share, 3).*probability)
+      left -= Drift::Of(h++, share, 3).*probability;
     law_ = Drift::Of(h, share, 3);
     Turn();
   }

@@ -34,8 +34,10 @@ struct Kernels;
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
-///   time     pi_h <- e^{-kappa dt} pi_h + (1 - e^{-kappa dt}) pi_h^0, new members from rest and from drift with a
-///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi)).
+///   time     a hypothesis ends with e^{-kappa_h dt}, and what ended becomes h with a probability ~ kappa_h pi_h^0, in
+///            which pi^0 is stationary: new members from rest and from drift, with a velocity of their own. Then
+///            u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi)). A drift ends when it has gone
+///            about a prior standard deviation, or before: kappa_h = max(kappa, s_h).
 ///            A time in which several changes are expected (kappa dt > 1) passes in up to kMostSteps steps, between
 ///            which one drift becomes another; what has drifted in it counts as drift
 ///   merging  it takes several packs to tell a new member from the old ones, and if merged at once, members that the
@@ -113,8 +115,12 @@ class Drift {
   [[nodiscard]] static constexpr int NumHypotheses(int dim) noexcept { return kFirstAlone + (dim > 1 ? dim : 0); }
 
   struct Hypothesis {
-    double rate = 0.0, persistence = 1.0, prior = 0.0;
-    int alone = -1;  ///< The parameter that moves; -1: all of them.
+    double rate = 0.0, persistence = 1.0, prior = 0.0;  ///< s_h, tau_h, pi_h^0.
+    double ending = 0.0;                                ///< kappa_h, 1/s.
+    double entry = 0.0;                                 ///< Probability that what ended becomes this one.
+    int alone = -1;                                     ///< The parameter that moves; -1: all of them.
+    /// Probability that it ends within a time.
+    [[nodiscard]] double Ends(double elapsed_s) const noexcept ARMCMC_NONBLOCKING;
     [[nodiscard]] bool Moves(Eigen::Index d) const noexcept { return alone < 0 || alone == d; }
   };
   /// Hypothesis h < NumHypotheses(dim) where drift has the probability `share`.
@@ -218,6 +224,8 @@ class Drift {
   [[nodiscard]] ParamMatrix FirstVelocity(const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Filter Newcomer(const Moments& part, double weight,
                                 const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
+  /// Takes out of the drifts in `predicted_` what ends within a time. @return what that was.
+  [[nodiscard]] Moments EndDrifts(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// What begins, ends or becomes another drift within a time, in the first slots.
   void AddNewcomers(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// What drifts and becomes another drift.
