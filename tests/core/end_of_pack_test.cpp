@@ -82,7 +82,8 @@ TEST(EndOfPack, TurnsOneDistributionIntoTheOther) {
   const std::array<Law, 2> at_end{{{0.7, 1.5, 0.05}, {0.3, 1.4, 0.2}}};
   const EndOfPack end(QuantilesOf(Of(effective)), QuantilesOf(Of(at_end)), 0.0, -100.0, 100.0);
   double before = -HUGE_VAL;
-  for (double z = -4.0; z <= 4.0; z += 0.125) {
+  for (int eighths = -32; eighths <= 32; ++eighths) {
+    const double z = 0.125 * eighths;
     const double v = 1.0 + 0.2 * z;
     EXPECT_GT(end(v), before);
     before = end(v);

@@ -20,7 +20,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 
 TEST(Differences, EveryKindOfSettingIsSeenAndEqualOnesAreNot) {
   const EstimatorSettings a = FastSettings();
