@@ -49,11 +49,11 @@ template <std::size_t kSize, class Place>
     const double* row = data.scalars->Row(data.sample[n]);
     double* const result = place(n);
     if (tape.shape == expression::TapeShape::kLinear) {
-      constexpr std::size_t kVectors = TapeGroup<kSize>::kVectors;
-      for (std::size_t lane = 0; lane < kSize; lane += kVectors * Simd::kLanes) {
-        Simd::V sum[kVectors];
-        TapeSumOf<kVectors>(tape.rest, row, registers.value[0].data() + lane, kSize, sum);
-        for (std::size_t v = 0; v < kVectors; ++v) Simd::Store(result + lane + v * Simd::kLanes, sum[v]);
+      constexpr std::size_t kGroup = TapeGroup<kSize>::kVectors;
+      for (std::size_t lane = 0; lane < kSize; lane += kGroup * Simd::kLanes) {
+        Simd::V sum[kGroup];
+        TapeSumOf<kGroup>(tape.rest, row, registers.value[0].data() + lane, kSize, sum);
+        for (std::size_t v = 0; v < kGroup; ++v) Simd::Store(result + lane + v * Simd::kLanes, sum[v]);
       }
       return;
     }
