@@ -32,8 +32,20 @@ void WriteGoldenLog(const std::string& name, const std::filesystem::path& path) 
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
+class ReleasedLogs : public CsvExport {
+ protected:
+  /// The table of a log that holds messages of this channel alone.
+  Rows OnlyTable(const std::string& golden_log, const std::string& channel) {
+    WriteGoldenLog(golden_log, request_.log);
+    const ExportSummary summary = Export();
+    EXPECT_EQ(summary.tables.size(), 1u);
+    EXPECT_TRUE(summary.foreign.empty());
+    return Table(channel);
+  }
+};
+
 // These bytes were written by the first version.
-TEST_F(CsvExport, ALogOfTheFirstReleasedTypesStaysReadable) {
+TEST_F(ReleasedLogs, ALogOfTheFirstReleasedTypesStaysReadable) {
   WriteGoldenLog("golden_log.txt", request_.log);
   const ExportSummary summary = Export();
   EXPECT_EQ(summary.tables.size(), 5u);
@@ -55,12 +67,8 @@ TEST_F(CsvExport, ALogOfTheFirstReleasedTypesStaysReadable) {
   EXPECT_NEAR(Number(statuses[0].at("t [s]")), 0.0501, 1e-9);
 }
 
-TEST_F(CsvExport, PacksOfADescribedPlantNameTheirColumnsAndStayReadable) {
-  WriteGoldenLog("golden_described_log.txt", request_.log);
-  const ExportSummary summary = Export();
-  EXPECT_EQ(summary.tables.size(), 1u);
-  EXPECT_TRUE(summary.foreign.empty());
-  const Rows packs = Table("PLANT_PACK_V2");
+TEST_F(ReleasedLogs, PacksOfADescribedPlantNameTheirColumnsAndStayReadable) {
+  const Rows packs = OnlyTable("golden_described_log.txt", "PLANT_PACK_V2");
   ASSERT_EQ(packs.size(), 3u);
   EXPECT_EQ(packs[2].at("F [N]"), "3.5");
   EXPECT_EQ(packs[2].at("q [m]"), "1");
@@ -68,12 +76,8 @@ TEST_F(CsvExport, PacksOfADescribedPlantNameTheirColumnsAndStayReadable) {
   EXPECT_EQ(packs[2].at("seq"), "1");
 }
 
-TEST_F(CsvExport, WhatIsBelievedAboutChangeStaysReadable) {
-  WriteGoldenLog("golden_change_log.txt", request_.log);
-  const ExportSummary summary = Export();
-  EXPECT_EQ(summary.tables.size(), 1u);
-  EXPECT_TRUE(summary.foreign.empty());
-  const Rows rows = Table("EST_CHANGE");
+TEST_F(ReleasedLogs, WhatIsBelievedAboutChangeStaysReadable) {
+  const Rows rows = OnlyTable("golden_change_log.txt", "EST_CHANGE");
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].at("p_persisted.contact"), "0.25");
   EXPECT_EQ(rows[0].at("p_drifted.contact"), "0.625");
