@@ -239,7 +239,7 @@ void Summarise(const ModelInfo& info, const PlantConstants& constants, const Par
   const double total = draws.draws - draws.burn_in;
   std::array<double, kMaxParams> mode_theta{};
   for (int d = 0; d < space.num_parameters; ++d)
-    mode_theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.AtEnd(d, draws.mode_u[static_cast<std::size_t>(d)]));
+    mode_theta[static_cast<std::size_t>(d)] = space.Theta(d, draws.ToEnd(d, draws.mode_u[static_cast<std::size_t>(d)]));
   std::array<double, kMaxReported> mode{};
   static_assert(kMaxReported == kMaxParams);
   info.Report(mode_theta.data(), constants, mode.data());

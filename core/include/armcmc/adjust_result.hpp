@@ -48,10 +48,10 @@ struct ModeDraws {
 
   /// Coordinate d of draw k at the end of the pack. @rt O(1).
   [[nodiscard]] double AtEnd(int d, int k) const noexcept ARMCMC_NONBLOCKING {
-    return AtEnd(d, u[static_cast<std::size_t>(d)][k]);
+    return ToEnd(d, u[static_cast<std::size_t>(d)][k]);
   }
   /// The same of any effective coordinate.
-  [[nodiscard]] double AtEnd(int d, double effective) const noexcept ARMCMC_NONBLOCKING {
+  [[nodiscard]] double ToEnd(int d, double effective) const noexcept ARMCMC_NONBLOCKING {
     return moves ? end[static_cast<std::size_t>(d)](effective) : effective;
   }
 };

@@ -160,6 +160,17 @@ class Draws(InScratch):
             # Control variates take sampling error out of the published one.
             self.assertLess(abs(value - q.mean), 5.0 * q.sd / np.sqrt(estimate.modes[0].kish_ess), name)
 
+    def test_are_of_the_end_of_a_pack_in_which_parameters_move(self):
+        e = armcmc.Estimator("hunt_crossley", sampler={"seed": 2})
+        t, u, y = contact(6000)
+        y = y + u[:, 0] ** 1.7 * 0.3 * t  # K grows by 0.3 N/m^p per second
+        for pack in np.split(np.arange(6000), 60):
+            estimate = e.step(u[pack], y[pack], DT)
+        self.assertGreater(estimate.modes[0].p_drifted, 0.9)
+        samples, weights = e.draws()
+        k = estimate["K"]
+        self.assertLess(abs(float(weights @ samples[:, 0]) - k.mean), 5.0 * k.sd / np.sqrt(estimate.modes[0].kish_ess))
+
     def test_are_in_the_units_of_the_parameters(self):
         e = armcmc.Estimator(self.file("growth.toml", GROWTH), sampler={"seed": 2})
         x = np.linspace(0.1, 1.0, 200)
