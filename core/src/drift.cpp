@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "armcmc/density_fit.hpp"
 #include "armcmc/linear_algebra.hpp"
+#include "armcmc/prefetch.hpp"
 #include "simd/kernels.hpp"
 
 namespace armcmc {
@@ -48,7 +50,7 @@ Drift::Hypothesis Drift::Of(int h, double share, int dim) noexcept {
 }
 
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
-             double share)
+             double share, std::shared_ptr<Scratch> scratch)
     : kernels_(kernels),
       model_(model),
       space_(space),
@@ -56,8 +58,19 @@ Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& spac
       normal_table_(MarginalTable::Normal()),
       dim_(space.num_parameters),
       enabled_(share > 0.0),
+      scratch_(std::move(scratch)),
+      predicted_(scratch_->predicted_),
+      work_(scratch_->work_),
       lead_(ParamMatrix::Zero(dim_, dim_)) {
   for (int h = 0; h < NumHypotheses(dim_); ++h) hypotheses_[static_cast<std::size_t>(h)] = Of(h, share, dim_);
+}
+
+std::shared_ptr<Drift::Scratch> Drift::MakeScratch() { return std::make_shared<Scratch>(); }
+
+void Drift::Prefetch() const noexcept {
+  if (!started_) return;
+  for (std::size_t i = 0; i < bank_.size(); ++i)
+    if (Exists(i)) armcmc::Prefetch(&bank_[i], sizeof bank_[i]);
 }
 
 void Drift::Forget() noexcept {
@@ -329,6 +342,12 @@ bool Drift::Recentre(const Sampled& sampled) noexcept {
 void Drift::Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
                   LaplaceScratch* scratch) noexcept {
   if (!enabled_ || !next.valid || !next.informed) return;
+  UpdateBank(data, next, part, both, renewed, scratch);
+  MakeRoom(&bank_);  // now: the next pack waits for Carry(), but not for this
+}
+
+void Drift::UpdateBank(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
+                       LaplaceScratch* scratch) noexcept {
   time_s_ = data.time_s;
   fitted_ = part;
   both_ = false;

@@ -65,10 +65,10 @@ double Drift::LogVolume(const Hypothesis& law, const Filter& f) const noexcept {
   return 0.5 * LogDeterminant(joint);
 }
 
-void Drift::MakeRoom() noexcept {
+void Drift::MakeRoom(Bank* bank) const noexcept {
   for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
-    const auto slot = [this, h](std::size_t k) noexcept ARMCMC_NONBLOCKING -> Filter& {
-      return predicted_[k * kHypotheses + h];
+    const auto slot = [bank, h](std::size_t k) noexcept ARMCMC_NONBLOCKING -> Filter& {
+      return (*bank)[k * kHypotheses + h];
     };
     std::size_t free = 0;
     while (free < kSlots && slot(free).weight > 0.0) ++free;
@@ -172,7 +172,7 @@ void Drift::Predict(double elapsed_s) noexcept {
   const double changes = std::fmin(std::ceil(kSwitching * elapsed_s), kMostSteps);
   const int steps = std::max(static_cast<int>(changes), 1);
   for (int step = 0; step < steps; ++step) {
-    MakeRoom();
+    MakeRoom(&predicted_);
     if (step == 0) {
       AddNewcomers(elapsed_s);
     } else {

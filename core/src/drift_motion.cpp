@@ -95,6 +95,7 @@ bool Drift::MoveToEffective(const LocalLikelihood& local, const ParamVector& mod
 }
 
 void Drift::FromEffective() noexcept {
+  if (!leads_) return;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
     Filter& f = bank_[i];
     if (IsOf(Part::kRest, i) || !(f.weight > 0.0)) continue;

@@ -53,6 +53,7 @@ Estimator::Impl::Impl(const EstimatorSettings& s, const Impl* lender)
                     : nullptr),
       output_watch(MakeOutputWatch(settings, info, predictor.get())) {
   dim = info.num_parameters;
+  drift_scratch = lender != nullptr ? lender->drift_scratch : Drift::MakeScratch();
   int num_linear = 0;
   samplers.reserve(static_cast<std::size_t>(info.num_modes));
   for (int m = 0; m < info.num_modes; ++m) {
@@ -60,7 +61,8 @@ Estimator::Impl::Impl(const EstimatorSettings& s, const Impl* lender)
     const ParameterSpace space(composition.sampled(), noise);
     dim = std::max(dim, space.dim);
     samplers.emplace_back(std::make_unique<ModeSampler>(kernels, model, settings.sampler, settings.forgetting, space,
-                                                        NoiseModel(noise), info.linear[static_cast<std::size_t>(m)]));
+                                                        NoiseModel(noise), info.linear[static_cast<std::size_t>(m)],
+                                                        drift_scratch));
     num_linear = std::max(num_linear, info.linear[static_cast<std::size_t>(m)].num_linear);
     memories.emplace_back(std::make_unique<ModeMemory>());
     if (settings.method != Method::kArmcmc)
@@ -159,13 +161,14 @@ Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clo
     return Status::kBadPack;
   }
 
+  std::array<ModeData, kMaxModes>& data = s.workspace->data;
   int pending = 0;
   std::array<bool, kMaxModes> active{};
   for (int m = 0; m < s.info.num_modes; ++m) {
     const auto i = static_cast<std::size_t>(m);
-    s.PrepareMode(pack, result->effects, m, &s.adjust_data[i]);
-    result->modes[i].num_samples = s.adjust_data[i].num_samples;
-    active[i] = s.adjust_data[i].num_samples >= s.settings.forgetting.min_samples;
+    s.PrepareMode(pack, result->effects, m, &data[i]);
+    result->modes[i].num_samples = data[i].num_samples;
+    active[i] = data[i].num_samples >= s.settings.forgetting.min_samples;
     if (!s.samplers.empty()) s.Wait(i, active[i]);
     result->modes[i].widening = s.widening[i];
     pending += active[i] ? 1 : 0;
@@ -200,12 +203,20 @@ Status Estimator::Draw(const DataPack& new_pack, Nanos deadline_ns, ClockRef clo
 
 void Estimator::Remember(ClockRef clock) noexcept { impl_->Remember(clock); }
 
+void Estimator::Prefetch() const noexcept {
+  for (std::size_t m = 0; m < impl_->samplers.size(); ++m) {
+    const ModeMemory& memory = *impl_->memories[m];
+    memory.slot[memory.current].Prefetch();
+    impl_->samplers[m]->drift().Prefetch();
+  }
+}
+
 void Estimator::Impl::Wait(std::size_t m, bool acts) noexcept {
   const ModeMemory& memory = *memories[m];
   if (acts)
     widening[m].fill(1.0);
   else
-    samplers[m]->drift().Widening(adjust_data[m].time_s, memory.slot[memory.current], &widening[m]);
+    samplers[m]->drift().Widening(workspace->data[m].time_s, memory.slot[memory.current], &widening[m]);
 }
 
 Status Estimator::Impl::DrawMode(std::size_t m, std::uint64_t pack, Nanos deadline_ns, ClockRef clock, int limit,
@@ -213,10 +224,10 @@ Status Estimator::Impl::DrawMode(std::size_t m, std::uint64_t pack, Nanos deadli
   ModeDraws* draws = &result->modes[m];
   if (!filters.empty()) {
     if (!acted[m]) filters[m]->Resume();
-    return filters[m]->Run(adjust_data[m], pack, m, deadline_ns, clock, limit, draws);
+    return filters[m]->Run(workspace->data[m], pack, m, deadline_ns, clock, limit, draws);
   }
   const ModeMemory& memory = *memories[m];
-  const Status status = samplers[m]->Run(adjust_data[m], memory.slot[memory.current], pack, m, deadline_ns, clock,
+  const Status status = samplers[m]->Run(workspace->data[m], memory.slot[memory.current], pack, m, deadline_ns, clock,
                                          limit, workspace.get(), draws);
   if (status != Status::kNonFinite) {
     not_remembered = draws;
@@ -238,7 +249,7 @@ void Estimator::Impl::Remember(ClockRef clock) noexcept {
 void Estimator::Impl::ExpectStates(AdjustResult* result) noexcept {
   if (state_filter.empty()) return;
   states_due = result;
-  ModeData* data = adjust_data.data();
+  ModeData* data = workspace->data.data();
   state_filter.ForgetOpenStarts();
   state_filter.Predict(kernels, state_mean, state_noise, data);
   if (data->num_samples == 0) return;
@@ -294,7 +305,7 @@ void Estimator::Impl::CarryStates() noexcept {
     }
   }
   std::array<double, kMaxStates> end{};
-  state_filter.Update(kernels, state_mean, state_sd, state_noise, adjust_data[0], &end);
+  state_filter.Update(kernels, state_mean, state_sd, state_noise, workspace->data[0], &end);
   composition.CarryStates(end);
   states_due = nullptr;
 }

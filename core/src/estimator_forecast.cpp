@@ -70,7 +70,7 @@ void Estimator::Forecast(const AdjustResult& result, PackForecast* forecast) noe
     const ModeSampler::Drifted& drifted = s.samplers[i]->drifted();
     if (drifted.any && drifted.at_s == data.time_s) MoveWithDrift(drifted, s.samplers[i]->space(), &theta);
     s.kernels.predict(s.model, data, theta, &s.band_prediction);
-    const StartFit* start = s.state_filter.empty() ? nullptr : s.adjust_data[i].start_fit;
+    const StartFit* start = s.state_filter.empty() ? nullptr : s.workspace->data[i].start_fit;
     const double noise = s.last_estimates[i].noise_std;
     for (std::size_t k = 0; k < static_cast<std::size_t>(data.num_samples); ++k) {
       const auto n = static_cast<std::size_t>(data.sample[k]);

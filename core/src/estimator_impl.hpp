@@ -65,12 +65,12 @@ struct Estimator::Impl {
   // Adjust stage.
   std::vector<std::unique_ptr<PackFilter>> filters;  ///< Empty unless a baseline.
   std::array<bool, kMaxModes> acted{};               ///< Active in the previous pack.
+  std::shared_ptr<Drift::Scratch> drift_scratch;
   std::vector<std::unique_ptr<ModeSampler>> samplers;
   std::vector<std::unique_ptr<ModeMemory>> memories;
   std::shared_ptr<SamplerWorkspace> workspace;
   ModeDraws* not_remembered = nullptr;  ///< Draws for which Remember() is pending.
   std::size_t not_remembered_mode = 0;
-  std::array<ModeData, kMaxModes> adjust_data;
   /// Widening of the published posterior of each mode, as of the newest usable pack.
   std::array<std::array<double, kMaxParams>, kMaxModes> widening{};
   AdjustResult* states_due = nullptr;  ///< Pack whose final states are not yet computed.

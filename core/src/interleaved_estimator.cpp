@@ -21,10 +21,14 @@ Status InterleavedEstimator::Draw(const DataPack& pack, Nanos deadline_ns, Clock
   Estimator& estimator = Of(pack.seq);
   if (drawn_ != &estimator) drawn_->Remember(clock);  // its draws are in the shared scratch
   drawn_ = &estimator;
+  seq_ = pack.seq;
   return estimator.Draw(pack, deadline_ns, clock, result, limits);
 }
 
-void InterleavedEstimator::Remember(ClockRef clock) noexcept { drawn_->Remember(clock); }
+void InterleavedEstimator::Remember(ClockRef clock) noexcept {
+  drawn_->Remember(clock);
+  if (overlap() > 1) Of(seq_ + 1).Prefetch();  // nobody waits now, and its turn is next
+}
 
 Status InterleavedEstimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                                     const DrawLimits& limits) noexcept {

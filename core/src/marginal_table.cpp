@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "armcmc/prefetch.hpp"
 #include "armcmc/snapshot.hpp"
 
 namespace armcmc {
@@ -23,8 +24,9 @@ MarginalTable Tabulate(double half_width, F density) {
 
 }  // namespace
 
-MarginalTable MarginalTable::Normal() {
-  return Tabulate(6.0, [](double x) { return std::exp(-0.5 * x * x); });
+const MarginalTable& MarginalTable::Normal() {
+  static const MarginalTable table = Tabulate(6.0, [](double x) { return std::exp(-0.5 * x * x); });
+  return table;
 }
 
 MarginalTable MarginalTable::StudentT(double dof) {
@@ -68,6 +70,13 @@ void MarginalTable::Index(const double* cdf) noexcept {
     std::fill(guide_.begin() + from, guide_.begin() + to, static_cast<std::uint16_t>(i));
     from = to;
   }
+}
+
+void MarginalTable::Prefetch() const noexcept {
+  const auto nodes = static_cast<std::size_t>(num_nodes_);
+  armcmc::Prefetch(pdf_.data(), nodes * sizeof(double));
+  armcmc::Prefetch(intervals_.data(), nodes * sizeof(Interval));
+  armcmc::Prefetch(guide_.data(), sizeof guide_);
 }
 
 void MarginalTable::Save(SnapshotWriter* out) const noexcept {

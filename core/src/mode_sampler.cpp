@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "armcmc/density_fit.hpp"
 #include "armcmc/sample_size.hpp"
@@ -20,6 +21,12 @@ enum Purpose : std::uint64_t {
   kStartStream = 3,
   kNumPurposes = 4
 };
+
+/// One for all samplers: where several take turns, it stays in the cache.
+const MarginalTable& StudentTable() {
+  static const MarginalTable table = MarginalTable::StudentT(ModeSampler::kStudentDof);
+  return table;
+}
 
 }  // namespace
 
@@ -44,7 +51,7 @@ std::array<double*, kMaxParams + 2> SamplerWorkspace::StraightRows() noexcept {
 
 ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
                          const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise,
-                         const LinearPart& linear)
+                         const LinearPart& linear, std::shared_ptr<Drift::Scratch> drift_scratch)
     : kernels_(kernels),
       model_(model),
       sampler_(sampler),
@@ -53,9 +60,9 @@ ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerS
       noise_(noise),
       quadratic_(kernels_, model_, space_, noise_, sampler.use_linearity ? linear : LinearPart{}),
       normal_table_(MarginalTable::Normal()),
-      student_table_(MarginalTable::StudentT(kStudentDof)),
+      student_table_(StudentTable()),
       transition_(kernels_, model_, space_, noise_, &normal_table_, forgetting.partial_change),
-      drift_(kernels_, model_, space_, noise_, forgetting.drift_share) {
+      drift_(kernels_, model_, space_, noise_, forgetting.drift_share, std::move(drift_scratch)) {
   // P_0 as a proposal: axis aligned, each coordinate with its own law.
   std::array<const MarginalTable*, kMaxParams> laws{};
   for (int d = 0; d < space_.dim; ++d) {
@@ -107,16 +114,17 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
     // Second pass over the tile: running first and second moments about the reference in p.mean.
     for (int n = 0; n < data.num_samples; ++n) {
       const auto in = static_cast<std::size_t>(n);
-      double sum = 0.0;
-      double squares = 0.0;
+      std::array<double, 4> sum{};  // several sums, so that they are independent of each other
+      std::array<double, 4> squares{};
       const double reference = p.mean[in];
-      for (std::size_t l = 0; l < kTileLanes; ++l) {
-        const double d = ws->prediction.value[in][l] - reference;
-        sum += d;
-        squares += d * d;
-      }
-      ws->group_weight[in] = (first == 0 ? 0.0 : ws->group_weight[in]) + sum;
-      p.variance[in] += squares;
+      for (std::size_t l = 0; l < kTileLanes; l += 4)
+        for (std::size_t i = 0; i < 4; ++i) {
+          const double d = ws->prediction.value[in][l + i] - reference;
+          sum[i] += d;
+          squares[i] += d * d;
+        }
+      ws->group_weight[in] = (first == 0 ? 0.0 : ws->group_weight[in]) + ((sum[0] + sum[1]) + (sum[2] + sum[3]));
+      p.variance[in] += (squares[0] + squares[1]) + (squares[2] + squares[3]);
     }
   }
   for (int n = 0; n < data.num_samples; ++n) {

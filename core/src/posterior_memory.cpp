@@ -1,5 +1,6 @@
 #include "armcmc/posterior_memory.hpp"
 
+#include "armcmc/prefetch.hpp"
 #include "armcmc/snapshot.hpp"
 
 namespace armcmc {
@@ -54,6 +55,14 @@ void RestoreBlock(int dim, const MarginalTable& shared, SnapshotReader* in, Dens
 }
 
 }  // namespace
+
+void PosteriorMemory::Prefetch() const noexcept {
+  if (!valid) return;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(num_blocks); ++b) {
+    armcmc::Prefetch(&block[b], sizeof block[b]);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(block[b].dim); ++d) block[b].marginal[d]->Prefetch();
+  }
+}
 
 void PosteriorMemory::Save(SnapshotWriter* out) const noexcept {
   out->PutFlag(valid);

@@ -78,11 +78,20 @@ QuadraticScore::QuadraticScore(const simd::Kernels& kernels, int model, const Pa
   form_.product.resize(products);
   if (products > 0) grid_.resize(products + 1);
   nodes_ = part.second < 0 ? kNodes : kTileLanes;
-  CosineTable& table = transform_.emplace_back();
-  for (int k = 0; k < nodes_; ++k)
-    for (int j = 0; j < nodes_; ++j)
-      table[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
-          (k == 0 ? 1.0 : 2.0) / nodes_ * std::cos(kPi * k * (j + 0.5) / nodes_);
+  transform_ = nodes_ == kNodes ? &Cosines<kNodes>() : &Cosines<kTileLanes>();
+}
+
+template <int kPoints>
+const QuadraticScore::CosineTable& QuadraticScore::Cosines() {
+  static const CosineTable table = [] {
+    CosineTable t{};
+    for (int k = 0; k < kPoints; ++k)
+      for (int j = 0; j < kPoints; ++j)
+        t[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
+            (k == 0 ? 1.0 : 2.0) / kPoints * std::cos(kPi * k * (j + 0.5) / kPoints);
+    return t;
+  }();
+  return table;
 }
 
 void QuadraticScore::AccumulateSums(const ModeData& data, QuadraticScratch* scratch) noexcept {
@@ -111,7 +120,7 @@ void QuadraticScore::AccumulateSums(const ModeData& data, QuadraticScratch* scra
       theta.value[d].fill(at);
     }
     std::array<double*, QuadraticForm::kMaxFunctions> rows{};
-    for (std::size_t f = 0; f < rows.size(); ++f) rows[f] = &sums_[f][static_cast<std::size_t>(first)];
+    for (std::size_t f = 0; f < rows.size(); ++f) rows[f] = &scratch->sums[f][static_cast<std::size_t>(first)];
     kernels_.quadratic_sums(data, noise_.settings().mean, part_.num_linear, scratch->prediction.data(), rows.data());
   }
 }
@@ -129,12 +138,12 @@ void QuadraticScore::TabulateProducts(const QuadraticScratch& scratch) noexcept 
   });
 }
 
-int QuadraticScore::Degree(double variance) const noexcept {
+int QuadraticScore::Degree(const Lines& lines, double variance) const noexcept {
   const int functions = QuadraticForm::Functions(part_.num_linear);
   const double tolerance = 2.0 * variance * kTolerance;
   double rest = 0.0;
   for (int f = 0; f < functions; ++f) {
-    const auto& series = series_[static_cast<std::size_t>(f)];
+    const auto& series = lines[static_cast<std::size_t>(f)];
     double sum = 0.0;
     for (const double c : series) sum += std::fabs(c);
     rest += kRounding * sum;
@@ -145,15 +154,15 @@ int QuadraticScore::Degree(double variance) const noexcept {
   for (; degree > 1; degree -= 2) {
     for (int f = 0; f < functions; ++f)
       for (const int k : {degree, degree - 1})
-        rest += std::fabs(series_[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)]);
+        rest += std::fabs(lines[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)]);
     if (!(rest <= tolerance)) break;
   }
   return degree;
 }
 
-bool QuadraticScore::EndSeries(std::size_t f, double floor, double tolerance) noexcept {
+bool QuadraticScore::EndSeries(const Lines& lines, std::size_t f, double floor, double tolerance) noexcept {
   constexpr int kMost = ProductSeries::kMaxDegree;
-  const auto& series = series_[f];
+  const auto& series = lines[f];
   const auto size = [&](std::size_t k) noexcept { return std::fmax(std::fabs(series[k]) - floor, 0.0); };
   double rest = 0.0;
   for (std::size_t k = kMost + 1; k < kTileLanes; ++k) rest += size(k);
@@ -190,7 +199,7 @@ bool QuadraticScore::EndProduct(const Grid& series, double floor, double toleran
   return true;
 }
 
-bool QuadraticScore::EndEach(double variance, const ParamVector& centre) noexcept {
+bool QuadraticScore::EndEach(const Lines& lines, double variance, const ParamVector& centre) noexcept {
   std::array<double, kMaxParams + 1> size{1.0};  // of what stands before a function, within a standard deviation
   for (int i = 0; i < part_.num_linear; ++i) {
     const int d = part_.linear[static_cast<std::size_t>(i)];
@@ -209,7 +218,7 @@ bool QuadraticScore::EndEach(double variance, const ParamVector& centre) noexcep
         for (const double c : row) sum[f] += std::fabs(c);
       ++product;
     } else {
-      for (std::size_t k = 0; k < kTileLanes; ++k) sum[f] += std::fabs(series_[f][k]);
+      for (std::size_t k = 0; k < kTileLanes; ++k) sum[f] += std::fabs(lines[f][k]);
     }
     rounding += kSumRounding * sum[f] * size_of(i, j);
     parts += PartsOf(form_.needs[f]);
@@ -228,10 +237,10 @@ bool QuadraticScore::EndEach(double variance, const ParamVector& centre) noexcep
     // Rounding of the sums alone makes this much of a coefficient: one that is not larger counts as none.
     const double floor = kSumRounding * sum[f] / (form_.needs[f] == LinearPart::kBoth ? kTileLanes : kRootOfLanes);
     switch (form_.needs[f]) {
-      case LinearPart::kNeither: form_.coefficient[f][0] = series_[f][0]; break;
+      case LinearPart::kNeither: form_.coefficient[f][0] = lines[f][0]; break;
       case LinearPart::kCurved:
       case LinearPart::kSecond:
-        settled = EndSeries(f, floor, of_series) && settled;
+        settled = EndSeries(lines, f, floor, of_series) && settled;
         raise(form_.needs[f] == LinearPart::kCurved ? 0 : 1, form_.degree[f]);
         break;
       case LinearPart::kBoth: {
@@ -281,18 +290,18 @@ bool QuadraticScore::IsConfirmed(const ModeData& data, const ParamVector& centre
   return true;
 }
 
-void QuadraticScore::ExpandInSeries() noexcept {
+void QuadraticScore::ExpandInSeries(QuadraticScratch* scratch) noexcept {
   const auto functions = static_cast<std::size_t>(QuadraticForm::Functions(part_.num_linear));
   const auto nodes = static_cast<std::size_t>(nodes_);
-  const CosineTable& transform = transform_[0];
+  const CosineTable& transform = *transform_;
   for (std::size_t f = 0; f < functions; ++f) {
-    if (form_.needs[f] == LinearPart::kNeither) series_[f] = {sums_[f][0]};
+    if (form_.needs[f] == LinearPart::kNeither) scratch->series[f] = {scratch->sums[f][0]};
     if (form_.needs[f] != LinearPart::kCurved && form_.needs[f] != LinearPart::kSecond) continue;
     for (std::size_t k = 0; k < nodes; ++k) {
       std::array<double, 4> part{};
       for (std::size_t j = 0; j < nodes; j += 4)
-        for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * sums_[f][j + l];
-      series_[f][k] = (part[0] + part[1]) + (part[2] + part[3]);
+        for (std::size_t l = 0; l < 4; ++l) part[l] += transform[k][j + l] * scratch->sums[f][j + l];
+      scratch->series[f][k] = (part[0] + part[1]) + (part[2] + part[3]);
     }
   }
   for (std::size_t product = 0; product + 1 < grid_.size(); ++product) {
@@ -316,23 +325,23 @@ void QuadraticScore::Prepare(const ModeData& data, const Gaussian& fit, Quadrati
   if (form_.num_curved == 0) {
     ready_ = true;
     for (std::size_t f = 0; f < functions; ++f) {
-      form_.coefficient[f][0] = sums_[f][0];
-      ready_ = ready_ && std::isfinite(sums_[f][0]);
+      form_.coefficient[f][0] = scratch->sums[f][0];
+      ready_ = ready_ && std::isfinite(scratch->sums[f][0]);
     }
     return;
   }
   TabulateProducts(*scratch);
-  ExpandInSeries();
+  ExpandInSeries(scratch);
   const double scale = std::exp(space_.LogNoiseScale(fit.mean.data()));
   if (part_.second >= 0) {
-    if (!EndEach(scale * scale, fit.mean)) return;
+    if (!EndEach(scratch->series, scale * scale, fit.mean)) return;
   } else {
-    const int degree = Degree(scale * scale);
+    const int degree = Degree(scratch->series, scale * scale);
     if (degree < 0) return;
     form_.axis[0].degree = degree;
     for (std::size_t f = 0; f < functions; ++f) {
       form_.degree[f] = degree;
-      std::copy_n(series_[f].begin(), static_cast<std::size_t>(degree) + 1, form_.coefficient[f].begin());
+      std::copy_n(scratch->series[f].begin(), static_cast<std::size_t>(degree) + 1, form_.coefficient[f].begin());
     }
   }
   ParamVector sd = Inverse(fit.precision).diagonal();

@@ -12,6 +12,7 @@ PlaybackResult Play(DescribedPackBuilder* builder, DescribedPackSender* sender, 
   const double period_ns = builder->pack_period_s() / speed * 1e9;
   const std::int64_t late_limit_ns = std::max<std::int64_t>(std::llround(period_ns / 10.0), 1'000'000);
   PlaybackResult result;
+  WakeOnTime();
   while (builder->Next()) {
     const std::int64_t due_ns = start_ns + std::llround(period_ns * static_cast<double>(result.packs_sent + 1));
     do {

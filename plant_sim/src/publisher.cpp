@@ -54,6 +54,7 @@ bool Publisher::WaitUntil(std::int64_t t_ns) const noexcept {
 }
 
 void Publisher::Run(std::int64_t start_ns) noexcept {
+  WakeOnTime();
   const std::int64_t late_limit_ns = std::max<std::int64_t>(period_ns_ / 10, 1'000'000);
   std::int64_t free_ns = 0;  // End of the last wanted delay: what it holds up is not the plant's own lateness.
   for (std::int64_t k = 1; k <= num_packs_; ++k) {

@@ -1,6 +1,7 @@
 #include "armcmc/rt/rt_thread.hpp"
 
 #include <sched.h>
+#include <sys/prctl.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -110,6 +111,7 @@ void* RtThread::Main(void* self) {
   auto* thread = static_cast<RtThread*>(self);
   PrefaultStack();
   pthread_setname_np(pthread_self(), thread->request_.name);
+  prctl(PR_SET_TIMERSLACK, 1UL);  // without real-time priority the kernel adds 50 us to every sleep
   thread->ReadBack();
   const Entry entry = thread->entry_;
   void* context = thread->context_;

@@ -21,7 +21,7 @@ class Bank {
         space_(settings_, settings_.noise[0]),
         noise_(settings_.noise[0]),
         normal_(MarginalTable::Normal()),
-        drift(simd::Best(), 0, space_, noise_, share) {
+        drift(simd::Best(), 0, space_, noise_, share, Drift::MakeScratch()) {
     posterior.valid = posterior.informed = true;
     posterior.num_blocks = 1;
     posterior.weight = {1.0, 0.0};

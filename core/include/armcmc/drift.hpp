@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "armcmc/end_of_pack.hpp"
 #include "armcmc/laplace.hpp"
@@ -120,8 +121,13 @@ class Drift {
   /// Hypothesis h < NumHypotheses(dim) where drift has the probability `share`.
   [[nodiscard]] static Hypothesis Of(int h, double share, int dim) noexcept ARMCMC_NONBLOCKING;
 
+  /// What lies between Carry() and Learn() of one pack: several objects may take turns with it.
+  class Scratch;
+  [[nodiscard]] static std::shared_ptr<Scratch> MakeScratch();
+
   /// @param share  Prior probability that the plant drifts, in [0, 1). 0: it rests, and Carry() changes nothing.
-  Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise, double share);
+  Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise, double share,
+        std::shared_ptr<Scratch> scratch);
 
   /// How many times wider the posterior after the last pack has become by a time at which nothing new is known: the
   /// root mean square distance of each parameter in the bank from the mean that it had then, over its standard
@@ -181,6 +187,8 @@ class Drift {
   [[nodiscard]] const std::array<double, kMaxParams>& rate() const noexcept { return rate_; }
 
   void Forget() noexcept ARMCMC_NONBLOCKING;
+  /// Asks for what Carry() reads to be in the cache. @rt O(hypotheses dim^2).
+  void Prefetch() const noexcept ARMCMC_NONBLOCKING;
   /// For Restore(), which is bit-identical; a bank of version 0.1.0, of other hypotheses, is passed over.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
@@ -212,8 +220,8 @@ class Drift {
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
   /// Half the log of the determinant of the covariance of u and of the velocities that the hypothesis has.
   [[nodiscard]] double LogVolume(const Hypothesis& law, const Filter& filter) const noexcept ARMCMC_NONBLOCKING;
-  /// Empties the first slot of each hypothesis.
-  void MakeRoom() noexcept ARMCMC_NONBLOCKING;
+  /// Empties the first slot of each hypothesis, if it is not empty.
+  void MakeRoom(Bank* bank) const noexcept ARMCMC_NONBLOCKING;
   /// Covariance of the velocity that a hypothesis begins with.
   [[nodiscard]] ParamMatrix FirstVelocity(const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Filter Newcomer(const Moments& part, double weight,
@@ -256,6 +264,9 @@ class Drift {
   using Mixture = NormalMixture<kFilters>;
   /// Marginal d of the filters of a part.
   static void AddFilters(const Bank& bank, Part part, int d, Mixture* to) noexcept ARMCMC_NONBLOCKING;
+  /// The bank after a pack.
+  void UpdateBank(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
+                  LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   /// Moves and stretches the filters of the sampled part to where it was sampled.
   bool Recentre(const Sampled& sampled) noexcept ARMCMC_NONBLOCKING;
   /// Block `to` of what is carried on: a block of `last`, moved and stretched as from `from` to a part of the bank.
@@ -268,7 +279,7 @@ class Drift {
   int model_;
   const ParameterSpace& space_;
   const NoiseModel& noise_;
-  MarginalTable normal_table_;
+  const MarginalTable& normal_table_;
   int dim_;  ///< Parameters; the noise scale, where sampled, comes after them.
   std::array<Hypothesis, kHypotheses> hypotheses_;
   bool enabled_;
@@ -276,8 +287,9 @@ class Drift {
   double time_s_ = 0.0;     ///< Of the pack that `bank_` has learnt from.
   double elapsed_s_ = 0.0;  ///< From that one to the next.
   Bank bank_;               ///< After that pack.
-  Bank predicted_;          ///< Before the next one.
-  Bank work_;               ///< Scratch.
+  std::shared_ptr<Scratch> scratch_;
+  Bank& predicted_;  ///< Before the next one. Of scratch_.
+  Bank& work_;       ///< Of scratch_.
   Expected expected_;
   bool moves_ = false;
   ParamMatrix lead_;    ///< T of that pack, s.
@@ -291,6 +303,11 @@ class Drift {
   bool mixed_ = false;  ///< The part that drifts was carried as the mixture that the bank has.
   int drifting_block_ = 1;
   PosteriorMemory carried_;
+};
+
+class Drift::Scratch {
+  friend class Drift;
+  Bank predicted_, work_;
 };
 
 }  // namespace armcmc

@@ -70,6 +70,9 @@ class Estimator {
               const DrawLimits& limits = kNoDrawLimits) noexcept ARMCMC_NONBLOCKING;
   /// @param clock  Of that Draw(). @rt No heap, no lock, no throw. O(max_draws).
   void Remember(ClockRef clock) noexcept ARMCMC_NONBLOCKING;
+  /// Asks for what the next Draw() reads of this estimator's own memory to be in the cache: of several that take turns,
+  /// each displaces that of the others. @rt No heap, no lock, no throw. O(tables of the posterior).
+  void Prefetch() const noexcept ARMCMC_NONBLOCKING;
 
   /// Stage C: summary of the posterior, predicted output with band.
   /// @rt No heap, no lock, no throw. O(draws).

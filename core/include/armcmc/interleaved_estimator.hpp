@@ -67,6 +67,7 @@ class InterleavedEstimator {
 
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< [seq mod L].
   Estimator* drawn_;                                    ///< That made the newest Draw().
+  std::int64_t seq_ = 0;                                ///< Of the pack of that one.
 };
 
 }  // namespace armcmc

@@ -20,8 +20,8 @@ class MarginalTable {
   static constexpr double kNodesPerUnit = 8.0;  ///< Standardised coordinates: 8 nodes per standard deviation.
   static constexpr int kGuideSize = 4096;       ///< So many that hardly any cell of it holds a node.
 
-  /// Standard normal on [-6, 6].
-  static MarginalTable Normal();
+  /// Standard normal on [-6, 6]: one table for the whole process, which is made at the first call.
+  static const MarginalTable& Normal();
   /// Student-t on [-16, 16].
   static MarginalTable StudentT(double dof);
   /// Uniform on [-half_width, half_width], rounded outward to nodes.
@@ -37,6 +37,8 @@ class MarginalTable {
   [[nodiscard]] double Density(double x) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] double Mean() const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] double Variance() const noexcept ARMCMC_NONBLOCKING;
+  /// Asks for the table to be in the cache. @rt O(nodes).
+  void Prefetch() const noexcept ARMCMC_NONBLOCKING;
 
   /// For Restore(), which is bit-identical. in->good() is false if it is not a density.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;

@@ -52,6 +52,7 @@ class SamplerWorkspace {
   std::array<std::vector<double>, kMaxParams> mismatch_u;
   PredictiveMoments predictive;
   std::array<std::array<MarginalTable, kMaxParams>, PosteriorMemory::kMaxBlocks> pilot_tables;
+  std::array<ModeData, kMaxModes> data;  ///< Of the pack; read until Remember().
 };
 
 /// One ARMCMC step of one mode (algorithm steps 1 to 7).
@@ -82,7 +83,7 @@ class ModeSampler {
 
   ModeSampler(const simd::Kernels& kernels, int model, const SamplerSettings& sampler,
               const ForgettingSettings& forgetting, const ParameterSpace& space, const NoiseModel& noise,
-              const LinearPart& linear = {});
+              const LinearPart& linear = {}, std::shared_ptr<Drift::Scratch> drift_scratch = Drift::MakeScratch());
 
   /// Mode of likelihood x initial prior, standardised coordinates, by Gauss-Newton steps.
   /// @rt No heap, no lock, no throw. Some tiles of candidates.
@@ -115,6 +116,7 @@ class ModeSampler {
   /// What is trusted across a change: part of what a snapshot holds.
   [[nodiscard]] Transition& transition() noexcept { return transition_; }
   [[nodiscard]] Drift& drift() noexcept { return drift_; }
+  [[nodiscard]] const Drift& drift() const noexcept { return drift_; }
 
   /// Means and covariances of the parameters before a pack: as the last pack left them, and as they have drifted since.
   struct Drifted {
@@ -260,7 +262,7 @@ class ModeSampler {
   ParameterSpace space_;
   NoiseModel noise_;
   QuadraticScore quadratic_;
-  MarginalTable normal_table_, student_table_;
+  const MarginalTable &normal_table_, &student_table_;
   Transition transition_;
   Drift drift_;
   std::array<MarginalTable, kMaxParams> uniform_tables_;

@@ -33,6 +33,8 @@ struct PosteriorMemory {
   ParamMatrix covariance;
   double log_noise_scale = 0.0;  ///< Posterior mean of log s.
 
+  /// Asks for what a draw from it reads to be in the cache. @rt O(nodes of the tables).
+  void Prefetch() const noexcept ARMCMC_NONBLOCKING;
   /// Everything above, for Restore(). @rt No heap, no lock, no throw. O(nodes of the tables).
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   /// What was saved, bit by bit; in->good() is false if it cannot be a posterior of `dim` coordinates, and nothing is

@@ -21,11 +21,16 @@ struct Kernels;
 /// Predictions that a QuadraticScore is made from: for each linear parameter and without any.
 class QuadraticScratch {
  public:
+  static constexpr int kNodes = 2 * kTileLanes;  ///< On a line; those of a grid are kTileLanes by kTileLanes.
+  using Lines = std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions>;
+
   /// For at most so many linear parameters. Allocates.
   explicit QuadraticScratch(int num_linear) : prediction(static_cast<std::size_t>(num_linear) + 1) {}
 
   std::vector<PredictionTile> prediction;
   ThetaTile theta;
+  alignas(64) Lines sums{};
+  Lines series{};
 };
 
 /// The Gaussian log-likelihood of a law that has a LinearPart, without reading the samples for every candidate: given
@@ -58,26 +63,33 @@ class QuadraticScore {
   void Score(const double* const* u, int first, double* out) const noexcept ARMCMC_NONBLOCKING;
 
  private:
-  static constexpr int kNodes = 2 * kTileLanes;  ///< On a line; those of a grid are kTileLanes by kTileLanes.
+  static constexpr int kNodes = QuadraticScratch::kNodes;
+  using Lines = QuadraticScratch::Lines;
   /// [k][j] = 2 / n cos(pi k (j + 1/2) / n), half of it for k = 0.
   using CosineTable = std::array<std::array<double, kNodes>, kNodes>;
   using Grid = std::array<std::array<double, kTileLanes>, kTileLanes>;
+
+  /// For that many points. Made once in the process: where several scores take turns, it stays in the cache.
+  template <int kPoints>
+  [[nodiscard]] static const CosineTable& Cosines();
 
   void AccumulateSums(const ModeData& data, QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   /// The grids, from what AccumulateSums() leaves in `scratch`.
   void TabulateProducts(const QuadraticScratch& scratch) noexcept ARMCMC_NONBLOCKING;
   /// Of what AccumulateSums() and TabulateProducts() have left.
-  void ExpandInSeries() noexcept ARMCMC_NONBLOCKING;
+  void ExpandInSeries(QuadraticScratch* scratch) noexcept ARMCMC_NONBLOCKING;
   /// Candidates get what the samples give.
   [[nodiscard]] bool IsConfirmed(const ModeData& data, const ParamVector& centre, const ParamVector& sd,
                                  QuadraticScratch* scratch) const noexcept ARMCMC_NONBLOCKING;
   /// Degree after which all series of one parameter may end, -1 where they do not settle.
-  [[nodiscard]] int Degree(double variance) const noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] int Degree(const Lines& series, double variance) const noexcept ARMCMC_NONBLOCKING;
   /// Ends every series by itself, where two parameters are curved. @return whether they settle.
-  [[nodiscard]] bool EndEach(double variance, const ParamVector& centre) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool EndEach(const Lines& series, double variance,
+                             const ParamVector& centre) noexcept ARMCMC_NONBLOCKING;
   /// @param floor      Coefficients that are not larger count as none.
   /// @param tolerance  Of the sum of those that are left out.
-  [[nodiscard]] bool EndSeries(std::size_t f, double floor, double tolerance) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] bool EndSeries(const Lines& lines, std::size_t f, double floor,
+                               double tolerance) noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] static bool EndProduct(const Grid& series, double floor, double tolerance,
                                        ProductSeries* out) noexcept ARMCMC_NONBLOCKING;
 
@@ -90,10 +102,8 @@ class QuadraticScore {
   int nodes_ = kTileLanes;  ///< On a line; a multiple of kTileLanes.
   int num_samples_ = 0;
   QuadraticForm form_;
-  std::vector<CosineTable> transform_;  ///< One, where a parameter is curved.
-  std::vector<Grid> grid_;              ///< For each ProductSeries: sums, then series; and one more.
-  alignas(64) std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> sums_{};
-  std::array<std::array<double, kNodes>, QuadraticForm::kMaxFunctions> series_{};
+  const CosineTable* transform_ = nullptr;  ///< Where a parameter is curved.
+  std::vector<Grid> grid_;                  ///< For each ProductSeries: sums, then series; and one more.
 };
 
 }  // namespace armcmc

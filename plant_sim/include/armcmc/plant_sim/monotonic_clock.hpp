@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/prctl.h>
+
 #include <cstdint>
 #include <ctime>
 
@@ -27,5 +29,9 @@ inline void SleepUntil(std::int64_t t_ns) noexcept {
   const timespec t{static_cast<time_t>(t_ns / kNanosPerSecond), static_cast<long>(t_ns % kNanosPerSecond)};
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
 }
+
+/// This thread's sleeps end on time: without real-time priority the kernel may add 50 us, so as to wake several threads
+/// at once, and a plant's samples would leave it that late.
+inline void WakeOnTime() noexcept { prctl(PR_SET_TIMERSLACK, 1UL); }
 
 }  // namespace armcmc::plant_sim
