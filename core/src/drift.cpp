@@ -41,12 +41,13 @@ bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noex
 
 Drift::Hypothesis Drift::Of(int h, double share, int dim) noexcept {
   if (h == 0) return {.rate = 0.0, .persistence = 1.0, .prior = 1.0 - share};
-  const bool alone = h >= kFirstAlone;
-  const Law& law = alone ? kAlone : kTogether[static_cast<std::size_t>(h - 1)];
+  double all_odds = 0.0;
+  for (int i = 1; i < NumHypotheses(dim); ++i) all_odds += LawOf(i).odds;
+  const Law& law = LawOf(h);
   return {.rate = law.rate,
           .persistence = law.persistence,
-          .prior = share / (NumHypotheses(dim) - 1),
-          .alone = alone ? h - kFirstAlone : -1};
+          .prior = share * law.odds / all_odds,
+          .alone = h >= kFirstAlone ? h - kFirstAlone : -1};
 }
 
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,

@@ -30,8 +30,9 @@ struct Kernels;
 /// s_h is the rate, in prior standard deviations per second. h = 0 is "rest", s = 0. Under kTogether every parameter
 /// moves at the rate of the hypothesis; correlation times are short, for velocities that change, or long, for steady
 /// trends, whose intervals would otherwise be too wide. Under the others, one for each parameter of several, this
-/// parameter alone moves (kAlone): otherwise a drift of one would make the intervals of all of them wide. All of these
-/// are equally probable.
+/// parameter alone moves (kAlone): otherwise a drift of one would make the intervals of all of them wide. The fastest
+/// is as probable as all the others, which are equally probable: the sooner it is believed, the less the intervals fall
+/// behind, and where nothing drifts the data refute it within a second or two.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
@@ -95,12 +96,13 @@ class Drift {
   struct Law {
     double rate;         ///< s, prior standard deviations per s.
     double persistence;  ///< tau, s.
+    double odds;         ///< Prior probability, relative to the others.
   };
   static constexpr std::array<Law, 6> kTogether{
-      {{0.1, 30.0}, {0.3, 30.0}, {0.003, 200.0}, {0.01, 200.0}, {0.03, 200.0}, {0.1, 200.0}}};
-  static constexpr Law kAlone{0.03, 200.0};
+      {{0.1, 30.0, 1.0}, {0.3, 30.0, 10.0}, {0.003, 200.0, 1.0}, {0.01, 200.0, 1.0}, {0.03, 200.0, 1.0}, {0.1, 200.0, 1.0}}};
+  static constexpr Law kAlone{0.03, 200.0, 1.0};
   static constexpr double kSwitching = 0.03;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
-  static constexpr double kNegligible = 0.01;  ///< Probability below which a part is left out of the prior of a pack.
+  static constexpr double kNegligible = 0.02;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kFirstAlone = 1 + static_cast<int>(kTogether.size());
   static constexpr int kHypotheses = kFirstAlone + kMaxParams;  ///< At most.
   static constexpr int kSlots = 6;                              ///< Filters of a hypothesis.
@@ -112,6 +114,10 @@ class Drift {
 
   /// Under which a plant with some number of parameters can be.
   [[nodiscard]] static constexpr int NumHypotheses(int dim) noexcept { return kFirstAlone + (dim > 1 ? dim : 0); }
+  /// Of hypothesis h > 0.
+  [[nodiscard]] static constexpr const Law& LawOf(int h) noexcept {
+    return h < kFirstAlone ? kTogether[static_cast<std::size_t>(h - 1)] : kAlone;
+  }
 
   struct Hypothesis {
     double rate = 0.0, persistence = 1.0, prior = 0.0;

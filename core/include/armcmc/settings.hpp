@@ -61,7 +61,7 @@ struct ForgettingSettings {
   double rho = 0.0;             ///< In [0, 1]: weight exp(-rho (N_s - n)) of the error of sample n.
   int min_samples = 3;          ///< Packs with fewer informative samples of a mode hold its posterior, >= 1.
   double drift_share =
-      0.02;  ///< Prior probability of drift, in [0, 1). 0: parameters are constant or jump, as published.
+      0.04;  ///< Prior probability of drift, in [0, 1). 0: parameters are constant or jump, as published.
   bool partial_change = true;  ///< A modification may keep all parameters but one; false: P_0 alone, as published.
 };
 

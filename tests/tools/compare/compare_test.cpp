@@ -34,7 +34,7 @@ TEST(Differences, EveryKindOfSettingIsSeenAndEqualOnesAreNot) {
   EXPECT_EQ(one([](auto* s) { s->noise[0].kind = NoiseKind::kLaplace; }),
             "noise (mode 0): gaussian, 0.1 -> laplace, 0.1");
   EXPECT_EQ(one([](auto* s) { s->forgetting.threshold = 0.5; }), "forgetting.threshold: 1 -> 0.5");
-  EXPECT_EQ(one([](auto* s) { s->forgetting.drift_share = 0.0; }), "forgetting.drift_share: 0.02 -> 0");
+  EXPECT_EQ(one([](auto* s) { s->forgetting.drift_share = 0.0; }), "forgetting.drift_share: 0.04 -> 0");
   EXPECT_EQ(one([](auto* s) { s->forgetting.partial_change = false; }), "forgetting.partial_change: true -> false");
   EXPECT_EQ(one([](auto* s) { s->sampler.rule = DrawRule::kKMin; }), "sampler.draws: 800 -> k_min");
   EXPECT_EQ(one([](auto* s) { s->method = Method::kParticleFilter; }), "method: armcmc -> pf");
