@@ -8,7 +8,6 @@ InterleavedEstimator::InterleavedEstimator(const EstimatorSettings& settings) {
   others.gap_watch.enabled = false;
   for (int j = 1; j < settings.overlap; ++j)
     estimators_.push_back(std::make_unique<Estimator>(others, *estimators_.front()));
-  drawn_ = estimators_.front().get();
 }
 
 int InterleavedEstimator::TurnOf(std::int64_t seq) const noexcept {
@@ -18,16 +17,15 @@ int InterleavedEstimator::TurnOf(std::int64_t seq) const noexcept {
 
 Status InterleavedEstimator::Draw(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,
                                   const DrawLimits& limits) noexcept {
-  Estimator& estimator = Of(pack.seq);
-  if (drawn_ != &estimator) drawn_->Remember(clock);  // its draws are in the shared scratch
-  drawn_ = &estimator;
-  seq_ = pack.seq;
-  return estimator.Draw(pack, deadline_ns, clock, result, limits);
+  const int turn = TurnOf(pack.seq);
+  if (turn != turn_) recursion(turn_).Remember(clock);  // its draws are in the shared scratch
+  turn_ = turn;
+  return recursion(turn).Draw(pack, deadline_ns, clock, result, limits);
 }
 
 void InterleavedEstimator::Remember(ClockRef clock) noexcept {
-  drawn_->Remember(clock);
-  if (overlap() > 1) Of(seq_ + 1).Prefetch();  // nobody waits now, and its turn is next
+  recursion(turn_).Remember(clock);
+  if (overlap() > 1) recursion((turn_ + 1) % overlap()).Prefetch();  // nobody waits now, and its turn is next
 }
 
 Status InterleavedEstimator::Adjust(const DataPack& pack, Nanos deadline_ns, ClockRef clock, AdjustResult* result,

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -346,6 +348,10 @@ TEST(InterleavedEstimator, RefusesPacksThatTheOverlapDoesNotDivide) {
     interleaved.Step(pack);
     EXPECT_EQ(interleaved.status, Status::kBadPack) << seq;
   }
+  // There is no number after it; with signed overflow checked this step fails if that is computed.
+  pack.seq = std::numeric_limits<std::int64_t>::max();
+  interleaved.Step(pack);
+  EXPECT_EQ(interleaved.status, Status::kOk);
 }
 
 TEST(InterleavedEstimator, StepsDoNotTouchTheHeap) {

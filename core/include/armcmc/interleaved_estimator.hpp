@@ -66,8 +66,7 @@ class InterleavedEstimator {
   [[nodiscard]] Estimator& Of(std::int64_t seq) noexcept ARMCMC_NONBLOCKING { return recursion(TurnOf(seq)); }
 
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< [seq mod L].
-  Estimator* drawn_;                                    ///< That made the newest Draw().
-  std::int64_t seq_ = 0;                                ///< Of the pack of that one.
+  int turn_ = 0;                                        ///< Of which of them the newest Draw() was.
 };
 
 }  // namespace armcmc
