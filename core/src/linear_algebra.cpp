@@ -47,7 +47,7 @@ double MultiplyBy(const JointVector& gradient, const JointMatrix& information, J
   constexpr int kMost = kSize == Eigen::Dynamic ? 2 * kMaxParams : kSize;
   using Matrix = Eigen::Matrix<double, kSize, kSize, 0, kMost, kMost>;
   using Vector = Eigen::Matrix<double, kSize, 1, 0, kMost, 1>;
-  const Matrix h = information;
+  const Eigen::Map<const Matrix> h(information.data(), information.rows(), information.cols());
   const Matrix c = *covariance;
   const Vector m = *mean;
   // C <- C (1 + H C)^-1, which needs no inverse of C: a velocity may be known exactly.
