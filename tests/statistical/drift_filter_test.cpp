@@ -68,7 +68,7 @@ class Histories {
           moved.push_back(begun);
         }
         for (const History& m : moved) {
-          History kept = Pass(m);
+          History kept = Propagated(m);
           History changed = kept;
           kept.weight *= persisted;
           changed.weight *= 1.0 - persisted;
@@ -197,7 +197,7 @@ class Histories {
     from.ww = law.rate * law.rate;
     return from;
   }
-  [[nodiscard]] History Pass(History h) const {
+  [[nodiscard]] History Propagated(History h) const {
     if (h.law == 0) return h;
     const Noise& noise = noise_[static_cast<std::size_t>(h.law)];
     const double t = Drift::Of(h.law, share_, 1).persistence;
