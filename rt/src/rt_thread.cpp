@@ -111,7 +111,7 @@ void* RtThread::Main(void* self) {
   auto* thread = static_cast<RtThread*>(self);
   PrefaultStack();
   pthread_setname_np(pthread_self(), thread->request_.name);
-  prctl(PR_SET_TIMERSLACK, 1UL);  // without real-time priority the kernel adds 50 us to every sleep
+  prctl(PR_SET_TIMERSLACK, 1UL);  // without real-time priority a sleep may last 50 us longer
   thread->ReadBack();
   const Entry entry = thread->entry_;
   void* context = thread->context_;

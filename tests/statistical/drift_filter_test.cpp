@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -232,7 +233,16 @@ class Histories {
   std::vector<History> histories_;
 };
 
-TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
+/// Of the estimator from the filter of all histories, over the packs of a run: root mean squares and largest values.
+struct Difference {
+  double mean = 0.0, sd = 0.0;  ///< In standard deviations, and relative.
+  double worst_mean = 0.0, worst_sd = 0.0;
+  double share = 0.0;  ///< Of the probability of drift, while nothing is taken for changed.
+  int modifications = 0;
+};
+
+/// At rest, then a drift, which goes on through a jump, and stops.
+Difference DifferenceInARun(std::uint64_t noise_seed) {
   const auto plant = Plant();
   EstimatorSettings settings = DescribedSettings(plant);
   settings.gap_watch.enabled = false;
@@ -240,12 +250,10 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
   settings.forgetting.drift_share = 0.3;
   test::Rig rig(settings);
   Histories exact(settings.forgetting.drift_share);
-  test::Normal normal(31);
-  double mean = 0.0, sd = 0.0, share = 0.0, worst_mean = 0.0, worst_sd = 0.0;
-  int modifications = 0;
+  test::Normal normal(noise_seed);
+  Difference d;
   for (std::int64_t seq = 1; seq <= kPacks; ++seq) {
     const DataPack pack = test::DescribedPack(*plant, seq, [&](double t) {
-      // At rest, then a drift, which goes on through a jump, and stops.
       const double a = 1.2 + 0.15 * (std::clamp(t, 4.0, 12.0) - 4.0) - (t > 9.0 ? 2.0 : 0.0);
       test::PlantSample s;
       s.u[0] = 0.5 + 0.4 * std::sin(9.0 * t);
@@ -264,28 +272,54 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
       sums.xx_lag_lag += lag * lag * x * x;
     }
     const ModeEstimate& e = rig.Step(pack).modes[0];
-    modifications += e.decision == Decision::kModification ? 1 : 0;
+    d.modifications += e.decision == Decision::kModification ? 1 : 0;
     exact.Add(e.decision == Decision::kModification ? 0.0 : e.lambda, sums);
     const double off = (e.marginal[0].ar_ap - exact.Mean()) / exact.Sd();
     const double wider = e.marginal[0].is_sd / exact.Sd() - 1.0;
-    mean += off * off / kPacks;
-    sd += wider * wider / kPacks;
-    worst_mean = std::fmax(worst_mean, std::fabs(off));
-    worst_sd = std::fmax(worst_sd, std::fabs(wider));
-    if (e.decision == Decision::kReinforcement) share = std::fmax(share, std::fabs(e.p_drifted - exact.Drifting()));
+    d.mean += off * off / kPacks;
+    d.sd += wider * wider / kPacks;
+    d.worst_mean = std::fmax(d.worst_mean, std::fabs(off));
+    d.worst_sd = std::fmax(d.worst_sd, std::fabs(wider));
+    if (e.decision == Decision::kReinforcement) d.share = std::fmax(d.share, std::fabs(e.p_drifted - exact.Drifting()));
   }
-  RecordProperty("mean_sd", std::to_string(std::sqrt(mean)));
-  RecordProperty("sd_relative", std::to_string(std::sqrt(sd)));
-  RecordProperty("worst_mean_sd", std::to_string(worst_mean));
-  RecordProperty("worst_sd_relative", std::to_string(worst_sd));
-  RecordProperty("share", std::to_string(share));
+  d.mean = std::sqrt(d.mean);
+  d.sd = std::sqrt(d.sd);
+  return d;
+}
+
+void Record(const Difference& d) {
+  ::testing::Test::RecordProperty("mean_sd", std::to_string(d.mean));
+  ::testing::Test::RecordProperty("sd_relative", std::to_string(d.sd));
+  ::testing::Test::RecordProperty("worst_mean_sd", std::to_string(d.worst_mean));
+  ::testing::Test::RecordProperty("worst_sd_relative", std::to_string(d.worst_sd));
+  ::testing::Test::RecordProperty("share", std::to_string(d.share));
+}
+
+TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
+  const Difference d = DifferenceInARun(31);
+  Record(d);
   // A hundredth of it each is that of some thousand draws.
-  EXPECT_LT(std::sqrt(mean), 0.025);
-  EXPECT_LT(std::sqrt(sd), 0.02);
-  EXPECT_LT(worst_mean, 0.08);
-  EXPECT_LT(worst_sd, 0.07);
-  EXPECT_LT(share, 0.06);
-  EXPECT_EQ(modifications, 2);
+  EXPECT_LT(d.mean, 0.025);
+  EXPECT_LT(d.sd, 0.02);
+  EXPECT_LT(d.worst_mean, 0.08);
+  EXPECT_LT(d.worst_sd, 0.07);
+  EXPECT_LT(d.share, 0.06);
+  EXPECT_EQ(d.modifications, 2);
+}
+
+// The run above is a good one. In that of seed 34 the difference begins with a pack that leaves a change 1.5 % probable,
+// and lasts for two seconds.
+TEST(DriftFilter, StaysNearEveryHistoryInOtherRuns) {
+  for (const std::uint64_t noise_seed : {32U, 33U, 34U}) {
+    const Difference d = DifferenceInARun(noise_seed);
+    Record(d);
+    EXPECT_LT(d.mean, 0.08) << noise_seed;
+    EXPECT_LT(d.sd, 0.08) << noise_seed;
+    EXPECT_LT(d.worst_mean, 0.3) << noise_seed;
+    EXPECT_LT(d.worst_sd, 0.3) << noise_seed;
+    EXPECT_LT(d.share, 0.2) << noise_seed;
+    EXPECT_EQ(d.modifications, 2) << noise_seed;
+  }
 }
 
 }  // namespace

@@ -116,7 +116,6 @@ class ModeSampler {
   /// What is trusted across a change: part of what a snapshot holds.
   [[nodiscard]] Transition& transition() noexcept { return transition_; }
   [[nodiscard]] Drift& drift() noexcept { return drift_; }
-  [[nodiscard]] const Drift& drift() const noexcept { return drift_; }
 
   /// Means and covariances of the parameters before a pack: as the last pack left them, and as they have drifted since.
   struct Drifted {
