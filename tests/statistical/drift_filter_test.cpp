@@ -307,8 +307,8 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
   EXPECT_EQ(d.modifications, 2);
 }
 
-// The run above is a good one. In that of seed 34 the difference begins with a pack that leaves a change 1.5 % probable,
-// and lasts for two seconds.
+// The run above is a good one. In that of seed 34 the difference begins with a pack that leaves a change 1.5 %
+// probable, and lasts for two seconds.
 TEST(DriftFilter, StaysNearEveryHistoryInOtherRuns) {
   for (const std::uint64_t noise_seed : {32U, 33U, 34U}) {
     const Difference d = DifferenceInARun(noise_seed);
