@@ -10,6 +10,8 @@ namespace {
 
 /// Of the prior's precision in the inverse of H: H alone may have directions that the pack does not determine.
 constexpr double kLeastPrecision = 1e-4;
+/// Share of the effective draws that an expansion that is of use leaves, for quantiles in the tails.
+constexpr double kLikenessInTails = 0.5;
 
 template <std::size_t kMost>
 EndOfPack::Quantiles QuantilesOf(const NormalMixture<kMost>& mixture) noexcept ARMCMC_NONBLOCKING {
@@ -112,18 +114,35 @@ void Drift::AddFilters(const Bank& bank, Part part, int d, Mixture* to) noexcept
     if (IsOf(part, i)) to->Add(bank[i].weight, bank[i].u[d], bank[i].uu(d, d));
 }
 
-bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_noise_scale, double p_drifted,
-                    LaplaceScratch* scratch, std::array<EndOfPack, kMaxParams>* end) noexcept {
+bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_noise_scale, const Draws& draws,
+                    double* p_drifted, LaplaceScratch* scratch, std::array<EndOfPack, kMaxParams>* end) noexcept {
   if (!started_ || share_ < kNegligible || !leads_) return false;
   Sampled sampled{.part = Part::kWhole,
                   .mean = mean,
                   .covariance = {},
                   .local = ExpandLikelihood(kernels_, model_, data, noise_, space_, mean, log_noise_scale, scratch)};
   work_ = bank_;
-  const bool updated = Update(sampled, Part::kRest, 1.0 - p_drifted) && Update(sampled, Part::kDrift, p_drifted);
+  const double as_sampled = *p_drifted;
+  const bool updated = Update(sampled, Part::kWhole, 1.0);
+  bool tilted = draws.share != nullptr && !space_.samples_noise_scale();
+  if (tilted) {
+    for (int k = 0; k < draws.count; ++k)
+      draws.scratch[k] = draws.of_part ? draws.weight[k] : draws.weight[k] * (1.0 - draws.share[k]);
+    tilted = Tilt(sampled, draws, draws.count) > kLikenessInTails;
+  }
+  if (updated) {
+    *p_drifted = p_drifted_ = CorrectedShare(draws, tilted, as_sampled);
+    SetShare(p_drifted_);
+  }
   std::array<EndOfPack::Quantiles, kMaxParams> effective{};
   ParamVector off = mean;  // of what was sampled from the expansion
-  if (updated) {
+  if (updated && tilted) {
+    const Moments whole = MomentsOf(bank_, Part::kWhole);
+    off.setZero();
+    for (int d = 0; d < dim_; ++d)
+      effective[static_cast<std::size_t>(d)] =
+          QuantilesByDraws(draws, d, whole.mean[d], std::sqrt(whole.covariance(d, d)));
+  } else if (updated) {
     std::array<Mixture, kMaxParams> drawn{};
     const auto add = [&](Part part, double share) noexcept ARMCMC_NONBLOCKING {
       sampled.part = part;
@@ -139,8 +158,8 @@ bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_no
       }
     };
     if (split_) {
-      add(Part::kRest, 1.0 - p_drifted);
-      add(Part::kDrift, p_drifted);
+      add(Part::kRest, 1.0 - as_sampled);
+      add(Part::kDrift, as_sampled);
     } else {
       add(CarriedPart(), 1.0);
     }

@@ -9,7 +9,7 @@
 namespace armcmc {
 namespace {
 
-constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBank = 2;
+constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBankOfSixSlots = 2, kBank = 3;
 constexpr int kFiltersOf010 = 40;
 constexpr std::int64_t kBothParts = 4;  // added to the part of the first block
 
@@ -42,8 +42,9 @@ void Drift::Restore(SnapshotReader* in) noexcept {
   time_s_ = in->Number();
   if (kind == kBankOf010) (void)in->Integer(0, std::numeric_limits<std::int64_t>::max());  // number of packs
   const std::int64_t fitted = in->Integer(0, static_cast<std::int64_t>(Part::kDrift) + kBothParts);
-  if (kind == kBankOf010) {
-    const int numbers = kFiltersOf010 * (1 + dim_ * (2 + 3 * dim_));
+  if (kind != kBank) {
+    const int filters = kind == kBankOf010 ? kFiltersOf010 : 6 * NumHypotheses(dim_);
+    const int numbers = filters * (1 + dim_ * (2 + 3 * dim_));
     for (int k = 0; k < numbers; ++k) (void)in->Number();
     return;
   }

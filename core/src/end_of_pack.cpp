@@ -6,12 +6,12 @@ EndOfPack::EndOfPack(const Quantiles& effective, const Quantiles& end, double of
                      double upper) noexcept {
   line_.lower = lower;
   line_.upper = upper;
-  line_.slope = (end[1] - end[0]) / (effective[1] - effective[0]);
+  line_.slope = (end.back() - end.front()) / (effective.back() - effective.front());
   line_.constant = end[0] + offset - line_.slope * (effective[0] + offset);
   double before = line_.slope;
   for (std::size_t k = 0; k < kBends; ++k) {
-    const double slope = (end[k + 2] - end[k + 1]) / (effective[k + 2] - effective[k + 1]);
-    line_.at[k] = effective[k + 1] + offset;
+    const double slope = k + 1 < kBends ? (end[k + 1] - end[k]) / (effective[k + 1] - effective[k]) : line_.slope;
+    line_.at[k] = effective[k] + offset;
     line_.bend[k] = slope - before;
     line_.constant -= line_.bend[k] * line_.at[k];
     before = slope;

@@ -144,4 +144,23 @@ SymmetricEigen EigenOfSymmetric(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKIN
 
 ARMCMC_TRUST_NONBLOCKING_END
 
+void MakeSymmetric(ParamMatrix* m) noexcept ARMCMC_NONBLOCKING {
+  for (Eigen::Index i = 0; i < m->rows(); ++i)
+    for (Eigen::Index j = 0; j < i; ++j) (*m)(i, j) = (*m)(j, i) = 0.5 * ((*m)(i, j) + (*m)(j, i));
+}
+
+bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noexcept ARMCMC_NONBLOCKING {
+  ParamMatrix root;
+  if (!c.allFinite() || !r.allFinite() || !CholeskyFactor(c, &root)) return false;
+  const ParamMatrix inverse = Inverse(root);
+  ParamMatrix relative = Product(Product(inverse, r), inverse.transpose());
+  MakeSymmetric(&relative);
+  const SymmetricEigen eigen = EigenOfSymmetric(relative);
+  if (!eigen.converged || !(eigen.values[0] > 0.0)) return false;
+  ParamMatrix stretched = eigen.vectors;
+  for (Eigen::Index i = 0; i < stretched.cols(); ++i) stretched.col(i) *= std::sqrt(eigen.values[i]);
+  *a = Product(Product(root, Product(stretched, eigen.vectors.transpose())), inverse);
+  return a->allFinite();
+}
+
 }  // namespace armcmc

@@ -179,7 +179,7 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
                               ? sampler_.lambda_q_min
                               : std::clamp(lambda, sampler_.lambda_q_min, sampler_.lambda_q_max);
 
-  may_have_changed_ = lambda < 1.0 - kChanges;
+  may_have_changed_ = lambda < 1.0 - kChanges || lambda * previous.weight[2] > kChanges;
   const bool informed = last.valid && last.informed;  // otherwise the result is complete only after Remember()
   const Nanos fit_start = clock.Now();
   FitLaplace(data, previous, use_previous, stream_of(kStartStream), ws);
@@ -297,9 +297,10 @@ void ModeSampler::Remember(ClockRef clock, SamplerWorkspace* ws, PosteriorMemory
   next->log_noise_scale = log_scale;
   transition_.Accept(*next, out->decision);
   // The more probable posterior may be one that was the less probable one, or new.
-  const bool another = !unfinished_.split && unfinished_.lambda > 0.0 && unfinished_.mass_first < 0.5;
-  drift_.Learn(*unfinished_.data, *next, unfinished_.part, unfinished_.split && next->num_blocks == 2,
-               out->p_changed > 0.5 || another, &ws->laplace);
+  const bool another =
+      !unfinished_.split && unfinished_.lambda > 0.0 && (unfinished_.mass_first < 0.5) != unfinished_.first_changed;
+  drift_.Learn(*unfinished_.data, *next, DrawsForDrift(ws, *out), unfinished_.part,
+               unfinished_.split && next->num_blocks == 2, out->p_changed > 0.5 || another, &ws->laplace);
   if (!out->known) out->known = next->informed;  // if it is already, another thread may be reading the result
   remember_time_.Add(clock.Now() - start, out->draws);
 }

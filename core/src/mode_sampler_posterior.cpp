@@ -123,40 +123,67 @@ void ModeSampler::AppendNoiseScale(int first, int count, const double* weight, M
 }
 
 void ModeSampler::SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcept {
-  // The first block of the memory, the second, or a new draw from P_0.
+  // The first block of the memory, the second, one of an earlier change, or a new draw from P_0.
   Unfinished& u = unfinished_;
   const bool split = drift_.Splits(*u.previous);
   double mass_first = 0.0;
   u.part = drift_.CarriedPart();
+  double changed = u.mass_new;  // now or before
   if (u.lambda > 0.0) {
     const auto offset = static_cast<std::size_t>(u.first);
+    const int count = RoundUpToTile(out->draws - u.first);
     const auto share = [&](const simd::PriorTerms& prior) noexcept ARMCMC_NONBLOCKING {
       std::array<double, 2> masses{};
-      kernels_.share_prior(prior, out->weight + u.first, RoundUpToTile(out->draws - u.first),
-                           ws->first_share.data() + offset, masses.data());
+      kernels_.share_prior(prior, out->weight + u.first, count, ws->first_share.data() + offset, masses.data());
       return masses;
     };
     simd::PriorTerms prior = Prior(*u.previous, u.lambda, u.first, *ws);
+    if (u.previous->num_blocks == 3) {
+      double* const row = &ws->memory[2][offset];  // read for the last time
+      for (int k = 0; k < count; ++k) row[k] = prior.initial_share * prior.initial[k] + prior.memory_share[2] * row[k];
+      prior.initial = row;
+      prior.initial_share = 1.0;
+      prior.memory_share[2] = 0.0;
+    }
     const std::array<double, 2> masses = share(prior);
     u.mass_first = mass_first = masses[0];
-    u.mass_new = masses[1];
-    if (split && u.mass_new >= kMinimumGroup) {
-      // Three parts, of which two can be stored: the new draws from P_0, and the rest as one.
+    u.mass_new = changed = masses[1];
+    if (split && changed >= kMinimumGroup) {
+      // Three parts, of which two can be stored: what changed, and the rest as one.
       std::swap(prior.initial, prior.memory[0]);
       std::swap(prior.initial_share, prior.memory_share[0]);
       u.mass_first = share(prior)[0];
       u.part = Drift::Part::kWhole;
+      u.first_changed = true;
     } else if (split) {
       const bool first = mass_first >= 0.5;
       u.part = first == (drift_.drifting_block() == 0) ? Drift::Part::kDrift : Drift::Part::kRest;
       u.split = true;
     }
   }
-  out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(u.mass_new, 0.0, 1.0);
+  out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(changed, 0.0, 1.0);
   const double kept = 1.0 - out->p_changed;
   const double drifted = drift_.drifting_block() == 0 ? mass_first : kept - mass_first;
   out->p_drifted = split ? std::clamp(drifted, 0.0, kept) : kept * drift_.share();
   out->drift_rate = drift_.rate();
+}
+
+Drift::Draws ModeSampler::DrawsForDrift(SamplerWorkspace* ws, const ModeDraws& draws) const noexcept {
+  const Unfinished& u = unfinished_;
+  const auto offset = static_cast<std::size_t>(u.first);
+  Drift::Draws view{.count = RoundUpToTile(draws.draws - u.first),
+                    .u = {},
+                    .weight = draws.weight + u.first,
+                    .log_likelihood = &ws->log_likelihood[offset],
+                    .share = u.lambda > 0.0 ? &ws->first_share[offset] : nullptr,
+                    .of_part = !u.first_changed,
+                    .part = u.part,
+                    .scratch = &ws->group_weight[offset]};
+  if (drift_.Splits(*u.previous) && !u.first_changed)
+    view.part = drift_.drifting_block() == 0 ? Drift::Part::kDrift : Drift::Part::kRest;
+  for (int d = 0; d < space_.num_parameters; ++d)
+    view.u[static_cast<std::size_t>(d)] = draws.u[static_cast<std::size_t>(d)] + u.first;
+  return view;
 }
 
 void ModeSampler::FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) noexcept {
@@ -183,7 +210,11 @@ void ModeSampler::FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, Mode
   double log_noise_scale = space_.log_noise_scale;
   if (space_.samples_noise_scale())
     log_noise_scale = space_.Theta(dim, sums[2 + static_cast<std::size_t>(dim)] / sums[0]);
-  out->moves = drift_.FindEnd(data, mean, log_noise_scale, out->p_drifted, &ws->laplace, &out->end);
+  const double kept = 1.0 - out->p_changed;
+  double p_drifted = kept > 0.0 ? out->p_drifted / kept : 0.0;
+  out->moves =
+      drift_.FindEnd(data, mean, log_noise_scale, DrawsForDrift(ws, *out), &p_drifted, &ws->laplace, &out->end);
+  out->p_drifted = kept * p_drifted;
 }
 
 void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {

@@ -126,9 +126,11 @@ const double* ModeSampler::GroupWeights(Origin origin, const PosteriorMemory& pr
   const bool two = previous.num_blocks > 1;
   const double share_first = lambda * previous.weight[0] / memory_inside_;
   const double share_second = two ? lambda * previous.weight[1] / memory_inside_ : 0.0;
+  const double share_changed = previous.num_blocks == 3 ? lambda * previous.weight[2] / memory_inside_ : 0.0;
   for (int k = first; k < last; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    const double changed = (1.0 - lambda) * ws->initial_prior[i];
+    const double changed =
+        (1.0 - lambda) * ws->initial_prior[i] + (share_changed > 0.0 ? share_changed * ws->memory[2][i] : 0.0);
     const double of_first = share_first * ws->memory[0][i];
     const double of_second = two ? share_second * ws->memory[1][i] : 0.0;
     const double part = origin == Origin::kChanged ? changed

@@ -69,7 +69,7 @@ void PosteriorMemory::Save(SnapshotWriter* out) const noexcept {
   if (!valid) return;
   out->PutFlag(informed);
   out->Put(std::int64_t{num_blocks});
-  out->PutRow(weight.data(), weight.size());
+  out->PutRow(weight.data(), kStoredBlocks);
   for (std::size_t b = 0; b < static_cast<std::size_t>(num_blocks); ++b) SaveBlock(block[b], tables[b], out);
   out->PutRow(mean.data(), static_cast<std::size_t>(mean.size()));
   out->PutRow(covariance.data(), static_cast<std::size_t>(covariance.size()));
@@ -80,8 +80,9 @@ void PosteriorMemory::Restore(int dim, const MarginalTable& shared, SnapshotRead
   valid = in->Flag();
   if (!valid) return;
   informed = in->Flag();
-  num_blocks = static_cast<int>(in->Integer(1, kMaxBlocks));
-  in->Row(weight.data(), weight.size());
+  num_blocks = static_cast<int>(in->Integer(1, kStoredBlocks));
+  weight = {};
+  in->Row(weight.data(), kStoredBlocks);
   double total = 0.0;
   for (std::size_t b = 0; b < static_cast<std::size_t>(num_blocks); ++b) {
     in->Require(weight[b] >= 0.0);

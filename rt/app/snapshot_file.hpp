@@ -28,8 +28,8 @@ struct Snapshot {
   std::vector<std::byte> adjusted, executed;
 };
 
-inline constexpr std::uint32_t kSnapshotVersion = 4;
-/// Also read. Of a snapshot of version 3 the drift of the parameters is left out, and estimated anew.
+inline constexpr std::uint32_t kSnapshotVersion = 5;
+/// Also read. Of a snapshot of version 3 or 4 the drift of the parameters is left out, and estimated anew.
 inline constexpr std::uint32_t kOldestSnapshotVersion = 3;
 
 [[nodiscard]] std::vector<std::byte> EncodeSnapshot(const Snapshot& snapshot);

@@ -31,8 +31,10 @@ class Bank {
     posterior.covariance << 0.04, -0.03, 0.004, -0.03, 0.05, 0.001, 0.004, 0.001, 0.002;
     SetElliptic(posterior.mean, posterior.covariance, 1.0, &normal_, &posterior.block[0]);
     scratch_ = std::make_unique<LaplaceScratch>();
-    drift.Learn(data, posterior, Drift::Part::kRest, false, true, scratch_.get());
+    LearnAgain();
   }
+
+  void LearnAgain() { drift.Learn(data, posterior, {}, Drift::Part::kRest, false, true, scratch_.get()); }
 
   const PosteriorMemory& Carry() { return drift.Carry(data, posterior, scratch_.get()); }
 
@@ -102,10 +104,46 @@ TEST(DriftPrior, DensitiesAreThoseOfTheirDraws) {
 TEST(DriftPrior, IsThePosteriorItselfWhereDriftIsImprobable) {
   Bank bank(0.5 * Drift::kNegligible);
   bank.data.time_s = 0.1;
-  EXPECT_EQ(&bank.Carry(), &bank.posterior);
+  const PosteriorMemory& rests = bank.Carry();
+  EXPECT_FALSE(bank.drift.Splits(rests));
+  ASSERT_EQ(rests.num_blocks, 1);
+  // With the moments that the bank has, which are those of the posterior here.
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(rests.mean[i], bank.posterior.mean[i], 1e-12);
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(rests.covariance(i, j), bank.posterior.covariance(i, j), 1e-12);
+  }
+  const std::array<double, 3> u{0.5, -0.3, 0.25};
+  EXPECT_NEAR(rests.block[0].Density(u.data()) / bank.posterior.block[0].Density(u.data()), 1.0, 1e-9);
   Bank never(0.0);
   never.data.time_s = 1e6;
   EXPECT_EQ(&never.Carry(), &never.posterior);
+}
+
+TEST(DriftPrior, KeepsWhatMayHaveChangedBesideRestAndDrift) {
+  Bank bank(0.3);
+  PosteriorMemory& last = bank.posterior;
+  last.num_blocks = 2;
+  last.weight = {0.9, 0.1};
+  ParamVector changed = last.mean;
+  changed[0] += 3.0;
+  SetElliptic(changed, last.covariance, 1.0, &MarginalTable::Normal(), &last.block[1]);
+  bank.LearnAgain();
+  bank.data.time_s = 1.0;
+  const PosteriorMemory& carried = bank.Carry();
+  ASSERT_TRUE(bank.drift.Splits(carried));
+  ASSERT_EQ(carried.num_blocks, 3);
+  EXPECT_NEAR(carried.weight[0], 0.9 * 0.7, 1e-12);
+  EXPECT_NEAR(carried.weight[1], 0.9 * 0.3, 1e-12);
+  EXPECT_NEAR(carried.weight[2], 0.1, 1e-12);
+  const ParamVector mean = MeanOf(carried.block[2]);
+  const ParamMatrix covariance = CovarianceOf(carried.block[2]);
+  const ParamMatrix whole = carried.covariance;
+  for (int d = 0; d < 3; ++d) {
+    EXPECT_NEAR(mean[d], changed[d], 1e-6);
+    // Drift may have set in there, too.
+    EXPECT_NEAR(covariance(d, d), whole(d, d), 1e-6);
+    EXPECT_GT(covariance(d, d), last.covariance(d, d));
+  }
 }
 
 TEST(DriftPrior, NeverGetsWiderThanTheInitialOne) {

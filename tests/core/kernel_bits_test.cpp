@@ -116,12 +116,24 @@ std::uint64_t OfWeightsAndMoments(const simd::Kernels& kernels) {
   return checksum.sum();
 }
 
+std::uint64_t OfTilts(const simd::Kernels& kernels) {
+  Checksum checksum;
+  std::vector<double> weight(kCount, 1.0);
+  const std::vector<double> log_likelihood = Values(10, -3.0, 3.0), u0 = Values(11, -2.0, 2.0),
+                            u1 = Values(12, -1.0, 1.0);
+  const std::array<const double*, 2> u = {u0.data(), u1.data()};
+  kernels.tilt(test::kControl, u.data(), log_likelihood.data(), kCount, weight.data());
+  checksum.AddAll(weight);
+  return checksum.sum();
+}
+
 // The checksums were taken on x86-64; AArch64, and every other compiler, has to give the same.
 TEST(KernelBits, AreThoseOfEveryArchitectureThatFusesMultiplyAndAdd) {
   for (const simd::Kernels* kernels : test::FusedKernels()) {
     EXPECT_EQ(OfElementaryFunctions(*kernels), 0x99745fb8a90712d3ULL) << kernels->name;
     EXPECT_EQ(OfPredictionsAndScores(*kernels), 0x61f7f5dd9d0e909aULL) << kernels->name;
     EXPECT_EQ(OfWeightsAndMoments(*kernels), 0x587a0f7c46adfab7ULL) << kernels->name;
+    EXPECT_EQ(OfTilts(*kernels), 0x70d733b804c9f016ULL) << kernels->name;
   }
 }
 
@@ -130,6 +142,7 @@ TEST(KernelBits, AreThoseOfEveryArchitectureWithoutFusedOperations) {
   EXPECT_EQ(OfElementaryFunctions(kernels), 0x9eb81cc9c7c51e01ULL);
   EXPECT_EQ(OfPredictionsAndScores(kernels), 0xd75456497b3a1426ULL);
   EXPECT_EQ(OfWeightsAndMoments(kernels), 0x165a322c78673aaaULL);
+  EXPECT_EQ(OfTilts(kernels), 0x53d5a32a1c263059ULL);
 }
 
 }  // namespace

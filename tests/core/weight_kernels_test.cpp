@@ -89,6 +89,36 @@ TEST(ReweighKernel, MultipliesByTheQuadraticControlAndNeverBelowZero) {
   }
 }
 
+TEST(TiltKernel, PutsTheQuadraticInThePlaceOfTheLogLikelihood) {
+  const std::vector<double> u0 = Normals(4), u1 = Normals(5), before = Normals(7);
+  std::vector<double> log_likelihood = Normals(6);
+  log_likelihood[3] = -1e4;  // beyond what an exponent may be
+  log_likelihood[8] = std::nan("");
+  log_likelihood[9] = -HUGE_VAL;
+  const double* const u[] = {u0.data(), u1.data()};
+  std::vector<double> fused;
+  for (const simd::Kernels* kernels : test::RunnableKernels()) {
+    std::vector<double> weight = before;
+    weight[3] = weight[8] = weight[9] = 1.0;
+    kernels->tilt(test::kControl, u, log_likelihood.data(), kCount, weight.data());
+    for (std::size_t k = 0; k < kCount; ++k) {
+      const double a = u0[k] - 0.1, b = u1[k] + 0.4;
+      const double q = 0.3 - 0.7 * a + 0.2 * b + 0.15 * a * a - 0.3 * a * b + 0.05 * b * b;
+      const double expected = std::isfinite(log_likelihood[k]) && k != 3
+                                  ? std::fmax(before[k], 0.0) * std::exp(q - log_likelihood[k])
+                                  : 0.0;
+      if (k == 3) {
+        EXPECT_NEAR(weight[k] / std::exp(simd::kMostTilt), 1.0, 1e-9) << kernels->name;
+      } else {
+        ASSERT_NEAR(weight[k], expected, 1e-9 * expected) << kernels->name << " " << k;
+      }
+    }
+    if (kernels == &simd::kPortableKernels) continue;
+    if (fused.empty()) fused = weight;
+    EXPECT_EQ(fused, weight) << kernels->name;
+  }
+}
+
 TEST(ChooseKernel, CountsTheBoundsThatAreNotAbove) {
   RandomStream stream(1, 2, 3);
   std::vector<double> pick(kCount);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -34,10 +35,15 @@ TEST_F(LiveModel, TheEstimatorRunsItAndFindsTheHiddenEffect) {
   Finish(estimator.get());
   // A shorter run has a stronger effect for the same gap: the one that was played last.
   const double truth = ReadJson(dir_ / "truth.json")["effects"][0]["parameters"]["force"]["value"];
-  const estimate_t last = recorder_->estimates().back();
+  const std::vector<estimate_t> estimates = recorder_->estimates();
+  const estimate_t& last = estimates.back();
   ASSERT_EQ(last.n_params, 4);
   EXPECT_THAT(reinterpret_cast<const char*>(last.param_name[3]), ::testing::StartsWith("force_bias"));
-  EXPECT_NEAR(last.ar_map[3], truth, 0.05 * std::abs(truth));
+  // The median of half a second: the sensors are noisy, too, and a single pack may look like a change.
+  std::vector<double> force;
+  for (std::size_t k = estimates.size() - 5; k < estimates.size(); ++k) force.push_back(estimates[k].ar_map[3]);
+  std::sort(force.begin(), force.end());
+  EXPECT_NEAR(force[2], truth, 0.05 * std::abs(truth));
 
   // The same model on the recorded run, by the replay: the same numbers to the bit.
   const Outcome replay = RunProgram(

@@ -60,7 +60,7 @@ TEST(SnapshotFile, RefusesWhatItDoesNotKnowAndSaysWhy) {
   EXPECT_EQ(Refusal(damaged), "is damaged: its first bytes are wrong");
   auto foreign = good;
   foreign[8] = std::byte{99};
-  EXPECT_EQ(Refusal(foreign), "has version 99 of a newer program, expected 4");
+  EXPECT_EQ(Refusal(foreign), "has version 99 of a newer program, expected 5");
   EXPECT_EQ(Refusal(good, kIdentity + 1), "belongs to another model, or to other priors, bounds or noise");
 }
 

@@ -239,6 +239,7 @@ struct Difference {
   double worst_mean = 0.0, worst_sd = 0.0;
   double share = 0.0;  ///< Of the probability of drift, while nothing is taken for changed.
   int modifications = 0;
+  int far = 0;  ///< Packs with more than .05 standard deviations, or 3 %.
 };
 
 /// At rest, then a drift, which goes on through a jump, and stops.
@@ -278,6 +279,7 @@ Difference DifferenceInARun(std::uint64_t noise_seed) {
     const double wider = e.marginal[0].is_sd / exact.Sd() - 1.0;
     d.mean += off * off / kPacks;
     d.sd += wider * wider / kPacks;
+    d.far += std::fabs(off) > 0.05 || std::fabs(wider) > 0.03 ? 1 : 0;
     d.worst_mean = std::fmax(d.worst_mean, std::fabs(off));
     d.worst_sd = std::fmax(d.worst_sd, std::fabs(wider));
     if (e.decision == Decision::kReinforcement) d.share = std::fmax(d.share, std::fabs(e.p_drifted - exact.Drifting()));
@@ -287,39 +289,34 @@ Difference DifferenceInARun(std::uint64_t noise_seed) {
   return d;
 }
 
-void Record(const Difference& d) {
-  ::testing::Test::RecordProperty("mean_sd", std::to_string(d.mean));
-  ::testing::Test::RecordProperty("sd_relative", std::to_string(d.sd));
-  ::testing::Test::RecordProperty("worst_mean_sd", std::to_string(d.worst_mean));
-  ::testing::Test::RecordProperty("worst_sd_relative", std::to_string(d.worst_sd));
-  ::testing::Test::RecordProperty("share", std::to_string(d.share));
+void Record(std::uint64_t noise_seed, const Difference& d) {
+  const auto record = [&](const char* what, double value) {
+    ::testing::Test::RecordProperty(what + ("_" + std::to_string(noise_seed)), std::to_string(value));
+  };
+  record("mean_sd", d.mean);
+  record("sd_relative", d.sd);
+  record("worst_mean_sd", d.worst_mean);
+  record("worst_sd_relative", d.worst_sd);
+  record("share", d.share);
+  record("far", d.far);
 }
 
 TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
-  const Difference d = DifferenceInARun(31);
-  Record(d);
-  // A hundredth of it each is that of some thousand draws.
-  EXPECT_LT(d.mean, 0.025);
-  EXPECT_LT(d.sd, 0.02);
-  EXPECT_LT(d.worst_mean, 0.08);
-  EXPECT_LT(d.worst_sd, 0.07);
-  EXPECT_LT(d.share, 0.06);
-  EXPECT_EQ(d.modifications, 2);
-}
-
-// The run above is a good one. In that of seed 34 the difference begins with a pack that leaves a change 1.5 %
-// probable, and lasts for two seconds.
-TEST(DriftFilter, StaysNearEveryHistoryInOtherRuns) {
-  for (const std::uint64_t noise_seed : {32U, 33U, 34U}) {
+  int far = 0;
+  for (const std::uint64_t noise_seed : {31U, 32U, 33U, 34U, 35U, 36U, 37U, 38U}) {
     const Difference d = DifferenceInARun(noise_seed);
-    Record(d);
-    EXPECT_LT(d.mean, 0.08) << noise_seed;
-    EXPECT_LT(d.sd, 0.08) << noise_seed;
-    EXPECT_LT(d.worst_mean, 0.3) << noise_seed;
-    EXPECT_LT(d.worst_sd, 0.3) << noise_seed;
-    EXPECT_LT(d.share, 0.2) << noise_seed;
+    Record(noise_seed, d);
+    // A hundredth of it each is that of some thousand draws.
+    EXPECT_LT(d.mean, 0.015) << noise_seed;
+    EXPECT_LT(d.sd, 0.015) << noise_seed;
+    EXPECT_LT(d.worst_mean, 0.08) << noise_seed;
+    EXPECT_LT(d.worst_sd, 0.06) << noise_seed;
+    EXPECT_LT(d.share, 0.05) << noise_seed;
     EXPECT_EQ(d.modifications, 2) << noise_seed;
+    far += d.far;
   }
+  // Packs in which the mean is more than .05 standard deviations away, or the standard deviation more than 3 % off.
+  EXPECT_LE(far, 8 * kPacks / 100);
 }
 
 }  // namespace

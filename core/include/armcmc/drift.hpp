@@ -19,7 +19,8 @@ class SnapshotReader;
 class SnapshotWriter;
 namespace simd {
 struct Kernels;
-}
+struct QuadraticControl;
+}  // namespace simd
 
 /// Drift of the parameters of one mode, learnt from the packs.
 ///
@@ -52,9 +53,12 @@ struct Kernels;
 ///   pack     log L(v) = a' (v - m) - (v - m)' H (v - m) / 2 about the posterior mean m, H the Fisher information;
 ///            pi_h times the evidence of that, with every filter updated by the same a, H, m
 ///   sampled  the sampled part (rest, drift, or the whole bank) is corrected by the affine map from the posterior
-///            according to this expansion to the sampled posterior; for a linear law that is the identity. A part that
-///            was not sampled keeps the result of its own filters: the draws of a part that the data refute carry no
-///            information about it
+///            according to this expansion to the sampled posterior. Both are taken from the same draws, whose weights
+///            exp(expansion - log L) turn from the one into the other: chance cancels, and for a linear law the map is
+///            the identity, so that nothing of the sampling error is handed on. What the draws under the expansion
+///            differ from the filters by more than chance is real, too: the prior that was sampled is no Gaussian. The
+///            probability of drift is corrected by the odds of the same draws. A part that was not sampled keeps the
+///            result of its own filters: the draws of a part that the data refute carry no information about it
 ///
 /// Effective parameters. With the lagged sums of LocalLikelihood the log-likelihood in (v, w) is
 ///
@@ -68,13 +72,14 @@ struct Kernels;
 /// drifting parameters miss the truth. Posteriors that are stored, and the draws, are of effective parameters; the bank
 /// between packs and what is published (EndOfPack) are of those at the end of the pack. What rests has v = u.
 ///
-/// Published are the draws, moved (EndOfPack) from the distribution that the expansion makes of the prior that was
-/// sampled to that of the bank at the end of the pack; for a linear law the bank itself. The bank knows more than this
-/// prior, in which rest and the drifts of several parameters are a Gaussian each: where one of several drifts alone,
-/// the others have a narrow distribution with wide tails.
+/// Published are the draws, moved (EndOfPack) from their distribution under the expansion to that of the bank at the
+/// end of the pack; for a linear law the bank itself. The bank knows more than the prior that was sampled, in which
+/// rest and the drifts of several parameters are a Gaussian each: where one of several drifts alone, the others have a
+/// narrow distribution with wide tails.
 ///
 /// While the memory is two posteriors, without and with a change, the bank is that of the more probable one. It starts
-/// again, with the rates that it knows, whenever the other one becomes that.
+/// again, with the rates that it knows, whenever the other one becomes that. The other one is carried on as a third
+/// part, which time moves and widens as it does the bank.
 ///
 /// A sampled posterior is stored as two densities, rest and drift, with each draw weighted by the probability that it
 /// came from that part; if one of them is improbable or has too few draws, a single density P is stored. Before the
@@ -86,8 +91,8 @@ struct Kernels;
 /// mean and covariance that the bank has for rest; like P it can be drawn from and evaluated. P_drift is the mixture of
 /// the hypotheses for one parameter, and for several the Gaussian with the same moments: if the shape of P, narrower
 /// than a Gaussian in its core, were passed on from pack to pack, each posterior would narrow the bank a little more.
-/// (With a sampled noise scale P_drift is an affine map of P, too.) While drift is improbable (kNegligible), P is
-/// unchanged to the bit.
+/// (With a sampled noise scale P_drift is an affine map of P, too.) While drift is improbable (kNegligible), P_rest is
+/// the prior.
 ///
 /// The noise scale is not a coordinate of the bank: its memory is wide enough (ModeSampler::AppendNoiseScale).
 class Drift {
@@ -103,7 +108,7 @@ class Drift {
   static constexpr double kNegligible = 0.01;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kFirstAlone = 1 + static_cast<int>(kTogether.size());
   static constexpr int kHypotheses = kFirstAlone + kMaxParams;  ///< At most.
-  static constexpr int kSlots = 6;                              ///< Filters of a hypothesis.
+  static constexpr int kSlots = 8;                              ///< Filters of a hypothesis.
   static constexpr int kFilters = kSlots * kHypotheses;
   static constexpr int kMostSteps = 8;  ///< Of a time without data.
 
@@ -156,14 +161,28 @@ class Drift {
   /// Which block of a memory that is split drifts.
   [[nodiscard]] int drifting_block() const noexcept { return drifting_block_; }
 
+  /// Draws of a pack, of effective parameters: they tell how the posterior differs from that under the expansion.
+  struct Draws {
+    int count = 0;  ///< Rows are padded to whole vectors, with a weight of 0.
+    std::array<const double*, kMaxParams> u{};
+    const double* weight = nullptr;
+    const double* log_likelihood = nullptr;
+    const double* share = nullptr;  ///< Posterior probability that a draw is of `part`, or is of what changed.
+    bool of_part = true;            ///< The former.
+    Part part = Part::kWhole;
+    double* scratch = nullptr;  ///< As long as the rows.
+  };
+
   /// After Carry(): from the effective parameters of the pack to those at its end.
   /// @param mean       Of the effective parameters.
-  /// @param p_drifted  Posterior probability that the parameters drift.
+  /// @param p_drifted  Probability that parameters that have not changed drift, as sampled. Becomes that of the bank,
+  /// which has the hypotheses one by one, corrected by what the draws tell of the expansion.
   /// @param[out] end   Of each parameter.
   /// @return false where nothing moves, and the rest is not set.
   /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
-  bool FindEnd(const ModeData& data, const ParamVector& mean, double log_noise_scale, double p_drifted,
-               LaplaceScratch* scratch, std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING;
+  bool FindEnd(const ModeData& data, const ParamVector& mean, double log_noise_scale, const Draws& draws,
+               double* p_drifted, LaplaceScratch* scratch,
+               std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING;
 
   /// The same where the parameters did not come from where they were: with the velocities that were expected before the
   /// pack, which Learn() then starts again with, too.
@@ -178,7 +197,7 @@ class Drift {
   /// @param renewed  The parameters did not come from where they were: the bank starts again around `next`, with the
   /// rates that it knows.
   /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
-  void Learn(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
+  void Learn(const ModeData& data, const PosteriorMemory& next, const Draws& draws, Part part, bool both, bool renewed,
              LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
 
   /// As of the last Carry(): probability of drift before the pack, and the expected rate of each parameter, prior
@@ -189,7 +208,7 @@ class Drift {
   void Forget() noexcept ARMCMC_NONBLOCKING;
   /// Asks for what Carry() reads to be in the cache. @rt O(hypotheses dim^2).
   void Prefetch() const noexcept ARMCMC_NONBLOCKING;
-  /// For Restore(), which is bit-identical; a bank of version 0.1.0, of other hypotheses, is passed over.
+  /// For Restore(), which is bit-identical; a bank of other hypotheses or of fewer slots is passed over.
   void Save(SnapshotWriter* out) const noexcept ARMCMC_NONBLOCKING;
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
@@ -265,10 +284,36 @@ class Drift {
   /// Marginal d of the filters of a part.
   static void AddFilters(const Bank& bank, Part part, int d, Mixture* to) noexcept ARMCMC_NONBLOCKING;
   /// The bank after a pack.
-  void UpdateBank(const ModeData& data, const PosteriorMemory& next, Part part, bool both, bool renewed,
-                  LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
-  /// Moves and stretches the filters of the sampled part to where it was sampled.
-  bool Recentre(const Sampled& sampled) noexcept ARMCMC_NONBLOCKING;
+  void UpdateBank(const ModeData& data, const PosteriorMemory& next, const Draws& draws, Part part, bool both,
+                  bool renewed, LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
+  /// The expansion of a part, for Kernels::tilt.
+  [[nodiscard]] simd::QuadraticControl ControlOf(const Sampled& sampled,
+                                                 const Draws& draws) const noexcept ARMCMC_NONBLOCKING;
+  /// Gives what drifts the probability p.
+  void SetShare(double p) noexcept ARMCMC_NONBLOCKING;
+  /// Probability of drift after a pack, by the bank and what the draws differ from the expansion.
+  /// @param tilted  The scratch of the draws has their weights under the expansion.
+  [[nodiscard]] double CorrectedShare(const Draws& draws, bool tilted,
+                                      double as_sampled) const noexcept ARMCMC_NONBLOCKING;
+  /// The weights in the scratch of the draws, as if the expansion were the likelihood.
+  /// @return By what factor the number of effective draws changes; 0 if they are too few.
+  double Tilt(const Sampled& sampled, const Draws& draws, int count) const noexcept ARMCMC_NONBLOCKING;
+  /// Quantiles of the parameters that have not changed, by the weights in the scratch of the draws.
+  [[nodiscard]] EndOfPack::Quantiles QuantilesByDraws(const Draws& draws, int d, double mean,
+                                                      double sd) const noexcept ARMCMC_NONBLOCKING;
+  /// Of the draws by the weights in their scratch; `weight` is the effective number.
+  [[nodiscard]] Moments MomentsOfDraws(const Draws& draws, int count) const noexcept ARMCMC_NONBLOCKING;
+  /// Where the filters of a sampled part belong.
+  /// @param closed  Where the expansion puts them.
+  bool TargetByDraws(const Sampled& sampled, const Draws& draws, const Moments& closed,
+                     Moments* target) const noexcept ARMCMC_NONBLOCKING;
+  /// Moves and stretches the filters of the sampled part by what the posterior differs from that under the expansion.
+  bool Recentre(const Sampled& sampled, const Draws& draws) noexcept ARMCMC_NONBLOCKING;
+  /// Block `to` of what is carried on: `source`, of which the parameters x become centre + map (x - from).
+  bool Place(const DensityBlock& source, const ParamMatrix& map, const ParamVector& from, const ParamVector& centre,
+             int to) noexcept ARMCMC_NONBLOCKING;
+  /// Block `to` of what is carried on: that of a change, which time moves and widens as it does the bank.
+  bool MoveChanged(const PosteriorMemory& last, const Moments& from, int to) noexcept ARMCMC_NONBLOCKING;
   /// Block `to` of what is carried on: a block of `last`, moved and stretched as from `from` to a part of the bank.
   bool Move(const PosteriorMemory& last, Part part, const Moments& from, int block, int to) noexcept ARMCMC_NONBLOCKING;
   /// Block `to` of what is carried on, of one parameter: the mixture of the hypotheses that drift.
@@ -295,6 +340,7 @@ class Drift {
   ParamMatrix lead_;    ///< T of that pack, s.
   bool leads_ = false;  ///< It is not zero.
   double share_ = 0.0;
+  double p_drifted_ = 0.0;  ///< After FindEnd(): posterior probability of drift. Negative: as sampled.
   std::array<double, kMaxParams> rate_{};
   Part fitted_ = Part::kRest;  ///< What the posterior's first block was fitted to.
   bool both_ = false;          ///< Its second block is the other part.

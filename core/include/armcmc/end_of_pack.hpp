@@ -12,7 +12,8 @@ namespace armcmc {
 /// Where a parameter is at the end of a pack in which it moves, given the effective one (Drift), both in standardised
 /// coordinates: u = G^-1(F(v)), if F is the distribution of the effective parameter v and G of the one at the end.
 ///
-/// Piecewise linear between quantiles q_k of F and the same quantiles of G, and increasing:
+/// Piecewise linear between quantiles q_k of F and the same quantiles of G, and increasing; beyond them with the slope
+/// that it has on average between the outermost:
 ///
 ///   u = c + s v + sum_k b_k max(v, q_k),   within the bounds of the parameter
 ///
@@ -24,16 +25,18 @@ class EndOfPack {
     double p, z;
   };
   /// Of the quantiles. The published ones are among them.
-  static constexpr std::array<Level, 7> kLevels{{{0.001, -3.090232306167813},
+  static constexpr std::array<Level, 9> kLevels{{{0.001, -3.090232306167813},
+                                                 {0.005, -2.575829303548901},
                                                  {0.025, -1.959963984540054},
                                                  {0.25, -0.674489750196082},
                                                  {0.5, 0.0},
                                                  {0.75, 0.674489750196082},
                                                  {0.975, 1.959963984540054},
+                                                 {0.995, 2.575829303548901},
                                                  {0.999, 3.090232306167813}}};
   using Quantiles = std::array<double, kLevels.size()>;
-  /// The quantiles at which the slope changes: all but the first and the last.
-  static constexpr std::size_t kBends = kLevels.size() - 2;
+  /// The slope changes at all of them.
+  static constexpr std::size_t kBends = kLevels.size();
 
   /// The numbers of the equation.
   struct Line {

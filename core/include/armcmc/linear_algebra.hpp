@@ -63,4 +63,9 @@ struct SymmetricEigen {
 };
 [[nodiscard]] SymmetricEigen EigenOfSymmetric(const ParamMatrix& a) noexcept ARMCMC_NONBLOCKING;
 
+/// (A + A') / 2.
+void MakeSymmetric(ParamMatrix* a) noexcept ARMCMC_NONBLOCKING;
+/// A with A C A' = R for two covariances. @return false if C or R is none.
+[[nodiscard]] bool MapBetween(const ParamMatrix& c, const ParamMatrix& r, ParamMatrix* a) noexcept ARMCMC_NONBLOCKING;
+
 }  // namespace armcmc

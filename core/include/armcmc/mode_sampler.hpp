@@ -31,6 +31,8 @@ struct Kernels;
 struct PriorTerms;
 }  // namespace simd
 
+inline constexpr int kPilotBlocks = 2;  ///< Parts of the posterior that the pilot's draws are fitted with, at most.
+
 /// Scratch of one adjust step, sized once and shared by the modes, which are adjusted one after the other.
 class SamplerWorkspace {
  public:
@@ -51,7 +53,7 @@ class SamplerWorkspace {
   PowerSeries powers;
   std::array<std::vector<double>, kMaxParams> mismatch_u;
   PredictiveMoments predictive;
-  std::array<std::array<MarginalTable, kMaxParams>, PosteriorMemory::kMaxBlocks> pilot_tables;
+  std::array<std::array<MarginalTable, kMaxParams>, kPilotBlocks> pilot_tables;
   std::array<ModeData, kMaxModes> data;  ///< Of the pack; read until Remember().
 };
 
@@ -145,6 +147,7 @@ class ModeSampler {
     double lambda = 0.0;                      ///< Its share in the prior.
     int first = 0;                            ///< Draw that counts, after the pilot.
     double mass_first = 0.0, mass_new = 0.0;  ///< Of the first block of `previous`, and of what was drawn anew.
+    bool first_changed = false;               ///< mass_first and first_share are of what changed, now or before.
     /// What was carried on through time is rest and drift in two blocks: the more probable is handed on, and the other
     /// unless it is improbable.
     bool split = false;
@@ -233,6 +236,9 @@ class ModeSampler {
                 ModeDraws* out) const noexcept ARMCMC_NONBLOCKING;
   /// Where the draws' prior came from: fills first_share and the masses of what is unfinished.
   void SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
+  /// The draws of what is unfinished.
+  [[nodiscard]] Drift::Draws DrawsForDrift(SamplerWorkspace* ws,
+                                           const ModeDraws& draws) const noexcept ARMCMC_NONBLOCKING;
   /// Where the draws are of effective parameters: what those at the end of the pack are (ModeDraws::moves).
   void FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
   void Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept ARMCMC_NONBLOCKING;
@@ -269,9 +275,9 @@ class ModeSampler {
   DensityBlock laplace_fresh_;
   std::array<DensityBlock, PosteriorMemory::kMaxBlocks> laplace_persisted_;  ///< One for each change in part, else one.
   int num_persisted_ = 0;
-  std::array<DensityBlock, PosteriorMemory::kMaxBlocks> pilot_blocks_;
-  std::array<DensityBlock, PosteriorMemory::kMaxBlocks> tail_blocks_;  ///< With heavier tails, where they are bent.
-  int laplace_fits_ = 1;                                               ///< That FitLaplace made.
+  std::array<DensityBlock, kPilotBlocks> pilot_blocks_;
+  std::array<DensityBlock, kPilotBlocks> tail_blocks_;  ///< With heavier tails, where they are bent.
+  int laplace_fits_ = 1;                                ///< That FitLaplace made.
   bool pilot_lacks_ = false;  ///< A part of the pilot's draws was too small for a block of its own.
   Gaussian fit_fresh_, fit_persisted_;
   std::array<RidgeAnchor, kRidgeAnchors> anchors_;

@@ -67,7 +67,7 @@ class NormalMixture {
   }
 
  private:
-  static constexpr double kSmall = 0.02;
+  static constexpr double kSmall = 0.002;
   static constexpr double kTolerance = 0.05;
   static constexpr int kIterations = 20;
   struct Law {

@@ -14,10 +14,12 @@ class SnapshotWriter;
 
 /// The posterior of one mode, compressed to what the next pack of that mode needs: drawable, with a density.
 ///
-/// Up to two blocks: the parameters that persisted and, after a suspected change, those drawn anew. Each block is
-/// unimodal; together they are not.
+/// Up to two blocks: the parameters that persisted, at rest and drifting or as one, and, after a suspected change,
+/// those drawn anew. Each block is unimodal; together they are not. In the prior of a pack all three may have one
+/// (Drift).
 struct PosteriorMemory {
-  static constexpr int kMaxBlocks = 2;
+  static constexpr int kMaxBlocks = 3;
+  static constexpr int kStoredBlocks = 2;  ///< After a pack.
 
   PosteriorMemory() = default;
   PosteriorMemory(const PosteriorMemory&) = delete;  // blocks point into `tables`

@@ -20,12 +20,14 @@ inline constexpr int kMaxMomentRows = 10;
 /// prior_t at scored candidates: initial_share P_0 + sum_b memory_share[b] (density of block b of the memory).
 struct PriorTerms {
   const double* initial = nullptr;
-  const double* memory[2] = {};  ///< Readable also where the share is 0.
+  const double* memory[3] = {};  ///< Readable also where the share is 0.
   double initial_share = 1.0;
-  double memory_share[2] = {};
+  double memory_share[3] = {};
 };
 
-/// See Kernels::reweigh.
+inline constexpr double kMostTilt = 30.0;
+
+/// See Kernels::reweigh, tilt.
 struct QuadraticControl {
   int dim = 0;
   double most = 1.0;
@@ -164,6 +166,11 @@ struct Kernels {
   /// P_0)} with weights padded by 0.
   void (*share_prior)(const PriorTerms& prior, const double* weight, int count, double* first_share,
                       double* sums) noexcept ARMCMC_NONBLOCKING;
+
+  /// weight[k] *= exp(q(u[., k]) - log_likelihood[k]), q = constant + (slope + curvature z)' z with z = u - centre: as
+  /// if q were the log-likelihood. An exponent beyond +-kMostTilt is held there; a weight of 0 stays 0. count as above.
+  void (*tilt)(const QuadraticControl& control, const double* const* u, const double* log_likelihood, int count,
+               double* weight) noexcept ARMCMC_NONBLOCKING;
 
   /// out[k] = value[k] / by; out may be value. count a multiple of 8.
   void (*divide)(const double* value, double by, int count, double* out) noexcept ARMCMC_NONBLOCKING;

@@ -18,8 +18,10 @@ double LargestInside(const double* value, const double* inside, int count) noexc
 }
 
 V PriorFromMemory(const PriorTerms& prior, int k) noexcept {
-  return Simd::Fma(Simd::Set(prior.memory_share[1]), Simd::Load(prior.memory[1] + k),
-                   Simd::Set(prior.memory_share[0]) * Simd::Load(prior.memory[0] + k));
+  const V two = Simd::Fma(Simd::Set(prior.memory_share[1]), Simd::Load(prior.memory[1] + k),
+                          Simd::Set(prior.memory_share[0]) * Simd::Load(prior.memory[0] + k));
+  return prior.memory_share[2] > 0.0 ? Simd::Fma(Simd::Set(prior.memory_share[2]), Simd::Load(prior.memory[2] + k), two)
+                                     : two;
 }
 
 void Weigh(const PriorTerms& prior, const double* proposal, int count, double* weight) noexcept ARMCMC_NONBLOCKING {
@@ -100,20 +102,37 @@ void MoveToEnd(const EndOfPack& end, const double* v, int count, double* u) noex
   }
 }
 
+V Quadratic(const QuadraticControl& control, const double* const* u, int at) noexcept {
+  V z[kMaxParams];
+  V sum = Simd::Set(control.constant);
+  for (int i = 0; i < control.dim; ++i) {
+    z[i] = Simd::Load(u[i] + at) - Simd::Set(control.centre[i]);
+    V slope = Simd::Set(control.slope[i]);
+    for (int j = 0; j <= i; ++j) slope = Simd::Fma(Simd::Set(control.curvature[i][j]), z[j], slope);
+    sum = Simd::Fma(slope, z[i], sum);
+  }
+  return sum;
+}
+
+void Tilt(const QuadraticControl& control, const double* const* u, const double* log_likelihood, int count,
+          double* weight) noexcept ARMCMC_NONBLOCKING {
+  const V most = Simd::Set(kMostTilt);
+  for (int k = 0; k < count; k += Simd::kLanes) {
+    const V apart = Quadratic(control, u, k) - Simd::Load(log_likelihood + k);
+    const V held = Simd::Min(Simd::Max(apart, -most), most);
+    const V w = Simd::Load(weight + k);
+    const Simd::I usable = (w > V{}) & (apart - apart == V{});
+    Simd::Store(weight + k, Simd::Select(usable, w * Simd::Exp2(held * Simd::Set(kLog2E)), V{}));
+  }
+}
+
 double Reweigh(const QuadraticControl& control, const double* const* u, const double* g, int count,
                double* weight) noexcept ARMCMC_NONBLOCKING {
   Sums<1> sum;
   for (int k = 0; k < count; k += 8)
     for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
       const int at = k + static_cast<int>(p) * Simd::kLanes;
-      V z[kMaxParams];
-      V inner = Simd::Set(control.constant);
-      for (int i = 0; i < control.dim; ++i) {
-        z[i] = Simd::Load(u[i] + at) - Simd::Set(control.centre[i]);
-        V slope = Simd::Set(control.slope[i]);
-        for (int j = 0; j <= i; ++j) slope = Simd::Fma(Simd::Set(control.curvature[i][j]), z[j], slope);
-        inner = Simd::Fma(slope, z[i], inner);
-      }
+      const V inner = Quadratic(control, u, at);
       const V factor = Simd::Max(Simd::Fma(-Simd::Load(g + at), inner, Simd::Set(control.most)), V{});
       const V w = Simd::Load(weight + at) * factor;
       Simd::Store(weight + at, w);

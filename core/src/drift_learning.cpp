@@ -1,0 +1,303 @@
+// What the bank learns from a pack.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "armcmc/drift.hpp"
+#include "armcmc/linear_algebra.hpp"
+#include "simd/kernels.hpp"
+
+namespace armcmc {
+namespace {
+
+constexpr double kEnoughDraws = 16.0;     // effective ones, for each number that they are to give
+constexpr double kLikeness = 0.05;        // share of the effective draws that an expansion that is of use leaves
+constexpr int kSearched = 256;            // draws, for one that is not improbable
+constexpr double kChance = 3.0;           // times the square that chance makes, which is taken off a difference
+constexpr double kExact = 1e-3;           // by what the effective draws of an expansion that is exact may differ
+constexpr double kFar = 0.5;              // standard deviations beyond which the filters do not know better, even then
+constexpr int kMomentDraws = 4096;        // at most: their chance is small in a difference
+constexpr std::size_t kCells = 1024;      // of a histogram
+constexpr double kHistogramReach = 20.0;  // standard deviations from the mean
+
+}  // namespace
+
+void Drift::Start(const PosteriorMemory& next, bool with_speeds) noexcept {
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    Filter& f = bank_[i];
+    if (with_speeds) {
+      f = predicted_[i];
+    } else {
+      const Hypothesis& law = hypotheses_[HypothesisOf(i)];
+      f.weight = i / kHypotheses + 1 == kSlots ? law.prior : 0.0;
+      f.w = ParamVector::Zero(dim_);
+      f.ww = FirstVelocity(law);
+    }
+    f.u = next.mean.head(dim_);
+    f.uu = next.covariance.topLeftCorner(dim_, dim_);
+    f.uw = ParamMatrix::Zero(dim_, dim_);
+  }
+}
+
+Drift::Sampled Drift::SampledBlock(const ModeData& data, const PosteriorMemory& next, int block, Part part,
+                                   LaplaceScratch* scratch) const noexcept {
+  Sampled sampled{.part = part, .mean = {}, .covariance = {}, .local = {}};
+  if (block == 0) {
+    sampled.mean = next.mean.head(dim_);
+    sampled.covariance = next.covariance.topLeftCorner(dim_, dim_);
+  } else {
+    const DensityBlock& other = next.block[static_cast<std::size_t>(block)];
+    sampled.mean = MeanOf(other).head(dim_);
+    sampled.covariance = CovarianceOf(other).topLeftCorner(dim_, dim_);
+  }
+  sampled.local = ExpandLikelihood(kernels_, model_, data, noise_, space_, sampled.mean, next.log_noise_scale, scratch);
+  return sampled;
+}
+
+bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
+  const LocalLikelihood& local = sampled.local;
+  const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
+  std::array<double, kFilters> log_weight{};
+  double top = -HUGE_VAL;
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    if (!IsOf(part, i)) continue;
+    Filter& f = bank_[i];
+    f = predicted_[i];
+    if (!(f.weight > 0.0)) continue;
+    // P = C (1 + H C)^-1, and w is updated through its covariance with u.
+    ParamMatrix spread = Product(local.information, f.uu);
+    spread += identity;
+    const ParamMatrix t = Inverse(spread);
+    const ParamVector apart = f.u - sampled.mean;
+    const ParamVector pulled = Multiply(local.information, apart);
+    const ParamVector residual = local.gradient - pulled;
+    const ParamVector step = Multiply(t, residual);
+    const ParamVector move = Multiply(f.uu, step);
+    log_weight[i] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
+                    0.5 * residual.dot(move) - 0.5 * std::log(std::fmax(Determinant(spread), 1e-300));
+    if (!std::isfinite(log_weight[i])) return false;
+    top = std::fmax(top, log_weight[i]);
+    f.u += move;
+    f.w += Multiply(f.uw.transpose(), step);
+    f.ww -= Product(Product(f.uw.transpose(), Product(t, local.information)), f.uw);
+    f.uw = Product(t.transpose(), f.uw);
+    f.uu = Product(f.uu, t);
+    MakeSymmetric(&f.uu);
+    MakeSymmetric(&f.ww);
+    if (!f.u.allFinite() || !f.w.allFinite() || !f.uu.allFinite() || !f.uw.allFinite() || !f.ww.allFinite())
+      return false;
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    if (!IsOf(part, i)) continue;
+    if (bank_[i].weight > 0.0) bank_[i].weight = std::exp(log_weight[i] - top);
+    sum += bank_[i].weight;
+  }
+  for (std::size_t i = 0; i < bank_.size(); ++i)
+    if (IsOf(part, i)) bank_[i].weight *= weight / sum;
+  return true;
+}
+
+Drift::Moments Drift::ByExpansion(const Sampled& sampled) const noexcept {
+  // Of two posteriors, without and with a change, the memory has the moments of the bank, too.
+  const bool as_the_bank =
+      sampled.part == Part::kDrift ? mixed_ : (split_ || separate_) && sampled.part == Part::kWhole;
+  if (as_the_bank) return MomentsOf(bank_, sampled.part);
+  const LocalLikelihood& local = sampled.local;
+  Moments now = MomentsOf(predicted_, sampled.part);
+  ParamMatrix spread = Product(local.information, now.covariance);
+  spread += ParamMatrix::Identity(dim_, dim_);
+  const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
+  now.covariance = Product(now.covariance, Inverse(spread));
+  MakeSymmetric(&now.covariance);
+  now.mean += Multiply(now.covariance, local.gradient - pulled);
+  return now;
+}
+
+simd::QuadraticControl Drift::ControlOf(const Sampled& sampled, const Draws& draws) const noexcept {
+  simd::QuadraticControl control{.dim = dim_};
+  for (int i = 0; i < dim_; ++i) {
+    control.centre[i] = sampled.mean[i];
+    control.slope[i] = sampled.local.gradient[i];
+    for (int j = 0; j <= i; ++j) control.curvature[i][j] = -(i == j ? 0.5 : 1.0) * sampled.local.information(i, j);
+  }
+  // The constant takes the difference out of one that counts.
+  int best = 0;
+  for (int k = 1; k < std::min(draws.count, kSearched); ++k)
+    if (draws.weight[k] > draws.weight[best]) best = k;
+  double at_best = 0.0;
+  for (int i = 0; i < dim_; ++i) {
+    const double z = draws.u[static_cast<std::size_t>(i)][best] - control.centre[i];
+    double slope = control.slope[i];
+    for (int j = 0; j <= i; ++j)
+      slope += control.curvature[i][j] * (draws.u[static_cast<std::size_t>(j)][best] - control.centre[j]);
+    at_best += slope * z;
+  }
+  control.constant = draws.log_likelihood[best] - at_best;
+  return control;
+}
+
+double Drift::Tilt(const Sampled& sampled, const Draws& draws, int count) const noexcept {
+  const auto effective = [&]() noexcept ARMCMC_NONBLOCKING {
+    std::array<double, 2> sums{};
+    kernels_.first_moments(0, nullptr, draws.scratch, count, sums.data());
+    return sums[0] * sums[0] / sums[1];
+  };
+  const double before = effective();
+  kernels_.tilt(ControlOf(sampled, draws), draws.u.data(), draws.log_likelihood, count, draws.scratch);
+  const double after = effective();
+  return after > kEnoughDraws * (dim_ + 1) ? after / before : 0.0;
+}
+
+Drift::Moments Drift::MomentsOfDraws(const Draws& draws, int count) const noexcept {
+  Moments m{.weight = 0.0, .mean = ParamVector(dim_), .covariance = ParamMatrix(dim_, dim_)};
+  std::array<double, 2 + kMaxParams> first{};
+  kernels_.first_moments(dim_, draws.u.data(), draws.scratch, count, first.data());
+  m.weight = first[0] * first[0] / first[1];
+  for (int d = 0; d < dim_; ++d) m.mean[d] = first[static_cast<std::size_t>(2 + d)] / first[0];
+  std::array<double, kMaxParams*(kMaxParams + 1) / 2> second{};
+  kernels_.second_moments(dim_, draws.u.data(), draws.scratch, m.mean.data(), count, second.data());
+  for (int i = 0, k = 0; i < dim_; ++i)
+    for (int j = 0; j <= i; ++j, ++k)
+      m.covariance(i, j) = m.covariance(j, i) = second[static_cast<std::size_t>(k)] / first[0];
+  return m;
+}
+
+bool Drift::TargetByDraws(const Sampled& sampled, const Draws& draws, const Moments& closed,
+                          Moments* target) const noexcept {
+  // The expansion is in the parameters alone.
+  if (draws.share == nullptr || space_.samples_noise_scale()) return false;
+  const int count = std::min(draws.count, kMomentDraws);
+  const bool of_share = draws.of_part && sampled.part == draws.part;
+  for (int k = 0; k < count; ++k)
+    draws.scratch[k] = draws.weight[k] * (of_share ? draws.share[k] : 1.0 - draws.share[k]);
+  const Moments actual = MomentsOfDraws(draws, count);
+  const double likeness = Tilt(sampled, draws, count);
+  if (!(likeness > kLikeness)) return false;
+  const Moments expanded = MomentsOfDraws(draws, count);
+  // By what the draws under the expansion differ from the filters: chance, or a prior that is no Gaussian. A share of
+  // it is taken for real, as in James and Stein's estimator (positive part); none where the law is linear, for which
+  // the filters know more than the densities that were sampled.
+  ParamMatrix root;
+  if (!CholeskyFactor(closed.covariance, &root)) return false;
+  const ParamMatrix inverse = Inverse(root);
+  const ParamVector apart = Multiply(inverse, expanded.mean - closed.mean);
+  ParamMatrix wider = Product(Product(inverse, expanded.covariance), inverse.transpose());
+  wider -= ParamMatrix::Identity(dim_, dim_);
+  const double square = apart.squaredNorm() + 0.5 * wider.squaredNorm();
+  const double by_chance = 0.5 * dim_ * (dim_ + 3) / expanded.weight;
+  double kept = std::fmax(1.0 - kChance * by_chance / square, 0.0);
+  if (std::fabs(likeness - 1.0) < kExact && square < kFar * kFar) kept = 0.0;
+  ParamMatrix map;
+  if (!MapBetween(expanded.covariance, actual.covariance, &map)) return false;
+  wider *= kept;
+  wider += ParamMatrix::Identity(dim_, dim_);
+  const ParamMatrix stretched = Product(map, root);
+  target->mean = closed.mean + kept * Multiply(root, apart) + (actual.mean - expanded.mean);
+  target->covariance = Product(Product(stretched, wider), stretched.transpose());
+  MakeSymmetric(&target->covariance);
+  return target->mean.allFinite();
+}
+
+EndOfPack::Quantiles Drift::QuantilesByDraws(const Draws& draws, int d, double mean, double sd) const noexcept {
+  std::array<double, std::size_t{2} * kCells + 2> cells{};
+  const double per_cell = kCells / (2.0 * kHistogramReach * sd);
+  kernels_.histogram(draws.u[static_cast<std::size_t>(d)], draws.scratch, draws.count, per_cell,
+                     -(mean - kHistogramReach * sd) * per_cell, kCells + 1, cells.data());
+  // The first and the last cell have all that lies beyond, too, which is far from anything that has not changed.
+  double total = 0.0;
+  for (std::size_t c = 1; c + 1 < kCells; ++c) total += cells[2 * c];
+  EndOfPack::Quantiles q{};
+  double below = 0.0;
+  std::size_t c = 1;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const double target = EndOfPack::kLevels[k].p * total;
+    while (c + 2 < kCells && below + cells[2 * c] < target) below += cells[2 * c++];
+    const double part = cells[2 * c] > 0.0 ? std::fmin((target - below) / cells[2 * c], 1.0) : 0.0;
+    q[k] = mean - kHistogramReach * sd + (static_cast<double>(c) + part) / per_cell;
+  }
+  return q;
+}
+
+bool Drift::Recentre(const Sampled& sampled, const Draws& draws) noexcept {
+  const Moments closed = ByExpansion(sampled);
+  Moments target;
+  if (!TargetByDraws(sampled, draws, closed, &target)) {
+    target.mean = sampled.mean;
+    target.covariance = sampled.covariance;
+  }
+  ParamMatrix map;
+  if (!MapBetween(closed.covariance, target.covariance, &map)) return false;
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    Filter& f = bank_[i];
+    if (!(f.weight > 0.0) || !IsOf(sampled.part, i)) continue;
+    f.u = target.mean + Multiply(map, f.u - closed.mean);
+    f.uu = Product(Product(map, f.uu), map.transpose());
+    MakeSymmetric(&f.uu);
+    f.uw = Product(map, f.uw);
+  }
+  return true;
+}
+
+void Drift::SetShare(double p) noexcept {
+  double drifts = 0.0;
+  double rests = 0.0;
+  for (std::size_t i = 0; i < bank_.size(); ++i) (IsOf(Part::kDrift, i) ? drifts : rests) += bank_[i].weight;
+  for (std::size_t i = 0; i < bank_.size(); ++i)
+    if (bank_[i].weight > 0.0) bank_[i].weight *= IsOf(Part::kDrift, i) ? p / drifts : (1.0 - p) / rests;
+}
+
+double Drift::CorrectedShare(const Draws& draws, bool tilted, double as_sampled) const noexcept {
+  double p = 0.0;
+  for (std::size_t i = 0; i < bank_.size(); ++i)
+    if (IsOf(Part::kDrift, i)) p += bank_[i].weight;
+  if (!split_ || !draws.of_part) return p;
+  if (!tilted) return as_sampled;
+  // By how much the odds of the same draws are not those under the expansion.
+  const auto odds = [&](const double* weight) noexcept ARMCMC_NONBLOCKING {
+    std::array<double, 3> sums{};
+    kernels_.first_moments(1, &draws.share, weight, draws.count, sums.data());
+    return sums[2] / (sums[0] - sums[2]);
+  };
+  const double ratio = odds(draws.weight) / odds(draws.scratch);
+  if (!(ratio > 0.0) || !std::isfinite(ratio)) return as_sampled;
+  const double corrected = draws.part == Part::kDrift ? ratio : 1.0 / ratio;
+  return p * corrected / (p * corrected + 1.0 - p);
+}
+
+void Drift::Learn(const ModeData& data, const PosteriorMemory& next, const Draws& draws, Part part, bool both,
+                  bool renewed, LaplaceScratch* scratch) noexcept {
+  if (!enabled_ || !next.valid || !next.informed) return;
+  UpdateBank(data, next, draws, part, both, renewed, scratch);
+  MakeRoom(&bank_);  // now: the next pack waits for Carry(), but not for this
+}
+
+void Drift::UpdateBank(const ModeData& data, const PosteriorMemory& next, const Draws& draws, Part part, bool both,
+                       bool renewed, LaplaceScratch* scratch) noexcept {
+  time_s_ = data.time_s;
+  fitted_ = part;
+  both_ = false;
+  separate_ = next.num_blocks == 2 && !both;
+  const bool known = started_;
+  started_ = true;
+  if (known && !renewed) {
+    const Sampled first = SampledBlock(data, next, 0, part, scratch);
+    if (both) {
+      // The linearised law of each is valid near its own mean.
+      const Part other = part == Part::kRest ? Part::kDrift : Part::kRest;
+      const Sampled second = SampledBlock(data, next, 1, other, scratch);
+      const double of_part = p_drifted_ < 0.0 ? next.weight[0] : part == Part::kDrift ? p_drifted_ : 1.0 - p_drifted_;
+      both_ = Update(first, part, of_part) && Update(second, other, 1.0 - of_part) && Recentre(first, draws) &&
+              Recentre(second, draws);
+      if (both_) return FromEffective();
+    } else if (Update(first, Part::kWhole, 1.0)) {
+      if (p_drifted_ >= 0.0) SetShare(p_drifted_);
+      if (Recentre(first, draws)) return FromEffective();
+    }
+  }
+  if (known && renewed) Predict(elapsed_s_);  // what this pack tells of velocities includes the change
+  Start(next, known);
+  if (known) FromEffective();
+}
+
+}  // namespace armcmc
