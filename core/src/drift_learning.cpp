@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "armcmc/density_fit.hpp"
 #include "armcmc/drift.hpp"
 #include "armcmc/linear_algebra.hpp"
 #include "simd/kernels.hpp"

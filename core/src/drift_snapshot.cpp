@@ -9,7 +9,7 @@
 namespace armcmc {
 namespace {
 
-constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBankOfSixSlots = 2, kBank = 3;
+constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBank = 3;  // 2: of six slots
 constexpr int kFiltersOf010 = 40;
 constexpr std::int64_t kBothParts = 4;  // added to the part of the first block
 
