@@ -201,6 +201,9 @@ bool Drift::TargetByDraws(const Sampled& sampled, const Draws& draws, const Mome
 }
 
 EndOfPack::Quantiles Drift::QuantilesByDraws(const Draws& draws, int d, double mean, double sd) const noexcept {
+  EndOfPack::Quantiles q{};
+  q.fill(std::nan(""));
+  if (!(sd > 0.0)) return q;  // by rounding: a histogram needs a width
   std::array<double, std::size_t{2} * kCells + 2> cells{};
   const double per_cell = kCells / (2.0 * kHistogramReach * sd);
   kernels_.histogram(draws.u[static_cast<std::size_t>(d)], draws.scratch, draws.count, per_cell,
@@ -208,7 +211,6 @@ EndOfPack::Quantiles Drift::QuantilesByDraws(const Draws& draws, int d, double m
   // The first and the last cell have all that lies beyond, too, which is far from anything that has not changed.
   double total = 0.0;
   for (std::size_t c = 1; c + 1 < kCells; ++c) total += cells[2 * c];
-  EndOfPack::Quantiles q{};
   double below = 0.0;
   std::size_t c = 1;
   for (std::size_t k = 0; k < q.size(); ++k) {

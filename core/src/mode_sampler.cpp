@@ -271,8 +271,13 @@ Status ModeSampler::Run(const ModeData& data, const PosteriorMemory& before, std
   out->num_samples = data.num_samples;
   FindMode(data, !use_previous, ws, out);
   RunChain(stream_of(kAcceptStream), pilot, ws, out);
-  unfinished_ = {
-      .data = &data, .previous = &previous, .lambda = lambda, .first = pilot, .mass_first = 0.0, .mass_new = 1.0};
+  unfinished_ = {.data = &data,
+                 .previous = &previous,
+                 .lambda = lambda,
+                 .first = pilot,
+                 .mass_first = 0.0,
+                 .mass_new = 1.0,
+                 .mass_changed = 1.0};
   unfinished_.calibrated = calibrated;
   SplitMassByPrior(ws, out);
   FindEndOfPack(data, ws, out);

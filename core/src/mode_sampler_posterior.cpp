@@ -128,7 +128,6 @@ void ModeSampler::SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcep
   const bool split = drift_.Splits(*u.previous);
   double mass_first = 0.0;
   u.part = drift_.CarriedPart();
-  double changed = u.mass_new;  // now or before
   if (u.lambda > 0.0) {
     const auto offset = static_cast<std::size_t>(u.first);
     const int count = RoundUpToTile(out->draws - u.first);
@@ -138,17 +137,19 @@ void ModeSampler::SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcep
       return masses;
     };
     simd::PriorTerms prior = Prior(*u.previous, u.lambda, u.first, *ws);
+    std::array<double, 2> masses = share(prior);
+    u.mass_new = masses[1];
     if (u.previous->num_blocks == 3) {
       double* const row = &ws->memory[2][offset];  // read for the last time
       for (int k = 0; k < count; ++k) row[k] = prior.initial_share * prior.initial[k] + prior.memory_share[2] * row[k];
       prior.initial = row;
       prior.initial_share = 1.0;
       prior.memory_share[2] = 0.0;
+      masses = share(prior);
     }
-    const std::array<double, 2> masses = share(prior);
     u.mass_first = mass_first = masses[0];
-    u.mass_new = changed = masses[1];
-    if (split && changed >= kMinimumGroup) {
+    u.mass_changed = masses[1];
+    if (split && u.mass_changed >= kMinimumGroup) {
       // Three parts, of which two can be stored: what changed, and the rest as one.
       std::swap(prior.initial, prior.memory[0]);
       std::swap(prior.initial_share, prior.memory_share[0]);
@@ -161,8 +162,8 @@ void ModeSampler::SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcep
       u.split = true;
     }
   }
-  out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(changed, 0.0, 1.0);
-  const double kept = 1.0 - out->p_changed;
+  out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(u.mass_new, 0.0, 1.0);
+  const double kept = 1.0 - std::fmax(out->p_changed, std::clamp(u.mass_changed, 0.0, 1.0));
   const double drifted = drift_.drifting_block() == 0 ? mass_first : kept - mass_first;
   out->p_drifted = split ? std::clamp(drifted, 0.0, kept) : kept * drift_.share();
   out->drift_rate = drift_.rate();
@@ -176,8 +177,8 @@ Drift::Draws ModeSampler::DrawsForDrift(SamplerWorkspace* ws, const ModeDraws& d
                     .weight = draws.weight + u.first,
                     .log_likelihood = &ws->log_likelihood[offset],
                     .share = u.lambda > 0.0 ? &ws->first_share[offset] : nullptr,
-                    .of_part = !u.first_changed,
                     .part = u.part,
+                    .of_part = !u.first_changed,
                     .scratch = &ws->group_weight[offset]};
   if (drift_.Splits(*u.previous) && !u.first_changed)
     view.part = drift_.drifting_block() == 0 ? Drift::Part::kDrift : Drift::Part::kRest;
@@ -210,7 +211,7 @@ void ModeSampler::FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, Mode
   double log_noise_scale = space_.log_noise_scale;
   if (space_.samples_noise_scale())
     log_noise_scale = space_.Theta(dim, sums[2 + static_cast<std::size_t>(dim)] / sums[0]);
-  const double kept = 1.0 - out->p_changed;
+  const double kept = 1.0 - std::clamp(unfinished_.mass_changed, 0.0, 1.0);
   double p_drifted = kept > 0.0 ? out->p_drifted / kept : 0.0;
   out->moves =
       drift_.FindEnd(data, mean, log_noise_scale, DrawsForDrift(ws, *out), &p_drifted, &ws->laplace, &out->end);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <random>
+#include <vector>
 
 #include "armcmc/density_fit.hpp"
 #include "armcmc/drift.hpp"
@@ -35,6 +37,11 @@ class Bank {
   }
 
   void LearnAgain() { drift.Learn(data, posterior, {}, Drift::Part::kRest, false, true, scratch_.get()); }
+
+  bool FindEnd(const Drift::Draws& draws, double* p_drifted) {
+    std::array<EndOfPack, kMaxParams> end;
+    return drift.FindEnd(data, posterior.mean, 0.0, draws, p_drifted, scratch_.get(), &end);
+  }
 
   const PosteriorMemory& Carry() { return drift.Carry(data, posterior, scratch_.get()); }
 
@@ -144,6 +151,41 @@ TEST(DriftPrior, KeepsWhatMayHaveChangedBesideRestAndDrift) {
     EXPECT_NEAR(covariance(d, d), whole(d, d), 1e-6);
     EXPECT_GT(covariance(d, d), last.covariance(d, d));
   }
+}
+
+// Draws of drift whose likelihood is three times what the expansion says of it, by the odds that they have of drift.
+TEST(DriftPrior, OddsOfDriftAreCorrectedByTheDraws) {
+  Bank bank(0.3);
+  bank.data.time_s = 2.0;
+  ASSERT_TRUE(bank.drift.Splits(bank.Carry()));
+  constexpr std::size_t kDraws = 4096;
+  std::array<std::vector<double>, 3> u;
+  std::vector<double> weight(kDraws, 1.0 / kDraws), log_likelihood(kDraws), share(kDraws), scratch(kDraws);
+  std::mt19937_64 g(5);
+  std::normal_distribution<double> normal;
+  for (auto& row : u)
+    for (std::size_t k = 0; k < kDraws; ++k) row.push_back(0.2 * normal(g));
+  for (std::size_t k = 0; k < kDraws; ++k) {
+    share[k] = k % 2 == 0 ? 0.1 : 0.8;
+    log_likelihood[k] = k % 2 == 0 ? 0.0 : std::log(3.0);  // without samples the expansion is flat
+  }
+  Drift::Draws draws{.count = kDraws,
+                     .u = {u[0].data(), u[1].data(), u[2].data()},
+                     .weight = weight.data(),
+                     .log_likelihood = log_likelihood.data(),
+                     .share = share.data(),
+                     .part = Drift::Part::kDrift,
+                     .of_part = true,
+                     .scratch = scratch.data()};
+  double p_drifted = 0.5;
+  EXPECT_TRUE(bank.FindEnd(draws, &p_drifted));
+  const double actual = 0.45 / 0.55, expanded = (3.0 * 0.1 + 0.8) / (3.0 * 0.9 + 0.2);
+  const double odds = 0.3 / 0.7 * actual / expanded;
+  EXPECT_NEAR(p_drifted, odds / (1.0 + odds), 1e-6);
+  // What has changed is apart: then the bank has the odds alone.
+  draws.of_part = false;
+  EXPECT_TRUE(bank.FindEnd(draws, &p_drifted));
+  EXPECT_NEAR(p_drifted, 0.3, 1e-6);
 }
 
 TEST(DriftPrior, NeverGetsWiderThanTheInitialOne) {

@@ -237,7 +237,8 @@ class Histories {
 struct Difference {
   double mean = 0.0, sd = 0.0;  ///< In standard deviations, and relative.
   double worst_mean = 0.0, worst_sd = 0.0;
-  double share = 0.0;  ///< Of the probability of drift, while nothing is taken for changed.
+  double share = 0.0;    ///< Of the probability of drift, while nothing is taken for changed.
+  double changed = 0.0;  ///< Largest p_changed where the prior gives a change at this pack less than a thousandth.
   int modifications = 0;
   int far = 0;  ///< Packs with more than .05 standard deviations, or 3 %.
 };
@@ -282,6 +283,7 @@ Difference DifferenceInARun(std::uint64_t noise_seed) {
     d.far += std::fabs(off) > 0.05 || std::fabs(wider) > 0.03 ? 1 : 0;
     d.worst_mean = std::fmax(d.worst_mean, std::fabs(off));
     d.worst_sd = std::fmax(d.worst_sd, std::fabs(wider));
+    if (e.lambda > 0.999) d.changed = std::fmax(d.changed, e.p_changed);
     if (e.decision == Decision::kReinforcement) d.share = std::fmax(d.share, std::fabs(e.p_drifted - exact.Drifting()));
   }
   d.mean = std::sqrt(d.mean);
@@ -312,6 +314,8 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
     EXPECT_LT(d.worst_mean, 0.08) << noise_seed;
     EXPECT_LT(d.worst_sd, 0.06) << noise_seed;
     EXPECT_LT(d.share, 0.05) << noise_seed;
+    // What may have changed at the pack before has not changed at this one.
+    EXPECT_LT(d.changed, 0.01) << noise_seed;
     EXPECT_EQ(d.modifications, 2) << noise_seed;
     far += d.far;
   }

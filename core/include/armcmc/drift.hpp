@@ -167,9 +167,9 @@ class Drift {
     std::array<const double*, kMaxParams> u{};
     const double* weight = nullptr;
     const double* log_likelihood = nullptr;
-    const double* share = nullptr;  ///< Posterior probability that a draw is of `part`, or is of what changed.
-    bool of_part = true;            ///< The former.
+    const double* share = nullptr;  ///< Posterior probability that a draw is of `part`; null: not known.
     Part part = Part::kWhole;
+    bool of_part = true;        ///< false: `share` is the probability that it is of what has changed.
     double* scratch = nullptr;  ///< As long as the rows.
   };
 
@@ -179,7 +179,7 @@ class Drift {
   /// which has the hypotheses one by one, corrected by what the draws tell of the expansion.
   /// @param[out] end   Of each parameter.
   /// @return false where nothing moves, and the rest is not set.
-  /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3 + draws dim^2).
   bool FindEnd(const ModeData& data, const ParamVector& mean, double log_noise_scale, const Draws& draws,
                double* p_drifted, LaplaceScratch* scratch,
                std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING;
@@ -196,7 +196,7 @@ class Drift {
   /// @param both     Rest and drift have a block each, with the weights that were sampled.
   /// @param renewed  The parameters did not come from where they were: the bank starts again around `next`, with the
   /// rates that it knows.
-  /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3), and some thousand draws times dim^2.
   void Learn(const ModeData& data, const PosteriorMemory& next, const Draws& draws, Part part, bool both, bool renewed,
              LaplaceScratch* scratch) noexcept ARMCMC_NONBLOCKING;
 
@@ -298,7 +298,8 @@ class Drift {
   /// The weights in the scratch of the draws, as if the expansion were the likelihood.
   /// @return By what factor the number of effective draws changes; 0 if they are too few.
   double Tilt(const Sampled& sampled, const Draws& draws, int count) const noexcept ARMCMC_NONBLOCKING;
-  /// Quantiles of the parameters that have not changed, by the weights in the scratch of the draws.
+  /// Quantiles of the parameters that have not changed, by the weights in the scratch of the draws; NaN without a
+  /// width.
   [[nodiscard]] EndOfPack::Quantiles QuantilesByDraws(const Draws& draws, int d, double mean,
                                                       double sd) const noexcept ARMCMC_NONBLOCKING;
   /// Of the draws by the weights in their scratch; `weight` is the effective number.

@@ -144,10 +144,12 @@ class ModeSampler {
   struct Unfinished {
     const ModeData* data = nullptr;
     const PosteriorMemory* previous = nullptr;
-    double lambda = 0.0;                      ///< Its share in the prior.
-    int first = 0;                            ///< Draw that counts, after the pilot.
-    double mass_first = 0.0, mass_new = 0.0;  ///< Of the first block of `previous`, and of what was drawn anew.
-    bool first_changed = false;               ///< mass_first and first_share are of what changed, now or before.
+    double lambda = 0.0;         ///< Its share in the prior.
+    int first = 0;               ///< Draw that counts, after the pilot.
+    double mass_first = 0.0;     ///< Of the first block of `previous`.
+    double mass_new = 0.0;       ///< Of what was drawn anew: changed at this pack.
+    double mass_changed = 0.0;   ///< Changed at this pack or, where `previous` has a third block, at the one before.
+    bool first_changed = false;  ///< mass_first and first_share are of what changed.
     /// What was carried on through time is rest and drift in two blocks: the more probable is handed on, and the other
     /// unless it is improbable.
     bool split = false;
@@ -203,7 +205,7 @@ class ModeSampler {
   /// prior_t at the candidates from `first` on.
   [[nodiscard]] simd::PriorTerms Prior(const PosteriorMemory& previous, double lambda, int first,
                                        const SamplerWorkspace& ws) const noexcept ARMCMC_NONBLOCKING;
-  /// What of the prior a draw came from: P_0, or the memory with its blocks.
+  /// What of the prior a draw came from: P_0 or a third block of the memory, which is of a change, or the other blocks.
   enum class Origin : std::uint8_t { kAny, kChanged, kPersisted, kFirst, kSecond };
   /// Weights of [first, last) times the probability of that origin, at the places of the draws.
   const double* GroupWeights(Origin origin, const PosteriorMemory& previous, double lambda, int first, int last,
