@@ -36,6 +36,13 @@ Json StageTimes(const DeadlineMonitor& m) {
           {"end_to_end", LatencyMs(m.end_to_end())}};
 }
 
+/// Before each stage; with `stage_ms` they add up to the time from arrival to the end of execute.
+Json WaitingTimes(const DeadlineMonitor& m) {
+  return {{"collect", LatencyMs(m.waiting_times(Stage::kCollect))},
+          {"adjust", LatencyMs(m.waiting_times(Stage::kAdjust))},
+          {"execute", LatencyMs(m.waiting_times(Stage::kExecute))}};
+}
+
 /// From the data to their estimate on the bus; `end_to_end` of stage_ms is from the release to the end of execute.
 Json LatencyToPublished(const PublicationLatency& latency) {
   return {{"from_arrival", LatencyMs(latency.from_arrival())}, {"from_last_sample", LatencyMs(latency.from_sample())}};
@@ -164,6 +171,7 @@ std::string ReportJson(const Pipeline& p, const Lane& lane, const std::string& g
       {"adjust_budget_ms", Ms(static_cast<double>(s.adjust_budget_ns))},
       {"misses", Misses(m)},
       {"stage_ms", StageTimes(m)},
+      {"waiting_ms", WaitingTimes(m)},
       {"published_ms", LatencyToPublished(lane.latency())},
       {"stage_overruns",
        {{"collect", m.stage_overruns(Stage::kCollect)},

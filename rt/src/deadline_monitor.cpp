@@ -56,7 +56,7 @@ Earlier DeadlineMonitor::Collected(const StepTimes& times) noexcept {
 }
 
 void DeadlineMonitor::RecordAdjusted(StepTimes* times) noexcept ARMCMC_NONBLOCKING {
-  const StageWork work = Work(Stage::kAdjust, times->end_ns[IndexOf(Stage::kCollect)], *times);
+  const StageWork work = Work(Stage::kAdjust, times->Ready(Stage::kAdjust), *times);
   times->adjusted_earlier = timeline_[IndexOf(Stage::kAdjust)].Do(work, Collected(*times));
 }
 
@@ -71,10 +71,11 @@ MissCause DeadlineMonitor::Record(const StepTimes& times) noexcept ARMCMC_NONBLO
   for (const Stage stage : {Stage::kCollect, Stage::kAdjust, Stage::kExecute}) {
     const Nanos duration = times.Duration(stage);
     stage_times_[IndexOf(stage)].Add(duration);
+    waiting_times_[IndexOf(stage)].Add(times.start_ns[IndexOf(stage)] - times.Ready(stage));
     if (duration > budget_ns_[IndexOf(stage)]) overruns_[IndexOf(stage)].Add();
   }
   end_to_end_.Add(times.EndToEnd());
-  const StageWork work = Work(Stage::kExecute, times.end_ns[IndexOf(Stage::kAdjust)], times);
+  const StageWork work = Work(Stage::kExecute, times.Ready(Stage::kExecute), times);
   const MissCause cause =
       Attribute(-times.Slack(), timeline_[IndexOf(Stage::kExecute)].Do(work, times.adjusted_earlier));
   if (cause != MissCause::kNone) finished_late_[static_cast<std::size_t>(cause)].Add();

@@ -14,4 +14,8 @@ LcmPublisher::LcmPublisher(const LcmUrl& url, const std::string& prefix)
   if (lcm_ == nullptr) throw std::runtime_error("liblcm cannot open " + url.text);
 }
 
+std::array<std::string, 4> LcmPublisher::Channels(const std::string& prefix) {
+  return {prefix + kEstimateChannel, prefix + kPosteriorChannel, prefix + kChangeChannel, prefix + kStatusChannel};
+}
+
 }  // namespace armcmc::rt

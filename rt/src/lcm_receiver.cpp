@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "armcmc/rt/channel_filter.hpp"
 #include "armcmc/rt/clock.hpp"
 #include "armcmc/rt/system_call.hpp"
 
@@ -58,7 +59,8 @@ DatagramKind ParseDatagram(std::span<const std::uint8_t> bytes, const std::strin
                                                                        : DatagramKind::kMalformed;
 }
 
-LcmReceiver::LcmReceiver(const LcmUrl& url, std::vector<std::string> channels) : channels_(std::move(channels)) {
+LcmReceiver::LcmReceiver(const LcmUrl& url, std::vector<std::string> channels, const std::vector<std::string>& own)
+    : channels_(std::move(channels)) {
   for (const std::string& channel : channels_)
     if (channel.size() > kMaxChannelLength) {
       throw std::invalid_argument("channel \"" + channel + "\" is longer than " + std::to_string(kMaxChannelLength) +
@@ -78,6 +80,8 @@ LcmReceiver::LcmReceiver(const LcmUrl& url, std::vector<std::string> channels) :
     }
     socklen_t size = sizeof recv_buf_size_;
     (void)getsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &recv_buf_size_, &size);
+
+    if (!own.empty()) (void)DropChannels(socket_, own);  // refused: they are read and passed over
 
     sockaddr_in address{};
     address.sin_family = AF_INET;

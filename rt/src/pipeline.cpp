@@ -6,6 +6,7 @@
 #include <cstring>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "armcmc/estimator_status_t.hpp"
 #include "armcmc/rt/clock.hpp"
@@ -56,13 +57,20 @@ std::vector<std::string> ChannelsOf(const std::vector<std::unique_ptr<Lane>>& la
   return channels;
 }
 
+std::vector<std::string> PublishedChannelsOf(const std::vector<std::unique_ptr<Lane>>& lanes) {
+  std::vector<std::string> channels;
+  for (const auto& lane : lanes)
+    for (std::string& channel : LcmPublisher::Channels(lane->prefix())) channels.push_back(std::move(channel));
+  return channels;
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const RtSettings& settings, const std::vector<LanePlant>& plants, const PipelineOptions& options)
     : settings_((settings.Validate(), settings)),
       options_(options),
       lanes_(MakeLanes(settings_, plants, options.injection)),
-      receiver_(ParseLcmUrl(settings_.lcm_url), ChannelsOf(lanes_)),
+      receiver_(ParseLcmUrl(settings_.lcm_url), ChannelsOf(lanes_), PublishedChannelsOf(lanes_)),
       watchdog_(settings_, &watchdog_events_) {
   if (options_.injection != nullptr) degraded_flags_ |= estimator_status_t::DEGRADED_INJECTED;
 }

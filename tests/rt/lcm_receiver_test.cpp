@@ -11,8 +11,11 @@
 #include <thread>
 #include <vector>
 
+#include "armcmc/rt/channel_filter.hpp"
 #include "armcmc/rt/clock.hpp"
+#include "armcmc/rt/lcm_publisher.hpp"
 #include "armcmc/rt/pack_codec.hpp"
+#include "armcmc/rt/pipeline.hpp"
 #include "plants/hunt_crossley/model.hpp"
 #include "support/paths.hpp"
 #include "test_bus.hpp"
@@ -110,6 +113,46 @@ TEST_F(LcmReceiverTest, SkipsAndCountsOtherChannelsFragmentsAndJunk) {
   EXPECT_EQ(receiver_->counts().foreign, 2);
   EXPECT_EQ(receiver_->counts().fragments, 3);
   EXPECT_EQ(receiver_->counts().malformed, 1);
+}
+
+TEST_F(LcmReceiverTest, DoesNotHearWhatItsOwnProcessPublishes) {
+  for (const std::string own : {"EST_STATUS", "X_EST_POSTERIOR", "EST"}) {
+    receiver_ = std::make_unique<LcmReceiver>(ParseLcmUrl(bus_.url()), std::vector<std::string>{"PLANT_PACK"},
+                                              std::vector<std::string>{"ANOTHER_OWN", own});
+    Publish(own.c_str(), {1, 2, 3});
+    Publish(own.c_str(), {});
+    SendRaw(Wire(0x4c433032, "ANOTHER_OWN", 100));
+    // What resembles it is heard.
+    Publish((own + "_2").c_str(), {1, 2, 3});
+    Publish(own.substr(1).c_str(), {1, 2, 3});
+    SendRaw(Wire(0x4c433033, own, 5));
+    SendRaw(Wire(0x12345678, own, 5));
+    auto unterminated = Wire(0x4c433032, own, 0);
+    unterminated.pop_back();
+    SendRaw(unterminated);
+    SendRaw({1, 2, 3});
+    SendRaw({});
+    Publish("PLANT_PACK", {42});
+    Datagram datagram;
+    ASSERT_TRUE(Receive(&datagram)) << own;
+    EXPECT_EQ(datagram.payload.size(), 1U);
+    EXPECT_EQ(receiver_->counts().foreign, 2) << own;
+    EXPECT_EQ(receiver_->counts().fragments, 1) << own;
+    EXPECT_EQ(receiver_->counts().malformed, 4) << own;
+  }
+}
+
+TEST(ChannelFilter, HasRoomForThePlantsOfOneProcess) {
+  std::vector<std::string> channels;
+  for (std::size_t i = 0; i < Pipeline::kMaxLanes; ++i)
+    for (const std::string& channel : LcmPublisher::Channels("ARM_LEFT_JOINT_" + std::to_string(i) + '_'))
+      channels.push_back(channel);
+  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+  EXPECT_TRUE(DropChannels(fd, channels));
+  channels.resize(4096, "EST_STATUS");
+  EXPECT_TRUE(FilterWithout(channels).empty());
+  EXPECT_FALSE(DropChannels(fd, channels));
+  close(fd);
 }
 
 TEST_F(LcmReceiverTest, DoesNotHearAnotherGroupOnTheSamePort) {

@@ -213,6 +213,8 @@ TEST_F(PipelineTest, ReportsWithTheAgreedKeys) {
     for (const char* q : {"p50", "p99", "p999", "max"}) EXPECT_TRUE(report.at("stage_ms").at(stage).at(q).is_number());
   }
   for (const char* stage : {"collect", "adjust", "execute"}) {
+    EXPECT_EQ(report.at("waiting_ms").at(stage).at("count"), 3);
+    EXPECT_GE(report.at("waiting_ms").at(stage).at("p50"), 0.0);
     EXPECT_EQ(report.at("allocations").at(stage).is_number(), HeapCallsAreCounted());
   }
   EXPECT_EQ(report.at("packs").at("received"), 3);

@@ -28,6 +28,10 @@ struct StepTimes {
 
   /// Time between begin and end of a stage, ns, stalls included.
   [[nodiscard]] Nanos Duration(Stage stage) const noexcept { return end_ns[IndexOf(stage)] - start_ns[IndexOf(stage)]; }
+  /// When a stage could have begun: arrival of the pack, then the end of the stage before, ns.
+  [[nodiscard]] Nanos Ready(Stage stage) const noexcept {
+    return stage == Stage::kCollect ? arrival_ns : end_ns[IndexOf(stage) - 1];
+  }
   /// Release to complete estimate, ns.
   [[nodiscard]] Nanos EndToEnd() const noexcept { return end_ns[IndexOf(Stage::kExecute)] - release_ns; }
   /// Time left until the deadline when the estimate was complete, ns; negative: missed.
@@ -79,6 +83,8 @@ class DeadlineMonitor {
   [[nodiscard]] std::int64_t stage_overruns(Stage stage) const noexcept { return overruns_[IndexOf(stage)].Get(); }
   /// Durations of a stage, ns. @pre the threads have ended, as for end_to_end().
   [[nodiscard]] const LogHistogram& stage_times(Stage stage) const noexcept { return stage_times_[IndexOf(stage)]; }
+  /// Times from when a stage could have begun until it did, ns: waking it, and whatever it did before.
+  [[nodiscard]] const LogHistogram& waiting_times(Stage stage) const noexcept { return waiting_times_[IndexOf(stage)]; }
   [[nodiscard]] const LogHistogram& end_to_end() const noexcept { return end_to_end_; }
 
  private:
@@ -96,7 +102,7 @@ class DeadlineMonitor {
   std::array<const WakeUpRing*, kNumStages> witness_{};
   std::array<StageTimeline, kNumStages> timeline_;  // collect, adjust: of the adjust thread; execute: of its own
   std::array<Nanos, kNumStages> budget_ns_;
-  std::array<LogHistogram, kNumStages> stage_times_;
+  std::array<LogHistogram, kNumStages> stage_times_, waiting_times_;
   LogHistogram end_to_end_;
   std::array<Counter, kNumStages> overruns_;
   std::array<Counter, kNumMissCauses> finished_late_;  // written by the execute thread

@@ -34,6 +34,9 @@ class LcmPublisher {
   ///   cannot open it.
   LcmPublisher(const LcmUrl& url, const std::string& prefix);
 
+  /// Names of the four channels.
+  [[nodiscard]] static std::array<std::string, 4> Channels(const std::string& prefix);
+
   /// Sends the estimate of a pack (parameters in the units of the plant, intervals, prediction) on EST_ESTIMATE.
   /// @param message  Complete: the publisher changes nothing in it, neither time stamps nor numbers.
   /// @return false if it could not be encoded (larger than 16 384 bytes) or sent; the caller counts that.

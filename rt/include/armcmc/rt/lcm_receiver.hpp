@@ -59,9 +59,11 @@ class LcmReceiver {
   /// Opens the socket and joins the group.
   /// @param url       Bus; its recv_buf_size is cut to net.core.rmem_max without CAP_NET_ADMIN.
   /// @param channels  Names with prefix; Datagram::channel counts them from 0.
+  /// @param own       Channels on which this process publishes: what comes back from the bus wakes no thread and is not
+  /// counted (DropChannels()).
   /// @throws std::invalid_argument when a name is longer than kMaxChannelLength.
   /// @throws std::runtime_error saying what to do when the machine has no multicast route, or which call failed.
-  LcmReceiver(const LcmUrl& url, std::vector<std::string> channels);
+  LcmReceiver(const LcmUrl& url, std::vector<std::string> channels, const std::vector<std::string>& own = {});
   ~LcmReceiver();
   LcmReceiver(const LcmReceiver&) = delete;
   LcmReceiver& operator=(const LcmReceiver&) = delete;
