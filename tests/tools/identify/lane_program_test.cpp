@@ -31,9 +31,12 @@ constexpr Varies kLane = Varies::kByLane, kSample = Varies::kBySample, kBoth = V
 
 /// Every lane of a text has, sample by sample, what the program of packs has for it alone, however many samples are
 /// evaluated at once.
-void ExpectTheSame(const std::string& text, const std::vector<Varies>& varies = {kBoth, kBoth, kLane}) {
+/// @param before  What the graph holds already, and so is computed first.
+void ExpectTheSame(const std::string& text, const std::vector<Varies>& varies = {kBoth, kBoth, kLane},
+                   const std::string& before = "t") {
   constexpr std::size_t kSamples = 40, kSecondRun = 25;
   Graph graph;
+  static_cast<void>(graph.Lower(expression::Parse(before), test::PlantWords(), {}));
   const int node = graph.Lower(expression::Parse(text), test::PlantWords(), {});
   const LaneProgram lanes(graph, {node}, varies);
   const expression::FeatureProgram one(graph, {node});
@@ -108,6 +111,12 @@ TEST(LaneProgram, ABranchThatNoCandidateTakesChangesNothing) {
         "if(x > 0, lowpass(v, u), integral(v + u))", "if(x > 0, v*u, exp(v*u))", "if(v > 0, v*u, if(x > 0, v, u - v))",
         "if(if(x > 0, x > 0.5, v > 0), v + u, v*u)"})
     ExpectTheSame(text, {kSample, kBoth, kLane});
+}
+
+TEST(LaneProgram, ABranchThatIsComputedBeforeItsConditionIsOfTheSameSample) {
+  for (const char* text : {"if(x > 0, v*u, v - u)", "if(x > 0, v*u, 0)", "if(x > 0, 0, u - v)"})
+    ExpectTheSame(text, {kSample, kBoth, kLane}, "v*u + (v - u)*(u - v)");
+  ExpectTheSame("if(x > 0, v, 0)", {kSample, kSample, kSample}, "v");
 }
 
 TEST(LaneProgram, TwiceAsManyCandidatesAtOnceAreEachAsAlone) {

@@ -209,12 +209,18 @@ void LaneProgram::GuardBranches() {
     if (its.condition != where.condition || its.holds != where.holds) its = {};
   };
   std::vector<bool> by_sample(num_blocks_, false);
-  for (const Instruction& i : each_) by_sample[i.block] = i.varies == Varies::kBySample;
+  std::vector<std::size_t> place(num_blocks_, 0);
+  for (std::size_t k = 0; k < each_.size(); ++k) {
+    by_sample[each_[k].block] = each_[k].varies == Varies::kBySample;
+    place[each_[k].block] = k;
+  }
   for (const std::size_t output : outputs_) use(output, {});
   for (std::size_t k = each_.size(); k-- > 0;) {
     Instruction& i = each_[k];
     const bool chooses = i.op == Op::kIf && by_sample[i.argument[0]];
     i.guard = i.memory ? Guard{} : guard[i.block];
+    // A condition that is computed later still has the value of the sample before.
+    if (i.guard.condition > 0 && place[i.guard.condition] > k) i.guard = {};
     for (std::size_t a = 0; a < i.argument.size(); ++a)
       use(i.argument[a], chooses && a > 0 ? Guard{i.argument[0], a == 1} : i.guard);
   }
