@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,23 @@ TEST(SecondSearch, WhatExplainsLessIsNotNamedInPlaceOfWhatIsWithdrawn) {
   request.data = RecordPlant("contact_rich", {{"viscous_friction", 1.0, {}, "linear"}}, 894535750, 10.0, true, true);
   request.diagnose.without = {"viscous_friction"};
   EXPECT_FALSE(ladder::SearchAgain(request));
+}
+
+/// What the second search makes of a recording whose effect is taken out of the catalogue.
+std::optional<ladder::SecondSearch> SearchAgainWithout(const std::string& effect, unsigned long long seed) {
+  WorkflowRequest request;
+  request.model = "hunt_crossley";
+  request.data = RecordPlant("contact_rich", {{effect, 1.0, {}, "linear"}}, seed, 10.0, true, true);
+  request.diagnose.without = {effect};
+  return ladder::SearchAgain(request);
+}
+
+TEST(SecondSearch, ABodyThatRelaxesIsNoFrictionThatBuildsUp) {
+  EXPECT_FALSE(SearchAgainWithout("stress_relaxation", 50909615));
+}
+
+TEST(SecondSearch, AFrictionThatIsStraightAsFarAsTheDataReachIsNotNamedDry) {
+  EXPECT_FALSE(SearchAgainWithout("viscous_friction", 784671043));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -97,6 +98,20 @@ TEST(InputOfAState, IsChangedForOtherStatesAndNotForItself) {
     EXPECT_EQ(c.plant->description().states[1].rate, "(input_saturation_a - b)/Tb");
   }
   EXPECT_EQ(found, 1);
+}
+
+TEST(ActionOfAxis, ProportionsAndRelaxationsAreToldFromCurvesAndFrictions) {
+  const PlantDescription plant = test::AxisPlant();
+  const std::vector<EffectEntry> entries = support::ReadEffectLibrary();
+  const DataScales scales = ScalesOf(test::AxisData([](const auto&) { return 0.0; }), plant, 2.0);
+  std::vector<std::string> notes;
+  std::set<std::string> straight, relaxing;
+  for (const Candidate& c : Candidates(plant, entries, scales, &notes)) {
+    if (IsProportionalTo(c, "v")) straight.insert(c.entry->name);
+    if (Relaxes(c)) relaxing.insert(c.entry->name);
+  }
+  EXPECT_EQ(straight, std::set<std::string>{"viscous_friction"});
+  EXPECT_EQ(relaxing, std::set<std::string>{"stress_relaxation"}) << "and no friction, no play, no oscillation";
 }
 
 }  // namespace

@@ -13,6 +13,21 @@ namespace {
 using expression::Graph;
 using expression::SymbolKind;
 
+/// Signals, states and time.
+std::vector<int> MovingSymbols(const Graph& graph) {
+  std::vector<int> symbols;
+  for (int node = 0; node < graph.size(); ++node) {
+    const expression::GraphNode& at = graph.at(node);
+    const bool moves = at.kind == SymbolKind::kSignal || at.kind == SymbolKind::kTime || at.kind == SymbolKind::kState;
+    if (at.op == expression::Op::kSymbol && moves) symbols.push_back(node);
+  }
+  return symbols;
+}
+
+bool DependsOnAny(const Graph& graph, int node, const std::vector<int>& symbols) {
+  return std::any_of(symbols.begin(), symbols.end(), [&](int symbol) { return graph.DependsOn(node, symbol); });
+}
+
 using Reading = std::set<std::pair<SymbolKind, int>>;  ///< Signals, states, time.
 using Equations = std::map<std::size_t, Reading>;
 
@@ -23,12 +38,7 @@ std::optional<Equations> ActionOf(const Candidate& effect) {
   std::vector<int> nodes;
   for (const PlantMode& mode : effect.plant->modes()) nodes.insert(nodes.end(), {mode.when, mode.law});
   for (const PlantState& state : effect.plant->states()) nodes.insert(nodes.end(), {state.start, state.rate});
-  std::vector<int> symbols;
-  for (int node = 0; node < graph.size(); ++node) {
-    const expression::GraphNode& at = graph.at(node);
-    const bool moves = at.kind == SymbolKind::kSignal || at.kind == SymbolKind::kTime || at.kind == SymbolKind::kState;
-    if (at.op == expression::Op::kSymbol && moves) symbols.push_back(node);
-  }
+  const std::vector<int> symbols = MovingSymbols(graph);
   Equations equations;
   for (std::size_t p = 0; p < effect.form().parameters.size(); ++p) {
     const int parameter = graph.Symbol(SymbolKind::kParameter, static_cast<int>(effect.first_parameter + p));
@@ -92,6 +102,53 @@ bool Remembers(const Candidate& effect) {
          std::any_of(expression::kOps.begin(), expression::kOps.end(), [&](const expression::OpInfo& op) {
            return op.memory && op.function && Mentions(form, std::string(op.name));
          });
+}
+
+bool Adds(const Candidate& effect) {
+  const std::string& slot = effect.form().terms.front().slot;
+  return slot == "output" || slot == "rate";
+}
+
+bool IsProportionalTo(const Candidate& effect, const std::string& name) {
+  const EffectForm& form = effect.form();
+  if (form.parameters.size() != 1 || form.terms.front().slot != "output") return false;
+  if (Remembers(effect) || !Reads(effect, name)) return false;
+  Graph graph = effect.plant->graph();
+  const int parameter = graph.Symbol(SymbolKind::kParameter, static_cast<int>(effect.first_parameter));
+  const std::vector<int> moving = MovingSymbols(graph);
+  for (const PlantMode& mode : effect.plant->modes()) {
+    if (mode.law < 0 || !graph.DependsOn(mode.law, parameter)) continue;
+    const int action = graph.Differentiate(mode.law, parameter);
+    if (action < 0) return false;
+    for (const int symbol : moving) {
+      if (!graph.DependsOn(action, symbol)) continue;
+      const int slope = graph.Differentiate(action, symbol);
+      const bool flat = slope >= 0 && graph.IsNumber(slope) && graph.at(slope).value == 0.0;  // it jumps
+      if (slope < 0 || flat || DependsOnAny(graph, slope, moving)) return false;
+    }
+  }
+  return true;
+}
+
+bool Relaxes(const Candidate& effect) {
+  const EffectForm& form = effect.form();
+  if (form.states.empty() || !Adds(effect) || !effect.Frequencies().empty()) return false;
+  Graph graph = effect.plant->graph();
+  const std::vector<int> all = MovingSymbols(graph);
+  std::vector<int> own;
+  const std::size_t size = effect.plant->states().size(), first = size - form.states.size();
+  for (std::size_t s = first; s < size; ++s)
+    own.push_back(effect.plant->NodeOf(SymbolKind::kState, static_cast<int>(s)));
+  for (std::size_t s = first; s < size; ++s) {
+    const int rate = effect.plant->states()[s].rate;
+    for (const int symbol : all) {
+      if (!graph.DependsOn(rate, symbol)) continue;
+      const int slope = graph.Differentiate(rate, symbol);
+      const bool its_own = std::find(own.begin(), own.end(), symbol) != own.end();
+      if (slope < 0 || DependsOnAny(graph, slope, its_own ? all : own)) return false;
+    }
+  }
+  return true;
 }
 
 bool ActsOnLaw(const Candidate& effect) {

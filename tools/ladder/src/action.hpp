@@ -17,6 +17,16 @@ namespace armcmc::ladder {
 /// Whether it has memory: a state of its own, or a function such as delay().
 [[nodiscard]] bool Remembers(const Candidate& effect);
 
+/// Whether it is added to the output or to a rate, and replaces nothing.
+[[nodiscard]] bool Adds(const Candidate& effect);
+
+/// Whether it is added to the output in proportion to the signal or state `name`, with one parameter.
+[[nodiscard]] bool IsProportionalTo(const Candidate& effect, const std::string& name);
+
+/// Whether it adds what it remembers, and its states follow linearly what drives them, at a pace of their own: a
+/// relaxation, but no dry friction and no oscillation.
+[[nodiscard]] bool Relaxes(const Candidate& effect);
+
 /// Whether a name occurs in the formulas of an effect. A parameter that does not occur says only where a state begins.
 [[nodiscard]] bool Mentions(const EffectForm& form, const std::string& name);
 

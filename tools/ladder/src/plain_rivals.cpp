@@ -12,7 +12,9 @@ namespace armcmc::ladder {
 namespace {
 
 constexpr const char* kMostDrift = "0.33";  // of a parameter, on either side: what drifts by more is a change of state
-constexpr std::size_t kMostDrifting = 2;    // parameters of different action that are fitted
+constexpr std::size_t kMostFitted = 2;      // of a kind, with different action
+constexpr const char* kPast = "past";
+constexpr const char* kStraight = "straight";
 
 EffectEntry ShiftedLimit() {
   EffectNeed x;
@@ -61,19 +63,66 @@ EffectEntry DriftingParameter() {
   return entry;
 }
 
+/// Forms that differ in what they follow, and in where the fit of the time constant begins.
+EffectEntry Past() {
+  EffectEntry entry;
+  entry.name = entry.family = kPast;
+  for (const std::string of : {"law", "signal", "state"})
+    for (const char* const tau : {"0.03*period", "0.1*period", "0.3*period", "period"}) {
+      EffectForm form;
+      form.variant = true;  // all forms are tried
+      // With c = -1 it would be the lag of a sensor, which is another thing than a body that relaxes.
+      if (of == "law") {
+        form.parameters.push_back({"c", "1", "normal", "0", "0.5", "0", "10", "0"});
+        form.terms.push_back({"output", "", "c*(law - lowpass(law, tau))"});
+      } else {
+        EffectNeed x;
+        x.name = "x";
+        x.kind = of;
+        form.needs = {x};
+        form.parameters.push_back({"c", "output/x", "normal", "0", "output/x", "", "", "0"});
+        form.terms.push_back({"output", "", "c*(x - lowpass(x, tau))"});
+      }
+      form.parameters.push_back({"tau", "s", "lognormal", tau, "1.5", "dt", "10*record", ""});
+      entry.forms.push_back(std::move(form));
+    }
+  return entry;
+}
+
+EffectEntry Straight() {
+  EffectEntry entry;
+  entry.name = entry.family = kStraight;
+  for (const char* const kind : {"signal", "state"}) {
+    EffectNeed x;
+    x.name = "x";
+    x.kind = kind;
+    EffectForm form;
+    form.variant = true;  // all forms are tried
+    form.needs = {x};
+    form.constants = {{"m", "x", "mean_x"}};
+    form.parameters.push_back({"c", "output/x", "normal", "0", "output/x", "", "", "0"});
+    form.terms.push_back({"output", "", "c*(x - m)"});
+    entry.forms.push_back(std::move(form));
+  }
+  return entry;
+}
+
 std::string Bound(const Candidate& rival, const char* need) {
   const auto at = rival.binding.symbols.find(need);
   return at == rival.binding.symbols.end() ? "" : at->second;
 }
 
 /// Whether it is the zero of the output that is elsewhere.
-bool IsOfZero(const Candidate& rival) { return rival.form().needs.empty(); }
+bool IsOfZero(const Candidate& rival) { return rival.form().needs.empty() && rival.entry->name != kPast; }
 
 /// "K drifted"
 std::string AsIf(const Candidate& rival) {
   if (IsOfZero(rival)) return Reads(rival, "t") ? "the zero of the output drifted" : "the output had another zero";
   if (const std::string p = Bound(rival, "p"); !p.empty()) return p + " drifted";
-  return "the modes changed at another " + Bound(rival, "x");
+  const std::string x = Bound(rival, "x");
+  if (rival.entry->name == kPast) return x.empty() ? "the output relaxed" : "the output followed the past of " + x;
+  if (rival.entry->name == kStraight) return "a term in proportion to " + x + " were added to the output";
+  return "the modes changed at another " + x;
 }
 
 /// Whether the condition of a mode reads a signal.
@@ -97,7 +146,9 @@ PlainRivals::PlainRivals(const std::shared_ptr<const Plant>& plant, const Datase
       scales_(scales),
       contenders_(contenders),
       plain_entries_{ShiftedZero(false), ShiftedZero(true), ShiftedLimit()},
-      slow_entries_{DriftingParameter()} {}
+      slow_entries_{DriftingParameter()},
+      past_entries_{Past()},
+      straight_entries_{Straight()} {}
 
 bool PlainRivals::IsNotInCatalogue(const Candidate& rival) const {
   if (IsOfZero(rival))
@@ -106,7 +157,14 @@ bool PlainRivals::IsNotInCatalogue(const Candidate& rival) const {
              Reads(c.candidate, "t") == Reads(rival, "t") && c.candidate.Frequencies().empty();
     });
   const std::string signal = Bound(rival, "x"), parameter = Bound(rival, "p");
-  if (!signal.empty() && (IsExplained(plant_->description(), signal) || !Limits(*plant_, signal))) return false;
+  if (!signal.empty() && IsExplained(plant_->description(), signal)) return false;
+  if (rival.entry->name == kPast)
+    return std::none_of(contenders_.begin(), contenders_.end(),
+                        [](const Contender& c) { return Relaxes(c.candidate); });
+  if (rival.entry->name == kStraight)
+    return std::none_of(contenders_.begin(), contenders_.end(),
+                        [&](const Contender& c) { return IsProportionalTo(c.candidate, signal); });
+  if (!signal.empty() && !Limits(*plant_, signal)) return false;
   // A constant of the law that drifts is no other than an output that does.
   if (!parameter.empty() && IsIndependentOfSignals(rival)) return false;
   return std::none_of(contenders_.begin(), contenders_.end(), [&](const Contender& c) {
@@ -126,8 +184,21 @@ std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
   const Contender* rival = FirstThatExplainsAsMuch(&*plain_, view_, base_, c);
   if (rival == nullptr && (Remembers(c.candidate) || IsIndependentOfSignals(c.candidate))) {
     if (!slow_)
-      slow_ = FittedRivals(BestByOneStep(lacked(slow_entries_), kMostDrifting, plant_, data_, base_), data_, base_);
+      slow_ = FittedRivals(BestByOneStep(lacked(slow_entries_), kMostFitted, plant_, data_, base_), data_, base_);
     rival = FirstThatExplainsAsMuch(&*slow_, view_, base_, c);
+  }
+  // A lag of the output or of an input is a memory of it, too, and has a name of its own.
+  if (rival == nullptr && Remembers(c.candidate) && Adds(c.candidate)) {
+    if (!past_)
+      past_ = FittedRivals(BestByOneStep(lacked(past_entries_), kMostFitted, plant_, data_, base_), data_, base_);
+    rival = FirstThatExplainsAsMuch(&*past_, view_, base_, c);
+  }
+  std::vector<Contender> straight;
+  if (rival == nullptr) {
+    std::vector<Candidate> same = lacked(straight_entries_);
+    std::erase_if(same, [&](const Candidate& one) { return !ActOnSameQuantity(one, c.candidate); });
+    straight = FittedRivals(std::move(same), data_, base_);
+    rival = FirstThatExplainsAsMuch(&straight, view_, base_, c);
   }
   if (rival == nullptr) return std::nullopt;
   return Rival{AsIf(rival->candidate), "explains as much"};
