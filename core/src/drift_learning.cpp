@@ -16,7 +16,8 @@ constexpr double kLikeness = 0.05;        // share of the effective draws that a
 constexpr int kSearched = 256;            // draws, for one that is not improbable
 constexpr double kChance = 3.0;           // times the square that chance makes, which is taken off a difference
 constexpr double kExact = 1e-3;           // by what the effective draws of an expansion that is exact may differ
-constexpr double kFar = 0.5;              // standard deviations beyond which the filters do not know better, even then
+constexpr double kClear = 4.0;            // standard deviations from a bound that does not cut off anything
+constexpr double kFar = 0.5;              // and beyond which the filters do not know better where one does
 constexpr int kMomentDraws = 4096;        // at most: their chance is small in a difference
 constexpr std::size_t kCells = 1024;      // of a histogram
 constexpr double kHistogramReach = 20.0;  // standard deviations from the mean
@@ -164,6 +165,16 @@ Drift::Moments Drift::MomentsOfDraws(const Draws& draws, int count) const noexce
   return m;
 }
 
+bool Drift::IsClearOfBounds(const Moments& moments) const noexcept {
+  bool clear = true;
+  for (int d = 0; d < dim_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const double reach = kClear * std::sqrt(moments.covariance(d, d));
+    clear = clear && moments.mean[d] - reach > space_.lower[i] && moments.mean[d] + reach < space_.upper[i];
+  }
+  return clear;
+}
+
 bool Drift::TargetByDraws(const Sampled& sampled, const Draws& draws, const Moments& closed,
                           Moments* target) const noexcept {
   // The expansion is in the parameters alone.
@@ -178,7 +189,8 @@ bool Drift::TargetByDraws(const Sampled& sampled, const Draws& draws, const Mome
   const Moments expanded = MomentsOfDraws(draws, count);
   // By what the draws under the expansion differ from the filters: chance, or a prior that is no Gaussian. A share of
   // it is taken for real, as in James and Stein's estimator (positive part); none where the law is linear, for which
-  // the filters know more than the densities that were sampled.
+  // the filters know more than the densities that were sampled: those have the filters' moments, not their shape. They
+  // do not know of a bound that cuts.
   ParamMatrix root;
   if (!CholeskyFactor(closed.covariance, &root)) return false;
   const ParamMatrix inverse = Inverse(root);
@@ -188,7 +200,7 @@ bool Drift::TargetByDraws(const Sampled& sampled, const Draws& draws, const Mome
   const double square = apart.squaredNorm() + 0.5 * wider.squaredNorm();
   const double by_chance = 0.5 * dim_ * (dim_ + 3) / expanded.weight;
   double kept = std::fmax(1.0 - kChance * by_chance / square, 0.0);
-  if (std::fabs(likeness - 1.0) < kExact && square < kFar * kFar) kept = 0.0;
+  if (std::fabs(likeness - 1.0) < kExact && (square < kFar * kFar || IsClearOfBounds(closed))) kept = 0.0;
   ParamMatrix map;
   if (!MapBetween(expanded.covariance, actual.covariance, &map)) return false;
   wider *= kept;

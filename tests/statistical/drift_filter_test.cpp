@@ -304,13 +304,16 @@ void Record(std::uint64_t noise_seed, const Difference& d) {
 }
 
 TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
+  // In the last one, what rests is improbable and then is not: few draws have told the shape of its density, the
+  // filters of the bank know it.
+  constexpr std::array<std::uint64_t, 9> kNoiseSeeds{31, 32, 33, 34, 35, 36, 37, 38, 108};
   int far = 0;
-  for (const std::uint64_t noise_seed : {31U, 32U, 33U, 34U, 35U, 36U, 37U, 38U}) {
+  for (const std::uint64_t noise_seed : kNoiseSeeds) {
     const Difference d = DifferenceInARun(noise_seed);
     Record(noise_seed, d);
     // A hundredth of it each is that of some thousand draws.
-    EXPECT_LT(d.mean, 0.015) << noise_seed;
-    EXPECT_LT(d.sd, 0.015) << noise_seed;
+    EXPECT_LT(d.mean, 0.01) << noise_seed;
+    EXPECT_LT(d.sd, 0.01) << noise_seed;
     EXPECT_LT(d.worst_mean, 0.08) << noise_seed;
     EXPECT_LT(d.worst_sd, 0.06) << noise_seed;
     EXPECT_LT(d.share, 0.05) << noise_seed;
@@ -320,7 +323,7 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
     far += d.far;
   }
   // Packs in which the mean is more than .05 standard deviations away, or the standard deviation more than 3 % off.
-  EXPECT_LE(far, 8 * kPacks / 100);
+  EXPECT_LE(far, static_cast<int>(kNoiseSeeds.size()) * kPacks / 200);
 }
 
 }  // namespace

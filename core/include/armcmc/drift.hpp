@@ -304,6 +304,8 @@ class Drift {
                                                       double sd) const noexcept ARMCMC_NONBLOCKING;
   /// Of the draws by the weights in their scratch; `weight` is the effective number.
   [[nodiscard]] Moments MomentsOfDraws(const Draws& draws, int count) const noexcept ARMCMC_NONBLOCKING;
+  /// No bound cuts off anything of a Gaussian with these moments.
+  [[nodiscard]] bool IsClearOfBounds(const Moments& moments) const noexcept ARMCMC_NONBLOCKING;
   /// Where the filters of a sampled part belong.
   /// @param closed  Where the expansion puts them.
   bool TargetByDraws(const Sampled& sampled, const Draws& draws, const Moments& closed,
