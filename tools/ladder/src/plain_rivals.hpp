@@ -20,13 +20,11 @@ namespace armcmc::ladder {
 ///   that changes with time looks like a force that drifts, or like a slow memory. So it is a rival of effects that
 ///   remember, or respond to nothing;
 /// - the output follows its past, y + c (x - low pass of x), x the law or a signal. Most bodies relax a little, and
-/// what
-///   fades while a body is held looks like a friction that builds up after each reversal. So it is a rival of effects
-///   that remember;
+///   what fades while a body is held looks like a friction that builds up after each reversal. So it is a rival of
+///   effects that remember and add;
 /// - the output has a term in proportion to a signal, y + c (x - mean of x). A curve that is straight as far as the
-/// data
-///   reach is none: a dry friction so smooth that it never slips is a viscous one. So it is a rival of effects that are
-///   a function of the same signal.
+///   data reach is none: a dry friction so smooth that it never slips is a viscous one. So it is a rival of effects
+///   that are a function of the same signal.
 ///
 /// Where an effect of the catalogue does the same, that competes by its name, and the rival is left out.
 class PlainRivals {
