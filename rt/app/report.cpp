@@ -36,7 +36,7 @@ Json StageTimes(const DeadlineMonitor& m) {
           {"end_to_end", LatencyMs(m.end_to_end())}};
 }
 
-/// Before each stage; with `stage_ms` they add up to the time from arrival to the end of execute.
+/// Before each stage; in one step, these and `stage_ms` add up to the time from arrival to the end of execute.
 Json WaitingTimes(const DeadlineMonitor& m) {
   return {{"collect", LatencyMs(m.waiting_times(Stage::kCollect))},
           {"adjust", LatencyMs(m.waiting_times(Stage::kAdjust))},

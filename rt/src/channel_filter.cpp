@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <new>
 
+#include "armcmc/rt/lcm_receiver.hpp"
+
 namespace armcmc::rt {
 namespace {
 
-constexpr std::size_t kUdpHeader = 8;  // the filter of a UDP socket sees it
-constexpr std::size_t kLcmHeader = 8;  // be32 magic number, be32 message number
-constexpr std::uint32_t kMagicShort = 0x4c433032;
+constexpr std::size_t kUdpHeader = 8;       // the filter of a UDP socket sees it
 constexpr std::uint32_t kAll = 0xffffffff;  // bytes of a datagram that are kept
 
 sock_filter Load(unsigned width, std::size_t offset) {
@@ -36,14 +36,14 @@ void AppendChannel(const std::string& name, std::vector<sock_filter>* program) {
   std::size_t left = 2 * (words + bytes + 1) + 1;
   // Loading past the end of a datagram would drop it.
   program->push_back(BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0));
-  program->push_back(Unless(BPF_JGE, static_cast<std::uint32_t>(kUdpHeader + kLcmHeader + text.size()), left));
+  program->push_back(Unless(BPF_JGE, static_cast<std::uint32_t>(kUdpHeader + kLcmHeaderSize + text.size()), left));
   const auto compare = [&](unsigned width, std::size_t offset, std::uint32_t value) {
     left -= 2;
     program->push_back(Load(width, offset));
     program->push_back(Unless(BPF_JEQ, value, left));
   };
-  compare(BPF_W, kUdpHeader, kMagicShort);
-  const std::size_t begin = kUdpHeader + kLcmHeader;
+  compare(BPF_W, kUdpHeader, kLcmMagicShort);
+  const std::size_t begin = kUdpHeader + kLcmHeaderSize;
   for (std::size_t i = 0; i < words; ++i) compare(BPF_W, begin + 4 * i, BigEndian(text, 4 * i, 4));
   for (std::size_t i = 4 * words; i < text.size(); ++i) compare(BPF_B, begin + i, BigEndian(text, i, 1));
   program->push_back(BPF_STMT(BPF_RET | BPF_K, 0));

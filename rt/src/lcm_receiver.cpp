@@ -19,9 +19,7 @@
 namespace armcmc::rt {
 namespace {
 
-constexpr std::uint32_t kMagicShort = 0x4c433032;     // "LC02"
 constexpr std::uint32_t kMagicFragment = 0x4c433033;  // "LC03"
-constexpr std::size_t kHeaderSize = 8;
 
 std::uint32_t ReadBe32(const std::uint8_t* p) noexcept {
   return (std::uint32_t{p[0]} << 24U) | (std::uint32_t{p[1]} << 16U) | (std::uint32_t{p[2]} << 8U) | p[3];
@@ -44,19 +42,19 @@ Nanos StampAge(const timespec& stamp) noexcept {
 
 DatagramKind ParseDatagram(std::span<const std::uint8_t> bytes, const std::string& channel,
                            std::span<const std::uint8_t>* payload) noexcept {
-  if (bytes.size() < kHeaderSize) return DatagramKind::kMalformed;
+  if (bytes.size() < kLcmHeaderSize) return DatagramKind::kMalformed;
   const std::uint32_t magic = ReadBe32(bytes.data());
   if (magic == kMagicFragment) return DatagramKind::kFragment;
-  if (magic != kMagicShort) return DatagramKind::kMalformed;
+  if (magic != kLcmMagicShort) return DatagramKind::kMalformed;
   const std::size_t name_size = channel.size() + 1;  // with its NUL
-  if (bytes.size() >= kHeaderSize + name_size &&
-      std::memcmp(bytes.data() + kHeaderSize, channel.c_str(), name_size) == 0) {
-    *payload = bytes.subspan(kHeaderSize + name_size);
+  if (bytes.size() >= kLcmHeaderSize + name_size &&
+      std::memcmp(bytes.data() + kLcmHeaderSize, channel.c_str(), name_size) == 0) {
+    *payload = bytes.subspan(kLcmHeaderSize + name_size);
     return DatagramKind::kOurs;
   }
-  const std::size_t search = std::min(bytes.size() - kHeaderSize, kMaxChannelLength + 1);
-  return std::memchr(bytes.data() + kHeaderSize, 0, search) != nullptr ? DatagramKind::kForeign
-                                                                       : DatagramKind::kMalformed;
+  const std::size_t search = std::min(bytes.size() - kLcmHeaderSize, kMaxChannelLength + 1);
+  return std::memchr(bytes.data() + kLcmHeaderSize, 0, search) != nullptr ? DatagramKind::kForeign
+                                                                          : DatagramKind::kMalformed;
 }
 
 LcmReceiver::LcmReceiver(const LcmUrl& url, std::vector<std::string> channels, const std::vector<std::string>& own)

@@ -68,6 +68,19 @@ class DeadlineMonitorTest : public ::testing::Test {
   std::unique_ptr<DeadlineMonitor> monitor_;
 };
 
+TEST_F(DeadlineMonitorTest, AStageWaitsFromTheEndOfTheOneBefore) {
+  StepTimes t = Step(50);
+  t.start_ns[0] = t.arrival_ns + 1 * kMs;
+  t.end_ns[0] = t.start_ns[0] + 4 * kMs;
+  t.start_ns[1] = t.end_ns[0] + 2 * kMs;
+  t.start_ns[2] = t.end_ns[1] + 8 * kMs;
+  t.end_ns[2] = t.start_ns[2] + 16 * kMs;
+  (void)Judge(t);
+  EXPECT_EQ(monitor_->waiting_times(Stage::kCollect).max(), 1 * kMs);
+  EXPECT_EQ(monitor_->waiting_times(Stage::kAdjust).max(), 2 * kMs);
+  EXPECT_EQ(monitor_->waiting_times(Stage::kExecute).max(), 8 * kMs);
+}
+
 TEST_F(DeadlineMonitorTest, CountsNothingWhenTheDeadlineIsMet) {
   Fill(cpu0_.get(), 0, 0);
   Fill(cpu1_.get(), 0, 0);

@@ -214,7 +214,6 @@ TEST_F(PipelineTest, ReportsWithTheAgreedKeys) {
   }
   for (const char* stage : {"collect", "adjust", "execute"}) {
     EXPECT_EQ(report.at("waiting_ms").at(stage).at("count"), 3);
-    EXPECT_GE(report.at("waiting_ms").at(stage).at("p50"), 0.0);
     EXPECT_EQ(report.at("allocations").at(stage).is_number(), HeapCallsAreCounted());
   }
   EXPECT_EQ(report.at("packs").at("received"), 3);

@@ -326,5 +326,19 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
   EXPECT_LE(far, static_cast<int>(kNoiseSeeds.size()) * kPacks / 200);
 }
 
+// A pack may be far off, most of all where a change is a few percent probable; no run has many of them.
+TEST(LongDriftFilter, HasFewPacksThatAreFarOffInAnyRun) {
+  constexpr std::uint64_t kFirst = 71;
+  constexpr int kRuns = 40;
+  int far = 0;
+  for (std::uint64_t noise_seed = kFirst; noise_seed < kFirst + kRuns; ++noise_seed) {
+    const Difference d = DifferenceInARun(noise_seed);
+    Record(noise_seed, d);
+    EXPECT_LE(d.far, kPacks / 20) << noise_seed;
+    far += d.far;
+  }
+  EXPECT_LE(far, kRuns * kPacks / 200);
+}
+
 }  // namespace
 }  // namespace armcmc::drift_filter_test

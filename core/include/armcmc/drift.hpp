@@ -56,7 +56,8 @@ struct QuadraticControl;
 ///            according to this expansion to the sampled posterior. Both are taken from the same draws, whose weights
 ///            exp(expansion - log L) turn from the one into the other: chance cancels, and for a linear law the map is
 ///            the identity, so that nothing of the sampling error is handed on. What the draws under the expansion
-///            differ from the filters by more than chance is real, too: the prior that was sampled is no Gaussian. The
+///            differ from the filters by more than chance is real, too: the prior that was sampled is no Gaussian. Not
+///            so for a linear law far from all bounds, where the filters are exact and the density sampled is not. The
 ///            probability of drift is corrected by the odds of the same draws. A part that was not sampled keeps the
 ///            result of its own filters: the draws of a part that the data refute carry no information about it
 ///

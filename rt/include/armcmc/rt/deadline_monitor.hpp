@@ -83,7 +83,8 @@ class DeadlineMonitor {
   [[nodiscard]] std::int64_t stage_overruns(Stage stage) const noexcept { return overruns_[IndexOf(stage)].Get(); }
   /// Durations of a stage, ns. @pre the threads have ended, as for end_to_end().
   [[nodiscard]] const LogHistogram& stage_times(Stage stage) const noexcept { return stage_times_[IndexOf(stage)]; }
-  /// Times from when a stage could have begun until it did, ns: waking it, and whatever it did before.
+  /// Times from when a stage could have begun (StepTimes::Ready) until it did, ns: waking it, and whatever it did
+  /// before. @pre the threads have ended.
   [[nodiscard]] const LogHistogram& waiting_times(Stage stage) const noexcept { return waiting_times_[IndexOf(stage)]; }
   [[nodiscard]] const LogHistogram& end_to_end() const noexcept { return end_to_end_; }
 

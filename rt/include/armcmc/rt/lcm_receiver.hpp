@@ -13,6 +13,10 @@
 
 namespace armcmc::rt {
 
+/// First word, in network order, of an LCM message that travels in one datagram: "LC02".
+inline constexpr std::uint32_t kLcmMagicShort = 0x4c433032;
+/// Bytes before the name of the channel: this word and the number of the message.
+inline constexpr std::size_t kLcmHeaderSize = 8;
 /// Largest LCM message that travels in one datagram: channel, NUL and payload together.
 inline constexpr std::size_t kMaxShortMessage = 65'499;
 
@@ -59,8 +63,8 @@ class LcmReceiver {
   /// Opens the socket and joins the group.
   /// @param url       Bus; its recv_buf_size is cut to net.core.rmem_max without CAP_NET_ADMIN.
   /// @param channels  Names with prefix; Datagram::channel counts them from 0.
-  /// @param own       Channels on which this process publishes: what comes back from the bus wakes no thread and is not
-  /// counted (DropChannels()).
+  /// @param own       Channels on which this process publishes. Their messages, whoever sent them, wake no thread and
+  /// are not counted (DropChannels()).
   /// @throws std::invalid_argument when a name is longer than kMaxChannelLength.
   /// @throws std::runtime_error saying what to do when the machine has no multicast route, or which call failed.
   LcmReceiver(const LcmUrl& url, std::vector<std::string> channels, const std::vector<std::string>& own = {});
