@@ -170,7 +170,9 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   // If the plant's time restarts, the elapsed time is unknown: at least one pack.
   const double since = data.time_s - time_s_;
   elapsed_s_ = since > 0.0 ? since : data.duration_s;
-  Predict(elapsed_s_);
+  const double gap = elapsed_s_ - data.duration_s;
+  gap_s_ = gap > 0.5 * data.interval_s ? gap : 0.0;
+  Predict(elapsed_s_, gap_s_);
   ExpectDrift();
   const Moments expected = MomentsOf(predicted_, Part::kWhole);
   expected_ = {expected.mean, expected.covariance};

@@ -8,9 +8,8 @@
 
 namespace armcmc {
 
-Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
-  const Eigen::Index dim = bank.front().u.size();
-  Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim), .covariance = ParamMatrix::Zero(dim, dim)};
+Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) const noexcept {
+  Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim_), .covariance = ParamMatrix::Zero(dim_, dim_)};
   for (std::size_t i = 0; i < bank.size(); ++i) {
     if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
     m.weight += bank[i].weight;
@@ -21,8 +20,8 @@ Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) noexcept {
     if (!IsOf(part, f) || !(bank[f].weight > 0.0)) continue;
     const ParamVector apart = bank[f].u - m.mean;
     const double share = bank[f].weight / m.weight;
-    for (Eigen::Index i = 0; i < dim; ++i)
-      for (Eigen::Index j = 0; j < dim; ++j) m.covariance(i, j) += share * (bank[f].uu(i, j) + apart[i] * apart[j]);
+    for (int i = 0; i < dim_; ++i)
+      for (int j = 0; j < dim_; ++j) m.covariance(i, j) += share * (bank[f].uu(i, j) + apart[i] * apart[j]);
   }
   return m;
 }
@@ -108,11 +107,38 @@ Drift::Filter Drift::Newcomer(const Moments& part, double weight, const Hypothes
           .ww = FirstVelocity(law)};
 }
 
-void Drift::AddNewcomers(double elapsed_s) noexcept {
+Drift::Moments Drift::StoppedDrift(double within_s) noexcept {
+  Moments stopped = MomentsOf(predicted_, Part::kDrift);
+  const double g = std::fmin(within_s, 1.0 / kSwitching);
+  if (!(g > 0.0) || !(stopped.weight > 0.0)) return stopped;
+  const ParamVector variance = stopped.covariance.diagonal();
+  for (std::size_t k = 0; k < predicted_.size(); ++k) {
+    if (!IsOf(Part::kDrift, k)) continue;
+    const Filter& f = predicted_[k];
+    Filter& moved = work_[k];
+    moved.weight = f.weight;
+    if (!(f.weight > 0.0)) continue;
+    moved.u = f.u + 0.5 * g * f.w;
+    moved.uu = f.uu;
+    for (int i = 0; i < dim_; ++i)
+      for (int j = 0; j < dim_; ++j)
+        moved.uu(i, j) += 0.5 * g * (f.uw(i, j) + f.uw(j, i)) + g * g * (f.ww(i, j) / 3.0 + f.w[i] * f.w[j] / 12.0);
+  }
+  stopped = MomentsOf(work_, Part::kDrift);
+  for (int i = 0; i < dim_; ++i) {
+    const double kept = std::fmin(std::fmax(variance[i], 1.0) / stopped.covariance(i, i), 1.0);
+    stopped.mean[i] *= kept;
+    stopped.covariance.row(i) *= std::sqrt(kept);
+    stopped.covariance.col(i) *= std::sqrt(kept);
+  }
+  return stopped;
+}
+
+void Drift::AddNewcomers(double elapsed_s, double gap_s) noexcept {
   const double switched = -std::expm1(-kSwitching * elapsed_s);
   const double from_rest = switched * (1.0 - hypotheses_[0].prior);
   const Moments rest = MomentsOf(predicted_, Part::kRest);
-  const Moments drift = MomentsOf(predicted_, Part::kDrift);
+  const Moments drift = StoppedDrift(gap_s);
   for (std::size_t i = 0; i < predicted_.size(); ++i)
     predicted_[i].weight *= 1.0 - (IsOf(Part::kRest, i) ? from_rest : switched);
   for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
@@ -167,14 +193,14 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
   }
 }
 
-void Drift::Predict(double elapsed_s) noexcept {
+void Drift::Predict(double elapsed_s, double gap_s) noexcept {
   predicted_ = bank_;
   const double changes = std::fmin(std::ceil(kSwitching * elapsed_s), kMostSteps);
   const int steps = std::max(static_cast<int>(changes), 1);
   for (int step = 0; step < steps; ++step) {
     MakeRoom(&predicted_);
     if (step == 0) {
-      AddNewcomers(elapsed_s);
+      AddNewcomers(elapsed_s, gap_s);
     } else {
       TurnDrifts(elapsed_s / steps);
     }
@@ -203,7 +229,7 @@ void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<doub
   ratio->fill(1.0);
   const double since = time_s - time_s_;
   if (!started_ || !last.valid || !(since > 0.0)) return;
-  Predict(since);
+  Predict(since, since);
   ExpectDrift();
   if (share_ < kNegligible) return;
   const Moments then = MomentsOf(bank_, Part::kWhole);

@@ -310,7 +310,7 @@ void Drift::UpdateBank(const ModeData& data, const PosteriorMemory& next, const 
       if (Recentre(first, draws)) return FromEffective();
     }
   }
-  if (known && renewed) Predict(elapsed_s_);  // what this pack tells of velocities includes the change
+  if (known && renewed) Predict(elapsed_s_, gap_s_);  // what this pack tells of velocities includes the change
   Start(next, known);
   if (known) FromEffective();
 }

@@ -181,7 +181,7 @@ bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_no
 bool Drift::FindEndAfterChange(const ParamVector& mean, const ParamMatrix& covariance,
                                std::array<EndOfPack, kMaxParams>* end) noexcept {
   if (!started_ || !leads_) return false;
-  Predict(elapsed_s_);
+  Predict(elapsed_s_, gap_s_);
   ExpectDrift();
   if (share_ < kNegligible) return false;
   work_ = predicted_;

@@ -60,7 +60,7 @@ class Bank {
 
 TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
   Bank bank(0.3);
-  bank.data.time_s = 2.0;
+  bank.data.time_s = bank.data.duration_s = 2.0;
   const PosteriorMemory& carried = bank.Carry();
   ASSERT_TRUE(bank.drift.Splits(carried));
   ASSERT_EQ(carried.num_blocks, 2);
@@ -81,6 +81,29 @@ TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
       // Pulled back to P_0 by what was lost: by the fastest walk a fifth of its growth.
       EXPECT_NEAR(drift(i, j) - bank.posterior.covariance(i, j), i == j ? grown : 0.0, 0.25 * grown) << i << j;
     }
+}
+
+TEST(DriftPrior, WhatStopsBetweenTwoPacksHasMovedUntilThen) {
+  constexpr double kShare = 0.3, kGap = 1.5, kDuration = 0.5;
+  Bank bank(kShare);
+  bank.data.time_s = kGap + kDuration;
+  bank.data.duration_s = kDuration;
+  const PosteriorMemory& carried = bank.Carry();
+  ASSERT_EQ(carried.num_blocks, 2);
+  const double switched = -std::expm1(-Drift::kSwitching * (kGap + kDuration));
+  const double stopped = kShare * switched * (1.0 - kShare);
+  const double rested = (1.0 - kShare) * (1.0 - switched * kShare);
+  const ParamMatrix rest = CovarianceOf(carried.block[0]);
+  for (int d = 0; d < 3; ++d) {
+    double speed = 0.0;  // mean square
+    for (int h = 1; h < Drift::NumHypotheses(3); ++h) {
+      const Drift::Hypothesis law = Drift::Of(h, 1.0, 3);
+      if (law.Moves(d)) speed += law.prior * law.rate * law.rate;
+    }
+    // The time until then is uniform in the gap: its mean square is a third.
+    const double moved = stopped / (stopped + rested) * speed * kGap * kGap / 3.0;
+    EXPECT_NEAR(rest(d, d) - bank.posterior.covariance(d, d), moved, 1e-3 * moved) << d;
+  }
 }
 
 TEST(DriftPrior, DensitiesAreThoseOfTheirDraws) {
@@ -110,7 +133,7 @@ TEST(DriftPrior, DensitiesAreThoseOfTheirDraws) {
 
 TEST(DriftPrior, IsThePosteriorItselfWhereDriftIsImprobable) {
   Bank bank(0.5 * Drift::kNegligible);
-  bank.data.time_s = 0.1;
+  bank.data.time_s = bank.data.duration_s = 0.1;
   const PosteriorMemory& rests = bank.Carry();
   EXPECT_FALSE(bank.drift.Splits(rests));
   ASSERT_EQ(rests.num_blocks, 1);

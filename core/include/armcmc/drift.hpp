@@ -40,6 +40,12 @@ struct QuadraticControl;
 ///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi)).
 ///            A time in which several changes are expected (kappa dt > 1) passes in up to kMostSteps steps, between
 ///            which one drift becomes another; what has drifted in it counts as drift
+///   gap      between contacts a drift ends (or becomes another) unseen: not at the last pack, but at each moment of
+///   the
+///            gap with the same probability density. With x w for the motion until then, x uniform in [0, g], u gets
+///            the mean m + g/2 w and the covariance C + g/2 (C_uw + C_wu) + g^2/3 C_w + g^2/12 w w', where g is at most
+///            the mean life 1 / kappa of a drift. Otherwise what has stopped in the air would be expected where it
+///            was at the last pack, and what goes on far from there: the truth lies in between
 ///   merging  it takes several packs to tell a new member from the old ones, and if merged at once, members that the
 ///            data refute would widen those that the data support. So each hypothesis has kSlots filters in the order
 ///            in which they began. The two neighbours whose merging by moments loses least become one: by Runnalls'
@@ -235,7 +241,7 @@ class Drift {
   [[nodiscard]] bool Exists(std::size_t filter) const noexcept {
     return HypothesisOf(filter) < static_cast<std::size_t>(NumHypotheses(dim_));
   }
-  [[nodiscard]] static Moments MomentsOf(const Bank& bank, Part part) noexcept ARMCMC_NONBLOCKING;
+  [[nodiscard]] Moments MomentsOf(const Bank& bank, Part part) const noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
   /// Half the log of the determinant of the covariance of u and of the velocities that the hypothesis has.
@@ -246,13 +252,16 @@ class Drift {
   [[nodiscard]] ParamMatrix FirstVelocity(const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Filter Newcomer(const Moments& part, double weight,
                                 const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
+  /// What drifts in `predicted_`, when it stops within a time: at each moment of it with the same probability density.
+  [[nodiscard]] Moments StoppedDrift(double within_s) noexcept ARMCMC_NONBLOCKING;
   /// What begins, ends or becomes another drift within a time, in the first slots.
-  void AddNewcomers(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  void AddNewcomers(double elapsed_s, double gap_s) noexcept ARMCMC_NONBLOCKING;
   /// What drifts and becomes another drift.
   void TurnDrifts(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
   /// u and w of one filter after a time without data.
   void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
-  void Predict(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
+  /// @param gap_s  Part of the elapsed time in which there were no packs.
+  void Predict(double elapsed_s, double gap_s) noexcept ARMCMC_NONBLOCKING;
   /// v = u.
   void StandStill() noexcept ARMCMC_NONBLOCKING;
   /// `predicted_` from (u, w) to (v, w), with what the pack tells of w.
@@ -335,6 +344,7 @@ class Drift {
   bool started_ = false;
   double time_s_ = 0.0;     ///< Of the pack that `bank_` has learnt from.
   double elapsed_s_ = 0.0;  ///< From that one to the next.
+  double gap_s_ = 0.0;      ///< Of that, without packs.
   Bank bank_;               ///< After that pack.
   std::shared_ptr<Scratch> scratch_;
   Bank& predicted_;  ///< Before the next one. Of scratch_.
