@@ -75,11 +75,22 @@ ModeSampler::ModeSampler(const simd::Kernels& kernels, int model, const SamplerS
 
 Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
                               SamplerWorkspace* ws) const noexcept {
+  Mismatch best = CompareBlocks(data, previous, 0, previous.num_blocks, stream, ws);
+  if (best.decision == Decision::kReinforcement || !drift_.Splits(previous)) return best;
+  for (int b = 0; b < previous.num_blocks; ++b) {
+    const Mismatch part = CompareBlocks(data, previous, b, b + 1, stream, ws);
+    if (part.lambda > best.lambda) best = part;
+  }
+  return best;
+}
+
+Mismatch ModeSampler::CompareBlocks(const ModeData& data, const PosteriorMemory& previous, int first, int last,
+                                    const RandomStream& stream, SamplerWorkspace* ws) const noexcept {
   std::array<double*, kMaxParams> u{};
   for (int d = 0; d < space_.dim; ++d)
     u[static_cast<std::size_t>(d)] = ws->mismatch_u[static_cast<std::size_t>(d)].data();
   Proposal memory;
-  for (int b = 0; b < previous.num_blocks; ++b)
+  for (int b = first; b < last; ++b)
     memory.Add(&previous.block[static_cast<std::size_t>(b)], previous.weight[static_cast<std::size_t>(b)]);
   memory.Normalise();
   memory.Draw(kernels_, stream, 0, kMismatchDraws, u.data(), ws->component.data(), ws->StraightRows().data());
@@ -96,14 +107,14 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
   double mean_sum = 0.0;
   double mean_square = 0.0;
   alignas(64) std::array<double, kTileLanes> log_scale;
-  for (int first = 0; first < kMismatchDraws; first += kTileLanes) {
-    kernels_.to_physical(space_, u.data(), first, ws->theta.data(), log_scale.data());
+  for (int k = 0; k < kMismatchDraws; k += kTileLanes) {
+    kernels_.to_physical(space_, u.data(), k, ws->theta.data(), log_scale.data());
     kernels_.predict(model_, data, ws->theta[0], &ws->prediction);
     std::array<double, kTileLanes> lane_mean{};
     for (int n = 0; n < data.num_samples; ++n) {
       const auto in = static_cast<std::size_t>(n);
       // Differences from the first draw keep the variance of a narrow posterior from cancelling.
-      if (first == 0) p.mean[in] = ws->prediction.value[in][0];
+      if (k == 0) p.mean[in] = ws->prediction.value[in][0];
       for (std::size_t l = 0; l < kTileLanes; ++l) lane_mean[l] += ws->prediction.value[in][l];
     }
     for (std::size_t l = 0; l < kTileLanes; ++l) {
@@ -123,7 +134,7 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
           sum[i] += d;
           squares[i] += d * d;
         }
-      ws->group_weight[in] = (first == 0 ? 0.0 : ws->group_weight[in]) + ((sum[0] + sum[1]) + (sum[2] + sum[3]));
+      ws->group_weight[in] = (k == 0 ? 0.0 : ws->group_weight[in]) + ((sum[0] + sum[1]) + (sum[2] + sum[3]));
       p.variance[in] += (squares[0] + squares[1]) + (squares[2] + squares[3]);
     }
   }
@@ -135,9 +146,9 @@ Mismatch ModeSampler::Compare(const ModeData& data, const PosteriorMemory& previ
   }
   mean_sum /= kMismatchDraws;
   p.variance_of_mean = std::fmax(mean_square / kMismatchDraws - mean_sum * mean_sum, 0.0);
-  const Eigen::Index last = space_.dim - 1;
+  const Eigen::Index noise = space_.dim - 1;
   p.log_noise_sd = space_.samples_noise_scale()
-                       ? space_.scale[static_cast<std::size_t>(last)] * std::sqrt(previous.covariance(last, last))
+                       ? space_.scale[static_cast<std::size_t>(noise)] * std::sqrt(previous.covariance(noise, noise))
                        : 0.0;
   return EvaluateMismatch(forgetting_, noise_, std::exp(previous.log_noise_scale), data, p);
 }

@@ -119,6 +119,29 @@ TEST(Drift, ThatStopsIsUnlearnt) {
   EXPECT_LT(rig.estimate().modes[0].p_drifted, 0.5);
 }
 
+TEST(Drift, ThatStopsInTheAirIsFoundAtTheNextContact) {
+  constexpr std::int64_t kLast = 60;
+  for (const double times : {1.0, 2.0, 4.0})
+    for (const std::int64_t lost : {10, 20, 40})
+      for (const double share : {0.25, 0.5, 0.75}) {
+        Contact contact({times * kDrift.k, times * kDrift.b, times * kDrift.p});
+        contact.to_s = contact.End(kLast) + share * contact.End(lost);
+        Rig rig(Quick());
+        for (std::int64_t seq = 1; seq <= kLast; ++seq) rig.Step(contact.Pack(seq));
+        ASSERT_GT(rig.estimate().modes[0].p_drifted, 0.9);
+        const test::ContactTruth truth = contact.At(contact.to_s);
+        const std::array<double, 3> theta{truth.k, truth.b, truth.p};
+        for (std::int64_t seq = kLast + lost + 1; seq <= kLast + lost + 4; ++seq) {
+          SCOPED_TRACE(testing::Message() << times << " times, " << share << " of " << lost << " packs, pack " << seq);
+          const ModeEstimate& e = rig.Step(contact.Pack(seq)).modes[0];
+          EXPECT_EQ(e.decision, Decision::kReinforcement) << "where it stopped was to be expected";
+          for (std::size_t d = 0; d < 3; ++d)
+            EXPECT_LT(std::fabs(e.marginal[d].ar_ap - theta[d]), 3.0 * e.marginal[d].sd) << d;
+        }
+        EXPECT_LT(rig.estimate().modes[0].p_drifted, 0.5);
+      }
+}
+
 TEST(Drift, AJumpOnTopIsFollowedAndTheDriftGoesOn) {
   Contact contact(kDrift);
   Rig rig(Quick());

@@ -177,8 +177,13 @@ class ModeSampler {
     return finish_time_.Predict(draws) + (informed ? 0 : remember_time_.Predict(draws));
   }
 
+  /// How the data fit what `previous` predicts. Where they do not, and rest and drift have a block each, how they fit
+  /// the one that predicts them best: mean and variance of two predictions that are apart are those of neither.
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
                    SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
+  /// @param first, last  Blocks of `previous`, without the last.
+  Mismatch CompareBlocks(const ModeData& data, const PosteriorMemory& previous, int first, int last,
+                         const RandomStream& stream, SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   void FitLaplace(const ModeData& data, const PosteriorMemory& previous, bool use_previous, const RandomStream& stream,
                   SamplerWorkspace* ws) noexcept ARMCMC_NONBLOCKING;
   /// Laplace fit under a memory with these moments.
