@@ -10,10 +10,11 @@
 namespace armcmc::gap::test {
 
 Recording RecordPlant(const std::string& name, const std::vector<HiddenInPlant>& hidden, unsigned long long seed,
-                      double seconds, bool noisy, bool drawn) {
+                      double seconds, bool noisy, bool drawn, double law_error) {
   plant_sim::Scenario scenario = plant_sim::LoadScenario(
       armcmc::test::SourceDir() / "plant_sim" / "scenarios" / (name + ".toml"), {}, drawn ? seed : 1);
   scenario.duration_s = seconds;
+  if (law_error > 0.0) scenario.options.Set("error", law_error);
   std::vector<plant_sim::EffectRequest> requests;
   for (const HiddenInPlant& effect : hidden) {
     if (effect.values.empty()) {

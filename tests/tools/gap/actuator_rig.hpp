@@ -17,8 +17,10 @@ struct HiddenInPlant {
 };
 
 /// The first seconds of a scenario of the plant, with effects hidden; `noisy` false: without any noise; `drawn` true:
-/// what the scenario leaves to chance, such as parameters, is as this seed draws it.
+/// what the scenario leaves to chance, such as parameters, is as this seed draws it; `law_error`: rms share by which
+/// the plant's law differs from its formula.
 [[nodiscard]] Recording RecordPlant(const std::string& scenario, const std::vector<HiddenInPlant>& hidden,
-                                    unsigned long long seed, double seconds, bool noisy = true, bool drawn = false);
+                                    unsigned long long seed, double seconds, bool noisy = true, bool drawn = false,
+                                    double law_error = 0.0);
 
 }  // namespace armcmc::gap::test

@@ -58,6 +58,23 @@ TEST(FlexibleCorrection, AFormulaThatBecomesAnotherEffectWithoutTheCorrectionIsN
   EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
 }
 
+TEST(FlexibleCorrection, ANameBesideItIsWithdrawnUnlessItIsSure) {
+  // Beside a law that may err, presliding closes four fifths of the gap, and no other effect half of it.
+  const PlantDiagnosis plant =
+      DiagnoseWithout("stress_relaxation", Contact("stress_relaxation", "linear", 1.0, 532305238));
+  const Finding& finding = plant.carrying().diagnosis.finding;
+  EXPECT_EQ(finding.verdict, Verdict::kUnnamed);
+  EXPECT_GE(finding.p_unnamed, 0.5);
+}
+
+TEST(TwoEffects, AreNotNamedUnlessTheyAreSure) {
+  // Beside the delay, a limit of the sensor takes what the law errs by, and so does a contact that begins elsewhere.
+  const Recording all =
+      RecordPlant("contact_rich", {{"sensor_delay", 3.0, {}, "dead_time"}}, 930367289, 10.0, true, true, 0.01);
+  const PlantDiagnosis plant = DiagnosePlant("hunt_crossley", all.Slice(0, 7000), {});
+  EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
+}
+
 TEST(SecondSearch, WhatExplainsLessIsNotNamedInPlaceOfWhatIsWithdrawn) {
   // Noise that neighbours share makes the held-out data contradict every friction; two branches explain half as much.
   WorkflowRequest request;

@@ -118,7 +118,9 @@ void Search::WidenOrWithdraw(Finding* finding) const {
 void Search::WithdrawImprobable(Finding* finding) const {
   double sum = 0.0;
   for (const CandidatePtr& member : finding->set) sum += member->probability;
-  if (sum >= limits_.doubt) return;
+  // A correction or a second effect can stand for something else: a single name that needs one must be sure.
+  const bool flexible = finding->best->correction || finding->best->added().size() > 1;
+  if (sum >= (flexible && finding->set.size() == 1 ? limits_.sure : limits_.doubt)) return;
   Withdraw(1.0 - limits_.doubt, finding);
 }
 

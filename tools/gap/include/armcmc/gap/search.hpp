@@ -130,7 +130,8 @@ class Search {
   [[nodiscard]] double Margin(double gap, bool kin) const;
   /// Widens an uncertain name to a set, or withdraws it.
   void WidenOrWithdraw(Finding* finding) const;
-  /// Withdraws a name or a set with a probability below Thresholds::doubt.
+  /// Withdraws a name or a set with a probability below Thresholds::doubt; a single name with a flexible correction, or
+  /// of several effects, below Thresholds::sure.
   void WithdrawImprobable(Finding* finding) const;
   [[nodiscard]] Candidates Near(const Candidates& sorted, double gap) const;
   [[nodiscard]] double Gain(const CandidatePtr& candidate) const;
