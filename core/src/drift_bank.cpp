@@ -7,6 +7,14 @@
 #include "armcmc/linear_algebra.hpp"
 
 namespace armcmc {
+namespace {
+
+/// Share of a variance that is kept, so that it does not grow beyond that of P_0.
+double KeptShare(double before, double grown) noexcept ARMCMC_NONBLOCKING {
+  return std::fmin(std::fmax(before, 1.0) / grown, 1.0);
+}
+
+}  // namespace
 
 Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) const noexcept {
   Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim_), .covariance = ParamMatrix::Zero(dim_, dim_)};
@@ -126,7 +134,7 @@ Drift::Moments Drift::StoppedDrift(double within_s) noexcept {
   }
   stopped = MomentsOf(work_, Part::kDrift);
   for (int i = 0; i < dim_; ++i) {
-    const double kept = std::fmin(std::fmax(variance[i], 1.0) / stopped.covariance(i, i), 1.0);
+    const double kept = KeptShare(variance[i], stopped.covariance(i, i));
     stopped.mean[i] *= kept;
     stopped.covariance.row(i) *= std::sqrt(kept);
     stopped.covariance.col(i) *= std::sqrt(kept);
@@ -184,7 +192,7 @@ void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) c
   f.ww *= phi * phi;
   for (int i = 0; i < dim_; ++i) f.ww(i, i) += law.Moves(i) ? noise_w : 0.0;
   for (int i = 0; i < dim_; ++i) {
-    const double kept = std::fmin(std::fmax(variance[i], 1.0) / f.uu(i, i), 1.0);
+    const double kept = KeptShare(variance[i], f.uu(i, i));
     const double shrink = std::sqrt(kept);
     f.u[i] *= kept;
     f.uu.row(i) *= shrink;

@@ -40,12 +40,10 @@ struct QuadraticControl;
 ///            velocity of their own; then u <- u + b w, w <- phi w + noise (phi = e^{-dt / tau}, b = tau (1 - phi)).
 ///            A time in which several changes are expected (kappa dt > 1) passes in up to kMostSteps steps, between
 ///            which one drift becomes another; what has drifted in it counts as drift
-///   gap      between contacts a drift ends (or becomes another) unseen: not at the last pack, but at each moment of
-///   the
-///            gap with the same probability density. With x w for the motion until then, x uniform in [0, g], u gets
-///            the mean m + g/2 w and the covariance C + g/2 (C_uw + C_wu) + g^2/3 C_w + g^2/12 w w', where g is at most
-///            the mean life 1 / kappa of a drift. Otherwise what has stopped in the air would be expected where it
-///            was at the last pack, and what goes on far from there: the truth lies in between
+///   gap      what drifts may end, or become another drift, while there are no packs. The time until then is uniform in
+///            the gap g, of which at most the mean life 1 / kappa counts: mean m + g/2 w and covariance
+///            C_u + g/2 (C_uw + C_wu) + g^2/3 C_w + g^2/12 w w', within the bounds below. With the end at the
+///            last pack instead, a plant that stopped in the air would be where neither rest nor drift expects it
 ///   merging  it takes several packs to tell a new member from the old ones, and if merged at once, members that the
 ///            data refute would widen those that the data support. So each hypothesis has kSlots filters in the order
 ///            in which they began. The two neighbours whose merging by moments loses least become one: by Runnalls'
@@ -252,7 +250,7 @@ class Drift {
   [[nodiscard]] ParamMatrix FirstVelocity(const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
   [[nodiscard]] Filter Newcomer(const Moments& part, double weight,
                                 const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
-  /// What drifts in `predicted_`, when it stops within a time: at each moment of it with the same probability density.
+  /// What drifts in `predicted_`, where it stops within a time, at any moment of it. Overwrites `work_`.
   [[nodiscard]] Moments StoppedDrift(double within_s) noexcept ARMCMC_NONBLOCKING;
   /// What begins, ends or becomes another drift within a time, in the first slots.
   void AddNewcomers(double elapsed_s, double gap_s) noexcept ARMCMC_NONBLOCKING;

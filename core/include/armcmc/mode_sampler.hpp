@@ -179,6 +179,7 @@ class ModeSampler {
 
   /// How the data fit what `previous` predicts. Where they do not, and rest and drift have a block each, how they fit
   /// the one that predicts them best: mean and variance of two predictions that are apart are those of neither.
+  /// @rt No heap, no lock, no throw. kMismatchDraws predictions, and as many for each block where it asks them.
   Mismatch Compare(const ModeData& data, const PosteriorMemory& previous, RandomStream stream,
                    SamplerWorkspace* ws) const noexcept ARMCMC_NONBLOCKING;
   /// @param first, last  Blocks of `previous`, without the last.
