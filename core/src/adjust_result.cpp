@@ -8,7 +8,7 @@ AdjustResult::AdjustResult(int num_modes_in, int dim, int capacity) : num_modes(
   // Whole tiles, and one more: kernels write whole tiles.
   const auto cap = static_cast<std::size_t>(RoundUpToTile(capacity) + kTileLanes);
   const auto modes_count = static_cast<std::size_t>(num_modes);
-  doubles_.resize(modes_count * cap * static_cast<std::size_t>(dim + 1));
+  doubles_.resize(modes_count * cap * static_cast<std::size_t>(dim + 2));
   integers_.resize(modes_count * cap * 2);
   double* d = doubles_.data();
   std::int32_t* i = integers_.data();
@@ -17,6 +17,8 @@ AdjustResult::AdjustResult(int num_modes_in, int dim, int capacity) : num_modes(
     draws.dim = dim;
     for (int k = 0; k < dim; ++k, d += cap) draws.u[static_cast<std::size_t>(k)] = d;
     draws.weight = d;
+    d += cap;
+    draws.changed = d;
     d += cap;
     draws.visits = i;
     i += cap;

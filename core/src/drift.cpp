@@ -178,6 +178,8 @@ const PosteriorMemory& Drift::Carry(const ModeData& data, const PosteriorMemory&
   expected_ = {expected.mean, expected.covariance};
   moves_ = share_ >= kNegligible || fitted_ != Part::kRest || both_;
   if (moves_) {
+    expects_drift_ = share_ >= kNegligible;
+    ExpectVelocity();
     ToEffective(data, last, scratch);
     ExpectDrift();
   } else {

@@ -16,15 +16,15 @@ double KeptShare(double before, double grown) noexcept ARMCMC_NONBLOCKING {
 
 }  // namespace
 
-Drift::Moments Drift::MomentsOf(const Bank& bank, Part part) const noexcept {
+Drift::Moments Drift::MomentsOf(const Bank& bank, Part part, std::size_t first) const noexcept {
   Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim_), .covariance = ParamMatrix::Zero(dim_, dim_)};
-  for (std::size_t i = 0; i < bank.size(); ++i) {
+  for (std::size_t i = first * kHypotheses; i < bank.size(); ++i) {
     if (!IsOf(part, i) || !(bank[i].weight > 0.0)) continue;
     m.weight += bank[i].weight;
     m.mean += bank[i].weight * bank[i].u;
   }
   m.mean /= m.weight;
-  for (std::size_t f = 0; f < bank.size(); ++f) {
+  for (std::size_t f = first * kHypotheses; f < bank.size(); ++f) {
     if (!IsOf(part, f) || !(bank[f].weight > 0.0)) continue;
     const ParamVector apart = bank[f].u - m.mean;
     const double share = bank[f].weight / m.weight;
@@ -77,26 +77,32 @@ void Drift::MakeRoom(Bank* bank) const noexcept {
     const auto slot = [bank, h](std::size_t k) noexcept ARMCMC_NONBLOCKING -> Filter& {
       return (*bank)[k * kHypotheses + h];
     };
-    std::size_t free = 0;
-    while (free < kSlots && slot(free).weight > 0.0) ++free;
-    if (free == kSlots) {
+    std::size_t first = kSlots;  // of those in use, which move to the end
+    const auto keep = [&](std::size_t k) noexcept ARMCMC_NONBLOCKING {
+      if (!(slot(k).weight > 0.0)) return;
+      if (--first == k) return;
+      slot(first) = slot(k);
+      slot(k).weight = 0.0;
+    };
+    for (std::size_t k = kSlots; k-- > 0;) keep(k);
+    while (first < kNewcomers) {
       std::array<double, kSlots> volume{};
-      for (std::size_t k = 0; k < kSlots; ++k) volume[k] = slot(k).weight * LogVolume(hypotheses_[h], slot(k));
+      for (std::size_t k = first; k < kSlots; ++k) volume[k] = slot(k).weight * LogVolume(hypotheses_[h], slot(k));
       double least = HUGE_VAL;
-      free = 0;
-      for (std::size_t k = 0; k + 1 < kSlots; ++k) {
+      std::size_t merged = first;
+      for (std::size_t k = first; k + 1 < kSlots; ++k) {
         Filter later = slot(k);
         Filter both = slot(k + 1);
         Merge(&later, &both);
         const double lost = both.weight * LogVolume(hypotheses_[h], both) - volume[k] - volume[k + 1];
         if (!(lost < least)) continue;
         least = lost;
-        free = k;
+        merged = k;
       }
-      Merge(&slot(free), &slot(free + 1));
+      Merge(&slot(merged), &slot(merged + 1));
+      for (std::size_t k = merged; k > first; --k) slot(k) = slot(k - 1);
+      slot(first++).weight = 0.0;
     }
-    for (std::size_t k = free; k > 0; --k) slot(k) = slot(k - 1);
-    slot(0).weight = 0.0;
   }
 }
 
@@ -152,10 +158,11 @@ void Drift::AddNewcomers(double elapsed_s, double gap_s) noexcept {
   for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
     const Hypothesis& law = hypotheses_[h];
     // What rests and goes on resting has not begun anew.
-    if (h > 0 && rest.weight > 0.0) predicted_[h] = Newcomer(rest, switched * law.prior, law);
+    Filter& begun = predicted_[kBegun * kHypotheses + h];
+    if (h > 0 && rest.weight > 0.0) begun = Newcomer(rest, switched * law.prior, law);
     if (!(drift.weight > 0.0)) continue;
     Filter turned = Newcomer(drift, switched * law.prior, law);
-    Merge(&turned, &predicted_[h]);
+    Merge(&turned, &begun);
   }
 }
 
@@ -167,7 +174,33 @@ void Drift::TurnDrifts(double elapsed_s) noexcept {
     if (IsOf(Part::kDrift, i)) predicted_[i].weight *= 1.0 - switched;
   const double any = 1.0 - hypotheses_[0].prior;
   for (std::size_t h = 1; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h)
-    predicted_[h] = Newcomer(drift, switched * hypotheses_[h].prior / any, hypotheses_[h]);
+    predicted_[kBegun * kHypotheses + h] = Newcomer(drift, switched * hypotheses_[h].prior / any, hypotheses_[h]);
+}
+
+void Drift::AddChanged(double share) noexcept {
+  // Of draws with a noise scale of their own, the expansion cannot tell which are of a change (FindEnd).
+  if (!started_ || share_ < kNegligible || !(share > 0.0) || space_.samples_noise_scale()) return;
+  for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
+    Filter& changed = predicted_[kChanged * kHypotheses + h];
+    changed.weight = 0.0;
+    for (std::size_t slot = kBegun; slot < kSlots; ++slot) {
+      Filter& kept = predicted_[slot * kHypotheses + h];
+      Filter also = kept;
+      also.weight *= share;
+      kept.weight *= 1.0 - share;
+      Merge(&also, &changed);
+    }
+    if (!(changed.weight > 0.0)) continue;
+    // (v, w) of u and w that are independent.
+    const ParamMatrix with_w = Product(lead_, changed.ww);
+    changed.u = -Multiply(lead_, changed.w);
+    changed.uw = -with_w;
+    changed.uu = Product(with_w, lead_.transpose());
+    for (int d = 0; d < dim_; ++d) {
+      const double sd = space_.prior_sd[static_cast<std::size_t>(d)];
+      changed.uu(d, d) += sd * sd;
+    }
+  }
 }
 
 void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
@@ -231,6 +264,17 @@ void Drift::ExpectDrift() noexcept {
   }
   share_ = drifts / total;
   for (double& rate : rate_) rate /= total;
+}
+
+void Drift::ExpectVelocity() noexcept {
+  work_ = predicted_;
+  for (Filter& f : work_) {
+    if (!(f.weight > 0.0)) continue;
+    f.u = f.w;
+    f.uu = f.ww;
+  }
+  const Moments velocity = MomentsOf(work_, Part::kWhole);
+  velocity_ = {velocity.mean, velocity.covariance};
 }
 
 void Drift::Widening(double time_s, const PosteriorMemory& last, std::array<double, kMaxParams>* ratio) noexcept {

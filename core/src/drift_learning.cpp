@@ -11,16 +11,15 @@
 namespace armcmc {
 namespace {
 
-constexpr double kEnoughDraws = 16.0;     // effective ones, for each number that they are to give
-constexpr double kLikeness = 0.05;        // share of the effective draws that an expansion that is of use leaves
-constexpr int kSearched = 256;            // draws, for one that is not improbable
-constexpr double kChance = 3.0;           // times the square that chance makes, which is taken off a difference
-constexpr double kExact = 1e-3;           // by what the effective draws of an expansion that is exact may differ
-constexpr double kClear = 4.0;            // standard deviations from a bound that cuts nothing off
-constexpr double kFar = 0.5;              // by more of them, the filters are wrong about a bound that does
-constexpr int kMomentDraws = 4096;        // at most: their chance is small in a difference
-constexpr std::size_t kCells = 1024;      // of a histogram
-constexpr double kHistogramReach = 20.0;  // standard deviations from the mean
+constexpr double kEnoughDraws = 16.0;  // effective ones, for each number that they are to give
+constexpr double kLikeness = 0.05;     // share of the effective draws that an expansion that is of use leaves
+constexpr int kSearched = 256;         // draws, for one that is not improbable
+constexpr double kChance = 3.0;        // times the square that chance makes, which is taken off a difference
+constexpr double kExact = 1e-3;        // by what the effective draws of an expansion that is exact may differ
+constexpr double kClear = 4.0;         // standard deviations from a bound that cuts nothing off
+constexpr double kFar = 0.5;           // by more of them, the filters are wrong about a bound that does
+constexpr int kMomentDraws = 4096;     // at most: their chance is small in a difference
+constexpr double kForgotten = 1e-7;    // posterior probability of a change that the bank does not keep
 
 }  // namespace
 
@@ -95,8 +94,11 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
     if (bank_[i].weight > 0.0) bank_[i].weight = std::exp(log_weight[i] - top);
     sum += bank_[i].weight;
   }
-  for (std::size_t i = 0; i < bank_.size(); ++i)
-    if (IsOf(part, i)) bank_[i].weight *= weight / sum;
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
+    if (!IsOf(part, i)) continue;
+    bank_[i].weight *= weight / sum;
+    if (SlotOf(i) == kChanged && bank_[i].weight < kForgotten) bank_[i].weight = 0.0;
+  }
   return true;
 }
 
@@ -106,7 +108,7 @@ Drift::Moments Drift::ByExpansion(const Sampled& sampled) const noexcept {
       sampled.part == Part::kDrift ? mixed_ : (split_ || separate_) && sampled.part == Part::kWhole;
   if (as_the_bank) return MomentsOf(bank_, sampled.part);
   const LocalLikelihood& local = sampled.local;
-  Moments now = MomentsOf(predicted_, sampled.part);
+  Moments now = MomentsOf(predicted_, sampled.part, kBegun);
   ParamMatrix spread = Product(local.information, now.covariance);
   spread += ParamMatrix::Identity(dim_, dim_);
   const ParamVector pulled = Multiply(local.information, now.mean - sampled.mean);
@@ -210,28 +212,6 @@ bool Drift::TargetByDraws(const Sampled& sampled, const Draws& draws, const Mome
   target->covariance = Product(Product(stretched, wider), stretched.transpose());
   MakeSymmetric(&target->covariance);
   return target->mean.allFinite();
-}
-
-EndOfPack::Quantiles Drift::QuantilesByDraws(const Draws& draws, int d, double mean, double sd) const noexcept {
-  EndOfPack::Quantiles q{};
-  q.fill(std::nan(""));
-  if (!(sd > 0.0)) return q;  // by rounding: a histogram needs a width
-  std::array<double, std::size_t{2} * kCells + 2> cells{};
-  const double per_cell = kCells / (2.0 * kHistogramReach * sd);
-  kernels_.histogram(draws.u[static_cast<std::size_t>(d)], draws.scratch, draws.count, per_cell,
-                     -(mean - kHistogramReach * sd) * per_cell, kCells + 1, cells.data());
-  // The first and the last cell have all that lies beyond, too, which is far from anything that has not changed.
-  double total = 0.0;
-  for (std::size_t c = 1; c + 1 < kCells; ++c) total += cells[2 * c];
-  double below = 0.0;
-  std::size_t c = 1;
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    const double target = EndOfPack::kLevels[k].p * total;
-    while (c + 2 < kCells && below + cells[2 * c] < target) below += cells[2 * c++];
-    const double part = cells[2 * c] > 0.0 ? std::fmin((target - below) / cells[2 * c], 1.0) : 0.0;
-    q[k] = mean - kHistogramReach * sd + (static_cast<double>(c) + part) / per_cell;
-  }
-  return q;
 }
 
 bool Drift::Recentre(const Sampled& sampled, const Draws& draws) noexcept {

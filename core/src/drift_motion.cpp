@@ -1,9 +1,11 @@
 // Parameters that move within a pack, for a sampler that takes the parameters of a pack for constant.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "armcmc/drift.hpp"
 #include "armcmc/linear_algebra.hpp"
+#include "simd/kernels.hpp"
 
 namespace armcmc {
 namespace {
@@ -12,6 +14,10 @@ namespace {
 constexpr double kLeastPrecision = 1e-4;
 /// Share of the effective draws that an expansion that is of use leaves, for quantiles in the tails.
 constexpr double kLikenessInTails = 0.5;
+constexpr std::size_t kCells = 2048;      // of a histogram
+constexpr double kHistogramReach = 64.0;  // standard deviations from the mean
+/// Slope of the tails, over that between them: few draws are there, and may lack one that is far out.
+constexpr double kMostStretch = 8.0;
 
 template <std::size_t kMost>
 EndOfPack::Quantiles QuantilesOf(const NormalMixture<kMost>& mixture) noexcept ARMCMC_NONBLOCKING {
@@ -114,6 +120,52 @@ void Drift::AddFilters(const Bank& bank, Part part, int d, Mixture* to) noexcept
     if (IsOf(part, i)) to->Add(bank[i].weight, bank[i].u[d], bank[i].uu(d, d));
 }
 
+EndOfPack Drift::EndByDraws(const Draws& draws, int d, double mean, double variance, const EndOfPack::Quantiles& end,
+                            double end_variance) const noexcept {
+  const auto i = static_cast<std::size_t>(d);
+  const double sd = std::sqrt(variance);
+  if (!(sd > 0.0)) return {mean, std::nan(""), 1.0, space_.lower[i], space_.upper[i]};  // by rounding
+  std::array<double, std::size_t{2} * kCells + 2> cells{};
+  const double per_cell = kCells / (2.0 * kHistogramReach * sd);
+  const double origin = mean - kHistogramReach * sd;
+  kernels_.histogram(draws.u[i], draws.scratch, draws.count, per_cell, -origin * per_cell, kCells + 1, cells.data());
+  // The first and the last cell have all that lies beyond, too, which is far from anything that the bank has.
+  double total = 0.0;
+  for (std::size_t c = 1; c + 1 < kCells; ++c) total += cells[2 * c];
+  EndOfPack::Quantiles effective{};
+  double below = 0.0;
+  std::size_t at = 1;
+  for (std::size_t k = 0; k < effective.size(); ++k) {
+    const double target = EndOfPack::kLevels[k].p * total;
+    while (at + 2 < kCells && below + cells[2 * at] < target) below += cells[2 * at++];
+    const double part = cells[2 * at] > 0.0 ? std::fmin((target - below) / cells[2 * at], 1.0) : 0.0;
+    effective[k] = origin + (static_cast<double>(at) + part) / per_cell;
+  }
+  // Beyond the outermost quantiles by the slope s that makes the variance that of the bank: with u = b(v) + s t(v),
+  // t = 0 between them, it is Var[b] + 2 s Cov[b, t] + s^2 Var[t].
+  const EndOfPack flat(effective, end, 0.0, 0.0, space_.lower[i], space_.upper[i]);
+  double b_sum = 0.0, t_sum = 0.0, b_square = 0.0, t_square = 0.0, product = 0.0;
+  for (std::size_t c = 1; c + 1 < kCells; ++c) {
+    if (!(cells[2 * c] > 0.0)) continue;
+    const double w = cells[2 * c] / total;
+    const double v = origin + (static_cast<double>(c) + cells[2 * c + 1] / cells[2 * c]) / per_cell;
+    const double b = flat(v) - end[end.size() / 2];  // from the median: nothing cancels
+    const double t = std::fmin(v - effective.front(), 0.0) + std::fmax(v - effective.back(), 0.0);
+    b_sum += w * b;
+    t_sum += w * t;
+    b_square += w * b * b;
+    t_square += w * t * t;
+    product += w * b * t;
+  }
+  const double lacking = end_variance - (b_square - b_sum * b_sum);
+  const double covariance = product - b_sum * t_sum;
+  const double spread = t_square - t_sum * t_sum;
+  const double root = std::fmax(covariance * covariance + lacking * spread, 0.0);
+  const double most = kMostStretch * EndOfPack::AverageSlope(effective, end);
+  const double slope = spread > 0.0 ? std::clamp((std::sqrt(root) - covariance) / spread, 0.0, most) : most;
+  return {effective, end, 0.0, slope, space_.lower[i], space_.upper[i]};
+}
+
 bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_noise_scale, const Draws& draws,
                     double* p_drifted, LaplaceScratch* scratch, std::array<EndOfPack, kMaxParams>* end) noexcept {
   if (!started_ || share_ < kNegligible || !leads_) return false;
@@ -126,8 +178,7 @@ bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_no
   const bool updated = Update(sampled, Part::kWhole, 1.0);
   bool tilted = draws.share != nullptr && !space_.samples_noise_scale();
   if (tilted) {
-    for (int k = 0; k < draws.count; ++k)
-      draws.scratch[k] = draws.of_part ? draws.weight[k] : draws.weight[k] * (1.0 - draws.share[k]);
+    for (int k = 0; k < draws.count; ++k) draws.scratch[k] = draws.weight[k] * draws.InBank(k);
     tilted = Tilt(sampled, draws, draws.count) > kLikenessInTails;
   }
   if (updated) {
@@ -136,13 +187,7 @@ bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_no
   }
   std::array<EndOfPack::Quantiles, kMaxParams> effective{};
   ParamVector off = mean;  // of what was sampled from the expansion
-  if (updated && tilted) {
-    const Moments whole = MomentsOf(bank_, Part::kWhole);
-    off.setZero();
-    for (int d = 0; d < dim_; ++d)
-      effective[static_cast<std::size_t>(d)] =
-          QuantilesByDraws(draws, d, whole.mean[d], std::sqrt(whole.covariance(d, d)));
-  } else if (updated) {
+  if (updated && !tilted) {
     std::array<Mixture, kMaxParams> drawn{};
     const auto add = [&](Part part, double share) noexcept ARMCMC_NONBLOCKING {
       sampled.part = part;
@@ -165,37 +210,37 @@ bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_no
     }
     for (std::size_t d = 0; d < static_cast<std::size_t>(dim_); ++d) effective[d] = QuantilesOf(drawn[d]);
   }
+  const Moments before = MomentsOf(bank_, Part::kWhole);
   FromEffective();
+  const Moments after = MomentsOf(bank_, Part::kWhole);
   bool finite = updated;
   for (int d = 0; d < dim_ && finite; ++d) {
     const auto i = static_cast<std::size_t>(d);
     Mixture at_end;
     AddFilters(bank_, Part::kWhole, d, &at_end);
-    (*end)[i] = EndOfPack(effective[i], QuantilesOf(at_end), off[d], space_.lower[i], space_.upper[i]);
+    const EndOfPack::Quantiles to = QuantilesOf(at_end);
+    if (tilted) {
+      (*end)[i] = EndByDraws(draws, d, before.mean[d], before.covariance(d, d), to, after.covariance(d, d));
+    } else {
+      (*end)[i] = EndOfPack(effective[i], to, off[d], EndOfPack::AverageSlope(effective[i], to), space_.lower[i],
+                            space_.upper[i]);
+    }
     finite = (*end)[i].IsFinite();
   }
   bank_ = work_;
   return finite;
 }
 
-bool Drift::FindEndAfterChange(const ParamVector& mean, const ParamMatrix& covariance,
-                               std::array<EndOfPack, kMaxParams>* end) noexcept {
-  if (!started_ || !leads_) return false;
-  Predict(elapsed_s_, gap_s_);
-  ExpectDrift();
-  if (share_ < kNegligible) return false;
-  work_ = predicted_;
-  for (Filter& f : work_) {
-    if (!(f.weight > 0.0)) continue;
-    f.u = Multiply(lead_, f.w);
-    f.uu = Product(Product(lead_, f.ww), lead_.transpose());
-  }
-  const Moments moved = MomentsOf(work_, Part::kWhole);
+bool Drift::FindEndOfChanged(const ParamVector& mean, const ParamMatrix& covariance,
+                             std::array<EndOfPack, kMaxParams>* end) const noexcept {
+  if (!started_ || !leads_ || !expects_drift_) return false;
+  const ParamVector moved = Multiply(lead_, velocity_.mean);
+  const ParamMatrix wider = Product(Product(lead_, velocity_.covariance), lead_.transpose());
   bool finite = true;
   for (int d = 0; d < dim_; ++d) {
     const auto i = static_cast<std::size_t>(d);
-    (*end)[i] = EndOfPack(mean[d], moved.mean[d], std::sqrt(1.0 + moved.covariance(d, d) / covariance(d, d)),
-                          space_.lower[i], space_.upper[i]);
+    (*end)[i] =
+        EndOfPack(mean[d], moved[d], std::sqrt(1.0 + wider(d, d) / covariance(d, d)), space_.lower[i], space_.upper[i]);
     finite = finite && (*end)[i].IsFinite();
   }
   return finite;

@@ -9,7 +9,7 @@
 namespace armcmc {
 namespace {
 
-constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBank = 3;  // 2: of six slots
+constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBankOfEight = 3, kBank = 4;  // 2: of six slots
 constexpr int kFiltersOf010 = 40;
 constexpr std::int64_t kBothParts = 4;  // added to the part of the first block
 
@@ -43,7 +43,8 @@ void Drift::Restore(SnapshotReader* in) noexcept {
   if (kind == kBankOf010) (void)in->Integer(0, std::numeric_limits<std::int64_t>::max());  // number of packs
   const std::int64_t fitted = in->Integer(0, static_cast<std::int64_t>(Part::kDrift) + kBothParts);
   if (kind != kBank) {
-    const int filters = kind == kBankOf010 ? kFiltersOf010 : 6 * NumHypotheses(dim_);
+    const int slots = kind == kBankOfEight ? 8 : 6;
+    const int filters = kind == kBankOf010 ? kFiltersOf010 : slots * NumHypotheses(dim_);
     const int numbers = filters * (1 + dim_ * (2 + 3 * dim_));
     for (int k = 0; k < numbers; ++k) (void)in->Number();
     return;

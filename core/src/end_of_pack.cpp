@@ -2,11 +2,11 @@
 
 namespace armcmc {
 
-EndOfPack::EndOfPack(const Quantiles& effective, const Quantiles& end, double offset, double lower,
+EndOfPack::EndOfPack(const Quantiles& effective, const Quantiles& end, double offset, double outer_slope, double lower,
                      double upper) noexcept {
   line_.lower = lower;
   line_.upper = upper;
-  line_.slope = (end.back() - end.front()) / (effective.back() - effective.front());
+  line_.slope = outer_slope;
   line_.constant = end[0] + offset - line_.slope * (effective[0] + offset);
   double before = line_.slope;
   for (std::size_t k = 0; k < kBends; ++k) {

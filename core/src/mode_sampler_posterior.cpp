@@ -155,11 +155,13 @@ void ModeSampler::SplitMassByPrior(SamplerWorkspace* ws, ModeDraws* out) noexcep
       std::swap(prior.initial_share, prior.memory_share[0]);
       u.mass_first = share(prior)[0];
       u.part = Drift::Part::kWhole;
-      u.first_changed = true;
+      u.first_changed = u.apart = true;
     } else if (split) {
       const bool first = mass_first >= 0.5;
       u.part = first == (drift_.drifting_block() == 0) ? Drift::Part::kDrift : Drift::Part::kRest;
       u.split = true;
+    } else {
+      u.apart = 1.0 - mass_first >= kMinimumGroup;
     }
   }
   out->p_changed = out->decision == Decision::kModification ? 1.0 : std::clamp(u.mass_new, 0.0, 1.0);
@@ -179,6 +181,7 @@ Drift::Draws ModeSampler::DrawsForDrift(SamplerWorkspace* ws, const ModeDraws& d
                     .share = u.lambda > 0.0 ? &ws->first_share[offset] : nullptr,
                     .part = u.part,
                     .of_part = !u.first_changed,
+                    .apart = u.apart,
                     .scratch = &ws->group_weight[offset]};
   if (drift_.Splits(*u.previous) && !u.first_changed)
     view.part = drift_.drifting_block() == 0 ? Drift::Part::kDrift : Drift::Part::kRest;
@@ -195,27 +198,46 @@ void ModeSampler::FindEndOfPack(const ModeData& data, SamplerWorkspace* ws, Mode
   for (int d = 0; d < space_.dim; ++d) rows[static_cast<std::size_t>(d)] = out->u[static_cast<std::size_t>(d)] + first;
   const double* weight = out->weight + first;
   std::array<double, 2 + kMaxParams> sums{};
-  kernels_.first_moments(space_.dim, rows.data(), weight, count, sums.data());
-  ParamVector mean(dim);
-  for (int d = 0; d < dim; ++d) mean[d] = sums[2 + static_cast<std::size_t>(d)] / sums[0];
-  if (out->decision == Decision::kModification) {
+  const auto mean_of = [&](const double* w) noexcept ARMCMC_NONBLOCKING {
+    kernels_.first_moments(space_.dim, rows.data(), w, count, sums.data());
+    ParamVector mean(dim);
+    for (int d = 0; d < dim; ++d) mean[d] = sums[2 + static_cast<std::size_t>(d)] / sums[0];
+    return mean;
+  };
+  const auto end_of_changed = [&](const double* w, std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING {
+    const ParamVector mean = mean_of(w);
+    if (sums[0] * sums[0] < kMinimumEss * sums[1]) return false;  // of no spread that could be widened
     std::array<double, kMaxParams*(kMaxParams + 1) / 2> second{};
-    kernels_.second_moments(dim, rows.data(), weight, mean.data(), count, second.data());
+    kernels_.second_moments(dim, rows.data(), w, mean.data(), count, second.data());
     ParamMatrix covariance(dim, dim);
     for (int i = 0, k = 0; i < dim; ++i)
       for (int j = 0; j <= i; ++j, ++k)
         covariance(i, j) = covariance(j, i) = second[static_cast<std::size_t>(k)] / sums[0];
-    out->moves = drift_.FindEndAfterChange(mean, covariance, &out->end);
+    return drift_.FindEndOfChanged(mean, covariance, end);
+  };
+  out->some_changed = false;
+  if (out->decision == Decision::kModification) {
+    out->moves = end_of_changed(weight, &out->end);
     return;
   }
+  const ParamVector mean = mean_of(weight);
   double log_noise_scale = space_.log_noise_scale;
   if (space_.samples_noise_scale())
     log_noise_scale = space_.Theta(dim, sums[2 + static_cast<std::size_t>(dim)] / sums[0]);
   const double kept = 1.0 - std::clamp(unfinished_.mass_changed, 0.0, 1.0);
   double p_drifted = kept > 0.0 ? out->p_drifted / kept : 0.0;
-  out->moves =
-      drift_.FindEnd(data, mean, log_noise_scale, DrawsForDrift(ws, *out), &p_drifted, &ws->laplace, &out->end);
+  const Drift::Draws draws = DrawsForDrift(ws, *out);
+  if (!draws.apart) drift_.AddChanged(1.0 - unfinished_.lambda);
+  out->moves = drift_.FindEnd(data, mean, log_noise_scale, draws, &p_drifted, &ws->laplace, &out->end);
   out->p_drifted = kept * p_drifted;
+  if (!out->moves || !draws.apart) return;
+  std::fill_n(out->changed, first, 0.0);
+  double* const changed = out->changed + first;
+  for (int k = 0; k < count; ++k) {
+    changed[k] = 1.0 - draws.InBank(k);
+    draws.scratch[k] = weight[k] * changed[k];
+  }
+  out->some_changed = end_of_changed(draws.scratch, &out->end_of_changed);
 }
 
 void ModeSampler::Compress(SamplerWorkspace* ws, PosteriorMemory* next, ModeDraws* out) noexcept {

@@ -14,6 +14,8 @@ void MoveAll(const simd::Kernels& kernels, const ModeDraws& draws, std::size_t d
   const int whole = draws.draws / 8 * 8;  // the kernels take whole vectors
   kernels.move_to_end(draws.end[d], draws.u[d], whole, u);
   for (int k = whole; k < draws.draws; ++k) u[k] = draws.end[d](draws.u[d][k]);
+  if (!draws.some_changed) return;
+  for (int k = 0; k < draws.draws; ++k) u[k] += draws.changed[k] * (draws.end_of_changed[d](draws.u[d][k]) - u[k]);
 }
 
 /// Reported quantity r of every candidate; 0 for a candidate without weight: outside its bounds the quantity may be

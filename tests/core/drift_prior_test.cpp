@@ -1,6 +1,7 @@
 // The prior of a pack where parameters may drift.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -39,7 +40,6 @@ class Bank {
   void LearnAgain() { drift.Learn(data, posterior, {}, Drift::Part::kRest, false, true, scratch_.get()); }
 
   bool FindEnd(const Drift::Draws& draws, double* p_drifted) {
-    std::array<EndOfPack, kMaxParams> end;
     return drift.FindEnd(data, posterior.mean, 0.0, draws, p_drifted, scratch_.get(), &end);
   }
 
@@ -56,6 +56,7 @@ class Bank {
   Drift drift;
   PosteriorMemory posterior;
   ModeData data;
+  std::array<EndOfPack, kMaxParams> end;
 };
 
 TEST(DriftPrior, IsRestAndDriftWithTheirShares) {
@@ -176,30 +177,43 @@ TEST(DriftPrior, KeepsWhatMayHaveChangedBesideRestAndDrift) {
   }
 }
 
+/// Draws of equal weight about `mean`.
+struct SomeDraws {
+  static constexpr std::size_t kCount = 4096;
+  explicit SomeDraws(const ParamVector& mean) {
+    std::mt19937_64 g(5);
+    std::normal_distribution<double> normal;
+    for (int d = 0; d < 3; ++d)
+      for (std::size_t k = 0; k < kCount; ++k) u[static_cast<std::size_t>(d)].push_back(mean[d] + 0.2 * normal(g));
+  }
+
+  Drift::Draws View() {
+    return {.count = kCount,
+            .u = {u[0].data(), u[1].data(), u[2].data()},
+            .weight = weight.data(),
+            .log_likelihood = log_likelihood.data(),
+            .share = share.data(),
+            .part = Drift::Part::kDrift,
+            .of_part = true,
+            .scratch = scratch.data()};
+  }
+
+  std::array<std::vector<double>, 3> u;
+  std::vector<double> weight = std::vector<double>(kCount, 1.0 / kCount), log_likelihood = std::vector<double>(kCount),
+                      share = std::vector<double>(kCount, 0.5), scratch = std::vector<double>(kCount);
+};
+
 // Draws of drift whose likelihood is three times what the expansion says of it, by the odds that they have of drift.
 TEST(DriftPrior, OddsOfDriftAreCorrectedByTheDraws) {
   Bank bank(0.3);
   bank.data.time_s = 2.0;
   ASSERT_TRUE(bank.drift.Splits(bank.Carry()));
-  constexpr std::size_t kDraws = 4096;
-  std::array<std::vector<double>, 3> u;
-  std::vector<double> weight(kDraws, 1.0 / kDraws), log_likelihood(kDraws), share(kDraws), scratch(kDraws);
-  std::mt19937_64 g(5);
-  std::normal_distribution<double> normal;
-  for (auto& row : u)
-    for (std::size_t k = 0; k < kDraws; ++k) row.push_back(0.2 * normal(g));
-  for (std::size_t k = 0; k < kDraws; ++k) {
-    share[k] = k % 2 == 0 ? 0.1 : 0.8;
-    log_likelihood[k] = k % 2 == 0 ? 0.0 : std::log(3.0);  // without samples the expansion is flat
+  SomeDraws some(ParamVector::Zero(3));
+  for (std::size_t k = 0; k < SomeDraws::kCount; ++k) {
+    some.share[k] = k % 2 == 0 ? 0.1 : 0.8;
+    some.log_likelihood[k] = k % 2 == 0 ? 0.0 : std::log(3.0);  // without samples the expansion is flat
   }
-  Drift::Draws draws{.count = kDraws,
-                     .u = {u[0].data(), u[1].data(), u[2].data()},
-                     .weight = weight.data(),
-                     .log_likelihood = log_likelihood.data(),
-                     .share = share.data(),
-                     .part = Drift::Part::kDrift,
-                     .of_part = true,
-                     .scratch = scratch.data()};
+  Drift::Draws draws = some.View();
   double p_drifted = 0.5;
   EXPECT_TRUE(bank.FindEnd(draws, &p_drifted));
   const double actual = 0.45 / 0.55, expanded = (3.0 * 0.1 + 0.8) / (3.0 * 0.9 + 0.2);
@@ -207,8 +221,40 @@ TEST(DriftPrior, OddsOfDriftAreCorrectedByTheDraws) {
   EXPECT_NEAR(p_drifted, odds / (1.0 + odds), 1e-6);
   // What has changed is apart: then the bank has the odds alone.
   draws.of_part = false;
+  draws.apart = true;
   EXPECT_TRUE(bank.FindEnd(draws, &p_drifted));
   EXPECT_NEAR(p_drifted, 0.3, 1e-6);
+}
+
+// Two percent of P_0 in the bank: its outermost quantiles are those of that, and its variance grows by it.
+TEST(DriftPrior, WhatMayHaveChangedJoinsTheBank) {
+  constexpr double kShare = 0.02;
+  std::array<double, 2> tail{}, variance{};
+  for (const bool changed : {false, true}) {
+    Bank bank(0.3);
+    bank.data.time_s = 0.1;
+    ASSERT_TRUE(bank.drift.Splits(bank.Carry()));
+    if (changed) bank.drift.AddChanged(kShare);
+    SomeDraws some(bank.posterior.mean);
+    double p_drifted = 0.3;
+    ASSERT_TRUE(bank.FindEnd(some.View(), &p_drifted));
+    std::vector<double> v = some.u[2];
+    std::sort(v.begin(), v.end());
+    tail[changed] = bank.end[2](v[SomeDraws::kCount - SomeDraws::kCount / 1000]);
+    double sum = 0.0, square = 0.0;
+    for (const double effective : v) {
+      const double u = bank.end[2](effective);
+      sum += u;
+      square += u * u;
+    }
+    sum /= SomeDraws::kCount;
+    variance[changed] = square / SomeDraws::kCount - sum * sum;
+  }
+  const double sd = std::sqrt(0.002), mean = 0.2;  // of the third parameter
+  EXPECT_NEAR(tail[0], mean + 3.1 * sd, 0.5 * sd);
+  EXPECT_NEAR(tail[1], 1.64, 0.3) << "where P_0 has 5 % beyond";
+  EXPECT_NEAR(variance[0], sd * sd, 0.1 * sd * sd);
+  EXPECT_NEAR(variance[1], variance[0] + kShare, 0.3 * kShare) << "less what the bounds of p cut off";
 }
 
 TEST(DriftPrior, NeverGetsWiderThanTheInitialOne) {

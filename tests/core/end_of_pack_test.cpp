@@ -80,7 +80,8 @@ TEST(EndOfPack, AParameterThatDoesNotMoveStays) {
 TEST(EndOfPack, TurnsOneDistributionIntoTheOther) {
   const std::array<Law, 1> effective{{{1.0, 1.0, 0.2}}};
   const std::array<Law, 2> at_end{{{0.7, 1.5, 0.05}, {0.3, 1.4, 0.2}}};
-  const EndOfPack end(QuantilesOf(Of(effective)), QuantilesOf(Of(at_end)), 0.0, -100.0, 100.0);
+  const auto from = QuantilesOf(Of(effective)), to = QuantilesOf(Of(at_end));
+  const EndOfPack end(from, to, 0.0, EndOfPack::AverageSlope(from, to), -100.0, 100.0);
   double before = -HUGE_VAL;
   for (int eighths = -32; eighths <= 32; ++eighths) {
     const double z = 0.125 * eighths;
@@ -96,10 +97,20 @@ TEST(EndOfPack, TurnsOneDistributionIntoTheOther) {
 TEST(EndOfPack, KeepsWhatTheDrawsHaveBeyondTheExpansion) {
   const auto effective = QuantilesOf(Of(std::array<Law, 1>{{{1.0, 0.0, 1.0}}}));
   const auto at_end = QuantilesOf(Of(std::array<Law, 1>{{{1.0, 0.5, 2.0}}}));
-  const EndOfPack end(effective, at_end, 0.1, -100.0, 100.0);
+  const EndOfPack end(effective, at_end, 0.1, EndOfPack::AverageSlope(effective, at_end), -100.0, 100.0);
   EXPECT_NEAR(end(0.1), 0.6, 2e-3);
   EXPECT_NEAR(end(1.1), 2.6, 5e-3);
   EXPECT_NEAR(end(10.1), 20.6, 0.1);
+}
+
+TEST(EndOfPack, HasOneSlopeBeyondTheOutermostQuantiles) {
+  const auto effective = QuantilesOf(Of(std::array<Law, 1>{{{1.0, 0.0, 1.0}}}));
+  const auto at_end = QuantilesOf(Of(std::array<Law, 1>{{{1.0, 0.5, 2.0}}}));
+  const EndOfPack end(effective, at_end, 0.0, 5.0, -100.0, 100.0);
+  EXPECT_NEAR(end(effective.back()), at_end.back(), 1e-9);
+  EXPECT_NEAR(end(effective.back() + 1.0), at_end.back() + 5.0, 1e-9);
+  EXPECT_NEAR(end(effective.front() - 1.0), at_end.front() - 5.0, 1e-9);
+  EXPECT_NEAR(end(0.0), 0.5, 2e-3);
 }
 
 TEST(EndOfPack, MovesAndStretchesAboutTheMean) {
@@ -119,7 +130,8 @@ TEST(EndOfPack, SaysWhenItIsOfNoUse) {
   EXPECT_TRUE(EndOfPack(0.0, 0.5, 3.0, -1.0, 2.0).IsFinite());
   EXPECT_FALSE(EndOfPack(0.0, 0.5, std::nan(""), -1.0, 2.0).IsFinite());
   const auto quantiles = QuantilesOf(Of(std::array<Law, 1>{{{1.0, 0.0, 1.0}}}));
-  EXPECT_FALSE(EndOfPack(EndOfPack::Quantiles{}, quantiles, 0.0, -1.0, 2.0).IsFinite()) << "one point for a quantile";
+  EXPECT_FALSE(EndOfPack(EndOfPack::Quantiles{}, quantiles, 0.0, 1.0, -1.0, 2.0).IsFinite())
+      << "one point for a quantile";
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(MoveToEndKernel, IsThatOfOneDraw) {
     effective[k] = static_cast<double>(k) - 3.0;
     at_end[k] = 0.3 + 0.1 * effective[k] + 0.02 * std::pow(effective[k], 3);
   }
-  const EndOfPack end(effective, at_end, 0.01, -1.5, 1.7);
+  const EndOfPack end(effective, at_end, 0.01, 0.9, -1.5, 1.7);
   for (const simd::Kernels* kernels : test::RunnableKernels()) {
     std::vector<double> u(kCount);
     kernels->move_to_end(end, v.data(), kCount, u.data());

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "armcmc/drift.hpp"
@@ -43,7 +45,8 @@ struct Sums {
 
 /// Bayes' rule for the three-part prior. Given which hypothesis began in which pack, and when
 /// the parameter changed, (u, w) is Gaussian; of these histories, which grow in number with every pack, thousands are
-/// kept, the most probable ones, and the others of each law as one.
+/// kept, the most probable ones. Of the others, those of the same law that began, or changed, in the same pack last are
+/// one: newcomers are improbable and wide, and what they become is not what old histories of their law do.
 class Histories {
  public:
   explicit Histories(double share) : share_(share) {
@@ -52,11 +55,12 @@ class Histories {
 
   /// @param persisted  Share of what did not change in the prior of the pack. 0: a modification.
   void Add(double persisted, const Sums& sums) {
+    ++pack_;
     std::vector<History> next;
     const double stays = std::exp(-Drift::kSwitching * kDuration);
     if (histories_.empty()) {
       // What begins with the first pack moves from then on.
-      for (int h = 0; h < kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0}));
+      for (int h = 0; h < kHypotheses; ++h) next.push_back(Begin(h, {1.0, h, 0, false, 0.0, 0.0, 1.0, 0.0, 0.0}));
     } else {
       for (const History& old : histories_) {
         std::vector<History> moved;
@@ -73,6 +77,8 @@ class Histories {
           History changed = kept;
           kept.weight *= persisted;
           changed.weight *= 1.0 - persisted;
+          changed.since = pack_;
+          changed.changed = true;
           changed.u = changed.uw = 0.0;
           changed.uu = 1.0;
           if (kept.weight > 0.0) next.push_back(kept);
@@ -94,7 +100,7 @@ class Histories {
     if (next.size() > kMost) {
       const std::vector<History> rest(next.begin() + static_cast<std::ptrdiff_t>(kMost), next.end());
       next.resize(kMost);
-      for (int h = 0; h < kHypotheses; ++h) Lump(rest, h, &next);
+      Lump(rest, &next);
     }
     histories_ = std::move(next);
   }
@@ -129,6 +135,8 @@ class Histories {
   struct History {
     double weight;
     int law;
+    int since;     ///< Pack in which the law began, or in which the parameter changed after that.
+    bool changed;  ///< It did.
     double u, w, uu, uw, ww;
   };
 
@@ -164,32 +172,36 @@ class Histories {
     return at_prior + 0.5 * (r_u * move_u + r_w * move_w) - 0.5 * std::log(determinant);
   }
 
-  /// One history with the moments of all those of one law.
-  static void Lump(const std::vector<History>& all, int law, std::vector<History>* to) {
-    History sum{};
-    sum.law = law;
+  /// One history with the moments of all those of one law since one pack.
+  static void Lump(const std::vector<History>& all, std::vector<History>* to) {
+    std::map<std::tuple<int, int, bool>, History> lumps;
     for (const History& h : all) {
-      if (h.law != law) continue;
+      if (!(h.weight > 0.0)) continue;
+      const History none{0.0, h.law, h.since, h.changed, 0.0, 0.0, 0.0, 0.0, 0.0};
+      History& sum = lumps.try_emplace({h.law, h.since, h.changed}, none).first->second;
+      // By West's recursion; the second moments are sums until all are in.
+      const double before = sum.weight;
       sum.weight += h.weight;
-      sum.u += h.weight * h.u;
-      sum.w += h.weight * h.w;
-    }
-    if (!(sum.weight > 0.0)) return;
-    sum.u /= sum.weight;
-    sum.w /= sum.weight;
-    for (const History& h : all) {
-      if (h.law != law) continue;
       const double share = h.weight / sum.weight, u = h.u - sum.u, w = h.w - sum.w;
-      sum.uu += share * (h.uu + u * u);
-      sum.uw += share * (h.uw + u * w);
-      sum.ww += share * (h.ww + w * w);
+      sum.u += share * u;
+      sum.w += share * w;
+      sum.uu += h.weight * h.uu + before * share * u * u;
+      sum.uw += h.weight * h.uw + before * share * u * w;
+      sum.ww += h.weight * h.ww + before * share * w * w;
     }
-    to->push_back(sum);
+    for (auto& [key, sum] : lumps) {
+      sum.uu /= sum.weight;
+      sum.uw /= sum.weight;
+      sum.ww /= sum.weight;
+      to->push_back(sum);
+    }
   }
 
   [[nodiscard]] History Begin(int h, History from) const {
     from.weight *= Drift::Of(h, share_, 1).prior;
     from.law = h;
+    from.since = pack_;
+    from.changed = false;
     return Turn(from);
   }
   [[nodiscard]] History Turn(History from) const {
@@ -230,6 +242,7 @@ class Histories {
 
   std::array<Noise, kHypotheses> noise_;
   double share_;
+  int pack_ = 0;
   std::vector<History> histories_;
 };
 
@@ -304,9 +317,10 @@ void Record(std::uint64_t noise_seed, const Difference& d) {
 }
 
 TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
-  // In the last one, what rests is improbable and then is not: few draws have told the shape of its density, the
-  // filters of the bank know it.
-  constexpr std::array<std::uint64_t, 9> kNoiseSeeds{31, 32, 33, 34, 35, 36, 37, 38, 108};
+  // In 108, what rests is improbable and then is not: few draws have told the shape of its density, the filters of the
+  // bank know it. In 78 and 101 it is a change that is improbable: it is a third of the variance of pack 34, and soon
+  // after pack 49 most of what rests.
+  constexpr std::array<std::uint64_t, 11> kNoiseSeeds{31, 32, 33, 34, 35, 36, 37, 38, 78, 101, 108};
   int far = 0;
   for (const std::uint64_t noise_seed : kNoiseSeeds) {
     const Difference d = DifferenceInARun(noise_seed);
@@ -314,8 +328,8 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
     // A hundredth of it each is that of some thousand draws.
     EXPECT_LT(d.mean, 0.01) << noise_seed;
     EXPECT_LT(d.sd, 0.01) << noise_seed;
-    EXPECT_LT(d.worst_mean, 0.08) << noise_seed;
-    EXPECT_LT(d.worst_sd, 0.06) << noise_seed;
+    EXPECT_LT(d.worst_mean, 0.06) << noise_seed;
+    EXPECT_LT(d.worst_sd, 0.04) << noise_seed;
     EXPECT_LT(d.share, 0.05) << noise_seed;
     // What may have changed at the pack before has not changed at this one.
     EXPECT_LT(d.changed, 0.01) << noise_seed;
@@ -323,10 +337,10 @@ TEST(DriftFilter, AgreesWithEveryHistoryThatMatters) {
     far += d.far;
   }
   // Packs in which the mean is more than .05 standard deviations away, or the standard deviation more than 3 % off.
-  EXPECT_LE(far, static_cast<int>(kNoiseSeeds.size()) * kPacks / 200);
+  EXPECT_LE(far, static_cast<int>(kNoiseSeeds.size()) * kPacks / 800);
 }
 
-// A pack may be far off, most of all where a change is a few percent probable; no run has many of them.
+// A pack may be far off, most of all after a change that was a few percent probable; no run has many of them.
 TEST(LongDriftFilter, HasFewPacksThatAreFarOffInAnyRun) {
   constexpr std::uint64_t kFirst = 71;
   constexpr int kRuns = 40;
@@ -334,10 +348,10 @@ TEST(LongDriftFilter, HasFewPacksThatAreFarOffInAnyRun) {
   for (std::uint64_t noise_seed = kFirst; noise_seed < kFirst + kRuns; ++noise_seed) {
     const Difference d = DifferenceInARun(noise_seed);
     Record(noise_seed, d);
-    EXPECT_LE(d.far, kPacks / 20) << noise_seed;
+    EXPECT_LE(d.far, kPacks / 32) << noise_seed;
     far += d.far;
   }
-  EXPECT_LE(far, kRuns * kPacks / 200);
+  EXPECT_LE(far, kRuns * kPacks / 800);
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ struct ModeDraws {
   /// its end are AtEnd() (Drift).
   bool moves = false;
   std::array<EndOfPack, kMaxParams> end{};
+  /// Some of the draws may be of parameters that have changed, which did not come from where the others did: a draw
+  /// that has with probability c moves by c times `end_of_changed`, and 1 - c times `end`.
+  bool some_changed = false;
+  std::array<EndOfPack, kMaxParams> end_of_changed{};
   int mode_index = 0;                       ///< Candidate with the highest posterior density.
   std::array<double, kMaxParams> mode_u{};  ///< Mode of the target, standardised coordinates.
   bool point_is_mode = false;               ///< mode_u is the point estimate after every decision (least squares).
@@ -43,14 +47,18 @@ struct ModeDraws {
   // Structure of arrays, `draws` entries each.
   std::array<double*, kMaxParams> u{};  ///< Standardised coordinates.
   double* weight = nullptr;             ///< Importance weights, sum 1.
+  double* changed = nullptr;            ///< c, where some have changed.
   std::int32_t* visits = nullptr;       ///< Iterations after burn_in that the chain spent at a candidate.
   std::int32_t* chain = nullptr;        ///< Candidate at each iteration of the chain.
 
   /// Coordinate d of draw k at the end of the pack. @rt O(1).
   [[nodiscard]] double AtEnd(int d, int k) const noexcept ARMCMC_NONBLOCKING {
-    return ToEnd(d, u[static_cast<std::size_t>(d)][k]);
+    const double effective = u[static_cast<std::size_t>(d)][k];
+    const double kept = ToEnd(d, effective);
+    if (!some_changed) return kept;
+    return kept + changed[k] * (end_of_changed[static_cast<std::size_t>(d)](effective) - kept);
   }
-  /// The same of any effective coordinate.
+  /// The same of any effective coordinate that has not changed.
   [[nodiscard]] double ToEnd(int d, double effective) const noexcept ARMCMC_NONBLOCKING {
     return moves ? end[static_cast<std::size_t>(d)](effective) : effective;
   }

@@ -78,13 +78,16 @@ struct QuadraticControl;
 /// between packs and what is published (EndOfPack) are of those at the end of the pack. What rests has v = u.
 ///
 /// Published are the draws, moved (EndOfPack) from their distribution under the expansion to that of the bank at the
-/// end of the pack; for a linear law the bank itself. The bank knows more than the prior that was sampled, in which
-/// rest and the drifts of several parameters are a Gaussian each: where one of several drifts alone, the others have a
-/// narrow distribution with wide tails.
+/// end of the pack: by its quantiles, and beyond the outermost so that the variance is the bank's. For a linear law
+/// they are the bank itself. The bank knows more than the prior that was sampled, in which rest and the drifts of
+/// several parameters are a Gaussian each: where one drifts alone, the others are narrow with wide tails.
 ///
 /// While the memory is two posteriors, without and with a change, the bank is that of the more probable one. It starts
 /// again, with the rates that it knows, whenever the other one becomes that. The other one is carried on as a third
-/// part, which time moves and widens as it does the bank.
+/// part, which time moves and widens as it does the bank; its draws move to the end of the pack by the velocities that
+/// were expected before it. A change too improbable for a posterior of its own is in the bank (AddChanged): a
+/// ten-thousandth that is far away may be a third of the variance, and soon most of what rests. Not while drift is
+/// improbable: what is sampled then is what is published, and a Gaussian with that variance would be too wide for it.
 ///
 /// A sampled posterior is stored as two densities, rest and drift, with each draw weighted by the probability that it
 /// came from that part; if one of them is improbable or has too few draws, a single density P is stored. Before the
@@ -113,7 +116,7 @@ class Drift {
   static constexpr double kNegligible = 0.01;  ///< Probability below which a part is left out of the prior of a pack.
   static constexpr int kFirstAlone = 1 + static_cast<int>(kTogether.size());
   static constexpr int kHypotheses = kFirstAlone + kMaxParams;  ///< At most.
-  static constexpr int kSlots = 8;                              ///< Filters of a hypothesis.
+  static constexpr int kSlots = 11;                             ///< Filters of a hypothesis.
   static constexpr int kFilters = kSlots * kHypotheses;
   static constexpr int kMostSteps = 8;  ///< Of a time without data.
 
@@ -174,8 +177,16 @@ class Drift {
     const double* log_likelihood = nullptr;
     const double* share = nullptr;  ///< Posterior probability that a draw is of `part`; null: not known.
     Part part = Part::kWhole;
-    bool of_part = true;        ///< false: `share` is the probability that it is of what has changed.
+    bool of_part = true;  ///< false: `share` is the probability that it is of what has changed.
+    /// What has changed is a posterior of its own, and in no filter.
+    bool apart = false;
     double* scratch = nullptr;  ///< As long as the rows.
+
+    /// Probability that draw k is of what the bank has. @pre `share` is known. @rt O(1).
+    [[nodiscard]] double InBank(int k) const noexcept ARMCMC_NONBLOCKING {
+      if (!apart) return 1.0;
+      return of_part ? share[k] : 1.0 - share[k];
+    }
   };
 
   /// After Carry(): from the effective parameters of the pack to those at its end.
@@ -189,11 +200,18 @@ class Drift {
                double* p_drifted, LaplaceScratch* scratch,
                std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING;
 
-  /// The same where the parameters did not come from where they were: with the velocities that were expected before the
-  /// pack, which Learn() then starts again with, too.
-  /// @param covariance  Of the effective parameters.
-  bool FindEndAfterChange(const ParamVector& mean, const ParamMatrix& covariance,
-                          std::array<EndOfPack, kMaxParams>* end) noexcept ARMCMC_NONBLOCKING;
+  /// After Carry(): what has changed at the pack with some probability and is no posterior of its own joins the bank,
+  /// as newcomers from P_0 with the velocities that were expected.
+  /// @param share  Prior probability of a change.
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^2).
+  void AddChanged(double share) noexcept ARMCMC_NONBLOCKING;
+
+  /// FindEnd() for parameters that did not come from where they were: with the velocities that were expected before
+  /// the pack, which Learn() then starts again with, too.
+  /// @param mean, covariance  Of the effective parameters.
+  /// @rt No heap, no lock, no throw. O(dim^3).
+  bool FindEndOfChanged(const ParamVector& mean, const ParamMatrix& covariance,
+                        std::array<EndOfPack, kMaxParams>* end) const noexcept ARMCMC_NONBLOCKING;
 
   /// After Carry(): what the pack taught.
   /// @param next     Posterior after it.
@@ -224,8 +242,10 @@ class Drift {
     ParamVector u, w;
     ParamMatrix uu, uw, ww;
   };
-  /// Slot by slot, in each a filter of every hypothesis; of one hypothesis the one that began last is the first.
+  /// Slot by slot, in each a filter of every hypothesis; of one hypothesis the one that began last is the first. The
+  /// first two are for what changed and what began at the last pack.
   using Bank = std::array<Filter, kFilters>;
+  static constexpr std::size_t kChanged = 0, kBegun = 1, kNewcomers = 2;
   struct Moments {
     double weight = 0.0;
     ParamVector mean;
@@ -233,18 +253,21 @@ class Drift {
   };
 
   [[nodiscard]] static std::size_t HypothesisOf(std::size_t filter) noexcept { return filter % kHypotheses; }
+  [[nodiscard]] static std::size_t SlotOf(std::size_t filter) noexcept { return filter / kHypotheses; }
   [[nodiscard]] static bool IsOf(Part part, std::size_t filter) noexcept {
     return part == Part::kWhole || (part == Part::kRest) == (HypothesisOf(filter) == 0);
   }
   [[nodiscard]] bool Exists(std::size_t filter) const noexcept {
     return HypothesisOf(filter) < static_cast<std::size_t>(NumHypotheses(dim_));
   }
-  [[nodiscard]] Moments MomentsOf(const Bank& bank, Part part) const noexcept ARMCMC_NONBLOCKING;
+  /// @param first  Slot, from which on.
+  [[nodiscard]] Moments MomentsOf(const Bank& bank, Part part,
+                                  std::size_t first = kChanged) const noexcept ARMCMC_NONBLOCKING;
   /// Moves the moments of `from` into `to`, and empties it.
   static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
   /// Half the log of the determinant of the covariance of u and of the velocities that the hypothesis has.
   [[nodiscard]] double LogVolume(const Hypothesis& law, const Filter& filter) const noexcept ARMCMC_NONBLOCKING;
-  /// Empties the first slot of each hypothesis, if it is not empty.
+  /// Empties the slots of newcomers of each hypothesis.
   void MakeRoom(Bank* bank) const noexcept ARMCMC_NONBLOCKING;
   /// Covariance of the velocity that a hypothesis begins with.
   [[nodiscard]] ParamMatrix FirstVelocity(const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
@@ -273,6 +296,8 @@ class Drift {
   void FromEffective() noexcept ARMCMC_NONBLOCKING;
   /// Probability of drift in `predicted_`, and its expected rates.
   void ExpectDrift() noexcept ARMCMC_NONBLOCKING;
+  /// Moments of w in `predicted_`. Overwrites `work_`.
+  void ExpectVelocity() noexcept ARMCMC_NONBLOCKING;
   void Start(const PosteriorMemory& next, bool with_speeds) noexcept ARMCMC_NONBLOCKING;
   /// A sampled density of a part of the bank.
   struct Sampled {
@@ -306,10 +331,12 @@ class Drift {
   /// The weights in the scratch of the draws, as if the expansion were the likelihood.
   /// @return By what factor the number of effective draws changes; 0 if they are too few.
   double Tilt(const Sampled& sampled, const Draws& draws, int count) const noexcept ARMCMC_NONBLOCKING;
-  /// Quantiles of the parameters that have not changed, by the weights in the scratch of the draws; NaN without a
-  /// width.
-  [[nodiscard]] EndOfPack::Quantiles QuantilesByDraws(const Draws& draws, int d, double mean,
-                                                      double sd) const noexcept ARMCMC_NONBLOCKING;
+  /// To the marginal `end` of the bank, from that of the draws by the weights in their scratch.
+  /// @param mean, variance  Of the bank before it was moved to the end of the pack.
+  /// @param end_variance    After that.
+  [[nodiscard]] EndOfPack EndByDraws(const Draws& draws, int d, double mean, double variance,
+                                     const EndOfPack::Quantiles& end,
+                                     double end_variance) const noexcept ARMCMC_NONBLOCKING;
   /// Of the draws by the weights in their scratch; `weight` is the effective number.
   [[nodiscard]] Moments MomentsOfDraws(const Draws& draws, int count) const noexcept ARMCMC_NONBLOCKING;
   /// No bound cuts off anything of a Gaussian with these moments.
@@ -348,6 +375,8 @@ class Drift {
   Bank& predicted_;  ///< Before the next one. Of scratch_.
   Bank& work_;       ///< Of scratch_.
   Expected expected_;
+  Expected velocity_;           ///< Before what the pack tells of it.
+  bool expects_drift_ = false;  ///< Likewise: drift is not negligible.
   bool moves_ = false;
   ParamMatrix lead_;    ///< T of that pack, s.
   bool leads_ = false;  ///< It is not zero.

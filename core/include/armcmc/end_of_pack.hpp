@@ -12,8 +12,8 @@ namespace armcmc {
 /// Where a parameter is at the end of a pack in which it moves, given the effective one (Drift), both in standardised
 /// coordinates: u = G^-1(F(v)), if F is the distribution of the effective parameter v and G of the one at the end.
 ///
-/// Piecewise linear between quantiles q_k of F and the same quantiles of G, and increasing; beyond them with the slope
-/// that it has on average between the outermost:
+/// Piecewise linear between quantiles q_k of F and the same quantiles of G, and increasing; beyond the outermost with
+/// one slope on both sides:
 ///
 ///   u = c + s v + sum_k b_k max(v, q_k),   within the bounds of the parameter
 ///
@@ -52,11 +52,19 @@ class EndOfPack {
   EndOfPack() = default;
 
   /// From quantiles of F to those of G.
+  /// @param effective     q_k, of F; IsFinite() is false if two of them are one.
+  /// @param end           Of G.
   /// @param offset        Added to all of them.
+  /// @param outer_slope   Beyond the outermost ones, at least 0.
   /// @param lower, upper  Bounds of u.
   /// @rt No heap, no lock, no throw. O(1).
-  EndOfPack(const Quantiles& effective, const Quantiles& end, double offset, double lower,
+  EndOfPack(const Quantiles& effective, const Quantiles& end, double offset, double outer_slope, double lower,
             double upper) noexcept ARMCMC_NONBLOCKING;
+  /// The slope on average between the outermost quantiles. @rt As above.
+  [[nodiscard]] static double AverageSlope(const Quantiles& effective,
+                                           const Quantiles& end) noexcept ARMCMC_NONBLOCKING {
+    return (end.back() - end.front()) / (effective.back() - effective.front());
+  }
 
   /// u = mean + shift + ratio (v - mean). @rt As above.
   EndOfPack(double mean, double shift, double ratio, double lower, double upper) noexcept ARMCMC_NONBLOCKING;

@@ -150,6 +150,7 @@ class ModeSampler {
     double mass_new = 0.0;       ///< Of what was drawn anew: changed at this pack.
     double mass_changed = 0.0;   ///< Changed at this pack or, where `previous` has a third block, at the one before.
     bool first_changed = false;  ///< mass_first and first_share are of what changed.
+    bool apart = false;          ///< What changed is probable enough for a posterior of its own.
     /// What was carried on through time is rest and drift in two blocks: the more probable is handed on, and the other
     /// unless it is improbable.
     bool split = false;
