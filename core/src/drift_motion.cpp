@@ -14,8 +14,10 @@ namespace {
 constexpr double kLeastPrecision = 1e-4;
 /// Share of the effective draws that an expansion that is of use leaves, for quantiles in the tails.
 constexpr double kLikenessInTails = 0.5;
-constexpr std::size_t kCells = 2048;      // of a histogram
-constexpr double kHistogramReach = 64.0;  // standard deviations from the mean
+constexpr std::size_t kCells = 2048;  // of a histogram
+/// Standard deviations from the mean: those are of the bank with all that is far away in it, so that what lies beyond
+/// has a probability below 1 / 64^2.
+constexpr double kHistogramReach = 64.0;
 /// Slope of the tails, over that between them: few draws are there, and may lack one that is far out.
 constexpr double kMostStretch = 8.0;
 
@@ -129,7 +131,7 @@ EndOfPack Drift::EndByDraws(const Draws& draws, int d, double mean, double varia
   const double per_cell = kCells / (2.0 * kHistogramReach * sd);
   const double origin = mean - kHistogramReach * sd;
   kernels_.histogram(draws.u[i], draws.scratch, draws.count, per_cell, -origin * per_cell, kCells + 1, cells.data());
-  // The first and the last cell have all that lies beyond, too, which is far from anything that the bank has.
+  // The first and the last cell have all that lies beyond, too, and are left out.
   double total = 0.0;
   for (std::size_t c = 1; c + 1 < kCells; ++c) total += cells[2 * c];
   EndOfPack::Quantiles effective{};

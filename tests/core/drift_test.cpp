@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "armcmc/density_fit.hpp"
 #include "core/estimator_rig.hpp"
 #include "support/alloc_counter.hpp"
 
@@ -161,6 +162,34 @@ TEST(Drift, AJumpOnTopIsFollowedAndTheDriftGoesOn) {
       EXPECT_GT(e.p_drifted, 0.9);
     }
   }
+}
+
+// After a jump the draws are widened by the velocities that were expected, relative to their spread: a few effective
+// ones have none, and would be moved to the bounds.
+TEST(Drift, AfterAJumpAFewEffectiveDrawsStayWhereTheyAre) {
+  constexpr double kJump = -2.0;
+  int few = 0, moved = 0;
+  for (const int count : {SamplerSettings::kMinDraws, 4000}) {
+    Contact contact(kDrift);
+    EstimatorSettings settings = Quick();
+    settings.sampler.fixed_draws = count;
+    Rig rig(settings);
+    for (std::int64_t seq = 1; seq <= 45; ++seq) {
+      DataPack pack = contact.Pack(seq);
+      for (std::size_t n = 0; seq > 40 && n < test::kPackSamples; ++n) pack.y[n] += kJump * pack.u[n][0];
+      rig.Step(pack);
+      const ModeDraws& draws = rig.result->modes[0];
+      if (seq <= 40 || draws.decision != Decision::kModification) continue;
+      if (draws.kish_ess < kMinimumEss) {
+        ++few;
+        EXPECT_FALSE(draws.moves) << "pack " << seq << " of " << count << " draws";
+      } else {
+        moved += draws.moves ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(few, 0);
+  EXPECT_GT(moved, 0);
 }
 
 TEST(Drift, WithoutItTimeHasNoSay) {

@@ -203,7 +203,7 @@ class Drift {
   /// After Carry(): what has changed at the pack with some probability and is no posterior of its own joins the bank,
   /// as newcomers from P_0 with the velocities that were expected.
   /// @param share  Prior probability of a change.
-  /// @rt No heap, no lock, no throw. O(hypotheses dim^2).
+  /// @rt No heap, no lock, no throw. O(hypotheses dim^3).
   void AddChanged(double share) noexcept ARMCMC_NONBLOCKING;
 
   /// FindEnd() for parameters that did not come from where they were: with the velocities that were expected before
@@ -275,7 +275,7 @@ class Drift {
                                 const Hypothesis& law) const noexcept ARMCMC_NONBLOCKING;
   /// What drifts in `predicted_`, where it stops within a time, at any moment of it. Overwrites `work_`.
   [[nodiscard]] Moments StoppedDrift(double within_s) noexcept ARMCMC_NONBLOCKING;
-  /// What begins, ends or becomes another drift within a time, in the first slots.
+  /// What begins, ends or becomes another drift within a time, in the slots for it.
   void AddNewcomers(double elapsed_s, double gap_s) noexcept ARMCMC_NONBLOCKING;
   /// What drifts and becomes another drift.
   void TurnDrifts(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
