@@ -142,6 +142,16 @@ TEST(LabelRight, ARelativeWillDoWhereThePlantIsNotTheCatalogue) {
   EXPECT_FALSE(LabelRight(what, Hidden({"sensor_delay"}), "inertia"));
 }
 
+TEST(LabelRight, WhatIsMissingFollowsFromTheSizeOfTheModelError) {
+  Case what;
+  what.stratum = "near_null";
+  EXPECT_TRUE(LabelRight(what, {}, "none", 0.02));
+  EXPECT_FALSE(LabelRight(what, {}, "unnamed", 0.02));
+  EXPECT_FALSE(LabelRight(what, {}, "none", 0.05));
+  EXPECT_TRUE(LabelRight(what, {}, "unnamed", 0.05));
+  EXPECT_FALSE(LabelRight(what, {}, "inertia", 0.05));
+}
+
 TEST(GradeOf, WhatARealRecordingHoldsByItselfIsNotJudgedBesideWhatIsHidden) {
   Case real;
   real.own = {"periodic_disturbance"};

@@ -1,12 +1,14 @@
 #include "closing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "armcmc/gap/diagnose.hpp"
 #include "armcmc/gap/equation.hpp"
+#include "armcmc/gap/fit.hpp"
 #include "armcmc/gap/recording.hpp"
 #include "armcmc/gap/verify.hpp"
 #include "armcmc/gap_bench/scenario_text.hpp"
@@ -48,6 +50,23 @@ std::optional<double> FirstRung(const PlantProcess& plant, const Outcome& outcom
   const double truth = BaseError(*gap::MakeEquation(outcome.what.model), recording);
   if (before - truth < Squared(kShows * outcome.truth.noise_sd.front())) return std::nullopt;
   return (before - after) / (before - truth);
+}
+
+double ModelError(const PlantProcess& plant, const Outcome& outcome, const std::string& scenario) {
+  constexpr int kSmooth = 1, kSteps = 30;  // without noise there is nothing to smooth
+  const gap::Recording whole = plant.Rerun(outcome.what, WithoutTables(scenario, "noise."));
+  const gap::Recording clean =
+      whole.Slice(0, static_cast<Eigen::Index>(kDiagnosed * static_cast<double>(whole.rows())));
+  const auto equations = gap::MakeEquations(outcome.what.model);
+  double most = 0.0;
+  for (std::size_t k = 0; k < equations.size(); ++k) {
+    const gap::Signals signals = equations[k]->Prepare(clean, kSmooth);
+    const gap::Fitter fitter(*equations[k], signals, gap::Whitener{});
+    const gap::Fitted fit = fitter.Fit({}, equations[k]->Start(signals), kSteps);
+    const double square = (signals.output - fit.predicted).squaredNorm() / static_cast<double>(signals.rows());
+    most = std::max(most, std::sqrt(square) / outcome.truth.noise_sd[k]);
+  }
+  return most;
 }
 
 }  // namespace armcmc::gap_bench

@@ -14,4 +14,7 @@ namespace armcmc::gap_bench {
 [[nodiscard]] std::optional<double> FirstRung(const PlantProcess& plant, const Outcome& outcome,
                                               const std::string& scenario);
 
+/// See Outcome::model_error, of the part of the recording that is diagnosed.
+[[nodiscard]] double ModelError(const PlantProcess& plant, const Outcome& outcome, const std::string& scenario);
+
 }  // namespace armcmc::gap_bench

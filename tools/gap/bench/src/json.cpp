@@ -40,6 +40,7 @@ json CaseJson(const Outcome& o) {
   if (o.onset_error_s) out["onset_error_s"] = *o.onset_error_s;
   if (o.onset_off_s) out["onset_off_s"] = *o.onset_off_s;
   if (o.diagnosed_strength) out["diagnosed_strength"] = *o.diagnosed_strength;
+  if (o.model_error) out["model_error"] = *o.model_error;
   if (o.first_rung) out["first_rung"] = *o.first_rung;
   if (o.when_right) out["when_right"] = *o.when_right;
   if (o.equation_right) out["equation_right"] = *o.equation_right;

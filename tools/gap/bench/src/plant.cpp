@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "armcmc/gap/equation.hpp"
-#include "armcmc/gap/recording.hpp"
 #include "armcmc/support/program.hpp"
 #include "armcmc/support/subprocess.hpp"
 #include "contents.hpp"
@@ -83,15 +82,20 @@ bool PlantProcess::Make(const Case& what) const {
   return true;
 }
 
-std::vector<std::vector<double>> PlantProcess::Outputs(const Case& what, const std::string& scenario_text) const {
+gap::Recording PlantProcess::Rerun(const Case& what, const std::string& scenario_text) const {
   const std::string name = what.Name() + "_contribution";
   const std::filesystem::path scenario = folder_ / (name + ".toml"), csv = folder_ / (name + ".csv");
   std::ofstream(scenario, std::ios::binary) << scenario_text;
   const support::SubprocessEnd end = support::RunSubprocess(
       program_, {"--scenario", scenario.string(), "--seed", std::to_string(what.seed), "--csv", csv.string()}, folder_);
   if (end.code != 0) throw std::runtime_error(program_.string() + " for " + name + ": " + end.errors);
-  const gap::Recording recording = gap::ReadRecording(csv, gap::ColumnsOf(what.model), false);
+  gap::Recording recording = gap::ReadRecording(csv, gap::ColumnsOf(what.model), false);
   for (const std::filesystem::path& path : {scenario, csv}) std::filesystem::remove(path);
+  return recording;
+}
+
+std::vector<std::vector<double>> PlantProcess::Outputs(const Case& what, const std::string& scenario_text) const {
+  const gap::Recording recording = Rerun(what, scenario_text);
   std::vector<std::vector<double>> outputs;
   for (const std::string& output : OutputsOf(what.model)) {
     const gap::Vector& column = recording.Column(output);

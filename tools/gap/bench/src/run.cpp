@@ -143,7 +143,9 @@ void Score(const PlantProcess& plant, Outcome* outcome) {
   std::tie(outcome->label, outcome->label_probability) = TopLabel(result);
   if (!std::isfinite(outcome->label_probability))
     throw std::runtime_error("the probability of " + outcome->label + " is not a number");
-  outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label);
+  if (Imperfect(outcome->what.stratum) && outcome->truth.effects.empty())
+    outcome->model_error = ModelError(plant, *outcome, ScenarioOf(plant, outcome->what));
+  outcome->label_right = LabelRight(outcome->what, outcome->truth, outcome->label, outcome->model_error.value_or(0.0));
   if (outcome->grade == Grade::kNone || outcome->grade == Grade::kPartial) {
     outcome->diagnosed_strength = DiagnosedStrength(plant, *outcome);
     if (*outcome->diagnosed_strength < kTrace) outcome->grade = Grade::kNotShown;

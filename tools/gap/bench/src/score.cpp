@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "armcmc/gap/thresholds.hpp"
 #include "armcmc/gap_bench/strata.hpp"
 #include "armcmc/models/registry.hpp"
 #include "armcmc/support/effect_library.hpp"
@@ -178,8 +179,9 @@ std::pair<std::string, double> TopLabel(const gap::Result& result) {
   return *top;
 }
 
-bool LabelRight(const Case& what, const Truth& all, const std::string& label) {
+bool LabelRight(const Case& what, const Truth& all, const std::string& label, double model_error) {
   const Truth truth = NameableTruth(all);
+  if (truth.effects.empty() && model_error >= gap::Thresholds{}.tie_effect) return label == "unnamed";
   if (truth.effects.empty())
     return label == "none" || std::find(what.own.begin(), what.own.end(), label) != what.own.end();
   if (label == "none") return false;

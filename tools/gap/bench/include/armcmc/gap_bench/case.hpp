@@ -98,6 +98,9 @@ struct Outcome {
   /// Of effects that were not found: rms of what they add to the output in the diagnosed part of the recording, over
   /// the noise. A bound of R there, since the base parameters absorb some of it.
   std::optional<double> diagnosed_strength;
+  /// Where nothing is hidden, but the plant is not its model: rms of what the refitted model cannot follow, over the
+  /// noise, in the output that shows most of it.
+  std::optional<double> model_error;
   /// Where the plant is not the catalogue: of what the true effect would close of the gap if all else stayed as it is,
   /// the share that the first rung closes (of two effects: that all rungs close).
   std::optional<double> first_rung;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "armcmc/gap/recording.hpp"
 #include "armcmc/gap_bench/case.hpp"
 
 namespace armcmc::gap_bench {
@@ -19,6 +20,8 @@ class PlantProcess {
   /// @return false when the effect cannot reach its strength in this motion.
   /// @throws std::runtime_error when the plant fails.
   [[nodiscard]] bool Make(const Case& what) const;
+  /// What a scenario of `what`'s seed records; what it hides is what the scenario file says.
+  [[nodiscard]] gap::Recording Rerun(const Case& what, const std::string& scenario_text) const;
   /// The measured outputs of a scenario of `what`'s seed, [output][row]; what it hides is what the scenario file says.
   [[nodiscard]] std::vector<std::vector<double>> Outputs(const Case& what, const std::string& scenario_text) const;
 

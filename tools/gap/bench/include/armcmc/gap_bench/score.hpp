@@ -37,7 +37,9 @@ using Names = std::vector<std::string>;  ///< Of the effects of one hypothesis, 
 [[nodiscard]] std::pair<std::string, double> TopLabel(const gap::Result& result);
 /// Whether that label is true. A relative of the family counts where the catalogue lacks the effect or its formula, and
 /// where the plant is not the catalogue.
-[[nodiscard]] bool LabelRight(const Case& what, const Truth& truth, const std::string& label);
+/// @param model_error  See Outcome::model_error. From the least size of an effect that the tool reckons with, something
+///                     is missing that has no name.
+[[nodiscard]] bool LabelRight(const Case& what, const Truth& truth, const std::string& label, double model_error = 0.0);
 
 /// Times at which an effect could have begun without the data knowing: between them the effect would have changed the
 /// squared output by less than 9 noise variances, 4.5 nats, on either side of the true onset.
