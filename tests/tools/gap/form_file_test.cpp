@@ -157,6 +157,19 @@ TEST(FormFile, AForceOfAMotionRemembers) {
   EXPECT_NEAR(memory[0], before - 3.0 * 50.0 * kDt / 0.8, 1e-12);
 }
 
+TEST(FormFile, ABoundBeyondWhichItIsAnotherEffectIsOnEitherSideOrOnBoth) {
+  const auto shape_with = [](const std::string& stop) {
+    return Form(std::string("slot = \"output\"\nformula = \"force*tanh(v/speed)\"\n") + kAmplitude +
+                    "shapes = [{ name = \"speed\", unit = \"m/s\", from = 0.1, to = 1" + stop + " }]\nstarts = [1]\n",
+                Made())
+        .coordinates.back();
+  };
+  EXPECT_FALSE(shape_with("").other_below || shape_with("").other_above);
+  EXPECT_TRUE(shape_with(", stop = \"below\"").other_below);
+  EXPECT_FALSE(shape_with(", stop = \"below\"").other_above);
+  EXPECT_TRUE(shape_with(", stop = \"both\"").other_below && shape_with(", stop = \"both\"").other_above);
+}
+
 TEST(FormFile, AVariantHasWhatItLeavesOutFromTheFormBeforeIt) {
   const Signals s = Made();
   const std::string head =

@@ -70,6 +70,22 @@ TEST(LawError, CountsAsKnownWhereBlocksAreLeftOut) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(with.at_bound[i]) << i;
 }
 
+TEST(LawError, IsMoreProbableThanAnEffectWhereItIsTooSmallToBeReported) {
+  const auto equation = std::move(MakeEquations("hunt_crossley").front());
+  const Diagnosis diagnosis = Diagnose(*equation, OffBy(0.0008, {}, 5000));
+  const Finding& finding = diagnosis.finding;
+  ASSERT_EQ(finding.verdict, Verdict::kNone);
+  EXPECT_LT(finding.p_none, 0.5);
+  double total = finding.p_none;
+  for (const CandidatePtr& candidate : finding.tried) {
+    total += candidate->probability;
+    if (!candidate->fit.hypothesis.terms.back().form->regular) {
+      EXPECT_LT(candidate->probability, 0.3) << candidate->names().front();
+    }
+  }
+  EXPECT_NEAR(total, 1.0, 1e-9);
+}
+
 TEST(LeastDecrease, IsWhatAnEffectTakesAtLeast) {
   const test::Bench bench(test::Measure({test::Hidden("coulomb_friction")}, 4000, kNoise, 3).recording);
   const Fitter fitter(*bench.equation, bench.signals, test::White(kNoise));

@@ -42,6 +42,11 @@ TEST_P(PlainError, CompetesThoughItIsExcludedFromTheCatalogue) {
   EXPECT_EQ(finding.verdict, Verdict::kUnnamed);
   ASSERT_TRUE(finding.unlisted);
   EXPECT_EQ(finding.unlisted->names(), std::vector<std::string>{at.looks_like});
+  // Beside it an effect is credited with its own gain only, and none of them gains anything.
+  double unlisted = finding.p_unnamed;
+  for (const CandidatePtr& candidate : finding.tried)
+    if (!candidate->fit.hypothesis.terms.back().form->listed) unlisted += candidate->probability;
+  EXPECT_GT(unlisted, 0.9);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -75,6 +80,13 @@ TEST(TwoEffects, AreNotNamedUnlessTheyAreSure) {
   EXPECT_EQ(plant.carrying().diagnosis.finding.verdict, Verdict::kUnnamed);
 }
 
+TEST(TwoEffects, ARelaxationAsShortAsADampingIsNone) {
+  // What a lag errs by in place of a delay looks like a branch that forgets at once.
+  const PlantDiagnosis plant = DiagnoseWithout("sensor_delay", Contact("sensor_delay", "dead_time", 3.0, 519950135));
+  for (const std::vector<std::string>& names : NamesOf(plant.carrying().diagnosis.finding))
+    EXPECT_EQ(names, std::vector<std::string>{"sensor_lag"});
+}
+
 TEST(SecondSearch, WhatExplainsLessIsNotNamedInPlaceOfWhatIsWithdrawn) {
   // Noise that neighbours share makes the held-out data contradict every friction; two branches explain half as much.
   WorkflowRequest request;
@@ -85,16 +97,21 @@ TEST(SecondSearch, WhatExplainsLessIsNotNamedInPlaceOfWhatIsWithdrawn) {
 }
 
 /// What the second search makes of a recording whose effect is taken out of the catalogue.
-std::optional<ladder::SecondSearch> SearchAgainWithout(const std::string& effect, unsigned long long seed) {
+std::optional<ladder::SecondSearch> SearchAgainWithout(const std::string& effect, unsigned long long seed,
+                                                       double gap_ratio = 1.0) {
   WorkflowRequest request;
   request.model = "hunt_crossley";
-  request.data = RecordPlant("contact_rich", {{effect, 1.0, {}, "linear"}}, seed, 10.0, true, true);
+  request.data = RecordPlant("contact_rich", {{effect, gap_ratio, {}, "linear"}}, seed, 10.0, true, true);
   request.diagnose.without = {effect};
   return ladder::SearchAgain(request);
 }
 
 TEST(SecondSearch, ABodyThatRelaxesIsNoFrictionThatBuildsUp) {
   EXPECT_FALSE(SearchAgainWithout("stress_relaxation", 50909615));
+}
+
+TEST(SecondSearch, ABranchThatForgetsAtOnceIsNoRelaxation) {
+  EXPECT_FALSE(SearchAgainWithout("viscous_friction", 624872630, 3.0));
 }
 
 TEST(SecondSearch, AFrictionThatIsStraightAsFarAsTheDataReachIsNotNamedDry) {

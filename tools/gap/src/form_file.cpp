@@ -73,9 +73,9 @@ class Scales {
 
 void ReadEnds(StrictTable* table, Coordinate* coordinate) {
   coordinate->event = table->Boolean("event", false);
-  const std::string stop = table->Choice("stop", "", {"", "above", "below"});
-  coordinate->other_above = stop == "above";
-  coordinate->other_below = stop == "below";
+  const std::string stop = table->Choice("stop", "", {"", "above", "below", "both"});
+  coordinate->other_above = stop == "above" || stop == "both";
+  coordinate->other_below = stop == "below" || stop == "both";
 }
 
 Coordinate ReadAmplitude(StrictTable* table, const Scales& scales) {

@@ -230,6 +230,7 @@ Finding Search::Run(bool pairs) const {
     if (!clear) {
       JudgeEvents(singles, &finding);
       if (finding.verdict == Verdict::kNone && !finding.events_s.empty()) CheckUnexplainedEvents(singles, &finding);
+      if (finding.verdict == Verdict::kNone) AllowForLawError(&finding);
       return finding;
     }
     finding.p_missing = 1.0 - finding.p_none;
@@ -293,6 +294,11 @@ Finding Search::Run(bool pairs) const {
   }
   finding.tried.insert(finding.tried.end(), all_pairs.begin(), all_pairs.end());
   finding.tried.insert(finding.tried.end(), corrected.begin(), corrected.end());
+  if (!corrected.empty()) {
+    // The correction alone is a hypothesis as well; unnamed physics has been tried among the singles.
+    const Fitted& alone = corrected.front()->correction->without;
+    if (alone.hypothesis.terms.back().form->regular) finding.tried.push_back(Make(alone));
+  }
   SortByScore(&finding.tried);
   PreferCatalogue(&good);
   finding.set = OnePerName(good);

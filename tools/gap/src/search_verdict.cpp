@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "armcmc/gap/search.hpp"
 
@@ -139,8 +140,12 @@ void Search::AssignProbabilities(Finding* finding) const {
   constexpr double kMarginOdds = 3.0;  // log odds that a margin is worth
   constexpr std::size_t kCompared = 12;
   for (const CandidatePtr& candidate : finding->tried) candidate->probability = 0.0;
-  Candidates compared = finding->set;
-  for (const CandidatePtr& candidate : OnePerName(finding->tried)) {
+  Candidates compared = finding->set, rivals = finding->tried;
+  // What a correction explains by itself is not credited to an effect beside it.
+  std::erase_if(rivals, [&](const CandidatePtr& rival) {
+    return rival->correction && !Better(rival->fit, rival->correction->without);
+  });
+  for (const CandidatePtr& candidate : OnePerName(rivals)) {
     if (compared.size() >= kCompared) break;
     // At such a bound the formula is that of another effect, so it is no rival to a name that does as well. If it does
     // better, the named formula is incomplete.
@@ -160,6 +165,11 @@ void Search::AssignProbabilities(Finding* finding) const {
   const Vector share = bootstrap_->SoftShare(scores, std::max(Margin(finding->gap, true) / kMarginOdds, 1.0));
   for (std::size_t i = 0; i < compared.size(); ++i)
     compared[i]->probability = finding->p_missing * (1.0 - finding->p_unnamed) * share[static_cast<Eigen::Index>(i)];
+  // At its bound the formula is no longer that of the effect: what it explains has no name.
+  double nameless = 0.0;
+  for (const CandidatePtr& candidate : compared)
+    if (candidate->fit.on_edge()) nameless += std::exchange(candidate->probability, 0.0);
+  if (finding->p_missing > 0.0) finding->p_unnamed += nameless / finding->p_missing;
 }
 
 }  // namespace armcmc::gap

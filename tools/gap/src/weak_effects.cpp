@@ -5,7 +5,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
+#include <string>
 
+#include "armcmc/gap/blocks.hpp"
 #include "armcmc/gap/search.hpp"
 
 namespace armcmc::gap {
@@ -37,6 +40,18 @@ double LogScaleFree(double z, double per_ratio, bool phase, double least, double
   return LogSumExp(terms) - std::log(kPoints);
 }
 
+/// Scatter of the correlation of a residual with columns from block to block, relative to that of white noise: more
+/// where the noise is stronger where the columns act, or not quite white. So many columns would take that for evidence.
+double Dispersion(const Matrix& columns, const Vector& residual, double variance) {
+  const BlockGrams grams = MakeGrams(columns, residual);
+  double scatter = 0.0, expected = 1e-300;
+  for (std::size_t b = 0; b < grams.cross.size(); ++b) {
+    scatter += grams.cross[b].squaredNorm();
+    expected += variance * grams.gram[b].trace();
+  }
+  return scatter / expected;
+}
+
 }  // namespace
 
 double Search::LogOdds(const CandidatePtr& candidate) const {
@@ -64,6 +79,46 @@ double Search::LogOdds(const CandidatePtr& candidate) const {
       column.norm() / std::sqrt(variance) * noise * std::sqrt(rows_) / fitter_->whitener().Colour(column).norm();
   return LogScaleFree(std::sqrt(2.0 * std::max(likelihood, 0.0)), per_ratio, form.num_amplitudes > 1,
                       limits_.tie_effect, limits_.largest_ratio);
+}
+
+double Search::LogOddsOfLawError(const CandidatePtr& law) const {
+  constexpr int kPoints = 100;
+  const EffectForm& form = *law->fit.hypothesis.terms.back().form;
+  const Whitener& whitener = fitter_->whitener();
+  const Matrix columns = AmplitudeColumns(law->fit, form);
+  const Vector& residual = base_->fit.whitened_residual;
+  const double variance = whitener.variance * std::max(1.0, Dispersion(columns, residual, whitener.variance));
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(columns.transpose() * columns / variance);
+  const Eigen::ArrayXd size = axes.eigenvalues().cwiseMax(0.0);
+  const Eigen::ArrayXd shown =
+      (axes.eigenvectors().transpose() * (columns.transpose() * residual) / variance).array().square();
+  double change = 0.0;  // of the prediction, by shares of standard deviation one
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) change += whitener.Colour(Vector(columns.col(c))).squaredNorm();
+  const double per_ratio = std::sqrt(rows_ * whitener.variance * whitener.Gain() / std::max(change, 1e-300));
+  Vector terms(kPoints);
+  for (int i = 0; i < kPoints; ++i) {
+    const double share =
+        per_ratio * limits_.tie_effect * std::pow(limits_.largest_ratio / limits_.tie_effect, (i + 0.5) / kPoints);
+    const Eigen::ArrayXd gained = share * share / (1.0 + share * share * size);
+    terms[i] = 0.5 * (shown * gained - (1.0 + share * share * size).log()).sum();
+  }
+  return LogSumExp(terms) - std::log(kPoints);
+}
+
+void Search::AllowForLawError(Finding* finding) const {
+  const CandidatePtr law = LawError();
+  if (!law) return;
+  std::set<std::string> families;
+  for (const CandidatePtr& candidate : finding->tried)
+    if (candidate->probability > 0.0) families.insert(candidate->families().front());
+  if (families.empty()) return;
+  const double odds =
+      LogOddsOfLawError(law) + std::log(finding->p_none) - std::log(static_cast<double>(families.size()));
+  law->probability = 1.0 / (1.0 + std::exp(-odds));
+  const double others = 1.0 / (1.0 + std::exp(odds));
+  finding->p_none *= others;
+  for (const CandidatePtr& candidate : finding->tried) candidate->probability *= others;
+  finding->tried.push_back(law);
 }
 
 double Search::Ratio(const CandidatePtr& candidate) const {

@@ -19,6 +19,7 @@
 #include "armcmc/gap/online_part.hpp"
 #include "armcmc/gap/plant_diagnosis.hpp"
 #include "armcmc/gap/verify.hpp"
+#include "confirm.hpp"
 #include "describe.hpp"
 #include "rungs.hpp"
 #include "sparse.hpp"
@@ -27,12 +28,8 @@ namespace armcmc::gap {
 namespace {
 
 constexpr double kDiagnosisShare = 0.7;  // of the recording is diagnosed; the rest is held out until the end
-constexpr double kUnseenRatio = 0.15;    // gap relative to the noise on held-out data, below which they confirm nothing
 constexpr double kLeastCoverage = 0.85;  // of the 95 % bands on held-out data, for a model that holds; and
 constexpr double kMostWhiteness = 5.0;   // Ljung-Box statistic over its degrees of freedom there
-constexpr double kWorse = 1.005;         // largest ratio of the held-out error with and without a named effect
-constexpr double kComparable =
-    16.0;  // squared difference of two models on held-out data, in noise variances, that suffices to compare them
 
 /// Measures the time of each step and reports progress.
 class Clock {
@@ -74,101 +71,6 @@ const Fitted* Control(const Finding& finding) {
       return &candidate->fit;
   }
   return nullptr;
-}
-
-/// Whether held-out data contradict an effect that is so small that the share of the gap means nothing. If two models
-/// differ there by n noise variances, the sum of squares of the right one is smaller by n, give or take 2 sqrt(n).
-bool HeldOutDataContradict(const HeldOut& heldout, const Fitted& before, const Fitted& after, double variance) {
-  const Trial first = heldout.Try(before), second = heldout.Try(after);
-  const double difference = (first.whitened - second.whitened).squaredNorm() / variance;
-  return difference > kComparable && second.whitened.squaredNorm() >= first.whitened.squaredNorm();
-}
-
-/// Held-out data may withdraw a name but never add one: a hypothesis that does not hold on them is replaced by another
-/// formula of the same effects, or withdrawn.
-void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds& limits, Diagnosis* diagnosis,
-             Result* result) {
-  Finding& finding = diagnosis->finding;
-  const auto closed = [&](const CandidatePtr& c) {
-    const Fitted& before = c->correction ? c->correction->without : finding.base->fit;
-    return ShowGap(equation, heldout, *diagnosis->bootstrap, before, c->correction ? c->correction->with : c->fit,
-                   nullptr);
-  };
-  const auto holds = [&](const CandidatePtr& c) {
-    const GapSummary gap = closed(c);
-    if (gap.gap_ratio < kUnseenRatio) {
-      const Fitted& before = c->correction ? c->correction->without : finding.base->fit;
-      const Fitted& after = c->correction ? c->correction->with : c->fit;
-      return gap.after.rmse < kWorse * gap.before.rmse &&
-             !HeldOutDataContradict(heldout, before, after, diagnosis->wide->fitter->whitener().variance);
-    }
-    // The smooth factor is fitted to the first part and errs on the rest, so the effect is judged by what it adds to
-    // it.
-    if (c->correction) return gap.closed_low > 0.0 && gap.closed_fraction > limits.at_least_closed;
-    return gap.closed_high > limits.confirmed && gap.closed_fraction > limits.at_least_closed;
-  };
-  const auto holds_elsewhere = [&](const CandidatePtr& c) {
-    const double share = c->correction ? heldout.ClosedOutsideWorstBlocks(c->correction->without, c->correction->with)
-                                       : heldout.ClosedOutsideWorstBlocks(finding.base->fit, c->fit);
-    return share > limits.confirmed_elsewhere;
-  };
-  // Something else may be at work there, too.
-  const auto found_there = [&](const CandidatePtr& c) {
-    const Fitted& before = c->correction ? c->correction->without : finding.base->fit;
-    const Fitted& after = c->correction ? c->correction->with : c->fit;
-    return heldout.FoundAsPredicted(before, after, *diagnosis->bootstrap) &&
-           closed(c).closed_fraction > limits.at_least_closed;
-  };
-  // With such a factor only certain names are given: a set from which a member was rejected is not certain.
-  const bool with_correction = std::any_of(finding.set.begin(), finding.set.end(),
-                                           [](const CandidatePtr& member) { return member->correction != nullptr; });
-  std::vector<CandidatePtr> kept;
-  double lost = 0.0;
-  for (const CandidatePtr& member : finding.set) {
-    if (holds(member)) {
-      kept.push_back(member);
-      continue;
-    }
-    const auto other = std::find_if(finding.tried.begin(), finding.tried.end(), [&](const CandidatePtr& c) {
-      return c != member && c->names() == member->names() && holds(c);
-    });
-    if (other == finding.tried.end() && holds_elsewhere(member)) {
-      result->notes.push_back("a few segments of the held-out data show something else that " +
-                              Joined(Texts(member), " and ") + " does not explain and the first part does not show");
-      kept.push_back(member);
-      continue;
-    }
-    if (other == finding.tried.end() && found_there(member)) {
-      result->notes.push_back("the held-out data show " + Joined(Texts(member), " and ") +
-                              " as predicted, and beside it something else that the first part does not show");
-      kept.push_back(member);
-      continue;
-    }
-    if (other == finding.tried.end() || with_correction) {
-      result->notes.push_back(Joined(Texts(member), " and ") +
-                              " explains the first part of the data but not the held-out part: rejected");
-      lost += member->probability;
-      member->probability = 0.0;
-      continue;
-    }
-    result->notes.push_back("on the held-out data " + Joined(Texts(member), " and ") +
-                            " holds only with another formula: " + (*other)->added().back().form->formula);
-    (*other)->probability = member->probability;
-    member->probability = 0.0;
-    finding.approximate = true;
-    kept.push_back(*other);
-  }
-  if (kept.empty() || (with_correction && kept.size() < finding.set.size())) {
-    kept.clear();
-    finding.verdict = Verdict::kUnnamed;
-    finding.p_unnamed = std::max(finding.p_unnamed, lost);
-  } else {
-    // The probability of the rejected hypotheses goes to the others.
-    for (const CandidatePtr& member : kept) member->probability += lost / static_cast<double>(kept.size());
-    finding.verdict = kept.size() == 1 ? Verdict::kNamed : Verdict::kAmbiguous;
-    finding.best = kept.front();
-  }
-  finding.set = kept;
 }
 
 /// The model for the estimator, with notes on effects that it leaves out or represents by another formula.

@@ -196,7 +196,9 @@ std::optional<Rival> PlainRivals::RivalOf(const Contender& c) {
   std::vector<Contender> straight;
   if (rival == nullptr) {
     std::vector<Candidate> same = lacked(straight_entries_);
-    std::erase_if(same, [&](const Candidate& one) { return !ActOnSameQuantity(one, c.candidate); });
+    // A branch that forgets at once is a damper, and one that never does a spring.
+    const bool relaxes = Relaxes(c.candidate);
+    std::erase_if(same, [&](const Candidate& one) { return !relaxes && !ActOnSameQuantity(one, c.candidate); });
     straight = FittedRivals(std::move(same), data_, base_);
     rival = FirstThatExplainsAsMuch(&straight, view_, base_, c);
   }

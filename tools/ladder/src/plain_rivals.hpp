@@ -23,8 +23,8 @@ namespace armcmc::ladder {
 ///   what fades while a body is held looks like a friction that builds up after each reversal. So it is a rival of
 ///   effects that remember and add;
 /// - the output has a term in proportion to a signal, y + c (x - mean of x). A curve that is straight as far as the
-///   data reach is none: a dry friction so smooth that it never slips is a viscous one. So it is a rival of effects
-///   that are a function of the same signal.
+///   data reach is none: a dry friction so smooth that it never slips is a viscous one. Nor is a memory that is
+///   forgotten at once. So it is a rival of effects that are a function of the same signal, and of those that relax.
 ///
 /// Where an effect of the catalogue does the same, that competes by its name, and the rival is left out.
 class PlainRivals {

@@ -145,6 +145,11 @@ class Search {
   /// Probability that nothing is missing, from LogOdds of every effect, with a prior of one half. Sets the
   /// probabilities of the effects.
   double ProbabilityOfNone(const Candidates& singles) const;
+  /// The same for the law with a smooth error of any size: R is that of a random error, its shares normally
+  /// distributed.
+  [[nodiscard]] double LogOddsOfLawError(const CandidatePtr& law) const;
+  /// Where nothing is named, an error in the formula of the law is as probable beforehand as a family of effects.
+  void AllowForLawError(Finding* finding) const;
   [[nodiscard]] bool FamilyHolds(const CandidatePtr& best, const Candidates& singles) const;
   [[nodiscard]] Candidates OnePerName(const Candidates& candidates) const;
   /// Removes variant formulas from equally good hypotheses if the catalogue's own formula is among them.
