@@ -12,6 +12,8 @@ namespace {
 
 /// Of the prior's precision in the inverse of H: H alone may have directions that the pack does not determine.
 constexpr double kLeastPrecision = 1e-4;
+/// Of P_0's: where a pack cannot tell a friction from an offset, v would be hundreds of its standard deviations away.
+constexpr double kLeastOfInitial = 3e-3;
 /// Share of the effective draws that an expansion that is of use leaves, for quantiles in the tails.
 constexpr double kLikenessInTails = 0.5;
 constexpr std::size_t kCells = 2048;  // of a histogram
@@ -52,6 +54,7 @@ void Drift::ToEffective(const ModeData& data, const PosteriorMemory& last, Lapla
       ExpandLikelihood(kernels_, model_, data, noise_, space_, mode, last.log_noise_scale, scratch);
   ParamMatrix regular = precision;
   regular *= kLeastPrecision;
+  regular.diagonal().array() += kLeastOfInitial;
   regular += local.information;
   const ParamMatrix lead = Product(Inverse(regular), local.lagged_information);
   leads_ = lead.allFinite() && MoveToEffective(local, mode, lead);

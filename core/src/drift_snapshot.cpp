@@ -1,4 +1,5 @@
 // The bank of filters in a snapshot.
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -9,7 +10,9 @@
 namespace armcmc {
 namespace {
 
-constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBankOfEight = 3, kBank = 4;  // 2: of six slots
+constexpr std::uint8_t kNoBank = 0, kBankOf010 = 1, kBank = 5;
+constexpr std::array<int, kBank> kSlotsOf{0, 0, 6, 8, 11};  // of the banks between them, with
+constexpr int kFewer = 2;                                   // hypotheses less
 constexpr int kFiltersOf010 = 40;
 constexpr std::int64_t kBothParts = 4;  // added to the part of the first block
 
@@ -43,8 +46,7 @@ void Drift::Restore(SnapshotReader* in) noexcept {
   if (kind == kBankOf010) (void)in->Integer(0, std::numeric_limits<std::int64_t>::max());  // number of packs
   const std::int64_t fitted = in->Integer(0, static_cast<std::int64_t>(Part::kDrift) + kBothParts);
   if (kind != kBank) {
-    const int slots = kind == kBankOfEight ? 8 : 6;
-    const int filters = kind == kBankOf010 ? kFiltersOf010 : slots * NumHypotheses(dim_);
+    const int filters = kind == kBankOf010 ? kFiltersOf010 : kSlotsOf[kind] * (NumHypotheses(dim_) - kFewer);
     const int numbers = filters * (1 + dim_ * (2 + 3 * dim_));
     for (int k = 0; k < numbers; ++k) (void)in->Number();
     return;

@@ -185,7 +185,7 @@ TEST(SimulationBasedCalibration, FailsWhenDriftIsSwitchedOff) {
   const EstimatorSettings moves = ThreeParts();
   EstimatorSettings broken = moves;
   broken.forgetting.drift_share = 0.0;
-  const Histogram h = RankHistograms(broken, 200, 6, 13, &moves);
+  const Histogram h = RankHistograms(broken, 300, 6, 13, &moves);
   double worst = 0.0;
   for (const auto& counts : h) worst = std::fmax(worst, ChiSquare(counts));
   EXPECT_GT(worst, kFail);

@@ -30,9 +30,9 @@ struct QuadraticControl;
 ///
 /// s_h is the rate, in prior standard deviations per second. h = 0 is "rest", s = 0. Under kTogether every parameter
 /// moves at the rate of the hypothesis; correlation times are short, for velocities that change, or long, for steady
-/// trends, whose intervals would otherwise be too wide. Under the others, one for each parameter of several, this
-/// parameter alone moves (kAlone): otherwise a drift of one would make the intervals of all of them wide. All of these
-/// are equally probable.
+/// trends, whose intervals would otherwise be too wide. The rates of trends are a factor of two apart: at three, the
+/// intervals for a rate in between do not fit. Under the others, one for each parameter of several, this parameter
+/// alone moves (kAlone): otherwise a drift of one would widen the intervals of all. All are equally probable.
 ///
 /// The posterior of h and the split of u among them are a bank of Gaussian filters in (u, w), in closed form:
 ///
@@ -71,11 +71,11 @@ struct QuadraticControl;
 ///   + (T' a - b)' w - (v - m)' (H T - H_1) w - w' (T' H T - T' H_1 - H_1 T + H_2) w / 2
 ///
 /// T = H^-1 H_1 makes the product of v and w vanish: the sums of the second line are what the pack tells of w whatever
-/// v is, and Carry() gives them to the filters. (A little of the prior's precision is added to H.) H_1 / H is the mean
-/// time from a sample to the end of the pack, and in directions that the pack hardly determines T w is many times that:
-/// what a constant law would find there is far from the parameters at any time of the pack. Without it the intervals of
-/// drifting parameters miss the truth. Posteriors that are stored, and the draws, are of effective parameters; the bank
-/// between packs and what is published (EndOfPack) are of those at the end of the pack. What rests has v = u.
+/// v is, and Carry() gives them to the filters. H_1 / H is the mean time from a sample to the end of the pack, and in
+/// directions that the pack hardly determines T w is many times that: what a constant law would find there is far from
+/// the parameters at any time of the pack. Without it the intervals of drifting parameters miss the truth. Where H is
+/// little beside P_0, v would be beyond all bounds: a little of both priors' precision is added to H. Posteriors that
+/// are stored, and the draws, are effective; the bank and what is published are at the end. What rests has v = u.
 ///
 /// Published are the draws, moved (EndOfPack) from their distribution under the expansion to that of the bank at the
 /// end of the pack: by its quantiles, and beyond the outermost so that the variance is the bank's. For a linear law
@@ -109,8 +109,8 @@ class Drift {
     double rate;         ///< s, prior standard deviations per s.
     double persistence;  ///< tau, s.
   };
-  static constexpr std::array<Law, 6> kTogether{
-      {{0.1, 30.0}, {0.3, 30.0}, {0.003, 200.0}, {0.01, 200.0}, {0.03, 200.0}, {0.1, 200.0}}};
+  static constexpr std::array<Law, 8> kTogether{
+      {{.1, 30.}, {.3, 30.}, {.003, 200.}, {.006, 200.}, {.012, 200.}, {.025, 200.}, {.05, 200.}, {.1, 200.}}};
   static constexpr Law kAlone{0.03, 200.0};
   static constexpr double kSwitching = 0.03;   ///< kappa, 1/s: a drift begins, ends, or becomes another.
   static constexpr double kNegligible = 0.01;  ///< Probability below which a part is left out of the prior of a pack.
