@@ -246,6 +246,16 @@ TEST(Fitter, ALatencyBelowATenthOfASampleIsNone) {
   }
 }
 
+TEST(Fitter, ALagMayBeLongerThanTheMotionTakesToChange) {
+  armcmc::test::HiddenEffect hidden = Hidden("sensor_lag");
+  hidden.amplitude[0] = 0.15;  // s; the speed changes by its own size within 0.08 s
+  const Bench bench(Measure({hidden}, kRows, kNoise, 3).recording);
+  const Fitter fitter(*bench.equation, bench.signals, White(kNoise));
+  const Fitted fit = fitter.Add(bench.Base(fitter), {&bench.Form("sensor_lag"), {}});
+  EXPECT_NEAR(fit.coordinates[3].Value(fit.theta[3]), hidden.amplitude[0], 0.003);
+  EXPECT_NEAR(fit.squares / (kNoise * kNoise * kRows), 1.0, 5.0 * std::sqrt(2.0 / kRows));
+}
+
 TEST(Fitter, KeepsEveryCoordinateInsideItsBounds) {
   // Data that no contact made: the fit goes to the edges and stays there.
   Recording recording = Measure({}, 1500, kNoise, 3).recording;

@@ -2,16 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "armcmc/gap/smoothing.hpp"
 
 namespace armcmc::gap {
 namespace {
 
-// A latency is sought up to this many samples, and up to this share of the time in which the motion changes. A shorter
-// one than the shortest is none: smoothing noisy inputs moves a prediction by as much.
+// A latency is sought up to this many samples, and up to this multiple of the time in which the motion changes. A
+// longer delay is another phase of the motion; a lag may last half a period, as in the effects of every plant. A
+// shorter one than the shortest is none: smoothing noisy inputs moves a prediction by as much.
 constexpr double kShortestSamples = 0.1;
-constexpr double kLongestSamples = 50.0, kLongestShare = 0.3;
+constexpr double kLongestSamples = 50.0, kLongestDelay = 0.3, kLongestLag = std::numbers::pi;
 constexpr double kUnitSamples = 10.0;  // of the recording that the catalogue is scaled to: a latency of one
 
 /// Low pass tau g' + g = f, exact for f linear between samples, started settled.
@@ -50,9 +52,10 @@ void ApplyFilter(const Filter& filter, double coordinate, int own, Prediction* o
   if (out->wanted.Has(own)) out->jacobian.col(own) = (filter(before, coordinate + kStep) - out->y) / kStep;
 }
 
-EffectForm Latency(const char* effect, const char* formula, Slot slot, const Signals& signals, const char* parameter) {
+EffectForm Latency(const char* effect, const char* formula, Slot slot, const Signals& signals, const char* parameter,
+                   double longest_multiple) {
   const double motion_s = signals.scale_of(Role::kVelocity) / signals.scale_of(Role::kAcceleration);
-  const double longest = std::max(kLongestSamples, kLongestShare * motion_s / signals.dt);
+  const double longest = std::max(kLongestSamples, longest_multiple * motion_s / signals.dt);
   EffectForm form;
   form.effect = effect;
   form.family = "latency";
@@ -76,12 +79,13 @@ EffectForm Latency(const char* effect, const char* formula, Slot slot, const Sig
 std::vector<EffectForm> LatencyForms(const Signals& signals) {
   // Other recordings may be sampled at another rate.
   const auto samples_of_one = [dt = signals.dt](const Signals& in) { return kUnitSamples * (dt / in.dt); };
-  EffectForm delay = Latency("sensor_delay", "f(t - time)", Slot::kDelay, signals, "time");
+  EffectForm delay = Latency("sensor_delay", "f(t - time)", Slot::kDelay, signals, "time", kLongestDelay);
   delay.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
     ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return Delayed(f, one * at); }, c[0], own,
                 out);
   };
-  EffectForm lag = Latency("sensor_lag", "g, time_constant g' + g = f", Slot::kLag, signals, "time_constant");
+  EffectForm lag =
+      Latency("sensor_lag", "g, time_constant g' + g = f", Slot::kLag, signals, "time_constant", kLongestLag);
   lag.sense = [samples_of_one](const Signals& in, const double* c, int own, Prediction* out) {
     ApplyFilter([one = samples_of_one(in)](const Vector& f, double at) { return LowPass(f, one * at); }, c[0], own,
                 out);
