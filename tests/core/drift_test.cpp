@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "armcmc/density_fit.hpp"
@@ -314,6 +316,31 @@ TEST(Drift, ARestartGoesOnToTheBitAndAnOlderSnapshotIsTaken) {
     older.Step(pack);
     test::ExpectSameBits(whole.estimate(), resumed.estimate());
     EXPECT_LT(older.estimate().modes[0].p_drifted, seq == 51 ? 0.2 : 1.0) << "learnt anew";
+  }
+}
+
+TEST(Drift, ABankOfOtherHypothesesOrFewerFiltersIsLearntAnew) {
+  constexpr std::size_t kFilter = 1 + 2 * 3 + 3 * 9;  // numbers of three parameters
+  constexpr std::size_t kHypotheses = static_cast<std::size_t>(Drift::NumHypotheses(3));
+  constexpr std::size_t kBank = 1 + (2 + Drift::kSlots * kHypotheses * kFilter) * sizeof(double);
+  Contact contact(kDrift);
+  Rig rig(Quick());
+  for (std::int64_t seq = 1; seq <= 50; ++seq) rig.Step(contact.Pack(seq));
+  std::vector<std::byte> adjusted(Estimator::kSnapshotBytes), executed(Estimator::kSnapshotBytes);
+  adjusted.resize(rig.estimator.SaveAdjusted(adjusted) - kBank);
+  executed.resize(rig.estimator.SaveExecuted(executed));
+  const DataPack next = contact.Pack(51);
+  for (const auto& [kind, slots] : {std::pair{2, 6}, {3, 8}, {4, 11}}) {
+    std::vector<std::byte> older = adjusted;
+    older.push_back(static_cast<std::byte>(kind));
+    older.resize(older.size() + (2 + static_cast<std::size_t>(slots) * (kHypotheses - 2) * kFilter) * sizeof(double));
+    Rig resumed(Quick());
+    ASSERT_TRUE(resumed.estimator.Restore(older, executed)) << kind;
+    resumed.Step(next);
+    EXPECT_TRUE(resumed.estimate().modes[0].known) << kind;
+    EXPECT_LT(resumed.estimate().modes[0].p_drifted, 0.2) << kind;
+    older.pop_back();
+    EXPECT_FALSE(Rig(Quick()).estimator.Restore(older, executed)) << kind;
   }
 }
 
