@@ -100,8 +100,8 @@ class Estimator {
   /// reason to call it: the mismatch test decides whether the old posterior still holds.)
   void Reset() noexcept ARMCMC_NONBLOCKING;
 
-  /// Bytes that one of the two Save functions may need.
-  static constexpr std::size_t kSnapshotBytes = 512 * 1024;
+  /// Bytes that one of the two Save functions may need, with as many modes and parameters as there may be.
+  static constexpr std::size_t kSnapshotBytes = 1536 * 1024;
   /// What Adjust() carries from pack to pack, the posteriors of all modes, and what Execute() carries: the estimates on
   /// display and the evidence of the gap watch. Each is called by the thread of its stage, the first after Remember().
   /// A restored estimator continues bit-identically; what only spans neighbouring packs (memory of effects, a free

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "armcmc/snapshot.hpp"
@@ -55,6 +57,44 @@ TEST(DescribedSnapshot, APlantWithStatesGoesOnToTheBitAsAfterALostPack) {
     const DataPack pack = VesselPack(*plant, seq);
     test::ExpectSameBits(whole.Step(pack), resumed.Step(pack));
   }
+}
+
+/// As many modes and parameters as there may be.
+PlantDescription Largest() {
+  PlantDescription plant;
+  plant.name = "largest";
+  plant.output = "f";
+  plant.signals = {{"m", "1", "", ""}, {"x", "1", "", ""}, {"v", "1", "", ""}, {"f", "N", "force", ""}};
+  for (const char* name : {"a", "b", "c", "d", "e", "g", "h", "k"})
+    plant.parameters.push_back(
+        {.name = name, .unit = "N", .mean = 1.0, .sd = 1.0, .lower = -10.0, .upper = 10.0, .per_mode = true});
+  for (int mode = 0; mode < kMaxModes; ++mode) {
+    const std::string number = std::to_string(mode);
+    plant.modes.push_back(
+        {"mode_" + number, "m == " + number, "a + b*x + c*v + d*x*v + e*x^2 + g*v^2 + h*x^2*v + k*x*v^2", "", false});
+  }
+  plant.noise.std = 0.1;
+  return plant;
+}
+
+TEST(DescribedSnapshot, TheLargestPlantFits) {
+  const auto plant = test::Program(Largest());
+  const EstimatorSettings settings = DescribedSettings(plant);
+  Rig whole(settings), resumed(settings);
+  test::GaussianNoise noise(0.1);
+  const auto pack_of = [&](std::int64_t seq) {
+    const auto mode = static_cast<double>(seq % kMaxModes);
+    return DescribedPack(*plant, seq, [&](double t) {
+      const double x = std::sin(71.0 * t), v = std::cos(103.0 * t);
+      return PlantSample{{mode, x, v}, 1.0 + x + v + x * v + x * x + v * v + x * x * v + x * v * v + noise()};
+    });
+  };
+  for (std::int64_t seq = 1; seq <= 5 * kMaxModes; ++seq) (void)whole.Step(pack_of(seq));
+  for (std::size_t m = 0; m < kMaxModes; ++m) ASSERT_TRUE(whole.estimate().modes[m].known) << m;
+  const Saved saved = SaveOf(whole.estimator);
+  ASSERT_TRUE(resumed.estimator.Restore(saved.adjusted, saved.executed));
+  const DataPack next = pack_of(5 * kMaxModes + 1);
+  test::ExpectSameBits(whole.Step(next), resumed.Step(next));
 }
 
 TEST(DescribedSnapshot, OneWithoutWhatTheStatesNeedIsTakenToo) {
