@@ -25,8 +25,11 @@ Recording RecordPlant(const std::string& name, const std::vector<HiddenInPlant>&
       requests.push_back(request);
       continue;
     }
-    for (const plant_sim::EffectSpec& spec : plant_sim::EffectRegistry(*scenario.family))
-      if (spec.name == effect.name) scenario.hidden.push_back({&spec, effect.values, {}, 0.0});
+    for (const plant_sim::EffectSpec& spec : plant_sim::EffectRegistry(*scenario.family)) {
+      if (spec.name != effect.name || (!effect.variant.empty() && spec.variant != effect.variant)) continue;
+      scenario.hidden.push_back({&spec, effect.values, {}, 0.0});
+      break;
+    }
   }
   for (plant_sim::HiddenEffect& effect : plant_sim::DecideEffects(scenario, requests, seed))
     scenario.hidden.push_back(effect);

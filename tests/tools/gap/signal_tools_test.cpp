@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "armcmc/gap/band_noise.hpp"
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/smoothing.hpp"
 #include "armcmc/gap/whitener.hpp"
@@ -121,6 +123,39 @@ TEST(FitNoise, WhiteNoiseIsWhiteAndNothingIsNothing) {
   EXPECT_GT(silent.variance, 0.0);
   EXPECT_TRUE(silent.phi.allFinite());
   EXPECT_TRUE(FitNoise(Vector::Constant(1000, 3.0)).phi.allFinite());
+}
+
+/// A sum of slow waves, up to a twentieth of the sampling rate.
+Vector SlowWaves(Eigen::Index rows, double amplitude, double phase) {
+  const Vector n = Vector::LinSpaced(rows, 0.0, static_cast<double>(rows) - 1.0);
+  Vector sum = Vector::Zero(rows);
+  for (const double period : {20.3, 33.7, 71.0, 150.0, 410.0})
+    sum.array() += amplitude * (2.0 * std::numbers::pi / period * n.array() + phase * period).sin();
+  return sum;
+}
+
+TEST(NoiseAboveBand, IsThatOfTheSensorWhateverTheLawErrsBy) {
+  constexpr Eigen::Index kRows = 7000;
+  const Vector law = SlowWaves(kRows, 1.0, 0.0);
+  for (const Vector& phi : {Vector(), Vector{{0.4}}, Vector{{0.8}}, Vector{{-0.3}}, Vector{{0.9, -0.3}}}) {
+    const Whitener truth{phi, 1e-4};
+    for (const double misfit : {0.0, 0.1}) {
+      const Vector residual = Autoregressive(phi, kRows, 3, 0.01) + SlowWaves(kRows, misfit, 0.3);
+      const std::optional<Whitener> noise = NoiseAboveBand(residual, law);
+      ASSERT_TRUE(noise);
+      EXPECT_NEAR(noise->variance / truth.variance, 1.0, 0.15) << phi.transpose() << ", misfit " << misfit;
+      EXPECT_NEAR(noise->variance * noise->Gain() / (truth.variance * truth.Gain()), 1.0, 0.35)
+          << phi.transpose() << ", misfit " << misfit;
+    }
+    const Whitener all = FitNoise(Autoregressive(phi, kRows, 3, 0.01) + SlowWaves(kRows, 0.1, 0.3));
+    EXPECT_GT(all.variance * all.Gain(), 5.0 * truth.variance * truth.Gain()) << "the misfit passes for noise";
+  }
+}
+
+TEST(NoiseAboveBand, NeedsABandWithoutTheLaw) {
+  EXPECT_FALSE(NoiseAboveBand(Noise(7000, 1), Noise(7000, 2))) << "the law is everywhere";
+  EXPECT_FALSE(NoiseAboveBand(Noise(500, 1), Vector::Zero(500))) << "too short";
+  EXPECT_TRUE(NoiseAboveBand(Noise(7000, 1), Vector::Zero(7000)));
 }
 
 TEST(Hats, SumToOneAndAreOneAtTheirKnot) {

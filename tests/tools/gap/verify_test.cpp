@@ -98,6 +98,21 @@ TEST_F(HeldOutTest, AnEffectIsFoundBesideAnotherThatOnlyTheHeldOutDataShow) {
   EXPECT_FALSE(found(Measure({}, kRows, kNoise, 99).recording, 0));
 }
 
+TEST_F(HeldOutTest, AnEffectIsFoundBesideParametersThatAreFittedAgain) {
+  const auto found = [&](const Recording& shown, Eigen::Index first, double least) {
+    return HeldOut(*equation_, *diagnosis_.wide, shown, first)
+        .FoundBesideLawError(base_, best_, *diagnosis_.bootstrap, least);
+  };
+  EXPECT_TRUE(found(recording_, kDiagnosed, 0.9));
+  EXPECT_FALSE(found(recording_, kDiagnosed, 1.1)) << "no more than all of it";
+  EXPECT_FALSE(found(Measure({}, kRows, kNoise, 99).recording, 0, 0.5)) << "it is not there";
+  // A law that is another one in the rest, by as much as one that errs.
+  Recording stiffer = recording_;
+  stiffer.columns[3].tail(kRows - kDiagnosed) +=
+      0.1 * Measure({}, kRows, 1e-9, 5).recording.columns[3].tail(kRows - kDiagnosed);
+  EXPECT_TRUE(found(stiffer, kDiagnosed, 0.5));
+}
+
 TEST_F(HeldOutTest, AHeldOutPartWithoutContactIsNoError) {
   Recording air = recording_;
   air.columns[1].tail(kRows - kDiagnosed + 100).setConstant(-0.2);

@@ -265,6 +265,13 @@ int RunBuiltIn(const Arguments& a) {
     }
   }
   if (result.verdict == Verdict::kUnnamed) {
+    if (auto beside = RunBesideLawError(request)) {
+      beside->result.version = result.version;
+      beside->result.data_sha256 = result.data_sha256;
+      outcome = *std::move(beside);
+    }
+  }
+  if (result.verdict == Verdict::kUnnamed) {
     if (auto again = ladder::SearchAgain(request)) {
       again->diagnosis.result.data_file = result.data_file;
       again->diagnosis.result.data_sha256 = result.data_sha256;

@@ -41,6 +41,12 @@ class OnHeldOut {
     return heldout_.FoundAsPredicted(Before(c), After(c), *diagnosis_.bootstrap) &&
            Closed(Before(c), After(c)).closed_fraction > limits_.at_least_closed;
   }
+  /// Whether the effect is there beside an error of the law. Whether the model that is reported predicts better for it
+  /// says little: it has no such error.
+  [[nodiscard]] bool HoldsBesideLawError(const CandidatePtr& c) const {
+    return heldout_.FoundBesideLawError(Before(c), After(c), *diagnosis_.bootstrap, limits_.at_least_closed);
+  }
+  [[nodiscard]] bool PredictsWorse(const CandidatePtr& c) const { return AsReported(c).closed_fraction < 0.0; }
   /// Whether the model that is reported, which has no correction, is no better than the one without the effect, and
   /// these data exclude that it closes a large part of the gap.
   [[nodiscard]] bool IsWorthless(const CandidatePtr& c) const {
@@ -110,17 +116,23 @@ CandidatePtr Confirmed(const OnHeldOut& data, const CandidatePtr& member, bool w
 
 }  // namespace
 
-void Confirm(const Equation& equation, const HeldOut& heldout, const Thresholds& limits, Diagnosis* diagnosis,
+void Confirm(const Equation& equation, const HeldOut& heldout, const DiagnoseOptions& options, Diagnosis* diagnosis,
              Result* result) {
   Finding& finding = diagnosis->finding;
-  const OnHeldOut data(equation, heldout, limits, *diagnosis);
+  const OnHeldOut data(equation, heldout, options.thresholds, *diagnosis);
   // With such a correction only certain names are given: a set from which a member was rejected is not certain.
   const bool with_correction = std::any_of(finding.set.begin(), finding.set.end(),
                                            [](const CandidatePtr& member) { return member->correction != nullptr; });
   std::vector<CandidatePtr> kept;
   double lost = 0.0;
   for (const CandidatePtr& member : finding.set) {
-    if (const CandidatePtr one = Confirmed(data, member, with_correction, &finding, &result->notes)) {
+    const CandidatePtr one = !options.law_errs ? Confirmed(data, member, with_correction, &finding, &result->notes)
+                             : data.HoldsBesideLawError(member) ? member
+                                                                : nullptr;
+    if (one) {
+      if (options.law_errs && data.PredictsWorse(one))
+        result->notes.push_back("the law errs by so much that with " + Joined(Texts(one), " and ") +
+                                " added it predicts the held-out part no better");
       kept.push_back(one);
       continue;
     }

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "armcmc/gap/band_noise.hpp"
 #include "armcmc/gap/smoothing.hpp"
 
 namespace armcmc::gap {
@@ -15,14 +17,19 @@ namespace {
 constexpr int kWidestWindow = 15;
 constexpr int kNoisePasses = 2, kSearchPasses = 4;
 constexpr int kBaseSteps = 30;
-constexpr double kCleaner = 0.97;  // of the innovation variance, below which the first noise model hid an effect
+constexpr int kLawErrorPlaces = 8;  // along each variable of a law that may err
+constexpr double kCleaner = 0.97;   // of the innovation variance, below which the first noise model hid an effect
 
-/// Noise model from what a hypothesis and the flexible model leave together.
-Whitener NoiseLeftBy(const Fitter& fitter, const Remainder& remainder) {
-  return FitNoise(fitter.whitener().Colour(remainder.unexplained));
+/// Noise model from what a hypothesis and the flexible model leave together. Where the law may err, what they leave in
+/// its band is not noise alone.
+/// @param predicted  By the law.
+Whitener NoiseLeftBy(const Fitter& fitter, const Remainder& remainder, const Vector& predicted, bool law_errs) {
+  const Vector left = fitter.whitener().Colour(remainder.unexplained);
+  const std::optional<Whitener> above = law_errs ? NoiseAboveBand(left, predicted) : std::nullopt;
+  return above ? *above : FitNoise(left);
 }
 
-/// The model without additions, with the effects that it already has.
+/// The model without additions, with the effects that it already has, and with the error of a law that may err.
 Fitted FitModel(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const DiagnoseOptions& options) {
   Fitted fit = fitter.Fit({}, fitter.equation().Start(fitter.signals()), kBaseSteps);
   for (const auto& [effect, when] : options.known) {
@@ -31,6 +38,9 @@ Fitted FitModel(const Fitter& fitter, const std::vector<EffectForm>& catalogue, 
     if (form == catalogue.end()) throw std::invalid_argument("the workflow knows no effect called " + effect);
     fit = fitter.Add(fit, {&*form, when});
   }
+  if (options.law_errs)
+    for (const EffectForm& form : catalogue)
+      if (form.regular) fit = fitter.Add(fit, {&form, {}});
   return fit;
 }
 
@@ -58,6 +68,7 @@ void Exclude(const std::vector<std::string>& without, std::vector<EffectForm>* c
   }
 }
 
+/// @return an analysis without a finding if the law is to err and its equation has no error.
 std::unique_ptr<Analysis> Analyse(const Equation& equation, const Recording& recording, int window,
                                   const DiagnoseOptions& options, const BlockBootstrap& bootstrap) {
   auto analysis = std::make_unique<Analysis>();
@@ -65,11 +76,18 @@ std::unique_ptr<Analysis> Analyse(const Equation& equation, const Recording& rec
   analysis->signals.window = window;
   analysis->catalogue = equation.Catalogue(analysis->signals);
   Exclude(options.without, &analysis->catalogue);
+  if (options.law_errs) {
+    std::erase_if(analysis->catalogue, [](const EffectForm& form) { return form.regular; });
+    std::optional<EffectForm> error = equation.LawError(analysis->signals, kLawErrorPlaces);
+    if (!error) return analysis;
+    analysis->catalogue.push_back(*std::move(error));
+  }
   Whitener whitener;
   for (int pass = 0; pass < kNoisePasses; ++pass) {
     const Fitter fitter(equation, analysis->signals, whitener);
     const Fitted base = FitModel(fitter, analysis->catalogue, options);
-    whitener = NoiseLeftBy(fitter, AdequacyCheck(fitter, base.predicted).Judge(base));
+    const Remainder left = AdequacyCheck(fitter, base.predicted).Judge(base);
+    whitener = NoiseLeftBy(fitter, left, base.predicted, options.law_errs);
   }
   // What no additive basis expresses (an onset, a clipped force) hides in the first noise model.
   for (int pass = 0; pass < kSearchPasses; ++pass) {
@@ -78,7 +96,8 @@ std::unique_ptr<Analysis> Analyse(const Equation& equation, const Recording& rec
                                                 FitModel(*analysis->fitter, analysis->catalogue, options));
     analysis->finding = analysis->search->Run(options.pairs);
     if (analysis->finding.verdict == Verdict::kNone || !analysis->finding.best->remainder) break;
-    const Whitener cleaner = NoiseLeftBy(*analysis->fitter, *analysis->finding.best->remainder);
+    const Whitener cleaner = NoiseLeftBy(*analysis->fitter, *analysis->finding.best->remainder,
+                                         analysis->finding.base->fit.predicted, options.law_errs);
     if (!(cleaner.variance < kCleaner * whitener.variance)) break;
     whitener = cleaner;
   }

@@ -33,6 +33,7 @@ Search::Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, c
       base_(std::make_shared<Candidate>()),
       rows_(static_cast<double>(fitter.signals().rows())) {
   base_->num_known = base.hypothesis.terms.size();
+  law_errs_ = base_->num_known > 0 && base.hypothesis.terms.back().form->regular;
   base_->fit = std::move(base);
 }
 
@@ -207,6 +208,7 @@ Search::Candidates Search::Listed(const Candidates& candidates, bool listed) con
 }
 
 Finding Search::Run(bool pairs) const {
+  if (law_errs_) return BesideLawError();
   Finding finding;
   finding.base = finding.best = base_;
   const Vector flexible = Judge(base_).gain;

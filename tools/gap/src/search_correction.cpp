@@ -10,6 +10,7 @@
 namespace armcmc::gap {
 namespace {
 
+constexpr double kHeld = 1e9;  // precision of coordinates that stay where they are, times the noise variance
 constexpr std::size_t kWithCorrection = 6;  // effects that are fitted with a correction, most promising first
 
 }  // namespace
@@ -103,8 +104,15 @@ void Search::RemoveCorrections(Finding* finding) const {
     start << with.theta.head(before), with.theta.tail(after);
     Hypothesis plain = with.hypothesis;
     plain.terms.erase(plain.terms.begin() + static_cast<std::ptrdiff_t>(correction));
-    candidate->fit = fitter_->Fit(plain, start);
-    candidate->num_known = base_->num_known;
+    if (law_errs_) {
+      // Refitted, the effects would make up for the law.
+      CoordinatePrior held{start, Matrix::Zero(start.size(), start.size())};
+      held.precision.diagonal().tail(after).setConstant(kHeld / fitter_->whitener().variance);
+      candidate->fit = fitter_->Fit(plain, start, Fitter::kMaxSteps, &held);
+    } else {
+      candidate->fit = fitter_->Fit(plain, start);
+    }
+    candidate->num_known = correction;
   }
   // Without it, some formulas are at the bound at which they are another effect's.
   const auto other_effect = [](const CandidatePtr& c) { return c->correction && c->fit.on_edge(); };

@@ -1,5 +1,6 @@
 #include "armcmc/gap/verify.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,15 @@ ModeFit OfMode(const std::string& name, const Vector& mask, const Vector& before
     return std::sqrt((e.array().square() * mask.array()).sum() / std::max(count, 1.0));
   };
   return {name, static_cast<int>(count), rms(before), rms(after)};
+}
+
+/// Whether a series contains another as it is: the slope of the regression on it is one, give or take a third.
+bool IsAsPredicted(const Vector& series, const Vector& added, const BlockBootstrap& bootstrap) {
+  constexpr double kOff = 1.5;  // formulas for the same physics differ by a third
+  const Vector size = BlockSquares(added);
+  if (!(size.sum() > 0.0)) return false;
+  const Vector found = 0.25 * (BlockSquares(added + series) - BlockSquares(added - series));
+  return bootstrap.RatioQuantile(found, size, 0.025) > 1.0 / kOff && bootstrap.RatioQuantile(found, size, 0.975) < kOff;
 }
 
 }  // namespace
@@ -137,18 +147,31 @@ double HeldOut::ClosedOutsideWorstBlocks(const Fitted& before, const Fitted& aft
 }
 
 bool HeldOut::FoundAsPredicted(const Fitted& before, const Fitted& after, const BlockBootstrap& bootstrap) const {
-  constexpr double kOff = 1.5;  // formulas for the same physics differ by a third
   const Trial trial = Try(before);
   const Eigen::ColPivHouseholderQR<Matrix> parameters(trial.whitened_jacobian);
   const auto beyond_parameters = [&](const Vector& y) {
     return Vector(y - trial.whitened_jacobian * parameters.solve(y));
   };
+  return IsAsPredicted(beyond_parameters(trial.whitened), beyond_parameters(trial.whitened - Try(after).whitened),
+                       bootstrap);
+}
+
+bool HeldOut::FoundBesideLawError(const Fitted& before, const Fitted& after, const BlockBootstrap& bootstrap,
+                                  double least) const {
+  const Trial trial = Try(before);
+  const Matrix& columns = trial.whitened_jacobian;
+  Matrix gram = columns.transpose() * columns;
+  gram.noalias() += before.whitened_jacobian.transpose() * before.whitened_jacobian;
+  gram.diagonal() *= 1.0 + 1e-9;
+  const Eigen::LDLT<Matrix> parameters(gram);
+  const auto beyond_parameters = [&](const Vector& y) {
+    return Vector(y - columns * parameters.solve(columns.transpose() * y));
+  };
   const Vector first = beyond_parameters(trial.whitened);
   const Vector added = beyond_parameters(trial.whitened - Try(after).whitened);
-  const Vector size = BlockSquares(added);
-  if (!(size.sum() > 0.0)) return false;
-  const Vector found = 0.25 * (BlockSquares(added + first) - BlockSquares(added - first));
-  return bootstrap.RatioQuantile(found, size, 0.025) > 1.0 / kOff && bootstrap.RatioQuantile(found, size, 0.975) < kOff;
+  const double noise = analysis_->fitter->whitener().variance * static_cast<double>(first.size());
+  const double gap = first.squaredNorm() - noise, closed = first.squaredNorm() - (first - added).squaredNorm();
+  return closed > least * std::max(gap, 0.0) && IsAsPredicted(first, added, bootstrap);
 }
 
 GapSummary ShowGap(const Equation& equation, const HeldOut& data, const BlockBootstrap& bootstrap, const Fitted& before,

@@ -143,7 +143,7 @@ bool HeldOutIsInconclusive(const EquationDiagnosis& one, const HeldOut& rest) {
 /// Whether to diagnose the whole recording as well, which costs as much as the first diagnosis. Always for a plant with
 /// several equations if the first part shows no gap, since a load may be picked up late.
 bool NeedsWholeRecording(const WorkflowRequest& request, const HeldOut& rest, const PlantDiagnosis& plant) {
-  if (request.heldout || !plant.carrying().suitability.can_name) return false;
+  if (request.heldout || request.diagnose.law_errs || !plant.carrying().suitability.can_name) return false;
   const Finding& first = plant.carrying().diagnosis.finding;
   const bool several = plant.equations.size() > 1;
   if (first.verdict == Verdict::kUnnamed) return several && !first.events_s.empty();
@@ -214,6 +214,10 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
 
   clock.Begin("compare and name", 0.0);
   PlantDiagnosis plant = DiagnosePlant(request.model, parts.diagnosis, request.diagnose);
+  if (request.diagnose.law_errs && plant.carrying().diagnosis.finding.set.empty()) {
+    result.verdict = Verdict::kUnnamed;
+    return outcome;
+  }
   std::optional<HeldOut> rest(EvaluateHeldOut(plant, parts));
   const std::string whole_note = DiagnoseAll(request, parts, *rest, &plant);
   if (!whole_note.empty()) result.notes.push_back(whole_note);
@@ -241,7 +245,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   const HeldOut& heldout = *rest;
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
     clock.Begin("confirm", 0.72);
-    Confirm(*equation, heldout, request.diagnose.thresholds, &diagnosis, &result);
+    Confirm(*equation, heldout, request.diagnose, &diagnosis, &result);
   }
   if (request.until < Step::kName) {
     result.sentence = "The search for a name was not requested.";
@@ -295,6 +299,14 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
   }
   clock.End();
   if (request.progress) request.progress("done", 1.0);
+  return outcome;
+}
+
+std::optional<WorkflowOutcome> RunBesideLawError(WorkflowRequest request) {
+  if (request.until < Step::kShow || !request.diagnose.pairs || request.earlier) return std::nullopt;
+  request.diagnose.law_errs = true;
+  WorkflowOutcome outcome = RunWorkflow(request);
+  if (outcome.result.effects.empty()) return std::nullopt;
   return outcome;
 }
 

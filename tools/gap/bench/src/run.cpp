@@ -58,6 +58,8 @@ Answer RunDiagnosis(const std::filesystem::path& recording, const std::filesyste
     request.diagnose.without = what.without;
     answer.result = gap::RunWorkflow(request).result;
     if (answer.result.verdict == gap::Verdict::kUnnamed)
+      if (auto beside = gap::RunBesideLawError(request)) answer.result = std::move(beside->result);
+    if (answer.result.verdict == gap::Verdict::kUnnamed)
       if (auto again = ladder::SearchAgain(request)) answer.result = std::move(again->diagnosis.result);
     answer.result.figures = {};
   } catch (const std::exception& error) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -147,12 +148,17 @@ class ContactEquation final : public Equation {
 
   std::vector<EffectForm> Catalogue(const Signals& s) const override {
     std::vector<EffectForm> forms = FormsFor("contact", s, {});
-    constexpr double kFast = 2.0;  // times the rms speed
-    if (s.law_seen)
-      forms.push_back(LawErrorForm({Role::kPosition, 0.0, s.at(Role::kPosition).maxCoeff()},
-                                   {Role::kVelocity, 0.0, kFast * s.scale_of(Role::kVelocity), true}));
+    constexpr int kPlaces = 5;
+    if (std::optional<EffectForm> error = LawError(s, kPlaces)) forms.push_back(*std::move(error));
     forms.push_back(DeadZoneForm(s));
     return forms;
+  }
+
+  std::optional<EffectForm> LawError(const Signals& s, int places) const override {
+    constexpr double kFast = 2.0;  // times the rms speed
+    if (!s.law_seen) return std::nullopt;
+    return LawErrorForm({Role::kPosition, 0.0, s.at(Role::kPosition).maxCoeff()},
+                        {Role::kVelocity, 0.0, kFast * s.scale_of(Role::kVelocity), true}, places);
   }
 
   std::vector<FeatureGroup> Groups(const Signals& s, const Vector& predicted) const override;

@@ -19,6 +19,9 @@ struct DiagnoseOptions {
   /// Effects that the model already contains.
   std::vector<std::pair<std::string, When>> known;
   Thresholds thresholds;
+  /// The law may err by a smooth factor (Equation::LawError) that every hypothesis has and no report; the noise is that
+  /// above the band of the law. For misfits that the exact law with any effect leaves unnamed.
+  bool law_errs = false;
 };
 
 /// The analysis of a recording with one smoother: the finding, and everything that it refers to.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,12 @@ class Equation {
                                                               const Matrix& covariance) const = 0;
 
   [[nodiscard]] virtual std::vector<EffectForm> Catalogue(const Signals& signals) const = 0;
+  /// A smooth error of the law, with `places` basis functions along each of its variables (law_error.hpp). None: the
+  /// effects are smooth functions of the same variables, or the data do not show the law.
+  [[nodiscard]] virtual std::optional<EffectForm> LawError(const Signals& signals, int places) const {
+    (void)signals, (void)places;
+    return std::nullopt;
+  }
   /// Groups of the flexible residual model; `predicted` is the prediction of the base model.
   [[nodiscard]] virtual std::vector<FeatureGroup> Groups(const Signals& signals, const Vector& predicted) const = 0;
   [[nodiscard]] virtual std::vector<PlotFeature> PlotFeatures(const Signals& signals) const = 0;

@@ -19,6 +19,7 @@ struct LawVariable {
 /// O'Hagan (2014) show that parameters are wrong without it. Effects are distinguished from it by what it cannot
 /// represent: forces out of contact, memory, jumps, and changes with time. A law whose effects are smooth functions of
 /// the same variables (the valve flow) has no such term, because it would absorb them.
-[[nodiscard]] EffectForm LawErrorForm(const LawVariable& a, const LawVariable& b);
+/// @param places  Basis functions along each variable.
+[[nodiscard]] EffectForm LawErrorForm(const LawVariable& a, const LawVariable& b, int places);
 
 }  // namespace armcmc::gap

@@ -70,7 +70,8 @@ void Withdraw(double least, Finding* finding);
 /// The third step: names the missing effects.
 class Search {
  public:
-  /// @param base  The fitted base model.
+  /// @param base  The fitted base model. If its last term is an error of the law, effects are named beside it, as
+  ///              beside a flexible correction, and reported without it.
   Search(const Fitter& fitter, const std::vector<EffectForm>& catalogue, const BlockBootstrap& bootstrap,
          const Thresholds& thresholds, Fitted base);
 
@@ -118,6 +119,8 @@ class Search {
   void DropUncertain(Candidates* good) const;
   /// Refits the hypotheses of a verdict without their flexible correction: that is the model that is reported.
   void RemoveCorrections(Finding* finding) const;
+  /// The search where the base model has an error of the law: single effects that stand out beside it.
+  [[nodiscard]] Finding BesideLawError() const;
   [[nodiscard]] Candidates Listed(const Candidates& candidates, bool listed) const;
   [[nodiscard]] bool IsBeatenBy(const CandidatePtr& named, const CandidatePtr& unlisted) const;
   [[nodiscard]] CandidatePtr Refined(const CandidatePtr& pair) const;
@@ -161,6 +164,7 @@ class Search {
   Thresholds limits_;
   std::unique_ptr<AdequacyCheck> adequacy_check_;
   CandidatePtr base_;
+  bool law_errs_ = false;  ///< The base model has an error of the law.
   double rows_ = 0.0;
 };
 

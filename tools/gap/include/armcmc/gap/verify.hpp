@@ -35,6 +35,11 @@ class HeldOut {
   /// predicted: the regression of the residual of `before` on it, both whitened, has a slope whose 95 % interval lies
   /// between 2/3 and 3/2. What else these data contain does not matter then.
   [[nodiscard]] bool FoundAsPredicted(const Fitted& before, const Fitted& after, const BlockBootstrap& bootstrap) const;
+  /// The same where `before` has an error of the law, which does not extrapolate: its parameters are fitted to the
+  /// held-out data as well, with what the diagnosed data say of them as prior, and then the effect must also close at
+  /// least the share `least` of the gap.
+  [[nodiscard]] bool FoundBesideLawError(const Fitted& before, const Fitted& after, const BlockBootstrap& bootstrap,
+                                         double least) const;
   [[nodiscard]] const Signals& signals() const { return tail_; }
 
  private:

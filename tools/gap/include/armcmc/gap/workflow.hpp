@@ -38,4 +38,9 @@ struct WorkflowOutcome {
 /// @throws std::invalid_argument, with the reason, if the data are unsuitable.
 [[nodiscard]] WorkflowOutcome RunWorkflow(const WorkflowRequest& request);
 
+/// The workflow for a recording that RunWorkflow leaves unnamed, where the law may err (DiagnoseOptions::law_errs).
+/// @return nothing if no effect stands out beside the error of the law, or if the request asks for less than a whole
+///         search of one recording.
+[[nodiscard]] std::optional<WorkflowOutcome> RunBesideLawError(WorkflowRequest request);
+
 }  // namespace armcmc::gap
