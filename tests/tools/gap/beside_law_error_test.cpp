@@ -36,6 +36,15 @@ WorkflowRequest Contact(const Case& at, bool with_effect = true) {
   return request;
 }
 
+/// Whether no effect is named, before any of the rest of the data is looked at.
+bool NothingStandsOut(const WorkflowRequest& request) {
+  constexpr double kDiagnosed = 0.7;
+  DiagnoseOptions options = request.diagnose;
+  options.law_errs = true;
+  const auto rows = static_cast<Eigen::Index>(kDiagnosed * static_cast<double>(request.data.rows()));
+  return DiagnosePlant(request.model, request.data.Slice(0, rows), options).carrying().diagnosis.finding.set.empty();
+}
+
 class BesideLawError : public ::testing::TestWithParam<Case> {};
 
 TEST_P(BesideLawError, TheEffectIsNamedAndMeasured) {
@@ -64,13 +73,20 @@ TEST(BesideLawErrorAlone, NothingIsNamedInPlaceOfTheTruth) {
   EXPECT_FALSE(RunBesideLawError(request));
 }
 
+TEST(BesideLawErrorAlone, AContactThatBeginsElsewhereIsNoDamping) {
+  // It is the most probable of what is left, but others explain nearly as much.
+  for (const unsigned long long seed : {997703ULL, 997707ULL}) {
+    WorkflowRequest request;
+    request.model = "hunt_crossley";
+    request.data = RecordPlant("contact_rich", {{"viscous_friction", 3.0, {}, {}}}, seed, 10.0, true, true, kLawError);
+    request.diagnose.without = {"viscous_friction"};
+    EXPECT_TRUE(NothingStandsOut(request)) << seed;
+  }
+}
+
 TEST(BesideLawErrorAlone, NothingIsNamedWhereOthersExplainAsMuch) {
   // A contact that begins elsewhere bends the law as its error does.
-  const WorkflowRequest request = Contact(kOffset);
-  EXPECT_FALSE(RunBesideLawError(request));
-  DiagnoseOptions options;
-  options.law_errs = true;
-  EXPECT_TRUE(DiagnosePlant(request.model, request.data, options).carrying().diagnosis.finding.set.empty());
+  EXPECT_FALSE(RunBesideLawError(Contact(kOffset)));
 }
 
 TEST(BesideLawErrorAlone, NothingIsNamedWhereEffectsAreErrorsOfTheLaw) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "armcmc/gap/features.hpp"
 #include "armcmc/gap/gate_scan.hpp"
@@ -99,6 +100,19 @@ Search::Candidates Search::AddEach(const CandidatePtr& parent, const std::vector
   support::InParallel(terms.size(),
                       [&](std::size_t i) { candidates[i] = Make(fitter_->Add(parent->fit, terms[i]), parent); });
   return candidates;
+}
+
+std::vector<Term> Search::MostPromising(const CandidatePtr& parent, const std::vector<Term>& terms,
+                                        std::size_t count) const {
+  std::vector<std::pair<double, Term>> ranked(terms.size());
+  (void)parent->fit.basis();
+  support::InParallel(terms.size(), [&](std::size_t i) {
+    ranked[i] = {fitter_->LeastDecrease(parent->fit, terms[i]), terms[i]};
+  });
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Term> most;
+  for (std::size_t i = 0; i < std::min(count, ranked.size()); ++i) most.push_back(ranked[i].second);
+  return most;
 }
 
 Search::Candidates Search::Extend(const CandidatePtr& parent, bool variants) const {

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "armcmc/gap/search.hpp"
-#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -20,16 +19,10 @@ Finding Search::BesideLawError() const {
   finding.p_none = 0.0;
   finding.p_missing = finding.p_unnamed = 1.0;
   finding.base = finding.best = base_;
-  std::vector<std::pair<double, Term>> bounds;
-  for (const EffectForm& form : *catalogue_)
-    if (!form.regular && (form.exact() || !form.listed)) bounds.emplace_back(0.0, Term{&form, {}});
-  (void)base_->fit.basis();
-  support::InParallel(bounds.size(),
-                      [&](std::size_t i) { bounds[i].first = fitter_->LeastDecrease(base_->fit, bounds[i].second); });
-  std::stable_sort(bounds.begin(), bounds.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Term> terms;
-  for (std::size_t i = 0; i < std::min(kBesideLaw, bounds.size()); ++i) terms.push_back(bounds[i].second);
-  Candidates effects = AddEach(base_, terms);
+  for (const EffectForm& form : *catalogue_)
+    if (!form.regular && (form.exact() || !form.listed)) terms.push_back({&form, {}});
+  Candidates effects = AddEach(base_, MostPromising(base_, terms, kBesideLaw));
   SortByScore(&effects);
   // At such a bound the formula is that of another effect.
   std::erase_if(effects, [](const CandidatePtr& effect) { return effect->fit.on_edge(); });

@@ -2,10 +2,8 @@
 // correction is never reported, and removed before the result is written.
 
 #include <algorithm>
-#include <utility>
 
 #include "armcmc/gap/search.hpp"
-#include "armcmc/support/parallel.hpp"
 
 namespace armcmc::gap {
 namespace {
@@ -34,16 +32,10 @@ Search::Candidates Search::WithCorrection(const Candidates& listed, const Candid
   parent->correction = std::make_shared<FlexibleCorrection>();
   parent->correction->what = best->form->effect;
   parent->correction->without = parent->fit;
-  std::vector<std::pair<double, Term>> bounds;
-  for (const EffectForm& form : *catalogue_)
-    if (form.exact()) bounds.emplace_back(0.0, Term{&form, {}});
-  (void)parent->fit.basis();
-  support::InParallel(bounds.size(),
-                      [&](std::size_t i) { bounds[i].first = fitter_->LeastDecrease(parent->fit, bounds[i].second); });
-  std::stable_sort(bounds.begin(), bounds.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Term> terms;
-  for (std::size_t i = 0; i < std::min(kWithCorrection, bounds.size()); ++i) terms.push_back(bounds[i].second);
-  Candidates corrected = AddEach(parent, terms);
+  for (const EffectForm& form : *catalogue_)
+    if (form.exact()) terms.push_back({&form, {}});
+  Candidates corrected = AddEach(parent, MostPromising(parent, terms, kWithCorrection));
   SortByScore(&corrected);
   return corrected;
 }

@@ -91,6 +91,9 @@ class Search {
   [[nodiscard]] CandidatePtr Make(Fitted fit, const CandidatePtr& parent = nullptr) const;
   /// The parent with one more term, each, on both cores.
   [[nodiscard]] Candidates AddEach(const CandidatePtr& parent, const std::vector<Term>& terms) const;
+  /// Of the terms those, at most `count`, that would decrease the sum of squares most.
+  [[nodiscard]] std::vector<Term> MostPromising(const CandidatePtr& parent, const std::vector<Term>& terms,
+                                                std::size_t count) const;
   [[nodiscard]] Candidates Extend(const CandidatePtr& parent, bool variants) const;
   /// The gated hypotheses with the largest expected gain over the ungated ones, among those active in at least
   /// `min_active` blocks.
