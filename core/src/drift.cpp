@@ -29,6 +29,22 @@ Drift::Hypothesis Drift::Of(int h, double share, int dim) noexcept {
           .alone = alone ? h - kFirstAlone : -1};
 }
 
+MovingParameters Drift::Hypothesis::Moving(int dim) const noexcept {
+  if (rate == 0.0) return {};
+  return alone < 0 ? MovingParameters{.first = 0, .count = dim} : MovingParameters{.first = alone, .count = 1};
+}
+
+DriftStep Drift::Hypothesis::Step(double elapsed_s) const noexcept {
+  const double phi = std::exp(-elapsed_s / persistence);
+  const double b = persistence * (1.0 - phi);
+  const double speed = rate * rate;
+  return {.phi = phi,
+          .b = b,
+          .noise_uu = std::fmax(speed * persistence * (2.0 * (elapsed_s - b) - b * (1.0 - phi)), 0.0),
+          .noise_uw = speed * persistence * (1.0 - phi) * (1.0 - phi),
+          .noise_ww = speed * (1.0 - phi * phi)};
+}
+
 Drift::Drift(const simd::Kernels& kernels, int model, const ParameterSpace& space, const NoiseModel& noise,
              double share, std::shared_ptr<Scratch> scratch)
     : kernels_(kernels),

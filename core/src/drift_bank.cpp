@@ -5,16 +5,9 @@
 
 #include "armcmc/drift.hpp"
 #include "armcmc/linear_algebra.hpp"
+#include "fixed_size.hpp"
 
 namespace armcmc {
-namespace {
-
-/// Share of a variance that is kept, so that it does not grow beyond that of P_0.
-double KeptShare(double before, double grown) noexcept ARMCMC_NONBLOCKING {
-  return std::fmin(std::fmax(before, 1.0) / grown, 1.0);
-}
-
-}  // namespace
 
 Drift::Moments Drift::MomentsOf(const Bank& bank, Part part, std::size_t first) const noexcept {
   Moments m{.weight = 0.0, .mean = ParamVector::Zero(dim_), .covariance = ParamMatrix::Zero(dim_, dim_)};
@@ -24,56 +17,21 @@ Drift::Moments Drift::MomentsOf(const Bank& bank, Part part, std::size_t first) 
     m.mean += bank[i].weight * bank[i].u;
   }
   m.mean /= m.weight;
-  for (std::size_t f = first * kHypotheses; f < bank.size(); ++f) {
-    if (!IsOf(part, f) || !(bank[f].weight > 0.0)) continue;
-    const ParamVector apart = bank[f].u - m.mean;
-    const double share = bank[f].weight / m.weight;
-    for (int i = 0; i < dim_; ++i)
-      for (int j = 0; j < dim_; ++j) m.covariance(i, j) += share * (bank[f].uu(i, j) + apart[i] * apart[j]);
-  }
+  WithFixedSize(dim_, [&]<class F>(F) noexcept ARMCMC_NONBLOCKING {
+    auto covariance = F::Of(&m.covariance);
+    const auto mean = F::Of(m.mean);
+    for (std::size_t f = first * kHypotheses; f < bank.size(); ++f) {
+      if (!IsOf(part, f) || !(bank[f].weight > 0.0)) continue;
+      const typename F::Vector apart = F::Of(bank[f].u) - mean;
+      covariance += (bank[f].weight / m.weight) * (F::Of(bank[f].uu) + apart.lazyProduct(apart.transpose()));
+    }
+  });
   return m;
-}
-
-void Drift::Merge(Filter* from, Filter* to) noexcept {
-  const double whole = from->weight + to->weight;
-  if (to->weight > 0.0 && from->weight > 0.0) {
-    const double p = to->weight / whole;
-    const double q = 1.0 - p;
-    const ParamVector apart = from->u - to->u;
-    const ParamVector faster = from->w - to->w;
-    const Eigen::Index dim = apart.size();
-    for (Eigen::Index i = 0; i < dim; ++i)
-      for (Eigen::Index j = 0; j < dim; ++j) {
-        to->uu(i, j) = p * to->uu(i, j) + q * from->uu(i, j) + p * q * apart[i] * apart[j];
-        to->uw(i, j) = p * to->uw(i, j) + q * from->uw(i, j) + p * q * apart[i] * faster[j];
-        to->ww(i, j) = p * to->ww(i, j) + q * from->ww(i, j) + p * q * faster[i] * faster[j];
-      }
-    to->u += q * apart;
-    to->w += q * faster;
-  } else if (from->weight > 0.0) {
-    *to = *from;
-  }
-  to->weight = whole;
-  from->weight = 0.0;
-}
-
-double Drift::LogVolume(const Hypothesis& law, const Filter& f) const noexcept {
-  std::array<Eigen::Index, kMaxParams> moving{};
-  Eigen::Index count = 0;
-  for (Eigen::Index d = 0; d < dim_; ++d)
-    if (law.rate > 0.0 && law.Moves(d)) moving[static_cast<std::size_t>(count++)] = d;
-  JointMatrix joint(dim_ + count, dim_ + count);
-  joint.topLeftCorner(dim_, dim_) = f.uu;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index row = moving[static_cast<std::size_t>(i)];
-    for (Eigen::Index d = 0; d < dim_; ++d) joint(dim_ + i, d) = f.uw(d, row);
-    for (Eigen::Index j = 0; j <= i; ++j) joint(dim_ + i, dim_ + j) = f.ww(row, moving[static_cast<std::size_t>(j)]);
-  }
-  return 0.5 * LogDeterminant(joint);
 }
 
 void Drift::MakeRoom(Bank* bank) const noexcept {
   for (std::size_t h = 0; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
+    const MovingParameters moving = hypotheses_[h].Moving(dim_);
     const auto slot = [bank, h](std::size_t k) noexcept ARMCMC_NONBLOCKING -> Filter& {
       return (*bank)[k * kHypotheses + h];
     };
@@ -85,23 +43,39 @@ void Drift::MakeRoom(Bank* bank) const noexcept {
       slot(k).weight = 0.0;
     };
     for (std::size_t k = kSlots; k-- > 0;) keep(k);
+    if (first >= kNewcomers) continue;
+    const auto volume_of = [&moving](const Filter& f) noexcept ARMCMC_NONBLOCKING {
+      return f.weight * f.LogVolume(moving);
+    };
+    std::array<double, kSlots> volume{};
+    std::array<double, kSlots> lost{};  // by merging it with the next one
+    const auto find_lost = [&](std::size_t k) noexcept ARMCMC_NONBLOCKING {
+      if (k < first || k + 1 >= kSlots) return;
+      Filter later = slot(k);
+      Filter both = slot(k + 1);
+      both.Absorb(&later);
+      lost[k] = volume_of(both) - volume[k] - volume[k + 1];
+    };
+    for (std::size_t k = first; k < kSlots; ++k) volume[k] = volume_of(slot(k));
+    for (std::size_t k = first; k + 1 < kSlots; ++k) find_lost(k);
     while (first < kNewcomers) {
-      std::array<double, kSlots> volume{};
-      for (std::size_t k = first; k < kSlots; ++k) volume[k] = slot(k).weight * LogVolume(hypotheses_[h], slot(k));
-      double least = HUGE_VAL;
       std::size_t merged = first;
+      double least = HUGE_VAL;
       for (std::size_t k = first; k + 1 < kSlots; ++k) {
-        Filter later = slot(k);
-        Filter both = slot(k + 1);
-        Merge(&later, &both);
-        const double lost = both.weight * LogVolume(hypotheses_[h], both) - volume[k] - volume[k + 1];
-        if (!(lost < least)) continue;
-        least = lost;
+        if (!(lost[k] < least)) continue;
+        least = lost[k];
         merged = k;
       }
-      Merge(&slot(merged), &slot(merged + 1));
-      for (std::size_t k = merged; k > first; --k) slot(k) = slot(k - 1);
+      slot(merged + 1).Absorb(&slot(merged));
+      volume[merged + 1] = volume_of(slot(merged + 1));
+      for (std::size_t k = merged; k > first; --k) {
+        slot(k) = slot(k - 1);
+        volume[k] = volume[k - 1];
+        lost[k] = lost[k - 1];
+      }
       slot(first++).weight = 0.0;
+      find_lost(merged);
+      find_lost(merged + 1);
     }
   }
 }
@@ -162,7 +136,7 @@ void Drift::AddNewcomers(double elapsed_s, double gap_s) noexcept {
     if (h > 0 && rest.weight > 0.0) begun = Newcomer(rest, switched * law.prior, law);
     if (!(drift.weight > 0.0)) continue;
     Filter turned = Newcomer(drift, switched * law.prior, law);
-    Merge(&turned, &begun);
+    begun.Absorb(&turned);
   }
 }
 
@@ -188,7 +162,7 @@ void Drift::AddChanged(double share) noexcept {
       Filter also = kept;
       also.weight *= share;
       kept.weight *= 1.0 - share;
-      Merge(&also, &changed);
+      changed.Absorb(&also);
     }
     if (!(changed.weight > 0.0)) continue;
     // (v, w) of u and w that are independent.
@@ -203,37 +177,6 @@ void Drift::AddChanged(double share) noexcept {
   }
 }
 
-void Drift::Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept {
-  Filter& f = *filter;
-  const double speed = law.rate * law.rate;
-  const double t = law.persistence;
-  const double phi = std::exp(-elapsed_s / t);
-  const double b = t * (1.0 - phi);
-  const double noise_w = speed * (1.0 - phi * phi);
-  const double noise_uw = speed * t * (1.0 - phi) * (1.0 - phi);
-  const double noise_u = std::fmax(speed * t * (2.0 * (elapsed_s - b) - b * (1.0 - phi)), 0.0);
-  const ParamVector variance = f.uu.diagonal();
-  f.u += b * f.w;
-  for (int i = 0; i < dim_; ++i)
-    for (int j = 0; j <= i; ++j)
-      f.uu(i, j) = f.uu(j, i) =
-          f.uu(i, j) + b * (f.uw(i, j) + f.uw(j, i)) + b * b * f.ww(i, j) + (i == j && law.Moves(i) ? noise_u : 0.0);
-  for (int i = 0; i < dim_; ++i)
-    for (int j = 0; j < dim_; ++j)
-      f.uw(i, j) = phi * (f.uw(i, j) + b * f.ww(i, j)) + (i == j && law.Moves(i) ? noise_uw : 0.0);
-  f.w *= phi;
-  f.ww *= phi * phi;
-  for (int i = 0; i < dim_; ++i) f.ww(i, i) += law.Moves(i) ? noise_w : 0.0;
-  for (int i = 0; i < dim_; ++i) {
-    const double kept = KeptShare(variance[i], f.uu(i, i));
-    const double shrink = std::sqrt(kept);
-    f.u[i] *= kept;
-    f.uu.row(i) *= shrink;
-    f.uu.col(i) *= shrink;
-    f.uw.row(i) *= shrink;
-  }
-}
-
 void Drift::Predict(double elapsed_s, double gap_s) noexcept {
   predicted_ = bank_;
   const double changes = std::fmin(std::ceil(kSwitching * elapsed_s), kMostSteps);
@@ -245,9 +188,12 @@ void Drift::Predict(double elapsed_s, double gap_s) noexcept {
     } else {
       TurnDrifts(elapsed_s / steps);
     }
-    for (std::size_t i = 0; i < predicted_.size(); ++i)
-      if (predicted_[i].weight > 0.0 && HypothesisOf(i) > 0)
-        Propagate(hypotheses_[HypothesisOf(i)], elapsed_s / steps, &predicted_[i]);
+    for (std::size_t h = 1; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
+      const DriftStep going_on = hypotheses_[h].Step(elapsed_s / steps);
+      const MovingParameters moving = hypotheses_[h].Moving(dim_);
+      for (std::size_t i = h; i < predicted_.size(); i += kHypotheses)
+        if (predicted_[i].weight > 0.0) predicted_[i].GoOn(going_on, moving);
+    }
   }
 }
 

@@ -56,8 +56,6 @@ Drift::Sampled Drift::SampledBlock(const ModeData& data, const PosteriorMemory& 
 }
 
 bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
-  const LocalLikelihood& local = sampled.local;
-  const ParamMatrix identity = ParamMatrix::Identity(dim_, dim_);
   std::array<double, kFilters> log_weight{};
   double top = -HUGE_VAL;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
@@ -65,28 +63,9 @@ bool Drift::Update(const Sampled& sampled, Part part, double weight) noexcept {
     Filter& f = bank_[i];
     f = predicted_[i];
     if (!(f.weight > 0.0)) continue;
-    // P = C (1 + H C)^-1, and w is updated through its covariance with u.
-    ParamMatrix spread = Product(local.information, f.uu);
-    spread += identity;
-    const ParamMatrix t = Inverse(spread);
-    const ParamVector apart = f.u - sampled.mean;
-    const ParamVector pulled = Multiply(local.information, apart);
-    const ParamVector residual = local.gradient - pulled;
-    const ParamVector step = Multiply(t, residual);
-    const ParamVector move = Multiply(f.uu, step);
-    log_weight[i] = std::log(f.weight) + local.gradient.dot(apart) - 0.5 * apart.dot(pulled) +
-                    0.5 * residual.dot(move) - 0.5 * std::log(std::fmax(Determinant(spread), 1e-300));
+    log_weight[i] = std::log(f.weight) + f.MultiplyBy(sampled.local, sampled.mean);
     if (!std::isfinite(log_weight[i])) return false;
     top = std::fmax(top, log_weight[i]);
-    f.u += move;
-    f.w += Multiply(f.uw.transpose(), step);
-    f.ww -= Product(Product(f.uw.transpose(), Product(t, local.information)), f.uw);
-    f.uw = Product(t.transpose(), f.uw);
-    f.uu = Product(f.uu, t);
-    MakeSymmetric(&f.uu);
-    MakeSymmetric(&f.ww);
-    if (!f.u.allFinite() || !f.w.allFinite() || !f.uu.allFinite() || !f.uw.allFinite() || !f.ww.allFinite())
-      return false;
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
@@ -139,6 +118,16 @@ simd::QuadraticControl Drift::ControlOf(const Sampled& sampled, const Draws& dra
   }
   control.constant = draws.log_likelihood[best] - at_best;
   return control;
+}
+
+void Drift::Draws::WeighInBank() const noexcept {
+  if (!apart) {
+    std::copy_n(weight, count, scratch);
+    return;
+  }
+  const double constant = of_part ? 0.0 : 1.0;
+  const double slope = of_part ? 1.0 : -1.0;
+  for (int k = 0; k < count; ++k) scratch[k] = weight[k] * (constant + slope * share[k]);
 }
 
 double Drift::Tilt(const Sampled& sampled, const Draws& draws, int count) const noexcept {
@@ -225,11 +214,7 @@ bool Drift::Recentre(const Sampled& sampled, const Draws& draws) noexcept {
   if (!MapBetween(closed.covariance, target.covariance, &map)) return false;
   for (std::size_t i = 0; i < bank_.size(); ++i) {
     Filter& f = bank_[i];
-    if (!(f.weight > 0.0) || !IsOf(sampled.part, i)) continue;
-    f.u = target.mean + Multiply(map, f.u - closed.mean);
-    f.uu = Product(Product(map, f.uu), map.transpose());
-    MakeSymmetric(&f.uu);
-    f.uw = Product(map, f.uw);
+    if (f.weight > 0.0 && IsOf(sampled.part, i)) f.Transform(map, closed.mean, target.mean);
   }
   return true;
 }

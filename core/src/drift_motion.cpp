@@ -62,41 +62,21 @@ void Drift::ToEffective(const ModeData& data, const PosteriorMemory& last, Lapla
 }
 
 bool Drift::MoveToEffective(const LocalLikelihood& local, const ParamVector& mode, const ParamMatrix& lead) noexcept {
-  const Eigen::Index n = dim_;
   const ParamMatrix pulled = Product(local.information, lead);
   const ParamMatrix lagged = Product(lead.transpose(), local.lagged_information);
-  JointVector gradient(2 * n);
-  gradient.head(n).setZero();
-  gradient.tail(n) = Multiply(lead.transpose(), local.gradient) - local.lagged_gradient;
-  JointMatrix information(2 * n, 2 * n);
-  information.topLeftCorner(n, n).setZero();
-  information.topRightCorner(n, n) = pulled - local.lagged_information;
-  information.bottomLeftCorner(n, n) = information.topRightCorner(n, n).transpose();
-  information.bottomRightCorner(n, n) =
-      Product(lead.transpose(), pulled) - lagged - lagged.transpose() + local.twice_lagged_information;
+  const VelocityLikelihood pack{
+      .mode = mode,
+      .lead = lead,
+      .gradient = Multiply(lead.transpose(), local.gradient) - local.lagged_gradient,
+      .mixed = pulled - local.lagged_information,
+      .information = Product(lead.transpose(), pulled) - lagged - lagged.transpose() + local.twice_lagged_information};
   std::array<double, kFilters> log_evidence{};
   double top = 0.0;
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
-    const Filter& f = predicted_[i];
-    if (IsOf(Part::kRest, i) || !(f.weight > 0.0)) continue;
-    const ParamMatrix moved = Product(lead, f.ww);
-    const ParamMatrix with_u = Product(lead, f.uw.transpose());
-    JointVector state(2 * n);
-    state.head(n) = f.u - mode - Multiply(lead, f.w);
-    state.tail(n) = f.w;
-    JointMatrix spread(2 * n, 2 * n);
-    spread.topLeftCorner(n, n) = f.uu - with_u - with_u.transpose() + Product(moved, lead.transpose());
-    spread.topRightCorner(n, n) = f.uw - moved;
-    spread.bottomLeftCorner(n, n) = spread.topRightCorner(n, n).transpose();
-    spread.bottomRightCorner(n, n) = f.ww;
-    log_evidence[i] = MultiplyByQuadratic(gradient, information, &state, &spread);
-    work_[i] = {.weight = f.weight,
-                .u = mode + state.head(n),
-                .w = state.tail(n),
-                .uu = spread.topLeftCorner(n, n),
-                .uw = spread.topRightCorner(n, n),
-                .ww = spread.bottomRightCorner(n, n)};
-    if (!std::isfinite(log_evidence[i]) || !state.allFinite() || !IsPositiveDefinite(work_[i].uu)) return false;
+    if (IsOf(Part::kRest, i) || !(predicted_[i].weight > 0.0)) continue;
+    work_[i] = predicted_[i];
+    log_evidence[i] = work_[i].ToEffective(pack);
+    if (!std::isfinite(log_evidence[i])) return false;
     top = std::fmax(top, log_evidence[i]);
   }
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
@@ -109,15 +89,8 @@ bool Drift::MoveToEffective(const LocalLikelihood& local, const ParamVector& mod
 
 void Drift::FromEffective() noexcept {
   if (!leads_) return;
-  for (std::size_t i = 0; i < bank_.size(); ++i) {
-    Filter& f = bank_[i];
-    if (IsOf(Part::kRest, i) || !(f.weight > 0.0)) continue;
-    const ParamMatrix moved = Product(lead_, f.ww);
-    const ParamMatrix with_u = Product(lead_, f.uw.transpose());
-    f.u += Multiply(lead_, f.w);
-    f.uu += with_u + with_u.transpose() + Product(moved, lead_.transpose());
-    f.uw += moved;
-  }
+  for (std::size_t i = 0; i < bank_.size(); ++i)
+    if (IsOf(Part::kDrift, i) && bank_[i].weight > 0.0) bank_[i].FromEffective(lead_);
 }
 
 void Drift::AddFilters(const Bank& bank, Part part, int d, Mixture* to) noexcept {
@@ -135,14 +108,18 @@ EndOfPack Drift::EndByDraws(const Draws& draws, int d, double mean, double varia
   const double origin = mean - kHistogramReach * sd;
   kernels_.histogram(draws.u[i], draws.scratch, draws.count, per_cell, -origin * per_cell, kCells + 1, cells.data());
   // The first and the last cell have all that lies beyond, too, and are left out.
+  std::size_t first = 1;
+  std::size_t last = kCells - 1;  // past those that are not empty
+  while (first + 1 < last && !(cells[2 * first] > 0.0)) ++first;
+  while (last - 1 > first && !(cells[2 * (last - 1)] > 0.0)) --last;
   double total = 0.0;
-  for (std::size_t c = 1; c + 1 < kCells; ++c) total += cells[2 * c];
+  for (std::size_t c = first; c < last; ++c) total += cells[2 * c];
   EndOfPack::Quantiles effective{};
   double below = 0.0;
-  std::size_t at = 1;
+  std::size_t at = first;
   for (std::size_t k = 0; k < effective.size(); ++k) {
     const double target = EndOfPack::kLevels[k].p * total;
-    while (at + 2 < kCells && below + cells[2 * at] < target) below += cells[2 * at++];
+    while (at + 1 < last && below + cells[2 * at] < target) below += cells[2 * at++];
     const double part = cells[2 * at] > 0.0 ? std::fmin((target - below) / cells[2 * at], 1.0) : 0.0;
     effective[k] = origin + (static_cast<double>(at) + part) / per_cell;
   }
@@ -150,9 +127,10 @@ EndOfPack Drift::EndByDraws(const Draws& draws, int d, double mean, double varia
   // t = 0 between them, it is Var[b] + 2 s Cov[b, t] + s^2 Var[t].
   const EndOfPack flat(effective, end, 0.0, 0.0, space_.lower[i], space_.upper[i]);
   double b_sum = 0.0, t_sum = 0.0, b_square = 0.0, t_square = 0.0, product = 0.0;
-  for (std::size_t c = 1; c + 1 < kCells; ++c) {
+  const double per_total = 1.0 / total;
+  for (std::size_t c = first; c < last; ++c) {
     if (!(cells[2 * c] > 0.0)) continue;
-    const double w = cells[2 * c] / total;
+    const double w = cells[2 * c] * per_total;
     const double v = origin + (static_cast<double>(c) + cells[2 * c + 1] / cells[2 * c]) / per_cell;
     const double b = flat(v) - end[end.size() / 2];  // from the median: nothing cancels
     const double t = std::fmin(v - effective.front(), 0.0) + std::fmax(v - effective.back(), 0.0);
@@ -183,7 +161,7 @@ bool Drift::FindEnd(const ModeData& data, const ParamVector& mean, double log_no
   const bool updated = Update(sampled, Part::kWhole, 1.0);
   bool tilted = draws.share != nullptr && !space_.samples_noise_scale();
   if (tilted) {
-    for (int k = 0; k < draws.count; ++k) draws.scratch[k] = draws.weight[k] * draws.InBank(k);
+    draws.WeighInBank();
     tilted = Tilt(sampled, draws, draws.count) > kLikenessInTails;
   }
   if (updated) {

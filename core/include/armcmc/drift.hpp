@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "armcmc/drift_filter.hpp"
 #include "armcmc/end_of_pack.hpp"
 #include "armcmc/laplace.hpp"
 #include "armcmc/mode_data.hpp"
@@ -130,6 +131,8 @@ class Drift {
     double rate = 0.0, persistence = 1.0, prior = 0.0;
     int alone = -1;  ///< The parameter that moves; -1: all of them.
     [[nodiscard]] bool Moves(Eigen::Index d) const noexcept { return alone < 0 || alone == d; }
+    [[nodiscard]] MovingParameters Moving(int dim) const noexcept ARMCMC_NONBLOCKING;
+    [[nodiscard]] DriftStep Step(double elapsed_s) const noexcept ARMCMC_NONBLOCKING;
   };
   /// Hypothesis h < NumHypotheses(dim) where drift has the probability `share`.
   [[nodiscard]] static Hypothesis Of(int h, double share, int dim) noexcept ARMCMC_NONBLOCKING;
@@ -187,6 +190,8 @@ class Drift {
       if (!apart) return 1.0;
       return of_part ? share[k] : 1.0 - share[k];
     }
+    /// Into the scratch: the weights, each times that probability. @pre `share` is known. @rt O(count).
+    void WeighInBank() const noexcept ARMCMC_NONBLOCKING;
   };
 
   /// After Carry(): from the effective parameters of the pack to those at its end.
@@ -236,12 +241,7 @@ class Drift {
   void Restore(SnapshotReader* in) noexcept ARMCMC_NONBLOCKING;
 
  private:
-  /// Mean and covariance of u and w, in blocks; `weight` is its part of pi_h. 0: empty, the rest says nothing.
-  struct Filter {
-    double weight = 0.0;
-    ParamVector u, w;
-    ParamMatrix uu, uw, ww;
-  };
+  using Filter = DriftFilter;
   /// Slot by slot, in each a filter of every hypothesis; of one hypothesis the one that began last is the first. The
   /// first two are for what changed and what began at the last pack.
   using Bank = std::array<Filter, kFilters>;
@@ -263,10 +263,6 @@ class Drift {
   /// @param first  Slot, from which on.
   [[nodiscard]] Moments MomentsOf(const Bank& bank, Part part,
                                   std::size_t first = kChanged) const noexcept ARMCMC_NONBLOCKING;
-  /// Moves the moments of `from` into `to`, and empties it.
-  static void Merge(Filter* from, Filter* to) noexcept ARMCMC_NONBLOCKING;
-  /// Half the log of the determinant of the covariance of u and of the velocities that the hypothesis has.
-  [[nodiscard]] double LogVolume(const Hypothesis& law, const Filter& filter) const noexcept ARMCMC_NONBLOCKING;
   /// Empties the slots of newcomers of each hypothesis.
   void MakeRoom(Bank* bank) const noexcept ARMCMC_NONBLOCKING;
   /// Covariance of the velocity that a hypothesis begins with.
@@ -279,8 +275,6 @@ class Drift {
   void AddNewcomers(double elapsed_s, double gap_s) noexcept ARMCMC_NONBLOCKING;
   /// What drifts and becomes another drift.
   void TurnDrifts(double elapsed_s) noexcept ARMCMC_NONBLOCKING;
-  /// u and w of one filter after a time without data.
-  void Propagate(const Hypothesis& law, double elapsed_s, Filter* filter) const noexcept ARMCMC_NONBLOCKING;
   /// @param gap_s  Part of the elapsed time in which there were no packs.
   void Predict(double elapsed_s, double gap_s) noexcept ARMCMC_NONBLOCKING;
   /// v = u.

@@ -32,16 +32,6 @@ using ParamMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMa
 /// L of A = L L', the lower half of A being read. @return false, with *l undefined, where A is not positive definite.
 [[nodiscard]] bool CholeskyFactor(const ParamMatrix& a, ParamMatrix* l) noexcept ARMCMC_NONBLOCKING;
 
-/// Of the parameters and their velocities together.
-using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 * kMaxParams, 1>;
-using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 * kMaxParams, 2 * kMaxParams>;
-/// N(mean, covariance) times exp(gradient' x - x' information x / 2), which is a Gaussian again.
-/// @return Log of the integral, NaN or infinite where the product is none.
-double MultiplyByQuadratic(const JointVector& gradient, const JointMatrix& information, JointVector* mean,
-                           JointMatrix* covariance) noexcept ARMCMC_NONBLOCKING;
-/// Of a covariance, of which the lower half is read; NaN where it is none.
-[[nodiscard]] double LogDeterminant(const JointMatrix& a) noexcept ARMCMC_NONBLOCKING;
-
 /// L D L' of a symmetric matrix, of which the lower half is read.
 class SymmetricFactor {
  public:

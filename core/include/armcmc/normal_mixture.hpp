@@ -20,15 +20,14 @@ class NormalMixture {
   void Add(double share, double mean, double variance) noexcept ARMCMC_NONBLOCKING {
     if (!(share > 0.0)) return;
     if (share >= kSmall) {
-      laws_[count_++] = {share, mean, std::sqrt(variance)};
+      laws_[count_++] = Of(share, mean, std::sqrt(variance));
       return;
     }
     // By West's recursion, which cancels nothing.
     const double sum = small_.share + share;
     const double apart = mean - small_.mean;
     square_ += share * (variance + apart * apart * small_.share / sum);
-    small_ = {sum, small_.mean + apart * share / sum, 0.0};
-    small_.sd = std::sqrt(square_ / sum);
+    small_ = Of(sum, small_.mean + apart * share / sum, std::sqrt(square_ / sum));
   }
 
   /// @param p  In (0, 1).
@@ -48,19 +47,23 @@ class NormalMixture {
     });
     if (!(lo <= hi)) return std::nan("");
     at = std::clamp(at, lo, hi);
-    // Newton's method, and halving where that leaves the interval in which the solution is.
-    const double tolerance = kTolerance * std::fmin(p, 1.0 - p);
+    // Newton's method for the log of the smaller tail, which is concave, and halving where that leaves the interval in
+    // which the solution is.
+    const double side = z < 0.0 ? 1.0 : -1.0;
+    const double tail = std::fmin(p, 1.0 - p);
     for (int k = 0; k < kIterations && lo < hi; ++k) {
-      double above = -p;
+      double beyond = 0.0;
       double density = 0.0;
       ForEach([&](const Law& law) noexcept ARMCMC_NONBLOCKING {
-        const double apart = (at - law.mean) / law.sd;
-        above += law.share * 0.5 * std::erfc(-apart / std::numbers::sqrt2);
-        density += law.share / law.sd * std::exp(-0.5 * apart * apart);
+        const double apart = side * (at - law.mean) * law.per_sd;
+        const double height = std::exp(-0.5 * apart * apart);
+        const double outside = height * MillsRatio(std::fabs(apart));
+        beyond += law.share * (apart < 0.0 ? outside : 1.0 - outside);
+        density += law.peak * height;
       });
-      (above < 0.0 ? lo : hi) = at;
-      const double next = at - above * std::sqrt(2.0 * std::numbers::pi) / density;
-      if (std::fabs(above) < tolerance) return std::clamp(next, lo, hi);
+      ((beyond < tail) == (side > 0.0) ? lo : hi) = at;
+      const double next = at - side * std::log(beyond / tail) * beyond / density;
+      if (std::fabs(beyond - tail) < kTolerance * tail) return std::clamp(next, lo, hi);
       at = next > lo && next < hi ? next : 0.5 * (lo + hi);
     }
     return at;
@@ -72,7 +75,17 @@ class NormalMixture {
   static constexpr int kIterations = 20;
   struct Law {
     double share, mean, sd;
+    double per_sd, peak;  ///< 1 / s_i, and the density at m_i times p_i.
   };
+  static Law Of(double share, double mean, double sd) noexcept ARMCMC_NONBLOCKING {
+    return {share, mean, sd, 1.0 / sd, share / (sd * std::sqrt(2.0 * std::numbers::pi))};
+  }
+  /// Phi(-x) exp(x^2 / 2) for x >= 0, to 7e-5 of it up to x = 3.1 and 5e-4 up to 4 (Abramowitz and Stegun, Handbook of
+  /// Mathematical Functions, 26.2.17, whose polynomial has an absolute error of 7.5e-8 times that).
+  static double MillsRatio(double x) noexcept ARMCMC_NONBLOCKING {
+    const double t = 1.0 / (1.0 + 0.2316419 * x);
+    return t * (0.127414796 + t * (-0.142248368 + t * (0.7107068705 + t * (-0.7265760135 + t * 0.5307027145))));
+  }
   template <typename Use>
   void ForEach(const Use& use) const noexcept ARMCMC_NONBLOCKING {
     for (std::size_t i = 0; i < count_; ++i) use(laws_[i]);
@@ -81,7 +94,7 @@ class NormalMixture {
 
   std::array<Law, kMost> laws_{};
   std::size_t count_ = 0;
-  Law small_{0.0, 0.0, 1.0};
+  Law small_ = Of(0.0, 0.0, 1.0);
   double square_ = 0.0;  ///< Sum of the shares times the squares of the distances from the mean of the small ones.
 };
 

@@ -102,10 +102,11 @@ void MoveToEnd(const EndOfPack& end, const double* v, int count, double* u) noex
   }
 }
 
-V Quadratic(const QuadraticControl& control, const double* const* u, int at) noexcept {
-  V z[kMaxParams];
+template <int kDim>
+[[gnu::always_inline]] inline V Quadratic(const QuadraticControl& control, const double* const* u, int at) noexcept {
+  V z[static_cast<unsigned>(kDim)];
   V sum = Simd::Set(control.constant);
-  for (int i = 0; i < control.dim; ++i) {
+  for (int i = 0; i < kDim; ++i) {
     z[i] = Simd::Load(u[i] + at) - Simd::Set(control.centre[i]);
     V slope = Simd::Set(control.slope[i]);
     for (int j = 0; j <= i; ++j) slope = Simd::Fma(Simd::Set(control.curvature[i][j]), z[j], slope);
@@ -114,11 +115,12 @@ V Quadratic(const QuadraticControl& control, const double* const* u, int at) noe
   return sum;
 }
 
-void Tilt(const QuadraticControl& control, const double* const* u, const double* log_likelihood, int count,
-          double* weight) noexcept ARMCMC_NONBLOCKING {
+template <int kDim>
+void TiltOf(const QuadraticControl& control, const double* const* u, const double* log_likelihood, int count,
+            double* weight) noexcept {
   const V most = Simd::Set(kMostTilt);
   for (int k = 0; k < count; k += Simd::kLanes) {
-    const V apart = Quadratic(control, u, k) - Simd::Load(log_likelihood + k);
+    const V apart = Quadratic<kDim>(control, u, k) - Simd::Load(log_likelihood + k);
     const V held = Simd::Min(Simd::Max(apart, -most), most);
     const V w = Simd::Load(weight + k);
     const Simd::I usable = (w > V{}) & (apart - apart == V{});
@@ -126,19 +128,32 @@ void Tilt(const QuadraticControl& control, const double* const* u, const double*
   }
 }
 
-double Reweigh(const QuadraticControl& control, const double* const* u, const double* g, int count,
-               double* weight) noexcept ARMCMC_NONBLOCKING {
+void Tilt(const QuadraticControl& control, const double* const* u, const double* log_likelihood, int count,
+          double* weight) noexcept ARMCMC_NONBLOCKING {
+  ForDimension(control.dim, [&]<int kDim>() noexcept { TiltOf<kDim>(control, u, log_likelihood, count, weight); });
+}
+
+template <int kDim>
+double ReweighOf(const QuadraticControl& control, const double* const* u, const double* g, int count,
+                 double* weight) noexcept {
   Sums<1> sum;
   for (int k = 0; k < count; k += 8)
     for (unsigned p = 0; p < Sums<1>::kParts; ++p) {
       const int at = k + static_cast<int>(p) * Simd::kLanes;
-      const V inner = Quadratic(control, u, at);
+      const V inner = Quadratic<kDim>(control, u, at);
       const V factor = Simd::Max(Simd::Fma(-Simd::Load(g + at), inner, Simd::Set(control.most)), V{});
       const V w = Simd::Load(weight + at) * factor;
       Simd::Store(weight + at, w);
       sum.Add(0, p, w);
     }
   return sum.Total(0);
+}
+
+double Reweigh(const QuadraticControl& control, const double* const* u, const double* g, int count,
+               double* weight) noexcept ARMCMC_NONBLOCKING {
+  double sum = 0.0;
+  ForDimension(control.dim, [&]<int kDim>() noexcept { sum = ReweighOf<kDim>(control, u, g, count, weight); });
+  return sum;
 }
 
 /// As many small integers as a vector has lanes.
