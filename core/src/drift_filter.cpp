@@ -41,16 +41,22 @@ double HalfLogDeterminant(const Eigen::LLT<Matrix>& factor) noexcept {
   return std::log(product);
 }
 
+/// The numbers of a filter, in the order in which it has them.
+template <class F>
+struct PartsOf {
+  explicit PartsOf(DriftFilter* f) noexcept
+      : u(F::Of(&f->u)), w(F::Of(&f->w)), uu(F::Of(&f->uu)), uw(F::Of(&f->uw)), ww(F::Of(&f->ww)) {}
+  Eigen::Map<typename F::Vector> u, w;
+  Eigen::Map<typename F::Matrix> uu, uw, ww;
+};
+
 template <class F>
 double MultiplyByOf(const LocalLikelihood& local, const ParamVector& centre, DriftFilter* filter) noexcept {
   using Vector = typename F::Vector;
   using Matrix = typename F::Matrix;
   const auto h = F::Of(local.information);
   const auto a = F::Of(local.gradient);
-  auto u = F::Of(&filter->u);
-  auto uu = F::Of(&filter->uu);
-  auto uw = F::Of(&filter->uw);
-  auto ww = F::Of(&filter->ww);
+  auto [u, w, uu, uw, ww] = PartsOf<F>(filter);
   // C <- (1 + C H)^-1 C, which needs no inverse of C, and w is updated through its covariance with u.
   Matrix spread = uu.lazyProduct(h);
   spread.diagonal().array() += 1.0;
@@ -64,11 +70,11 @@ double MultiplyByOf(const LocalLikelihood& local, const ParamVector& centre, Dri
   MakeSymmetricOf(&uu);
   const Vector move = uu.lazyProduct(residual);
   u += move;
-  F::Of(&filter->w) += uw.transpose().lazyProduct(residual);
+  w += uw.transpose().lazyProduct(residual);
   ww -= uw.transpose().lazyProduct(told);
   MakeSymmetricOf(&ww);
   // What is not finite spreads to the sum.
-  const double sum = filter->w.sum() + uw.sum() + ww.sum() + uu.sum();
+  const double sum = w.sum() + uw.sum() + ww.sum() + uu.sum();
   return a.dot(apart) - 0.5 * apart.dot(pulled) + 0.5 * residual.dot(move) -
          0.5 * std::log(std::fmax(factor.determinant(), kLeastDeterminant)) + 0.0 * sum;
 }
@@ -80,11 +86,7 @@ double ToEffectiveOf(const VelocityLikelihood& pack, DriftFilter* filter) noexce
   using JointMatrix = typename F::JointMatrix;
   const auto lead = F::Of(pack.lead);
   const auto mixed = F::Of(pack.mixed);
-  auto u = F::Of(&filter->u);
-  auto w = F::Of(&filter->w);
-  auto uu = F::Of(&filter->uu);
-  auto uw = F::Of(&filter->uw);
-  auto ww = F::Of(&filter->ww);
+  auto [u, w, uu, uw, ww] = PartsOf<F>(filter);
   const Eigen::Index n = u.size();
   const auto size = Eigen::fix<F::kDim>(static_cast<int>(n));  // of blocks, known where that of the whole is
   u -= lead.lazyProduct(w);
@@ -160,11 +162,7 @@ void TransformOf(const ParamMatrix& by, const ParamVector& from, const ParamVect
 
 template <class F>
 void GoOnOf(const DriftStep& step, const MovingParameters& moving, DriftFilter* filter) noexcept {
-  auto u = F::Of(&filter->u);
-  auto w = F::Of(&filter->w);
-  auto uu = F::Of(&filter->uu);
-  auto uw = F::Of(&filter->uw);
-  auto ww = F::Of(&filter->ww);
+  auto [u, w, uu, uw, ww] = PartsOf<F>(filter);
   const typename F::Vector variance = uu.diagonal();
   u += step.b * w;
   uu += step.b * (uw + uw.transpose()) + step.b * step.b * ww;
@@ -218,11 +216,7 @@ void AbsorbOf(const DriftFilter& other, double share, DriftFilter* filter) noexc
   using Vector = typename F::Vector;
   const double p = 1.0 - share;
   const double between = p * share;
-  auto u = F::Of(&filter->u);
-  auto w = F::Of(&filter->w);
-  auto uu = F::Of(&filter->uu);
-  auto uw = F::Of(&filter->uw);
-  auto ww = F::Of(&filter->ww);
+  auto [u, w, uu, uw, ww] = PartsOf<F>(filter);
   const Vector apart = F::Of(other.u) - u;
   const Vector faster = F::Of(other.w) - w;
   const Vector by_apart = between * apart;
