@@ -189,10 +189,10 @@ void Drift::Predict(double elapsed_s, double gap_s) noexcept {
       TurnDrifts(elapsed_s / steps);
     }
     for (std::size_t h = 1; h < static_cast<std::size_t>(NumHypotheses(dim_)); ++h) {
-      const DriftStep going_on = hypotheses_[h].Step(elapsed_s / steps);
+      const DriftStep after = hypotheses_[h].Step(elapsed_s / steps);
       const MovingParameters moving = hypotheses_[h].Moving(dim_);
       for (std::size_t i = h; i < predicted_.size(); i += kHypotheses)
-        if (predicted_[i].weight > 0.0) predicted_[i].GoOn(going_on, moving);
+        if (predicted_[i].weight > 0.0) predicted_[i].Propagate(after, moving);
     }
   }
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kLeastDeterminant = 1e-300;
 
-/// (A B)' = A B for a product that is symmetric but for rounding.
+/// (M + M') / 2 of what is symmetric but for rounding.
 template <class Matrix>
 void MakeSymmetricOf(Matrix* m) noexcept {
   *m = (0.5 * (*m + m->transpose())).eval();
@@ -161,7 +161,7 @@ void TransformOf(const ParamMatrix& by, const ParamVector& from, const ParamVect
 }
 
 template <class F>
-void GoOnOf(const DriftStep& step, const MovingParameters& moving, DriftFilter* filter) noexcept {
+void PropagateOf(const DriftStep& step, const MovingParameters& moving, DriftFilter* filter) noexcept {
   auto [u, w, uu, uw, ww] = PartsOf<F>(filter);
   const typename F::Vector variance = uu.diagonal();
   u += step.b * w;
@@ -246,8 +246,8 @@ void DriftFilter::Transform(const ParamMatrix& map, const ParamVector& from, con
   WithFixedSize(u.size(), [&]<class F>(F) noexcept { TransformOf<F>(map, from, to, this); });
 }
 
-void DriftFilter::GoOn(const DriftStep& step, const MovingParameters& moving) noexcept {
-  WithFixedSize(u.size(), [&]<class F>(F) noexcept { GoOnOf<F>(step, moving, this); });
+void DriftFilter::Propagate(const DriftStep& step, const MovingParameters& moving) noexcept {
+  WithFixedSize(u.size(), [&]<class F>(F) noexcept { PropagateOf<F>(step, moving, this); });
 }
 
 double DriftFilter::LogVolume(const MovingParameters& moving) const noexcept {

@@ -4,7 +4,7 @@
 
 namespace armcmc {
 
-/// Vectors and matrices of a size that the compiler knows: for small ones its loops take a fifth of the time of those
+/// Vectors and matrices of a size that the compiler knows: for small ones its loops take a third of the time of those
 /// that count. Include it in few files, and see there to the effects of Eigen's branches for large sizes.
 /// @tparam kSize  Number of parameters, or Eigen::Dynamic.
 template <int kSize>

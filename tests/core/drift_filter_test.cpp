@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 namespace armcmc {
@@ -142,7 +141,7 @@ TEST_P(DriftFilterOf, IsTransformedInItsParametersAlone) {
   ExpectIs(filter, mean, covariance);
 }
 
-TEST_P(DriftFilterOf, GoesOnWithoutData) {
+TEST_P(DriftFilterOf, IsPropagatedWithoutData) {
   DriftFilter filter = Random();
   filter.uu *= 0.1;  // far within the variance of P_0
   filter.uw *= 0.1;
@@ -158,7 +157,7 @@ TEST_P(DriftFilterOf, GoesOnWithoutData) {
   covariance(2 * n - 1, n - 1) += step.noise_uw;
   covariance(2 * n - 1, 2 * n - 1) += step.noise_ww;
   const VectorXd mean = map * MeanOf(filter);
-  filter.GoOn(step, moving);
+  filter.Propagate(step, moving);
   ExpectIs(filter, mean, covariance);
 }
 
@@ -169,7 +168,7 @@ TEST_P(DriftFilterOf, GrowsNoWiderThanTheInitialPrior) {
   filter.w.setZero();
   const double covariance = filter.uw(0, 0);
   const double velocity = filter.ww(0, 0);
-  filter.GoOn({.phi = 1.0, .b = 0.0, .noise_uu = 3.1, .noise_uw = 0.0, .noise_ww = 0.0}, {.first = 0, .count = 1});
+  filter.Propagate({.phi = 1.0, .b = 0.0, .noise_uu = 3.1, .noise_uw = 0.0, .noise_ww = 0.0}, {.first = 0, .count = 1});
   EXPECT_NEAR(filter.uu(0, 0), 1.0, 1e-12);  // of 4
   EXPECT_NEAR(filter.u[0], 0.5, 1e-12);
   EXPECT_NEAR(filter.uw(0, 0), 0.5 * covariance, 1e-12);

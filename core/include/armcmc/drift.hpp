@@ -131,7 +131,9 @@ class Drift {
     double rate = 0.0, persistence = 1.0, prior = 0.0;
     int alone = -1;  ///< The parameter that moves; -1: all of them.
     [[nodiscard]] bool Moves(Eigen::Index d) const noexcept { return alone < 0 || alone == d; }
+    /// Whose velocities a filter of this hypothesis has: none at rest.
     [[nodiscard]] MovingParameters Moving(int dim) const noexcept ARMCMC_NONBLOCKING;
+    /// The exact solution of the equation above over a time.
     [[nodiscard]] DriftStep Step(double elapsed_s) const noexcept ARMCMC_NONBLOCKING;
   };
   /// Hypothesis h < NumHypotheses(dim) where drift has the probability `share`.

@@ -9,11 +9,10 @@ namespace armcmc {
 /// Which velocities a filter has: of all parameters, of one that moves alone, or of none.
 struct MovingParameters {
   Eigen::Index first = 0, count = 0;
-  [[nodiscard]] bool Has(Eigen::Index d) const noexcept { return d >= first && d < first + count; }
 };
 
-/// How u and w go on for some time, where w is an Ornstein-Uhlenbeck process (Drift):  u <- u + b w,  w <- phi w, and
-/// noise with these variances and this covariance for each parameter that moves.
+/// How u and w change in some time without data, where w is an Ornstein-Uhlenbeck process (Drift):  u <- u + b w,  w <-
+/// phi w, and noise with these variances and this covariance for each parameter that moves.
 struct DriftStep {
   double phi = 1.0, b = 0.0;
   double noise_uu = 0.0, noise_uw = 0.0, noise_ww = 0.0;
@@ -55,7 +54,7 @@ struct DriftFilter {
 
   /// A time without data. If the variance of a parameter would exceed that of P_0 by a factor c > 1, variance and mean
   /// are divided by c.
-  void GoOn(const DriftStep& step, const MovingParameters& moving) noexcept ARMCMC_NONBLOCKING;
+  void Propagate(const DriftStep& step, const MovingParameters& moving) noexcept ARMCMC_NONBLOCKING;
 
   /// Half the log of the determinant of the covariance of u and of those velocities; NaN where it is none.
   [[nodiscard]] double LogVolume(const MovingParameters& moving) const noexcept ARMCMC_NONBLOCKING;
