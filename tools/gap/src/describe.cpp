@@ -154,7 +154,9 @@ void Describe(const Diagnosis& diagnosis, const std::string& in, int min_active,
                                   std::clamp(2.0 * score / rows / full, 0.0, 1.0)});
   }
   if (!finding.set.empty() && finding.best->correction)
-    result->notes.push_back("named beside something else that has no name: " + finding.best->correction->what);
+    result->notes.push_back(finding.best->correction->listed
+                                ? "the law may err, or " + finding.best->correction->what + " is there as well"
+                                : "named beside something else that has no name: " + finding.best->correction->what);
   for (const double t : finding.events_s) {
     char note[96];
     std::snprintf(note, sizeof(note), "a single event at t = %.4g s that nothing of the catalogue explains", t);

@@ -1,6 +1,7 @@
 #include "armcmc/gap/plant_diagnosis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -116,12 +117,16 @@ void KeepShared(PlantDiagnosis* plant) {
   }
 }
 
+/// The equation in which an effect is named, else the one with the larger gap, else one that these data can judge.
 std::size_t CarrierOf(const std::vector<EquationDiagnosis>& equations) {
   std::size_t best = 0;
-  double most = -1.0;
+  std::array<double, 3> most{-1.0};
   for (std::size_t i = 0; i < equations.size(); ++i) {
     const EquationDiagnosis& one = equations[i];
-    const double rank = HasGap(one) ? 1.0 + one.diagnosis.finding.gap : (one.suitability.can_name ? 0.5 : 0.0);
+    const Finding& finding = one.diagnosis.finding;
+    // A gap that stays unnamed, such as that of a law that errs, must not hide an effect that is named elsewhere.
+    const std::array<double, 3> rank = {finding.set.empty() ? 0.0 : 1.0, HasGap(one) ? 1.0 + finding.gap : 0.0,
+                                        one.suitability.can_name ? 1.0 : 0.0};
     if (rank > most) {
       most = rank;
       best = i;

@@ -346,6 +346,7 @@ Finding Search::Run(bool pairs) const {
                   bootstrap_->ProbabilityAbove(Judge(finding.best).gain, 0.1 * limits_.min_gain * rows_)});
   AssignProbabilities(&finding);
   if (finding.verdict == Verdict::kNamed && !finding.approximate) WidenOrWithdraw(&finding);
+  DropSmallSecond(&finding);
   if (finding.verdict == Verdict::kAmbiguous) WithdrawImprobable(&finding);
   RemoveCorrections(&finding);
   return finding;

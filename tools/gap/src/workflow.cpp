@@ -116,10 +116,8 @@ Parts Divide(const WorkflowRequest& request) {
   return parts;
 }
 
-/// The held-out rows, in the equation that carries the diagnosis.
-HeldOut EvaluateHeldOut(const PlantDiagnosis& plant, const Parts& parts) {
-  const EquationDiagnosis& carrying = plant.carrying();
-  return {*carrying.equation, *carrying.diagnosis.wide, parts.shown, parts.first_shown};
+HeldOut EvaluateHeldOut(const EquationDiagnosis& one, const Parts& parts) {
+  return {*one.equation, *one.diagnosis.wide, parts.shown, parts.first_shown};
 }
 
 /// Whether the held-out rows contradict the model that explains the first part: the coverage of its 95 % bands is far
@@ -140,13 +138,25 @@ bool HeldOutIsInconclusive(const EquationDiagnosis& one, const HeldOut& rest) {
              .gap_ratio < kUnseenRatio;
 }
 
+/// Whether an equation shows events that nothing explains, or a gap in the held-out rows only: a load may be picked up
+/// late.
+bool ShowsMoreLater(const EquationDiagnosis& one, const Parts& parts) {
+  const Finding& finding = one.diagnosis.finding;
+  if (!one.suitability.can_name) return false;
+  if (finding.verdict == Verdict::kUnnamed) return !finding.events_s.empty();
+  return finding.verdict == Verdict::kNone && HeldOutRowsContradict(one, EvaluateHeldOut(one, parts));
+}
+
 /// Whether to diagnose the whole recording as well, which costs as much as the first diagnosis. Always for a plant with
-/// several equations if the first part shows no gap, since a load may be picked up late.
-bool NeedsWholeRecording(const WorkflowRequest& request, const HeldOut& rest, const PlantDiagnosis& plant) {
+/// several equations if the first part shows no gap.
+bool NeedsWholeRecording(const WorkflowRequest& request, const Parts& parts, const HeldOut& rest,
+                         const PlantDiagnosis& plant) {
   if (request.heldout || request.diagnose.law_errs || !plant.carrying().suitability.can_name) return false;
   const Finding& first = plant.carrying().diagnosis.finding;
   const bool several = plant.equations.size() > 1;
-  if (first.verdict == Verdict::kUnnamed) return several && !first.events_s.empty();
+  if (first.verdict == Verdict::kUnnamed)
+    return several && std::any_of(plant.equations.begin(), plant.equations.end(),
+                                  [&](const EquationDiagnosis& one) { return ShowsMoreLater(one, parts); });
   return (several && first.verdict == Verdict::kNone) || HeldOutRowsContradict(plant.carrying(), rest) ||
          HeldOutIsInconclusive(plant.carrying(), rest);
 }
@@ -158,7 +168,7 @@ bool NeedsWholeRecording(const WorkflowRequest& request, const HeldOut& rest, co
 /// @return a note on the change, and then `plant` is the diagnosis of the whole recording; empty if nothing changes.
 std::string DiagnoseAll(const WorkflowRequest& request, const Parts& parts, const HeldOut& rest,
                         PlantDiagnosis* plant) {
-  if (!NeedsWholeRecording(request, rest, *plant)) return {};
+  if (!NeedsWholeRecording(request, parts, rest, *plant)) return {};
   PlantDiagnosis whole = DiagnosePlant(request.model, request.data, request.diagnose);
   const Finding& first = plant->carrying().diagnosis.finding;
   const Finding& all = whole.carrying().diagnosis.finding;
@@ -167,7 +177,7 @@ std::string DiagnoseAll(const WorkflowRequest& request, const Parts& parts, cons
   if (first.set.empty()) {
     if (first.verdict == Verdict::kNone ? nothing : all.set.empty()) return {};
   } else {
-    if (HeldOutRowsContradict(whole.carrying(), EvaluateHeldOut(whole, parts))) return {};
+    if (HeldOutRowsContradict(whole.carrying(), EvaluateHeldOut(whole.carrying(), parts))) return {};
     const std::string named = "the first 70 % of the recording name " + Joined(Texts(first.best), " and ");
     found = named + ", which the rest contradicts";
     if (nothing) {
@@ -218,7 +228,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
     result.verdict = Verdict::kUnnamed;
     return outcome;
   }
-  std::optional<HeldOut> rest(EvaluateHeldOut(plant, parts));
+  std::optional<HeldOut> rest(EvaluateHeldOut(plant.carrying(), parts));
   const std::string whole_note = DiagnoseAll(request, parts, *rest, &plant);
   if (!whole_note.empty()) result.notes.push_back(whole_note);
   std::optional<PlantDiagnosis> earlier;
@@ -241,7 +251,7 @@ WorkflowOutcome RunWorkflow(const WorkflowRequest& request) {
       if (!equation->name().empty()) where.feature = equation->name() + ": " + where.feature;
   }
   if (can_name) result.aliases = Aliases(*equation, analysis);
-  if (!whole_note.empty() || earlier) rest.emplace(EvaluateHeldOut(plant, parts));
+  if (!whole_note.empty() || earlier) rest.emplace(EvaluateHeldOut(plant.carrying(), parts));
   const HeldOut& heldout = *rest;
   if (request.until >= Step::kShow && !diagnosis.finding.set.empty()) {
     clock.Begin("confirm", 0.72);

@@ -19,10 +19,10 @@ struct EquationDiagnosis {
 };
 
 /// The diagnosis of every equation of a plant: each is searched separately, and a missing term is attributed to the one
-/// that carries the gap.
+/// in which it is named, else to the one with the larger gap.
 struct PlantDiagnosis {
   std::vector<EquationDiagnosis> equations;
-  std::size_t carrier = 0;         ///< The equation that carries the gap; without a gap, one that can be judged.
+  std::size_t carrier = 0;         ///< That equation; without a gap, one that can be judged.
   std::vector<std::string> notes;  ///< Equations that cannot be judged; decisions of one equation for another.
 
   [[nodiscard]] const EquationDiagnosis& carrying() const { return equations[carrier]; }

@@ -14,11 +14,12 @@
 
 namespace armcmc::gap {
 
-/// Flexible correction under which a hypothesis was tested: unnamed physics, or a model error of the law. Its effects
-/// are then named only for their gain beyond the correction.
+/// Flexible correction under which a hypothesis was tested: unnamed physics, a model error of the law, or another
+/// effect in its place. Its effects are then named only for their gain beyond the correction.
 struct FlexibleCorrection {
   std::string what;
   Fitted without, with;  ///< The correction alone, and with the effects of the hypothesis.
+  bool listed = false;   ///< It is an effect of the catalogue.
 };
 
 /// A fitted hypothesis with the result of the adequacy check, once computed.
@@ -134,6 +135,10 @@ class Search {
   /// Difference in nats below which two hypotheses are tied, in a gap of that size.
   /// @param kin  Both are of the same family, with similar formula errors.
   [[nodiscard]] double Margin(double gap, bool kin) const;
+  /// Where the verdict is pairs of effects, all of which have one that explains nearly all by itself, names only that:
+  /// the other may stand in for an error of the law. Not where the equation has a model error of its law, which then is
+  /// a rival (WithCorrection).
+  void DropSmallSecond(Finding* finding) const;
   /// Widens an uncertain name to a set, or withdraws it.
   void WidenOrWithdraw(Finding* finding) const;
   /// Withdraws a name or a set with a probability below Thresholds::doubt; a single name with a flexible correction, or
