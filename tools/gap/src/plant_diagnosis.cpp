@@ -63,6 +63,7 @@ void ResolveByOtherEquations(PlantDiagnosis* plant) {
       if (fit.hypothesis.terms.size() != 1 || fit.hypothesis.terms[0].when.kind != When::Kind::kAlways) continue;
       const EffectForm& form = *fit.hypothesis.terms[0].form;
       std::vector<double> values;
+      values.reserve(static_cast<std::size_t>(form.size()));
       for (int c = 0; c < form.size(); ++c)
         values.push_back(
             form.coordinates[static_cast<std::size_t>(c)].Value(fit.theta[fit.theta.size() - form.size() + c]));
