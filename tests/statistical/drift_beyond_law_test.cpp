@@ -61,11 +61,12 @@ int Follow(test::Rig* rig, int seed, const Measured& measured, const Judge& judg
 }
 
 /// Of the coefficient of a friction c v that grows from 0.3 to 1.2 N s/m.
-Score ScoreOfFriction(double drift_share) {
+/// @param prior_sd  N s/m
+Score ScoreOfFriction(double prior_sd, double drift_share = ForgettingSettings{}.drift_share) {
   constexpr int kSeeds = 16;
   EstimatorSettings settings = Quick(test::WithEffects({{"viscous_friction", {0.5}, {}}}));
   settings.forgetting.drift_share = drift_share;
-  settings.effects[0].amplitudes[0].sd = 1.0;
+  settings.effects[0].amplitudes[0].sd = prior_sd;
   settings.effects[0].amplitudes[0].upper = 5.0;
   test::Rig rig(settings);
   const auto coefficient = [](double t) { return 0.3 + 0.9 * Moved(t); };
@@ -83,7 +84,7 @@ Score ScoreOfFriction(double drift_share) {
 }
 
 TEST(DriftBeyondLaw, TheAmplitudeOfAnEffectIsFollowed) {
-  const Score with = ScoreOfFriction(ForgettingSettings{}.drift_share), without = ScoreOfFriction(0.0);
+  const Score with = ScoreOfFriction(1.0), without = ScoreOfFriction(1.0, 0.0);
   RecordProperty("in95", std::to_string(with.in95));
   RecordProperty("in50", std::to_string(with.in50));
   RecordProperty("error", std::to_string(with.error / without.error));
@@ -92,6 +93,14 @@ TEST(DriftBeyondLaw, TheAmplitudeOfAnEffectIsFollowed) {
   EXPECT_LT(with.in50, 0.65);
   EXPECT_LT(with.error, 0.5 * without.error);
   EXPECT_LT(without.in95, 0.5) << "without drift in the prior";
+}
+
+TEST(DriftBeyondLaw, IntervalsAreALittleTooNarrowForWhatMovesFast) {
+  // A tenth of the prior's standard deviation per second: the rates that are expected of one alone are slower.
+  const Score fast = ScoreOfFriction(0.5);
+  RecordProperty("in95", std::to_string(fast.in95));
+  EXPECT_GT(fast.in95, 0.84);
+  EXPECT_GT(fast.in50, 0.38);
 }
 
 TEST(DriftBeyondLaw, TheNoiseOfASensorThatWarmsUpIsFollowed) {
